@@ -11,6 +11,7 @@ from recon4 import stages, stages_2d
 from recon4.errors import ConfigError
 from recon4.progress import Progress
 from recon4.recording.laser2d import is_laser2d
+from recon4.recording.line_tables import is_line_table
 from recon4.recording.sources import Sources
 from recon4.results_2d import Summary2d, publish_2d
 from recon4.review.decisions import Decided
@@ -43,12 +44,13 @@ class Planar:
 
 
 def is_2d(recordings: Sequence[Path]) -> bool:
-    """Whether recordings are of a 2-D laser alone; the first one decides.
+    """Whether recordings are of a 2-D laser alone.
 
     Raises:
         RecordingError: If it cannot be read.
     """
-    return is_laser2d(recordings[0])
+    # The tables of a walk with a profiler may come in any order.
+    return is_laser2d(recordings[0]) and not any(map(is_line_table, recordings[1:]))
 
 
 def process_2d(

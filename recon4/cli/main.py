@@ -71,7 +71,7 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for program
 @app.command()
 def info(
     recording: Annotated[
-        Path, typer.Argument(help="pcap, bag, folder of clouds, CARMEN log or CSV.")
+        Path, typer.Argument(help="pcap, bag, folder of clouds, CARMEN log or table.")
     ],
     as_json: JsonOption = False,
 ) -> None:
@@ -91,7 +91,8 @@ def info(
 @app.command()
 def process(  # noqa: PLR0913 - an argument for each option
     recordings: Annotated[
-        list[Path], typer.Argument(help="pcap, bag, folder of clouds, CARMEN log.")
+        list[Path],
+        typer.Argument(help="pcap, bag, folder of clouds, CARMEN log, tables of line scans."),
     ],
     *,
     out: Annotated[Path, typer.Option(help="Project folder; the results end up in it.")],

@@ -25,6 +25,7 @@ from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
 from recon4.recording.open import (
     RECORDINGS,
@@ -64,11 +65,14 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     settings = settings or IngestSettings()
     kind = recognize(path)
     info = RecordingInfo(path=path.name, kind=str(kind), bytes=_size(path))
-    if kind is RecordingKind.CARMEN or (kind in _BAGS and is_laser2d(path)):
+    planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
+    if kind in planar or (kind in _BAGS and is_laser2d(path)):
         return _describe_laser2d(info, path)
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)
     report = ImportReport()
+    if kind is RecordingKind.LINE_TABLES:
+        return describe_line_tables(info, path)
     if kind is RecordingKind.PCAP:
         info = _describe_pcap(info, path)
     elif kind is RecordingKind.FRAMES:

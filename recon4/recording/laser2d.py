@@ -23,6 +23,7 @@ from recon4.recording.bag_recording import (
 from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
 from recon4.recording.formats.carmen import CarmenScans, is_carmen, read_carmen
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
+from recon4.recording.line_tables import is_laser_table, read_laser_table
 from recon4.recording.open import RecordingKind, bag_paths, recognize
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector
@@ -47,7 +48,7 @@ def is_laser2d(path: Path) -> bool:
     Raises:
         RecordingError: If it cannot be read.
     """
-    if path.is_file() and is_carmen(path):
+    if path.is_file() and (is_carmen(path) or is_laser_table(path)):
         return True
     if recognize(path) not in (RecordingKind.BAG1, RecordingKind.BAG2):
         return False
@@ -72,6 +73,10 @@ def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
         if len(paths) > 1:
             raise UnknownFormat(f"one CARMEN log expected, got {len(paths)} files")
         return _in_meters(_of_carmen(read_carmen(paths[0], report), paths[0].name, report), report)
+    if paths[0].is_file() and is_laser_table(paths[0]):
+        if len(paths) > 1:
+            raise UnknownFormat(f"one table of a 2-D laser expected, got {len(paths)} files")
+        return _in_meters(read_laser_table(paths[0], report), report)
     return _in_meters(_of_bags(paths, report), report)
 
 

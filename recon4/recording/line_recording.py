@@ -182,9 +182,16 @@ class LineAssembly:
         self._last_ns = 0
 
     def push(self, message: BagMessage, content: Any) -> Iterator[LineItem]:
-        """Add a line; returns those that are complete, in batches."""
+        """Add a line of a bag; returns those that are complete, in batches."""
         shots = self._shots(message, content)
-        if shots is None or not len(shots):
+        if shots is None:
+            self._report.count("lines_empty")
+            return
+        yield from self.push_shots(shots)
+
+    def push_shots(self, shots: Shots) -> Iterator[LineItem]:
+        """Add the returns of a line, in the x-z plane of the head, in order of time."""
+        if not len(shots):
             self._report.count("lines_empty")
             return
         if int(shots.t_ns[0]) <= self._last_ns:

@@ -23,12 +23,21 @@ from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, n
 from recon4.recording.formats.bags import STORAGE_SUFFIXES, Bag
 from recon4.recording.formats.carmen import is_carmen
 from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import OpenFile, is_pcap, open_plain
 from recon4.recording.formats.poses import pose_format
 from recon4.recording.line_recording import LineRecording, profiler_rig
+from recon4.recording.line_tables import (
+    LASER_COLUMNS,
+    LINE_COLUMNS,
+    LineTableRecording,
+    LineTables,
+    is_line_table,
+    table_in,
+)
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
-from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, csv_header
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
 from recon4.recording.velodyne.position_packets import PositionSamples
 from recon4.recording.velodyne.streams import PacketStream
@@ -48,11 +57,23 @@ class RecordingKind(StrEnum):
     GNSS_CSV = "GNSS samples (CSV)"
     POSES = "poses (TUM or KITTI)"
     CARMEN = "CARMEN log of a 2-D laser"
+    LINE_TABLES = "line scans (CSV or NPZ)"
+    LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
 
 
-RECORDINGS = (RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES)
+RECORDINGS = (
+    *(RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES),
+    RecordingKind.LINE_TABLES,
+)
 """Kinds with points."""
 _BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
+_KIND_OF_COLUMNS = {
+    frozenset(LINE_COLUMNS): RecordingKind.LINE_TABLES,
+    frozenset(LASER_COLUMNS): RecordingKind.LASER_TABLE,
+    frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
+    frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_CSV,
+}
+_TABLES = {RecordingKind.LINE_TABLES, RecordingKind.LASER_TABLE, RecordingKind.IMU_CSV}
 
 _OTHERS = {
     b"\xff\xd8\xff": "a JPEG image",
@@ -133,6 +154,9 @@ def open_recording(
         return Recording(kind, pcap.rig, read, stream_seconds(pcap.streams), wait_s=WAIT_S)
     if kind is RecordingKind.FRAMES:
         return _open_frames(paths, rig, settings, report=report)
+    if kind is RecordingKind.LINE_TABLES:
+        tables = LineTableRecording(LineTables.of(paths), rig, report=report)
+        return Recording(kind, tables.rig, tables.read)
     files = [f for path in paths for f in bag_paths(path)]
     with_profiler = _profiler_rig(files, rig, report)
     if with_profiler is not None:
@@ -152,15 +176,17 @@ def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
     if not paths:
         raise ConfigError("no recording given")
     kinds = [recognize(path) for path in paths]
+    if RecordingKind.LINE_TABLES in kinds and set(kinds) <= _TABLES:
+        return RecordingKind.LINE_TABLES
     kind = kinds[0]
-    if kind is RecordingKind.CARMEN:
+    if kind in (RecordingKind.CARMEN, RecordingKind.LASER_TABLE):
         raise UnknownFormat(
             f"{paths[0].name}: {kind}: it has no points of a LiDAR; process it alone"
         )
     if kind not in RECORDINGS:
         raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
     if rig is not None and rig.row_of("profiler") is not None and kind not in _BAGS:
-        raise UnknownFormat(f"{paths[0].name}: line scans are read from bags, got {kind}")
+        raise UnknownFormat(f"{paths[0].name}: line scans are read from bags or tables, got {kind}")
     if any(other is not kind for other in kinds):
         names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
         raise UnknownFormat(f"recordings of one kind expected, got {names}")
@@ -222,11 +248,10 @@ def _file_kind(path: Path) -> RecordingKind:
         return RecordingKind.FRAMES
     if is_carmen(path):
         return RecordingKind.CARMEN
-    columns = csv_header(path)
-    if set(IMU_HEADER[:4]) <= set(columns):
-        return RecordingKind.IMU_CSV
-    if set(GNSS_HEADER[:3]) <= set(columns):
-        return RecordingKind.GNSS_CSV
+    columns = column_names(path)
+    for wanted, kind in _KIND_OF_COLUMNS.items():
+        if wanted <= columns:
+            return kind
     if pose_format(path):
         return RecordingKind.POSES
     what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
@@ -245,6 +270,8 @@ def _folder_kind(path: Path) -> RecordingKind:
         return RecordingKind.FRAMES
     if ".bag" in suffixes:
         return RecordingKind.BAG1
+    if (lines := table_in(path, "lines")) and is_line_table(lines):
+        return RecordingKind.LINE_TABLES
     if any(is_pcap(child) for child in path.iterdir() if child.is_file()):
         return RecordingKind.PCAP
     raise UnknownFormat(

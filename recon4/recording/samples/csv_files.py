@@ -78,10 +78,11 @@ def csv_header(path: Path) -> list[str]:
 
 
 def _names(line: str) -> list[str]:
-    return [cell.strip().strip('"').lower() for cell in line.strip().split(_separator(line))]
+    return [cell.strip().strip('"').lower() for cell in line.strip().split(csv_separator(line))]
 
 
-def _separator(header: str) -> str:
+def csv_separator(header: str) -> str:
+    """What separates the columns of a table with this header line."""
     return next((sign for sign in _SEPARATORS if sign in header), ",")
 
 
@@ -96,12 +97,12 @@ def _read(path: Path, known: tuple[str, ...]) -> tuple[Times, dict[str, Array]]:
     header = _checked_header(first, known, path.name)
     at = [header.index(name) if name in header else -1 for name in known]
     times, values = array("q"), array("d")
-    for number, row in _rows(lines, _separator(first), path.name):
+    for number, row in _rows(lines, csv_separator(first), path.name):
         where = f"{path.name}: line {number}"
         if len(row) != len(header):
             raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
-        times.append(_time(row[at[0]], where))
-        values.extend(_value(row[k], where) if k >= 0 else math.nan for k in at[1:])
+        times.append(csv_time(row[at[0]], where))
+        values.extend(csv_number(row[k], where) if k >= 0 else math.nan for k in at[1:])
     if not times:
         raise EmptyRecording(f"{path.name}: no samples under the header")
     table = np.array(values, np.float64).reshape(len(times), -1)
@@ -134,8 +135,12 @@ def _rows(lines: Iterator[str], separator: str, name: str) -> Iterator[tuple[int
             yield number, row
 
 
-def _time(text: str, where: str) -> int:
-    """Whole nanoseconds; read as text because a float cannot hold them."""
+def csv_time(text: str, where: str) -> int:
+    """Whole nanoseconds; read as text because a float cannot hold them.
+
+    Raises:
+        CorruptFile: If the text is something else, naming ``where``.
+    """
     digits = text.strip()
     if not (digits.isascii() and digits.lstrip("-").isdigit()):
         raise CorruptFile(f"{where}: t_ns must be whole nanoseconds, got {text[:80]!r}")
@@ -144,7 +149,12 @@ def _time(text: str, where: str) -> int:
     return int(digits)
 
 
-def _value(text: str, where: str) -> float:
+def csv_number(text: str, where: str) -> float:
+    """A number with a decimal point or comma; NaN = the cell is empty.
+
+    Raises:
+        CorruptFile: If the text is something else, naming ``where``.
+    """
     try:
         return parse_float(text.strip().replace(",", ".")) if text.strip() else math.nan
     except ValueError as error:

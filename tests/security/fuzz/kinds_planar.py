@@ -3,24 +3,31 @@
 from __future__ import annotations
 
 import bz2
+import contextlib
 import gzip
 import tempfile
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pairs
+from recon4.errors import Recon4Error
 from recon4.evaluation.relations import read_relations
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
 from recon4.recording.formats.three_dtk import read_pose, read_scan
+from recon4.recording.info import describe
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.line_recording import LineRecording
+from recon4.recording.line_tables import LineTableRecording, LineTables, read_laser_table
 from recon4.recording.report import ImportReport
 from recon4.simulation.line_bag import open_line_bag
 from tests.builders import storage_file
+from tests.line_tables import laser_columns, line_columns, write_csv, write_npz
 from tests.planar_walks import carmen_lines
 from tests.security.fuzz.kind import Kind, Reading
 
@@ -121,7 +128,55 @@ def _read_pose_3d(path: Path) -> Reading:
     return Reading(1)
 
 
+@cache
+def _tables(name: str, *, archive: bool) -> tuple[bytes, ...]:
+    """A table of a profiler or of a 2-D laser; an archive also without compression."""
+    scans = replace(_scans(12, 21), odometry=np.linspace(0.0, 1.0, 12)[:, None] * np.ones(3))
+    columns = laser_columns(scans) if name == "laser2d" else line_columns(scans, _turning)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "table"
+        if not archive:
+            write_csv(path, columns)
+            plain = path.read_bytes()
+            return plain, plain.replace(b",", b";").replace(b".", b",")
+        write_npz(path.with_suffix(".npz"), columns)
+        np.savez(path.with_suffix(".plain.npz"), **columns)
+        return tuple(found.read_bytes() for found in sorted(Path(folder).iterdir()))
+
+
+def _turning(t_ns: NDArray[np.int64]) -> NDArray[np.float64]:
+    return 1e-9 * (t_ns - _T0_NS)
+
+
+def _read_line_table(path: Path) -> Reading:
+    with contextlib.suppress(Recon4Error):
+        describe(path).lines()
+    report = ImportReport()
+    recording = LineTableRecording(LineTables.of([path]), load_rig("wuerzburg"), report=report)
+    found = sum(len(item) for item in recording.read())
+    return Reading(found, salvaged=bool(report.counts["lines_out_of_order"]))
+
+
+def _read_laser_table(path: Path) -> Reading:
+    with contextlib.suppress(Recon4Error):
+        describe(path).lines()
+    return Reading(len(read_laser_table(path, ImportReport())))
+
+
+def _table_kinds() -> Iterator[Kind]:
+    for name, read in (("lines", _read_line_table), ("laser2d", _read_laser_table)):
+        for suffix in ("csv", "npz"):
+            yield Kind(
+                name=f"{suffix}-{name}",
+                file_name=f"{name}.{suffix}",
+                seeds=partial(_tables, name, archive=suffix == "npz"),
+                read=read,
+                knows_end=suffix == "npz",
+            )
+
+
 PLANAR_KINDS = (
+    *_table_kinds(),
     Kind(
         name="scan-3d",
         file_name="scan000.3d",

@@ -1,0 +1,264 @@
+"""Tables of named columns, as CSV or NPZ, read in blocks of bounded size."""
+
+from __future__ import annotations
+
+import zipfile
+import zlib
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack
+from dataclasses import dataclass
+from itertools import islice
+from pathlib import Path
+from typing import IO, Any, BinaryIO, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.bounded import check_file_size, lines_limited, open_regular
+from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
+from recon4.recording.samples.csv_files import csv_header, csv_number, csv_separator, csv_time
+
+TIME = "t_ns"
+"""The column of absolute times; all others are numbers."""
+_BLOCK_ROWS = 1 << 16
+_MAX_CSV_BYTES = 8 << 30
+_MAX_NPZ_BYTES = 2 << 30
+"""About ninety million rows of six columns, not compressed."""
+_MAX_DIRECTORY_BYTES = 1 << 16
+_END_BYTES = 22
+_MAX_RATIO = 200
+_FREE_BYTES = 64 << 20
+"""Any compression is allowed up to this size of all columns: a constant column is small."""
+_MAX_HEADER_BYTES = 4096
+_MAX_LINE_BYTES = 16 * 1024
+_HEAD_BYTES = 1 << 16
+_HEADERS = {
+    (1, 0): np.lib.format.read_array_header_1_0,
+    (2, 0): np.lib.format.read_array_header_2_0,
+}
+_DAMAGED = (
+    *(OSError, KeyError, ValueError, EOFError, TypeError, NotImplementedError, OverflowError),
+    *(zipfile.BadZipFile, zlib.error, RuntimeError, SyntaxError, AttributeError, IndexError),
+)
+"""Errors that numpy and zipfile raise for a file that is truncated, altered or foreign."""
+
+Columns = Mapping[str, NDArray[Any]]
+"""Name -> values of a block: `TIME` int64, all others float64; a column without a value is NaN."""
+Number = TypeVar("Number", int, float)
+
+
+def column_names(path: Path) -> frozenset[str]:
+    """Names of the columns of a CSV or NPZ file; empty if it is neither."""
+    try:
+        with open_regular(path) as file:
+            if file.read(4) != b"PK\x03\x04":
+                return frozenset(csv_header(path))
+            with _archive(file, path.name) as archive:
+                names = archive.namelist()
+    except (RecordingError, *_DAMAGED):
+        return frozenset()
+    return frozenset(name.removesuffix(".npy") for name in names if name.endswith(".npy"))
+
+
+def estimate_rows(path: Path) -> int:
+    """Number of rows: of an NPZ as it says, of a CSV by the length of its first lines.
+
+    Raises:
+        CorruptFile: If it is no table, or its archive is damaged.
+    """
+    with ExitStack() as stack:
+        file = stack.enter_context(open_regular(path))
+        head = file.read(_HEAD_BYTES)
+        if not head.startswith(b"PK"):
+            size = file.seek(0, 2)
+            return round(size * max(0, head.count(b"\n") - 1) / max(1, len(head)))
+        try:
+            archive = stack.enter_context(_archive(file, path.name))
+            return _column(archive, TIME, stack=stack, where=path.name).rows
+        except _DAMAGED as error:
+            raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
+
+
+def read_columns(path: Path, required: Sequence[str], optional: Sequence[str]) -> Iterator[Columns]:
+    """Stream the rows of a table in blocks.
+
+    Args:
+        path: CSV with a header line, or NPZ with one array a column.
+        required: Columns it must have; `TIME` among them.
+        optional: Columns that are NaN where the file lacks them.
+
+    Raises:
+        CorruptFile: Naming the line or array, what was expected and found.
+        UnknownFormat: If a column is missing.
+        EmptyRecording: If there is no row.
+    """
+    names = column_names(path)
+    missing = [name for name in required if name not in names]
+    if missing:
+        raise UnknownFormat(
+            f"{path.name}: missing columns {', '.join(missing)}; expected {', '.join(required)}"
+        )
+    wanted = [name for name in (*required, *optional) if name in names]
+    absent = [name for name in optional if name not in names]
+    with open_regular(path) as file:
+        is_archive = file.read(2) == b"PK"
+    rows = 0
+    for block in (_npz_blocks if is_archive else _csv_blocks)(path, wanted):
+        count = len(block[TIME])
+        rows += count
+        yield dict(block) | {name: np.full(count, np.nan) for name in absent}
+    if not rows:
+        raise EmptyRecording(f"{path.name}: no rows under the names of the columns")
+
+
+# -- NPZ
+
+
+@dataclass(frozen=True, slots=True)
+class _Column:
+    """An array of an archive, open behind its header."""
+
+    name: str
+    file: IO[bytes]
+    dtype: np.dtype[Any]
+    rows: int
+
+
+def _archive(file: BinaryIO, name: str) -> zipfile.ZipFile:
+    """An archive whose directory is small.
+
+    Raises:
+        CorruptFile: If it is not, or the file is too large.
+    """
+    size = file.seek(0, 2)
+    if size > _MAX_NPZ_BYTES:
+        raise CorruptFile(f"{name}: expected at most {_MAX_NPZ_BYTES} bytes, got {size}")
+    file.seek(max(0, size - (1 << 16) - _END_BYTES))
+    tail = file.read()
+    at = tail.rfind(b"PK\x05\x06")
+    directory = int.from_bytes(tail[at + 12 : at + 16], "little") if at >= 0 else -1
+    if not 0 <= directory <= _MAX_DIRECTORY_BYTES:
+        raise CorruptFile(
+            f"{name}: expected an archive with a directory of at most {_MAX_DIRECTORY_BYTES} "
+            f"bytes, got {directory if at >= 0 else 'none: the file is cut off'}"
+        )
+    file.seek(0)
+    return zipfile.ZipFile(file)
+
+
+def _npz_blocks(path: Path, wanted: Sequence[str]) -> Iterator[Columns]:
+    with ExitStack() as stack:
+        try:
+            file = stack.enter_context(open_regular(path))
+            archive = stack.enter_context(_archive(file, path.name))
+            _check_sizes(archive, wanted, path)
+            columns = [_column(archive, name, stack=stack, where=path.name) for name in wanted]
+            lengths = {column.name: column.rows for column in columns}
+            if len(set(lengths.values())) > 1:
+                raise CorruptFile(f"{path.name}: expected columns of one length, got {lengths}")
+            for start in range(0, columns[0].rows, _BLOCK_ROWS):
+                count = min(_BLOCK_ROWS, columns[0].rows - start)
+                yield {column.name: _values(column, count, path.name) for column in columns}
+        except _DAMAGED as error:
+            raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
+
+
+def _check_sizes(archive: zipfile.ZipFile, wanted: Sequence[str], path: Path) -> None:
+    size = sum(archive.getinfo(f"{name}.npy").file_size for name in wanted)
+    most = max(_FREE_BYTES, _MAX_RATIO * path.stat().st_size)
+    if size > most:
+        raise CorruptFile(
+            f"{path.name}: expected columns of at most {most} bytes, {_MAX_RATIO} times the file, "
+            f"got {size}"
+        )
+
+
+def _column(archive: zipfile.ZipFile, name: str, *, stack: ExitStack, where: str) -> _Column:
+    info = archive.getinfo(f"{name}.npy")
+    file = stack.enter_context(archive.open(info))
+    version = np.lib.format.read_magic(file)
+    if version not in _HEADERS:
+        raise CorruptFile(f"{where}: {name}: expected an array of version 1 or 2, got {version}")
+    shape, _, dtype = _HEADERS[version](file, max_header_size=_MAX_HEADER_BYTES)
+    kinds = "iu" if name == TIME else "iuf"
+    if dtype.kind not in kinds or dtype.itemsize > 8 or len(shape) != 1 or shape[0] < 0:
+        what = "whole numbers" if name == TIME else "numbers"
+        raise CorruptFile(f"{where}: {name}: expected {what} of one row, got {dtype} of {shape}")
+    if shape[0] * dtype.itemsize > info.file_size:
+        raise CorruptFile(
+            f"{where}: {name}: {shape[0]} values of {dtype} need {shape[0] * dtype.itemsize} "
+            f"bytes, got {info.file_size}"
+        )
+    return _Column(name, file, dtype, int(shape[0]))
+
+
+def _values(column: _Column, count: int, where: str) -> NDArray[Any]:
+    data = column.file.read(count * column.dtype.itemsize)
+    if len(data) != count * column.dtype.itemsize:
+        raise CorruptFile(f"{where}: {column.name}: ends before its {column.rows} values")
+    values = np.frombuffer(data, column.dtype)
+    if column.name != TIME:
+        return values.astype(np.float64)
+    if np.any(values < 0) or np.any(values > np.iinfo(np.int64).max):
+        raise CorruptFile(f"{where}: {TIME} must be 0 to 2^63, got {values.min()}")
+    return values.astype(np.int64)
+
+
+# -- CSV
+
+
+def _csv_blocks(path: Path, wanted: Sequence[str]) -> Iterator[Columns]:
+    with open_regular(path) as file:
+        check_file_size(file, path, _MAX_CSV_BYTES)
+    lines = lines_limited(path, max_bytes=_MAX_CSV_BYTES, max_line_bytes=_MAX_LINE_BYTES)
+    separator = csv_separator(next(lines, ""))
+    header = csv_header(path)
+    twice = sorted({name for name in wanted if header.count(name) > 1})
+    if twice:
+        raise UnknownFormat(f"{path.name}: line 1: expected each column once, got {twice} twice")
+    numbered = ((k, line) for k, line in enumerate(lines, start=2) if line.strip(" \t\r\n;,"))
+    while block := list(islice(numbered, _BLOCK_ROWS)):
+        table = _CsvBlock(
+            path.name, block, [line.strip("\r\n").split(separator) for _, line in block]
+        )
+        table.check_width(len(header))
+        yield {name: table.column(name, header.index(name)) for name in wanted}
+
+
+@dataclass(frozen=True, slots=True)
+class _CsvBlock:
+    """Some lines of a table."""
+
+    name: str
+    """Of the file."""
+    lines: list[tuple[int, str]]
+    """With their numbers."""
+    cells: list[list[str]]
+
+    def check_width(self, count: int) -> None:
+        """Refuse lines of another number of cells."""
+        for (number, _), row in zip(self.lines, self.cells, strict=True):
+            if len(row) != count:
+                raise CorruptFile(
+                    f"{self.name}: line {number}: expected {count} cells, got {len(row)}"
+                )
+
+    def column(self, name: str, at: int) -> NDArray[Any]:
+        """Values of one column."""
+        cells = [row[at] for row in self.cells]
+        if name == TIME:
+            return np.array(self._each(cells, csv_time), np.int64)
+        # An underscore is a digit group to Python, and a comma a decimal point to a table.
+        if not any(sign in text for text in ("".join(cells),) for sign in "_,"):
+            try:
+                return np.array(cells).astype(np.float64)
+            except ValueError:
+                pass
+        return np.array(self._each(cells, csv_number), np.float64)
+
+    def _each(self, cells: list[str], parse: Callable[[str, str], Number]) -> list[Number]:
+        """Parsed cell by cell, so that an error names the line."""
+        return [
+            parse(cell, f"{self.name}: line {number}")
+            for cell, (number, _) in zip(cells, self.lines, strict=True)
+        ]
