@@ -266,7 +266,7 @@ def _refine_lines(
     return found.save(context.out)
 
 
-FRAMES = Stage("frames", 6, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     12,
@@ -295,7 +295,7 @@ MAP = Stage("map", 3, ("map",), _map, MapFigures)
 
 _PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(
-    "odometry", 101, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
+    "odometry", 102, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
 )
 """The stages of rigs with a profiler have the names of those of LiDARs, and other versions."""
 TURN_GRAPH = Stage(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -48,14 +49,13 @@ def simulate(
     profiler = mounted.row_of("profiler") is not None
     if figure and not profiler:
         raise typer.BadParameter("--figure is for rigs with a profiler, as --rig wuerzburg")
+    people = int(degradations.get(PEOPLE, 0))
     with watcher() as progress:
         if profiler:
-            walk = prepare_backpack(
-                world, seconds=seconds or 0.0, seed=seed, figure=figure, rig=mounted
-            )
+            prepared = partial(prepare_backpack, world, figure=figure, rig=mounted)
+            walk = prepared(seconds=seconds or 0.0, seed=seed, people=people)
             simulate_backpack(walk, out, degradations=degradations, progress=progress)
         else:
-            people = int(degradations.get(PEOPLE, 0))
             setup = prepare(world, seconds=seconds or 60.0, seed=seed, rig=mounted, people=people)
             run(setup, out, bag=bag, degradations=degradations, progress=progress)
     write(f"{out}")

@@ -10,6 +10,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
+from recon4.profiler.clock_audit import ClockLag, clock_lag
 from recon4.profiler.fusion import PlanarPoses, attitude
 from recon4.profiler.imu_chain import Drive
 from recon4.profiler.mirrored import is_mirrored, upright
@@ -32,6 +33,8 @@ class PlanarMap:
     found: Slam2dResult
     mirrored: bool
     """The scans were turned over, because they turned against the gyroscope."""
+    lag: ClockLag | None
+    """Of the IMU against the 2-D laser; None = not known."""
 
 
 def map_in_plane(
@@ -73,7 +76,9 @@ def map_in_plane(
         settings=settings,
         progress=progress,
     )
-    return PlanarMap(_tracked(found, T_body_laser), found, mirrored)
+    poses = _tracked(found, T_body_laser)
+    lag = clock_lag(poses, R_map_body) if drive.has_imu else None
+    return PlanarMap(poses, found, mirrored, lag)
 
 
 def _tracked(found: Slam2dResult, T_body_laser: SE3) -> PlanarPoses:

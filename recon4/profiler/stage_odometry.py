@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3
 from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
 from recon4.model.figures import OdometryFigures
+from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Times, Trajectory
+from recon4.profiler.clock_audit import SAID_S, profiler_ahead_s, some_points
 from recon4.profiler.fusion import fuse
 from recon4.profiler.imu_chain import Drive, linearize, make_drive
 from recon4.profiler.planar import PlanarMap, map_in_plane
@@ -27,6 +29,7 @@ _BRIDGED_NS = 2_000_000_000
 _BRIDGED_WITHOUT_NS = 500_000_000
 """… and constant velocity for this time [ns]."""
 _POSES_AT_ONCE = 200
+_SILENT_S = 1.0
 
 
 def run_line_odometry(
@@ -45,7 +48,8 @@ def run_line_odometry(
     drive = make_drive(
         frames.imu, frames.rig, span_ns, knot_s=_FIRST_KNOT_S, settings=settings.odometry
     )
-    scans = load_laser_scans(frames.folder)
+    has_laser = frames.rig.row_of("laser2d") is not None
+    scans = load_laser_scans(frames.folder) if has_laser else None
     planar = map_in_plane(
         scans,
         frames.rig,
@@ -58,7 +62,11 @@ def run_line_odometry(
     save_trajectory(out / "trajectory.npz", trajectory)
     lost = _lost(frames.t_mid_ns, planar, drive)
     _save_steps(out / "steps.npz", frames, trajectory, planar=planar, lost=lost)
-    warnings = remarks(drive, planar, lost, frames=frames)
+    warnings = (
+        *laser_remarks(scans, span_ns, is_used=planar is not None),
+        *remarks(drive, planar, lost, frames=frames),
+        *_profiler_remarks(frames, planar, trajectory, min_range_m=settings.lines.min_range_m),
+    )
     for text in warnings:
         progress.event(Warned(text=text))
     _report(trajectory, frames, lost, progress=progress)
@@ -76,6 +84,39 @@ def span_of(frames: FrameStore) -> tuple[int, int]:
     return int(index["t_ns"][0]), int(index["t_ns"][-1] + index["duration_ns"][-1])
 
 
+def laser_remarks(
+    scans: LaserScans | None, span_ns: tuple[int, int], *, is_used: bool
+) -> tuple[str, ...]:
+    """What is missing of the scans of the 2-D laser, in words.
+
+    Args:
+        scans: All of them.
+        span_ns: First and last time of the lines [ns].
+        is_used: Whether there is a planar map.
+    """
+    alone = "the first trajectory is from the IMU alone and drifts by meters"
+    if scans is None:
+        return (f"no 2-D laser: {alone}",)
+    if not is_used:
+        first, last = (1e-9 * float(scans.t_ns[k] - span_ns[0]) for k in (0, -1))
+        return (
+            f"the scans of the 2-D laser cover {first:.1f} … {last:.1f} s of a walk of "
+            f"{1e-9 * (span_ns[1] - span_ns[0]):.1f} s: are the clocks the same? Without them "
+            f"{alone}",
+        )
+    inside = scans.t_ns[(scans.t_ns >= span_ns[0]) & (scans.t_ns <= span_ns[1])]
+    times = np.concatenate([[span_ns[0]], inside, [span_ns[1]]])
+    seconds = 1e-9 * np.diff(times)
+    silent = np.flatnonzero(seconds > _SILENT_S)
+    if not len(silent):
+        return ()
+    since_s = 1e-9 * float(times[silent[0]] - span_ns[0])
+    return (
+        f"the 2-D laser is silent for {seconds[silent].sum():.1f} s, first {since_s:.1f} s after "
+        "the start",
+    )
+
+
 def remarks(
     drive: Drive, planar: PlanarMap | None, lost: NDArray[np.bool_], *, frames: FrameStore
 ) -> tuple[str, ...]:
@@ -85,14 +126,19 @@ def remarks(
         missing = "no IMU" if frames.imu is None else "the IMU's samples do not cover the walk"
         found.append(f"{missing}: steps and tilts between two scans of the 2-D laser are not known")
     if planar is None:
-        found.append(
-            "no 2-D laser: the first trajectory is from the IMU alone and drifts by meters"
-        )
         return tuple(found)
     if planar.mirrored:
         found.append(
             "the 2-D laser turns against the gyroscope: its scans were turned over; it is mounted "
             "upside down, or its angles have the wrong sign"
+        )
+    if planar.lag is not None and planar.lag.is_wrong:
+        ahead_s = planar.lag.ahead_s
+        found.append(
+            f"the clock of the IMU is {1e3 * abs(ahead_s):.0f} ms "
+            f"{'ahead of' if ahead_s > 0 else 'behind'} that of the 2-D laser: in the rig file add "
+            f"{-ahead_s:+.3f} to time_offset_s of the IMU, or {ahead_s:+.3f} to that of the 2-D "
+            "laser, whichever does not run with the profiler"
         )
     if lost.any():
         seconds = float(lost.sum() * frames.index["duration_ns"][0]) * 1e-9
@@ -105,6 +151,23 @@ def remarks(
             "homogeneous corridor, or open space beyond the range of the 2-D laser"
         )
     return tuple(found)
+
+
+def _profiler_remarks(
+    frames: FrameStore, planar: PlanarMap | None, trajectory: Trajectory, *, min_range_m: float
+) -> tuple[str, ...]:
+    """Whether the profiler has another clock than IMU and 2-D laser, if these two agree."""
+    if planar is None or planar.lag is None or planar.lag.is_wrong:
+        return ()
+    points = some_points(frames, min_range_m=min_range_m)
+    ahead_s = profiler_ahead_s(points, trajectory)
+    if abs(ahead_s) < SAID_S:
+        return ()
+    way = "ahead of" if ahead_s > 0 else "behind"
+    return (
+        f"the clock of the profiler is {1e3 * abs(ahead_s):.0f} ms {way} those of the IMU and the "
+        f"2-D laser: in the rig file add {-ahead_s:+.3f} to its time_offset_s",
+    )
 
 
 def _lost(t_ns: Times, planar: PlanarMap | None, drive: Drive) -> NDArray[np.bool_]:

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
+from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, Ranges
@@ -25,15 +25,12 @@ from recon4.recording.formats.carmen import CarmenScans, is_carmen, read_carmen
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
 from recon4.recording.line_tables import is_laser_table, read_laser_table
 from recon4.recording.open import RecordingKind, bag_paths, recognize
+from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector
 
 Rows = NDArray[np.intp]
 
-_FAR_M = 60.0
-"""Median range of no 2-D laser [m]: longer ones are not in meters."""
-_LARGEST_CM, _MEDIAN_CM = 10_000.0, 1500.0
-"""Larger ranges, or half of the ranges larger, are millimeters: 100 m and 15 m as centimeters."""
 _SHORTEST_REACH_M = 3.5
 """Reach of the weakest laser [m]: a shorter range is a measurement, however often it is there."""
 _REPEATED = 20
@@ -72,12 +69,12 @@ def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
     if paths[0].is_file() and is_carmen(paths[0]):
         if len(paths) > 1:
             raise UnknownFormat(f"one CARMEN log expected, got {len(paths)} files")
-        return _in_meters(_of_carmen(read_carmen(paths[0], report), paths[0].name, report), report)
+        return in_meters(_of_carmen(read_carmen(paths[0], report), paths[0].name, report), report)
     if paths[0].is_file() and is_laser_table(paths[0]):
         if len(paths) > 1:
             raise UnknownFormat(f"one table of a 2-D laser expected, got {len(paths)} files")
-        return _in_meters(read_laser_table(paths[0], report), report)
-    return _in_meters(_of_bags(paths, report), report)
+        return in_meters(read_laser_table(paths[0], report), report)
+    return in_meters(_of_bags(paths, report), report)
 
 
 # -- CARMEN
@@ -207,28 +204,3 @@ def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportRepo
     yaw = np.interp(since, known, np.unwrap(pose[:, 2]))
     columns = [np.interp(since, known, pose[:, 0]), np.interp(since, known, pose[:, 1]), yaw]
     return np.stack(columns, axis=1)
-
-
-def _in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
-    """Ranges in centimeters or millimeters are converted, and that is said.
-
-    Raises:
-        CorruptFile: If no unit makes sense.
-    """
-    seen = scans.range_m[np.isfinite(scans.range_m)]
-    if not len(seen):
-        raise EmptyRecording("the scans have not one return")
-    median = float(np.median(seen))
-    if median <= _FAR_M:
-        return scans
-    is_mm = max(float(seen.max()), scans.range_max_m) > _LARGEST_CM or median > _MEDIAN_CM
-    factor, unit = (1e-3, "millimeters") if is_mm else (1e-2, "centimeters")
-    if median * factor > _FAR_M:
-        raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
-    report.count("scans_converted", len(scans))
-    report.warn(f"half of the ranges are above {median:.0f}: they are taken as {unit}, not meters")
-    return replace(
-        scans,
-        range_m=(scans.range_m * np.float32(factor)).astype(np.float32),
-        range_max_m=scans.range_max_m * factor,
-    )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -26,6 +27,7 @@ from recon4.recording.bag_recording import (
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import CLOUD, IMU, Bag, BagMessage, BagTopic
 from recon4.recording.head_angles import HeadAngles
+from recon4.recording.range_units import LaserUnit, line_factor
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
 
@@ -35,6 +37,7 @@ LineItem = Shots | LineScans | LaserScans | ImuSamples
 WUERZBURG = "wuerzburg"
 _LINES_AT_ONCE = 64
 _NAMES_LISTED = 20
+_MISSING_RATIO = 0.02
 
 
 def profiler_rig(topics: Sequence[BagTopic], rig: Rig | None, report: ImportReport) -> Rig | None:
@@ -100,6 +103,7 @@ class LineRecording:
         lines = LineAssembly(self._row, self.rig, head, report=self._report)
         imu = SampleBatch(imu_row, join_imu, self._report)
         scans = ScanCollector(self._offset_ns(self._laser_row), self._report)
+        unit = LaserUnit(self._report)
         wanted = {self._lines, self._head, self._scans, self.imu_topic} - {""}
         for message in bag.messages(wanted):
             self._report.count("messages")
@@ -111,11 +115,11 @@ class LineRecording:
             elif message.topic == self._lines:
                 yield from lines.push(message, content)
             elif message.topic == self._scans:
-                yield from scans.push(message, content)
+                yield from map(unit.in_meters, scans.push(message, content))
             else:
                 yield from imu.push(message, content)
         yield from lines.flush()
-        yield from scans.flush()
+        yield from map(unit.in_meters, scans.flush())
         yield from imu.flush()
         head.finish(self.seconds)
 
@@ -179,6 +183,9 @@ class LineAssembly:
         self._clouds = CloudDecoder(row, self._sensor, report=report)
         self._waiting: list[Shots] = []
         self._done: list[tuple[Shots, float]] = []
+        self._scale = 0.0
+        """To meters; 0 = not known yet."""
+        self._starts_ns = array("q")
         self._last_ns = 0
 
     def push(self, message: BagMessage, content: Any) -> Iterator[LineItem]:
@@ -199,6 +206,7 @@ class LineAssembly:
             return
         self._last_ns = int(shots.t_ns[0])
         self._report.count("lines")
+        self._starts_ns.append(self._last_ns)
         self._waiting.append(shots)
         self._turn(int(shots.t_ns[-1]))
         if len(self._done) >= _LINES_AT_ONCE:
@@ -208,9 +216,26 @@ class LineAssembly:
         """The remaining lines."""
         self._turn(self._last_ns, final=True)
         yield from self._deliver()
+        self._count_missing()
         lost = self._report.counts["lines_without_angle"]
         if lost:
             self._report.warn(f"{self._sensor.name}: {lost} lines without an angle of the head")
+
+    def _count_missing(self) -> None:
+        """Lines that were lost between others, by the usual time from line to line."""
+        steps = np.diff(np.frombuffer(self._starts_ns, np.int64))
+        if not len(steps):
+            return
+        periods = np.rint(steps / np.median(steps)).astype(np.int64)
+        missing = int(np.sum(np.maximum(periods - 1, 0))) - self._report.counts["lines_empty"]
+        missing = max(0, missing)
+        self._report.count("lines_missing", missing)
+        ratio = missing / (missing + len(self._starts_ns))
+        if ratio > _MISSING_RATIO:
+            self._report.warn(
+                f"{self._sensor.name}: {ratio:.0%} of the line scans are missing, {missing} of "
+                f"{missing + len(self._starts_ns)}"
+            )
 
     def _shots(self, message: BagMessage, content: Any) -> Shots | None:
         t_ns = stamp_ns(content.header.stamp)
@@ -245,6 +270,12 @@ class LineAssembly:
         if not self._done:
             return
         parts = [shots for shots, _ in self._done]
+        xyz = np.concatenate([part.xyz for part in parts])
+        if not self._scale:
+            away_m = np.linalg.norm(xyz, axis=1)
+            self._scale = line_factor(away_m, self._sensor.name, self._report)
+        if self._scale != 1.0:
+            self._report.count("lines_converted", len(parts))
         yield LineScans(
             np.array([part.t_ns[0] for part in parts], np.int64),
             np.array([angle for _, angle in self._done]),
@@ -254,7 +285,7 @@ class LineAssembly:
         yield Shots(
             self._row,
             np.concatenate([part.t_ns for part in parts]),
-            np.concatenate([part.xyz for part in parts]),
+            (self._scale * xyz).astype(np.float32) if self._scale != 1.0 else xyz,
             np.concatenate([part.intensity for part in parts]),
             np.concatenate([part.ring for part in parts]),
             np.concatenate([part.echo for part in parts]),

@@ -18,6 +18,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.columns import TIME, Columns, column_names, read_columns
 from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
+from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.recording.sweeps import sweeps
@@ -119,7 +120,8 @@ class LineTableRecording:
         row = self.rig.row_of("laser2d")
         if row is not None and self._tables.laser2d is not None:
             offset_ns = round(1e9 * self.rig.sensors[row].time_offset_s)
-            yield from laser_batches(self._tables.laser2d, self._report, offset_ns=offset_ns)
+            batches = laser_batches(self._tables.laser2d, self._report, offset_ns=offset_ns)
+            yield from map(LaserUnit(self._report).in_meters, batches)
         if self._tables.imu is not None:
             yield read_imu_csv(self._tables.imu)
 

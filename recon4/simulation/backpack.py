@@ -14,6 +14,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Rig, load_rig
 from recon4.progress import Progress
 from recon4.simulation.backpack_recorder import BackpackRecorder
+from recon4.simulation.companions import Companions
 from recon4.simulation.degradation import NOT_PROFILER, Degradation
 from recon4.simulation.figures import along_figure, figure_named
 from recon4.simulation.gait import plan_walk
@@ -74,6 +75,7 @@ def prepare_backpack(
     seconds: float = 0.0,
     rig: Rig | None = None,
     models: BackpackModels | None = None,
+    people: int = 0,
 ) -> BackpackSetup:
     """Build a world, plan the walk and mount the sensors.
 
@@ -83,8 +85,8 @@ def prepare_backpack(
         figure: One of `recon4.simulation.figures.FIGURES`; empty = the usual route of the world.
         seconds: Length of the walk; 0 = that of the figure, else 60.
         rig: A rig with a profiler; None = ``wuerzburg``.
-        models: Errors of the sensors; None = those of the real ones; a figure sets the number of
-            shots of a line.
+        models: Errors of the sensors; None = real ones, with the shots a line of the figure.
+        people: Number of people who walk along.
 
     Raises:
         ConfigError: If a name is unknown, the walk too short, or the rig has no profiler.
@@ -98,6 +100,7 @@ def prepare_backpack(
         place = along_figure(place, figure_named(figure))
         found = models or _models_of(figure)
         seconds = seconds or figure_named(figure).seconds
+    companions = Companions.drawn(people, np.random.default_rng([seed, 6])) if people else None
     seconds = seconds or 60.0
     if not 5.0 <= seconds < 1e6:
         raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
@@ -110,7 +113,7 @@ def prepare_backpack(
             rig.sensors[row], found.profiler, np.random.default_rng([seed, 1, row])
         ),
         _laser2d(rig, found.laser2d, seed),
-        Surroundings(place.mesh, Scene(place.mesh)),
+        Surroundings(place.mesh, Scene(place.mesh), companions),
         seed,
         EPOCH_NS,
     )

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from recon4.geometry.mesh import write_ply
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import format_rig
 from recon4.model.samples import ImuSamples
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.formats.poses import write_tum
 from recon4.simulation.csv_tables import write_imu
 from recon4.simulation.degradation import Degradation
@@ -80,26 +80,37 @@ class BackpackRecorder:
         offset_ns = setup.epoch_ns - round(1e9 * sensor.time_offset_s)
         t_ns = offset_ns + self._degradation.stamps(row, lines.t_ns, sensors=sensors)
         kept = np.flatnonzero(self._degradation.kept(len(t_ns), row, second))
-        head = lines.head_rad
+        head, unit = lines.head_rad, 100.0 if "lines-cm" in values else 1.0
         if "head-stuck" in values:
             self._stuck_rad = float(head[0]) if self._stuck_rad is None else self._stuck_rad
             head = np.full(len(head), self._stuck_rad)
+        if "head-pause" in values:
+            head = self._paused(lines.t_ns, head)
         if "no-head" not in values:
             self._bag.head(sensor.head_topic or "/profiler/head", t_ns, head)
         self._bag.scans(
             sensor.topic,
             LaserScans(
                 t_ns=t_ns[kept],
-                range_m=lines.range_m[kept],
+                range_m=lines.range_m[kept] * np.float32(unit),
                 angle_min_rad=model.lowest_rad,
                 angle_step_rad=(model.highest_rad - model.lowest_rad) / (model.shots - 1),
-                range_max_m=model.errors.max_range_m,
+                range_max_m=model.errors.max_range_m * unit,
                 time_step_s=setup.profiler.shot_s,
             ),
             lines.intensity[kept],
         )
         self._counts["line_scans"] += len(kept)
         self._counts["points"] += int(np.isfinite(lines.range_m[kept]).sum())
+
+    def _paused(self, t_ns: Times, head: Array) -> Array:
+        """Angles with the one of `_SILENT_FROM_S` for as long as the encoder is stuck."""
+        t_s = 1e-9 * t_ns
+        stuck = t_s >= _SILENT_FROM_S
+        stuck &= t_s < _SILENT_FROM_S + self._degradation.values["head-pause"]
+        if stuck.any() and self._stuck_rad is None:
+            self._stuck_rad = float(head[np.argmax(stuck)])
+        return np.where(stuck, self._stuck_rad or 0.0, head)
 
     def _write_scans(self, scans: LaserScans) -> None:
         setup, values = self._setup, self._degradation.values
@@ -110,6 +121,14 @@ class BackpackRecorder:
         kept = ~((t_s >= _SILENT_FROM_S) & (t_s < _SILENT_FROM_S + silent_s))
         scans = scans[kept]
         scans = replace(scans, t_ns=scans.t_ns + setup.epoch_ns - round(1e9 * sensor.time_offset_s))
+        ahead_ns = round(1e9 * values.get("laser2d-clock", 0.0))
+        unit = 100.0 if "laser2d-cm" in values else 1.0
+        scans = replace(
+            scans,
+            t_ns=scans.t_ns + ahead_ns,
+            range_m=scans.range_m * np.float32(unit),
+            range_max_m=scans.range_max_m * unit,
+        )
         if "laser2d-mirrored" in values:
             scans = replace(scans, range_m=scans.range_m[:, ::-1])
         self._bag.scans(sensor.topic, scans)

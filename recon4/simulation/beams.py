@@ -73,7 +73,7 @@ def shoot(
     person_m: Array = np.full(count, np.inf)
     if model.carrier:
         carrier_range(shot, R, t, WUERZBURG_CARRIER, person_m)
-    hits = surroundings.scene.cast(rays)
+    hits = surroundings.cast(rays, walk, np.tile(shots.t_s, 2))
     blocked = person_m < hits.range_m[:count]
     noise = hit_noise(count, rng)
     found = measure_hits(

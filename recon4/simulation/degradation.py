@@ -62,6 +62,10 @@ KINDS: Mapping[str, DegradationKind] = {
     "people": DegradationKind(5, 12, "", "number of people who walk along and hide the view"),
     "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
     "head-stuck": DegradationKind(_SWITCH, 1, "", "the profiler reports one angle of its head"),
+    "head-pause": DegradationKind(4.0, 1e4, "s", "the head reports one angle from 20 s on"),
+    "lines-cm": DegradationKind(_SWITCH, 1, "", "ranges of the profiler are in centimeters"),
+    "laser2d-cm": DegradationKind(_SWITCH, 1, "", "ranges of the 2-D laser are in centimeters"),
+    "laser2d-clock": DegradationKind(0.02, 1e6, "s", "the clock of the 2-D laser is ahead"),
     "laser2d-silent": DegradationKind(5.0, 1e4, "s", "the 2-D laser is silent from 20 s on"),
     "laser2d-mirrored": DegradationKind(_SWITCH, 1, "", "the 2-D laser is mounted upside down"),
     "no-laser2d": DegradationKind(_SWITCH, 1, "", "no 2-D laser was recorded"),
@@ -69,10 +73,11 @@ KINDS: Mapping[str, DegradationKind] = {
 PEOPLE = "people"
 """The only one that changes the rays, see `recon4.simulation.companions`."""
 ONLY_PROFILER = frozenset(
-    {"no-head", "head-stuck", "laser2d-silent", "laser2d-mirrored", "no-laser2d"}
+    {"no-head", "head-stuck", "head-pause", "lines-cm", "laser2d-cm", "laser2d-clock"}
+    | {"laser2d-silent", "laser2d-mirrored", "no-laser2d"}
 )
 """Degradations of rigs with a profiler."""
-NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars", PEOPLE})
+NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars"})
 """Degradations that a rig with a profiler cannot have."""
 
 

@@ -62,9 +62,11 @@ class MotionPredictor:
         self._odometry = scans.odometry if settings.use_odometry else None
         self._settings = settings
         self._yaw: Array | None = None
+        self._turn_rate: Array | None = None
         if attitude is not None:
             R = attitude.at(scans.t_ns, slack_ns=1_000_000_000).R
             self._yaw = np.unwrap(np.arctan2(R[:, 1, 0], R[:, 0, 0]))
+            self._turn_rate = _turn_rate(scans, attitude, self._yaw)
 
     @property
     def has_odometry(self) -> bool:
@@ -76,7 +78,17 @@ class MotionPredictor:
         return float(self._t_ns[k] - self._t_ns[k - 1]) / 1e9
 
     def velocity(self, k: int, poses: Array) -> Array:
-        """Motion in one second before scan ``k``, in the axes of the last scan, (3,)."""
+        """Motion in one second before scan ``k``, in the axes of the last scan, (3,).
+
+        The yaw of an IMU gives the turn rate during the scan: a walking body swings so fast that
+        its turn of the last quarter of a second is another one.
+        """
+        found = self._past_velocity(k, poses)
+        if self._turn_rate is not None:
+            found[2] = self._turn_rate[k]
+        return found
+
+    def _past_velocity(self, k: int, poses: Array) -> Array:
         before = k - 1
         while before > 0 and self._t_ns[k - 1] - self._t_ns[before] < _VELOCITY_S * 1e9:
             before -= 1
@@ -116,6 +128,16 @@ class MotionPredictor:
             drift_rad = _IMU_RAD_S * seconds
             sd_rad = 0.003 + 10.0 * drift_rad
         return Predicted(motion, sd_m, sd_rad, drift_m=drift_m, drift_rad=drift_rad)
+
+
+def _turn_rate(scans: LaserScans, attitude: Trajectory, yaw: Array) -> Array | None:
+    """Turn rate while each scan is measured [rad/s], (N,); None = its beams have no times."""
+    span_ns = round(1e9 * scans.time_step_s * scans.range_m.shape[1])
+    if not span_ns:
+        return None
+    R = attitude.at(scans.t_ns + span_ns, slack_ns=1_000_000_000 + span_ns).R
+    turned = wrap(np.arctan2(R[:, 1, 0], R[:, 0, 0]) - yaw)
+    return np.asarray(turned * 1e9 / span_ns, dtype=np.float64)
 
 
 class VarianceGrowth:

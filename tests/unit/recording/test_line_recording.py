@@ -137,6 +137,46 @@ def test_lines_out_of_order_are_counted(tmp_path):
     assert np.array_equal(load_lines(tmp_path / "out").t_ns, t_ns)
 
 
+def test_lines_that_are_lost_are_counted_and_said(tmp_path):
+    lines = line_scans(300)
+    write(tmp_path / "bag", lines=lines[np.arange(300) % 10 != 3])
+
+    store = read(tmp_path / "bag", tmp_path / "out")
+
+    assert store.report["counts"]["lines_missing"] == 30
+    assert "profiler: 10% of the line scans are missing, 30 of 300" in store.report["warnings"]
+
+
+def test_lines_without_any_return_are_not_lost(tmp_path):
+    lines = line_scans(300)
+    lines.range_m[100:140] = np.nan
+    write(tmp_path / "bag", lines=lines)
+
+    store = read(tmp_path / "bag", tmp_path / "out")
+
+    assert store.report["counts"]["lines_empty"] == 40
+    assert "lines_missing" not in store.report["counts"]
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(100.0, "centimeters"), (1000.0, "millimeters")])
+def test_ranges_in_another_unit_are_converted_and_said(tmp_path, factor, unit):
+    lines, scans = line_scans(300), line_scans(290, range_m=3.0)
+    in_unit = [
+        replace(s, range_m=s.range_m * np.float32(factor), range_max_m=s.range_max_m * factor)
+        for s in (lines, scans)
+    ]
+    write(tmp_path / "bag", lines=in_unit[0], scans=in_unit[1])
+
+    store = read(tmp_path / "bag", tmp_path / "out")
+
+    assert np.allclose(np.linalg.norm(store[5].xyz, axis=1), 4.0, atol=1e-3)
+    assert np.allclose(load_laser_scans(tmp_path / "out").range_m, 3.0, atol=1e-3)
+    assert store.report["counts"]["lines_converted"] == 300
+    assert store.report["counts"]["scans_converted"] == 290
+    warnings = [text for text in store.report["warnings"] if f"taken as {unit}" in text]
+    assert len(warnings) == 2
+
+
 def test_a_bag_without_line_scans_is_refused(tmp_path):
     with open_line_bag(tmp_path / "bag") as bag:
         bag.scans("/other", line_scans(5), None)

@@ -1,0 +1,99 @@
+"""Ranges in centimeters or millimeters: found by their size, converted and said."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.laser_scans import LaserScans
+from recon4.recording.report import ImportReport
+
+_FAR_M = 60.0
+"""Median range of no 2-D laser [m]: longer ones are not in meters."""
+_LARGEST_CM, _MEDIAN_CM = 10_000.0, 1500.0
+"""Larger ranges, or half of the ranges larger, are millimeters: 100 m and 15 m as centimeters."""
+_FAR_LINE_M = 150.0
+"""Median range of the first lines of no profiler on a walking person: it sees the ground [m]."""
+_NEAR_CM = 800.0
+"""The nearest surfaces are a step away; farther than this, they are millimeters."""
+
+
+def in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
+    """The scans of a 2-D laser; ranges in another unit are converted, and that is said.
+
+    Raises:
+        EmptyRecording: If there is not one return.
+        CorruptFile: If no unit makes sense.
+    """
+    seen = scans.range_m[np.isfinite(scans.range_m)]
+    if not len(seen):
+        raise EmptyRecording("the scans have not one return")
+    factor = _laser_factor(seen, scans.range_max_m, report)
+    if factor == 1.0:
+        return scans
+    report.count("scans_converted", len(scans))
+    return _scaled(scans, factor)
+
+
+class LaserUnit:
+    """The unit of scans that come in batches; the first one with returns decides."""
+
+    def __init__(self, report: ImportReport) -> None:
+        self._report, self._factor = report, 0.0
+
+    def in_meters(self, scans: LaserScans) -> LaserScans:
+        """A batch in meters.
+
+        Raises:
+            CorruptFile: If no unit makes sense.
+        """
+        seen = scans.range_m[np.isfinite(scans.range_m)]
+        if not self._factor and len(seen):
+            self._factor = _laser_factor(seen, scans.range_max_m, self._report)
+        if self._factor in (0.0, 1.0):
+            return scans
+        self._report.count("scans_converted", len(scans))
+        return _scaled(scans, self._factor)
+
+
+def line_factor(range_m: NDArray[np.floating], name: str, report: ImportReport) -> float:
+    """What the ranges of a profiler must be multiplied with to be meters.
+
+    Args:
+        range_m: Returns of the first lines, (N,).
+        name: Of the sensor.
+        report: Receives a warning if they are not in meters.
+    """
+    if not len(range_m) or float(np.median(range_m)) <= _FAR_LINE_M:
+        return 1.0
+    is_mm = float(np.percentile(range_m, 1.0)) > _NEAR_CM
+    return _said(float(np.median(range_m)), is_mm, who=f"{name}: ", report=report)
+
+
+def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: ImportReport) -> float:
+    median = float(np.median(seen))
+    if median <= _FAR_M:
+        return 1.0
+    is_mm = max(float(seen.max()), range_max_m) > _LARGEST_CM or median > _MEDIAN_CM
+    if median * (1e-3 if is_mm else 1e-2) > _FAR_M:
+        raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
+    return _said(median, is_mm, who="", report=report)
+
+
+def _said(median: float, is_mm: bool, *, who: str, report: ImportReport) -> float:
+    unit = "millimeters" if is_mm else "centimeters"
+    report.warn(
+        f"{who}half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
+    )
+    return 1e-3 if is_mm else 1e-2
+
+
+def _scaled(scans: LaserScans, factor: float) -> LaserScans:
+    return replace(
+        scans,
+        range_m=(scans.range_m * np.float32(factor)).astype(np.float32),
+        range_max_m=scans.range_max_m * factor,
+    )
