@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.simulation.rides import Ride
 from recon4.simulation.walk import BODY_HEIGHT_M, KNOT_S, Walk
 from recon4.simulation.world import Waypoint, World
 
@@ -20,6 +22,8 @@ _RATE_HZ = 4.0 / KNOT_S
 _PATH_SIGMA_S = 0.2
 _HEADING_SIGMA_S = 0.12
 _FASTEST_TURN_DEG_S = 240.0
+_RIDE_M_S, _RIDE_STEP_S = 0.6, 0.05
+"""Mean speed of an elevator, which starts and stops smoothly, and steps of its course [s]."""
 
 
 @dataclass(slots=True)
@@ -30,6 +34,8 @@ class _Timeline:
     place: list[tuple[float, float, float]] = field(default_factory=list)
     heading_t_s: list[float] = field(default_factory=list)
     heading_rad: list[float] = field(default_factory=list)
+    rides_s: list[tuple[float, float]] = field(default_factory=list)
+    """Begin and end of each ride in an elevator [s]."""
 
     def stay(self, seconds: float) -> None:
         self.move(self.place[-1], seconds)
@@ -37,6 +43,16 @@ class _Timeline:
     def move(self, place: tuple[float, float, float], seconds: float) -> None:
         self.t_s.append(self.t_s[-1] + seconds)
         self.place.append(place)
+
+    def ride(self, place: tuple[float, float, float]) -> None:
+        """Be carried straight up or down, with a course of the fifth degree over time."""
+        (x, y, z), begin_s = self.place[-1], self.t_s[-1]
+        rise = place[2] - z
+        for s in np.linspace(0.0, 1.0, max(2, round(abs(rise) / _RIDE_M_S / _RIDE_STEP_S)))[1:]:
+            self.t_s.append(begin_s + float(s) * abs(rise) / _RIDE_M_S)
+            done = float(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
+            self.place.append((x, y, z + done * rise))
+        self.rides_s.append((begin_s, self.t_s[-1]))
 
     def turn(self, angle_rad: float, start_s: float, seconds: float) -> None:
         start = max(start_s, self.heading_t_s[-1])
@@ -55,7 +71,26 @@ def plan_walk(world: World, *, seconds: float, rng: np.random.Generator) -> Walk
     timeline = _lay_out(legs, speed_m_s)
     count = 4 * round(seconds / KNOT_S) + 1
     t_s = np.arange(count) / _RATE_HZ
-    return Walk.through(_body(timeline, t_s, rng)[::4])
+    walk = Walk.through(_body(timeline, t_s, rng)[::4])
+    return replace(walk, ride=_ride(timeline, t_s)) if timeline.rides_s else walk
+
+
+def _ride(line: _Timeline, t_s: Array) -> Ride:
+    """Where the car is: with the person during rides, else at the storey of the last one."""
+    riding = _riding(line, t_s)
+    corners = np.array(line.place)
+    begins = np.array([begin for begin, _ in line.rides_s])
+    # Between two rides the person stays on one storey: that of the end of the last ride.
+    known_s = np.array(line.t_s)
+    inside = _riding(line, known_s)
+    first_m = np.interp(begins[0], known_s, corners[:, 2])
+    height_m = np.interp(t_s, known_s[inside], corners[inside, 2], left=first_m)
+    return Ride(1.0 / _RATE_HZ, _smooth(height_m, _PATH_SIGMA_S), riding)
+
+
+def _riding(line: _Timeline, t_s: Array) -> NDArray[np.bool_]:
+    rides = [(t_s >= begin) & (t_s <= end) for begin, end in line.rides_s]
+    return np.logical_or.reduce(rides) if rides else np.zeros(len(t_s), np.bool_)
 
 
 def _fit(world: World, seconds: float, rng: np.random.Generator) -> tuple[list[Waypoint], float]:
@@ -94,10 +129,16 @@ def _lay_out(route: list[Waypoint], speed_m_s: float) -> _Timeline:
     points = np.array([[w.x_m, w.y_m, w.z_m] for w in route])
     steps = np.diff(points, axis=0)
     directions = np.arctan2(steps[:, 1], steps[:, 0])
+    for step, waypoint in enumerate(route[1:-1]):
+        if waypoint.ride:
+            directions[step] = directions[step + 1]  # a person looks at the door
     line = _Timeline([0.0], [tuple(points[0])], [0.0], [float(directions[0])])
     line.stay(_STAND_S)
     for k, waypoint in enumerate(route[1:]):
-        line.move(tuple(points[k + 1]), _length(steps[k]) / (speed_m_s * waypoint.pace))
+        if waypoint.ride:
+            line.ride(tuple(points[k + 1]))
+        else:
+            line.move(tuple(points[k + 1]), _length(steps[k]) / (speed_m_s * waypoint.pace))
         following = directions[k + 1] if k + 1 < len(directions) else directions[0]
         angle = _wrap(following - line.heading_rad[-1])
         _turn(line, waypoint, angle, at_end=k + 1 == len(directions))
@@ -129,7 +170,7 @@ def _body(line: _Timeline, t_s: Array, rng: np.random.Generator) -> Array:
     yaw = _smooth(np.interp(t_s, line.heading_t_s, line.heading_rad), _HEADING_SIGMA_S)
     steps = np.gradient(place, t_s, axis=0)
     speed = np.hypot(steps[:, 0], steps[:, 1])
-    climb = np.abs(steps[:, 2])
+    climb = np.abs(steps[:, 2]) * ~_riding(line, t_s)
     turning = np.abs(np.gradient(yaw, t_s))
     effort = _smooth(np.clip(np.maximum(speed + climb, 0.3 * turning) / SPEED_M_S, 0, 1.15), 0.3)
     # Step frequency 1.6 to 2.0 Hz; phase in steps.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,6 +16,8 @@ from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.velodyne.models import BLOCKS, MODELS
 from recon4.simulation.companions import REFLECTIVITY, Companions
+from recon4.simulation.mirrors import follow
+from recon4.simulation.rides import Car, CarScene
 from recon4.simulation.walk import Walk
 
 _VLP16 = MODELS["VLP-16"]
@@ -154,25 +157,38 @@ class Lidar:
         return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in columns))
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Surroundings:
-    """A mesh with its ray caster, and people who walk with the carrier."""
+    """A mesh with its ray caster, people who walk with the carrier, the car of an elevator."""
 
     mesh: WorldMesh
     scene: Scene
     companions: Companions | None = None
+    car: Car | None = None
 
-    @property
+    @cached_property
     def reflectivity(self) -> NDArray[np.float32]:
-        """Of all triangles; the last is that of people."""
-        return np.append(self.mesh.reflectivity, np.float32(REFLECTIVITY))
+        """Of all triangles: of the mesh, of the car of an elevator, and the last of people."""
+        parts = [self.mesh.reflectivity, self.car.reflectivity] if self.car else []
+        standing = np.concatenate(parts) if parts else self.mesh.reflectivity
+        return np.append(standing, np.float32(REFLECTIVITY))
+
+    @cached_property
+    def _car_scene(self) -> CarScene:
+        assert self.car is not None
+        return CarScene(self.car)
 
     def cast(self, rays: NDArray[np.float32], walk: Walk, t_s: Array) -> Hits:
         """First hits of rays (N, 6) at their times [s], (N,)."""
-        hits = self.scene.cast(rays)
+        hits = follow(
+            self.scene.cast(rays), rays, scene=self.scene, reflectivity=self.mesh.reflectivity
+        )
+        if self.car is not None and walk.ride is not None:
+            first = len(self.mesh.reflectivity)
+            hits = self._car_scene.hide(hits, rays, ride=walk.ride, t_s=t_s, surface=first)
         if self.companions is None:
             return hits
-        people = len(self.mesh.reflectivity)
+        people = len(self.reflectivity) - 1
         return self.companions.hide(hits, rays, walk=walk, t_s=t_s, surface=people)
 
 

@@ -103,7 +103,7 @@ def prepare(
         used,
         errors,
         lidars,
-        Surroundings(place.mesh, Scene(place.mesh), companions),
+        Surroundings(place.mesh, Scene(place.mesh), companions, place.car),
         seed,
         EPOCH_NS,
     )

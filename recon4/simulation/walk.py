@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.simulation import evaluate_polynomials
+from recon4.simulation.rides import Ride
 
 BODY_HEIGHT_M = 1.5
 """Of the body frame (the INS in the backpack) above the floor."""
@@ -28,6 +29,8 @@ class Walk:
     seconds: float
     coefficients: Array
     """Of x, y, z [m], roll, pitch, yaw [rad] around the middles of 20 ms, (M, 6, 6)."""
+    ride: Ride | None = None
+    """Where the elevator is; None = there is none."""
 
     @staticmethod
     def through(samples: ArrayLike) -> Walk:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.mesh import WorldMesh
+from recon4.simulation.rides import Car
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,6 +24,8 @@ class Waypoint:
     """Come to rest here and turn on the spot."""
     look_deg: float = 0.0
     """Turn by this angle, left positive, before turning to the next waypoint (needs `stop`)."""
+    ride: bool = False
+    """An elevator carries the person here from the waypoint before, straight up or down."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +64,8 @@ class World:
     stops: int
     """Most places a round can visit."""
     markers: tuple[WorldMarker, ...] = ()
+    car: Car | None = None
+    """Of the elevator that the route rides; None = there is none."""
     floor: tuple[float, float, float, float] | None = None
     """Middle x, y and half extents of a free floor for figures [m]; None = there is none."""
     outdoors: bool = False

@@ -11,7 +11,9 @@ from recon4.simulation.world import World
 
 FIXED = ("office", "staircase", "street", "field", "hall")
 """Worlds of one geometry."""
-PROCEDURAL = ("corridor", "tunnel", "garage", "plaza", "storeys", "tower", "forest")
+PROCEDURAL = (
+    "corridor", "tunnel", "garage", "plaza", "storeys", "tower", "forest", "mirrors", "elevator",
+)  # fmt: skip
 """Worlds of which there are variants: ``corridor`` is variant 0, ``corridor:7`` another one."""
 WORLDS = FIXED + PROCEDURAL
 _MAX_VARIANT = 1_000_000

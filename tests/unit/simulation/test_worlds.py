@@ -5,13 +5,14 @@ from recon4.errors import ConfigError
 from recon4.geometry.mesh import MeshBuilder, write_ply
 from recon4.geometry.raycast import Scene, distance_to_mesh
 from recon4.simulation.gait import plan_walk
+from recon4.simulation.lidar import Surroundings
 from recon4.simulation.walk import BODY_HEIGHT_M
 from recon4.simulation.worlds import PROCEDURAL, WORLDS, build_world
 
 ROUND_S = {
     "office": 250, "staircase": 200, "street": 220, "field": 450, "corridor": 170, "tunnel": 110,
     "garage": 110, "plaza": 150, "storeys": 150, "tower": 200,
-    "forest": 140, "hall": 45,
+    "forest": 140, "hall": 45, "mirrors": 25, "elevator": 60,
 }  # fmt: skip
 """About a full round [s]."""
 VARIANTS = [f"{name}:{variant}" for name in PROCEDURAL for variant in (1, 2)]
@@ -76,10 +77,12 @@ def test_the_person_walks_into_nothing(name, seed, worlds):
 def test_the_person_walks_on_the_floor(name, worlds):
     world = worlds[name]
     walk = plan_walk(world, seconds=60.0, rng=np.random.default_rng(4))
-    body = walk.state(np.arange(0.0, 60.0, 0.25))[:, :3]
+    t_s = np.arange(0.0, 60.0, 0.25)
+    body = walk.state(t_s)[:, :3]
     down = np.tile([0.0, 0.0, -1.0], (len(body), 1))
+    around = Surroundings(world.mesh, Scene(world.mesh), car=world.car)
 
-    hits = Scene(world.mesh).cast(np.hstack([body, down]).astype(np.float32))
+    hits = around.cast(np.hstack([body, down]).astype(np.float32), walk, t_s)
 
     assert np.all(np.abs(hits.range_m - BODY_HEIGHT_M) < 0.3)
     assert abs(np.median(hits.range_m) - BODY_HEIGHT_M) < 0.12
