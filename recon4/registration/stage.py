@@ -16,6 +16,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.make import make_odometry
 from recon4.registration.odometry import OdometryStep
+from recon4.registration.unseen_rides import unseen_rides
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
 
@@ -55,14 +56,22 @@ def run_odometry(
         steps.append(step)
         if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
             _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
-    save_trajectory(out / "trajectory.npz", dense_trajectory(steps))
+    trajectory = dense_trajectory(steps)
+    save_trajectory(out / "trajectory.npz", trajectory)
     _save_steps(out / "steps.npz", steps)
+    rides: tuple[str, ...] = ()
+    if imu is not None and settings.odometry.use_imu:
+        lost_ns = np.array([step.t_mid_ns for step in steps if step.lost], np.int64)
+        found = unseen_rides(trajectory, imu, frames.rig, lost_ns=lost_ns)
+        rides = tuple(ride.text for ride in found)
+    for text in rides:
+        progress.event(Warned(text=text))
     lost = sum(step.lost for step in steps)
     return OdometryFigures(
         multiframes=len(steps),
         lost=lost,
         imu=imu is not None,
-        warnings=(remark,) if remark else (),
+        warnings=(remark, *rides) if remark else rides,
         gnss=aiding is not None,
     )
 

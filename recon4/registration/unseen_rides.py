@@ -1,0 +1,158 @@
+"""Rides that the IMU feels and no LiDAR sees: a floor that moves with the body.
+
+In the car of an elevator everything that a LiDAR sees stands still, so that the odometry stays
+where it is, sure of itself, and puts one storey onto another. The accelerometer contradicts it:
+over knots ``dt`` apart the second difference of the heights of a trajectory equals the vertical
+acceleration, weighted by a triangle of the same width,
+
+    (z(t - dt) - 2 z(t) + z(t + dt)) / dt²  =  sum of w(s) (R f(s) - g) over abs(s - t) < dt
+
+Half a second makes it blind to the steps of a walk. What is left is the bias, the same all along,
+and pushes that only the IMU felt. A ride is a push up and a later one down, or the reverse.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.rig import Rig
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.motion import imu_in_body
+
+_KNOT_S = 0.5
+_MIN_KNOTS = 12
+"""In a shorter walk the bias is not known."""
+_PUSH_M_S2, _PUSH_SIGMAS = 0.12, 5.0
+"""A push is larger than this, and than this multiple of the usual difference."""
+_PUSH_M_S = 0.25
+"""It changes the speed by at least this."""
+_MAX_UNRELIABLE_M_S2 = 0.15
+"""With a larger usual difference the IMU or the trajectory is wrong as a whole."""
+_BALANCE = 0.4
+"""The end of a ride takes back its begin but for this ratio."""
+_LONGEST_S = 120.0
+
+
+@dataclass(frozen=True, slots=True)
+class UnseenRide:
+    """A vertical motion that only the IMU measured."""
+
+    start_s: float
+    """After the first pose [s]."""
+    end_s: float
+    rise_m: float
+    """Up is positive [m]; NaN = only its begin or its end was recorded."""
+    speed_m_s: float
+    """Change of the vertical speed at its begin."""
+
+    @property
+    def text(self) -> str:
+        """A sentence for the operator."""
+        if not np.isfinite(self.rise_m):
+            return (
+                f"At {self.start_s:.0f} s the IMU measures a change of the vertical speed by "
+                f"{self.speed_m_s:+.1f} m/s that no LiDAR sees: a floor that moves with the body, "
+                "as in an elevator. Heights before and after it do not belong together."
+            )
+        return (
+            f"From {self.start_s:.0f} s to {self.end_s:.0f} s the IMU measures a ride of about "
+            f"{abs(self.rise_m):.1f} m {'up' if self.rise_m > 0 else 'down'} that no LiDAR sees: a "
+            "floor that moves with the body, as in an elevator. The map puts one storey onto the "
+            "other. Map the storeys separately, or walk the stairs."
+        )
+
+
+def unseen_rides(
+    trajectory: Trajectory, imu: ImuSamples, rig: Rig, *, lost_ns: Times
+) -> list[UnseenRide]:
+    """Find rides in order of time; an IMU that contradicts the whole walk has none.
+
+    Args:
+        trajectory: ``T_odom_body``, leveled.
+        imu: Samples as they were used.
+        rig: Where the IMU is.
+        lost_ns: Middle of the multiframes that were lost, (K,).
+    """
+    knots_s, extra = _contradiction(trajectory, imu, rig, lost_ns=lost_ns)
+    known = np.isfinite(extra)
+    if known.sum() < _MIN_KNOTS:
+        return []
+    extra = np.where(known, extra - np.median(extra[known]), 0.0)
+    usual = 1.4826 * float(np.median(np.abs(extra[known])))
+    if usual > _MAX_UNRELIABLE_M_S2:
+        return []
+    return _rides(knots_s, extra, limit=max(_PUSH_M_S2, _PUSH_SIGMAS * usual))
+
+
+def _contradiction(
+    trajectory: Trajectory, imu: ImuSamples, rig: Rig, *, lost_ns: Times
+) -> tuple[Array, Array]:
+    """Vertical acceleration by the IMU less that of the trajectory, at knots; NaN = unknown."""
+    first_ns = max(trajectory.t_ns[0], imu.t_ns[0])
+    last_ns = min(trajectory.t_ns[-1], imu.t_ns[-1])
+    count = int((last_ns - first_ns) * 1e-9 / _KNOT_S) if len(imu) > 1 else 0
+    if count < _MIN_KNOTS:
+        return np.empty(0), np.empty(0)
+    _, accel = imu_in_body(imu, rig)
+    inside = (imu.t_ns >= first_ns) & (imu.t_ns <= last_ns)
+    upward = trajectory.at(imu.t_ns[inside]).R[:, 2, :]
+    force = np.einsum("ni,ni->n", upward, accel[inside]) - STANDARD_GRAVITY_M_S2
+    slot = (imu.t_ns[inside] - first_ns) * 1e-9 / _KNOT_S
+    measured, weight = np.zeros(count + 2), np.zeros(count + 2)
+    left = np.minimum(slot.astype(np.intp), count)
+    for rows, part in ((left, 1.0 - (slot - left)), (left + 1, slot - left)):
+        np.add.at(measured, rows, part * force)
+        np.add.at(weight, rows, part)
+    knots_ns = first_ns + np.rint(np.arange(count + 1) * _KNOT_S * 1e9).astype(np.int64)
+    height_m = trajectory.at(np.minimum(knots_ns, last_ns)).t[:, 2]
+    seen = np.diff(height_m, 2) / _KNOT_S**2
+    # A knot without half of its samples lies in a gap of the IMU.
+    enough = weight[1:count] > 0.5 * np.median(weight[1:count])
+    extra = np.where(enough, measured[1:count] / np.maximum(weight[1:count], 1e-9) - seen, np.nan)
+    lost_at = (lost_ns - first_ns) * 1e-9 / _KNOT_S
+    rows = np.arange(1, count)
+    for at in lost_at:
+        extra[np.abs(rows - at) < 1.5] = np.nan
+    return rows * _KNOT_S + (first_ns - trajectory.t_ns[0]) * 1e-9, extra
+
+
+def _rides(knots_s: Array, extra: Array, *, limit: float) -> list[UnseenRide]:
+    """Pair pushes with the opposite one that follows them."""
+    pushes = _pushes(extra, limit)
+    change = [float(extra[push].sum() * _KNOT_S) for push in pushes]
+    found, k = [], 0
+    while k < len(pushes):
+        begin = pushes[k]
+        if k + 1 < len(pushes) and _balanced(change[k], change[k + 1]):
+            # A knot more on both sides: the first and the last of a push are below the limit.
+            rows = np.arange(max(begin[0] - 1, 0), min(pushes[k + 1][-1] + 2, len(extra)))
+            if len(rows) * _KNOT_S <= _LONGEST_S:
+                # At rest before and after it.
+                steps = extra[rows] - extra[rows].mean()
+                rise_m = float(np.cumsum(steps).sum() * _KNOT_S**2)
+                start_s, end_s = float(knots_s[rows[0]]), float(knots_s[rows[-1]])
+                found.append(UnseenRide(start_s, end_s, rise_m, change[k]))
+                k += 2
+                continue
+        start_s, end_s = float(knots_s[begin[0]]), float(knots_s[begin[-1]])
+        found.append(UnseenRide(start_s, end_s, float("nan"), change[k]))
+        k += 1
+    return found
+
+
+def _balanced(first: float, second: float) -> bool:
+    return first * second < 0.0 and abs(first + second) < _BALANCE * max(abs(first), abs(second))
+
+
+def _pushes(extra: Array, limit: float) -> list[NDArray[np.intp]]:
+    """Rows of each run above the limit, of one sign, that changes the speed enough."""
+    sign = np.where(np.abs(extra) > limit, np.sign(extra), 0.0)
+    edges = [0, *(np.flatnonzero(np.diff(sign)) + 1).tolist(), len(sign)]
+    runs = [np.arange(a, b) for a, b in pairwise(edges) if sign[a]]
+    return [run for run in runs if abs(extra[run].sum()) * _KNOT_S >= _PUSH_M_S]

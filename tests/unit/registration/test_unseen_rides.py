@@ -1,0 +1,96 @@
+"""Rides that only the IMU feels: the car of an elevator stands still for a LiDAR."""
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import load_rig
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.registration.unseen_rides import UnseenRide, unseen_rides
+from recon4.simulation.degradation import Degradation
+from recon4.simulation.gait import plan_walk
+from recon4.simulation.imu import ImuModel, simulate_imu
+from recon4.simulation.truth import true_trajectory
+from recon4.simulation.worlds import build_world
+
+RIG = load_rig("4recon")
+EPOCH_NS = 1_780_308_000_000_000_000
+NOTHING_LOST = np.empty(0, np.int64)
+
+
+def walked(
+    world: str, *, seconds: float = 60.0, seed: int = 1, **degraded: float
+) -> tuple[Trajectory, ImuSamples]:
+    """What the odometry makes of a walk, with errors of 2 mm and blind to the elevator; the IMU."""
+    walk = plan_walk(build_world(world), seconds=seconds, rng=np.random.default_rng([seed, 0]))
+    worse = {name.replace("_", "-"): value for name, value in degraded.items()}
+    degradation = Degradation.drawn(worse, sensors=2, seed=seed)
+    rng = np.random.default_rng([seed, 2])
+    model = degradation.imu_model(ImuModel())
+    imu = degradation.imu(simulate_imu(walk, RIG, model, epoch_ns=EPOCH_NS, rng=rng))
+    true = true_trajectory(walk, epoch_ns=EPOCH_NS)
+    place = true.T_a_b.t + 0.002 * rng.standard_normal((len(true), 3))
+    if walk.ride is not None:
+        place[:, 2] -= walk.ride.at((true.t_ns - EPOCH_NS) * 1e-9)[0]
+    return Trajectory(true.t_ns, SE3(true.T_a_b.R, place)), imu
+
+
+def rides(world: str, **how: float) -> list[UnseenRide]:
+    trajectory, imu = walked(world, **how)
+    return unseen_rides(trajectory, imu, RIG, lost_ns=NOTHING_LOST)
+
+
+@pytest.mark.parametrize("how", [{}, {"imu_grade": 5}, {"imu_clock": 0.02}, {"imu_scale": 0.03}])
+def test_rides_up_and_down_are_found_with_their_height(how: dict[str, float]) -> None:
+    up, down = rides("elevator:1", **how)
+
+    assert (up.rise_m, down.rise_m) == pytest.approx((3.4, -3.4), abs=0.6)
+    assert 8.0 < up.start_s < up.end_s < down.start_s < down.end_s < 40.0
+    assert "a ride of about 3." in up.text
+    assert " m down that no LiDAR sees" in down.text
+
+
+@pytest.mark.parametrize("how", [{}, {"imu_grade": 5}, {"imu_rotation": 1.5}])
+@pytest.mark.parametrize("world", ["staircase", "tower", "office", "forest"])
+def test_what_the_lidar_sees_is_no_ride(world: str, how: dict[str, float]) -> None:
+    assert rides(world, **how) == []
+
+
+def test_a_recording_that_ends_on_the_way_has_a_begin_alone() -> None:
+    trajectory, imu = walked("elevator:1")
+    early = trajectory.t_ns < trajectory.t_ns[0] + 11_500_000_000
+    cut = Trajectory(trajectory.t_ns[early], trajectory.T_a_b[early])
+
+    (found,) = unseen_rides(cut, imu, RIG, lost_ns=NOTHING_LOST)
+
+    assert np.isnan(found.rise_m)
+    assert "a change of the vertical speed by +" in found.text
+
+
+def test_an_imu_that_contradicts_the_whole_walk_has_no_rides() -> None:
+    trajectory, imu = walked("elevator:1")
+    rng = np.random.default_rng(4)
+    slow = np.repeat(rng.normal(0.0, 1.0, len(imu) // 100 + 1), 100)[: len(imu), None]
+    shaken = ImuSamples(imu.t_ns, imu.gyro_rad_s, imu.accel_m_s2 + slow * [0.0, 0.0, 1.0])
+
+    assert unseen_rides(trajectory, shaken, RIG, lost_ns=NOTHING_LOST) == []
+
+
+def test_where_tracking_was_lost_nothing_is_said() -> None:
+    trajectory, imu = walked("elevator:1")
+    up, _ = unseen_rides(trajectory, imu, RIG, lost_ns=NOTHING_LOST)
+    within = (trajectory.t_ns[0] + 1e9 * np.arange(up.start_s, up.end_s, 0.1)).astype(np.int64)
+
+    (found,) = unseen_rides(trajectory, imu, RIG, lost_ns=within)
+
+    assert found.rise_m < 0.0
+
+
+def test_a_short_or_silent_imu_says_nothing() -> None:
+    trajectory, imu = walked("office", seconds=20.0)
+    few = ImuSamples(imu.t_ns[:300], imu.gyro_rad_s[:300], imu.accel_m_s2[:300])
+    silent = ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))
+
+    for samples in (few, silent):
+        assert unseen_rides(trajectory, samples, RIG, lost_ns=NOTHING_LOST) == []
