@@ -269,7 +269,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    12,
+    13,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
@@ -289,7 +289,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 3, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 7, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 8, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 3, ("map",), _map, MapFigures)
 

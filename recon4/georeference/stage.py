@@ -15,6 +15,7 @@ from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
+from recon4.mapping.mirrors import MirrorFound, Sight, find_mirrors
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
 from recon4.model.figures import AntennaFigures, LevelFigures
@@ -32,9 +33,9 @@ from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore
 
-_FLOOR_FRAMES = 200
-_FLOOR_POINTS = 2000
-"""Numbers of multiframes, and of points of each, that are sampled to find the floor."""
+_SAMPLE_FRAMES = 200
+_SAMPLE_POINTS = 2000
+"""Numbers of multiframes, and of points of each, that are sampled to find floor and mirrors."""
 
 _MAX_JSON_BYTES = 16 << 20
 _WALK_M_S = 1.3
@@ -72,6 +73,8 @@ class LeveledMap:
     """Audit of the antenna; None = too few fixes."""
     uncertainty: PoseUncertainty | None
     """Covariances of the poses of the nodes; None = not stated."""
+    mirrors: tuple[MirrorFound, ...] = ()
+    """Walls that show the room before them."""
 
     def save(self, out: Path) -> LevelFigures:
         """Write ``trajectory.npz``, the files of the graph, ``georeference.json`` and, where
@@ -97,7 +100,10 @@ class LeveledMap:
             uncertainty=(
                 uncertainty_figures(self.uncertainty, self.trajectory) if self.uncertainty else None
             ),
-            warnings=antenna_contradictions(self.antenna) if self.antenna else (),
+            warnings=(
+                *(antenna_contradictions(self.antenna) if self.antenna else ()),
+                *(mirror.text for mirror in self.mirrors),
+            ),
         )
 
 
@@ -137,7 +143,23 @@ def level_and_georeference(
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
     uncertainty = _uncertainty(frames, judged, placed, antenna=antenna)
-    return LeveledMap(dense, with_residuals(judged), leveling, placed, crs, antenna, uncertainty)
+    return LeveledMap(
+        dense,
+        with_residuals(judged),
+        leveling,
+        placed,
+        crs,
+        antenna,
+        uncertainty,
+        mirrors=_mirrors(frames, dense),
+    )
+
+
+def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[MirrorFound, ...]:
+    """Mirrors in a map of LiDARs; a profiler sees too little of a wall at once."""
+    if frames.rig.row_of("profiler") is not None or not len(frames):
+        return ()
+    return tuple(find_mirrors(Sight(*_sample_points(frames, trajectory))))
 
 
 def _uncertainty(
@@ -226,11 +248,11 @@ def _describe_crs(origin: GeodeticOrigin, name: str) -> CrsRecord:
 
 def _sample_points(frames: FrameStore, trajectory: Trajectory) -> tuple[Array, Array]:
     """A sample of the map's points and the sensor positions [m], (N, 3) each."""
-    rows = np.unique(np.linspace(0, len(frames) - 1, _FLOOR_FRAMES).astype(int))
+    rows = np.unique(np.linspace(0, len(frames) - 1, _SAMPLE_FRAMES).astype(int))
     points, origins = [], []
     for k in rows.tolist():
         frame = frames[k]
-        few = frame.take(slice(None, None, 1 + len(frame) // _FLOOR_POINTS))
+        few = frame.take(slice(None, None, 1 + len(frame) // _SAMPLE_POINTS))
         placed = place_with_origins(few, trajectory, frames.rig)
         points.append(placed.xyz_m)
         origins.append(placed.origin_m)

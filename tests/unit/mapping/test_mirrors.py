@@ -1,0 +1,81 @@
+"""Mirrors that double a room, found in what a LiDAR maps of it."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.mesh import MIRROR
+from recon4.mapping.mirrors import Sight, find_mirrors
+from recon4.recording.velodyne.models import MODELS
+from recon4.simulation.setup import SimulationSetup, prepare
+from recon4.simulation.world import World
+from recon4.simulation.worlds import build_world
+
+EVERY_S = 1.0
+PACKETS = 76
+"""Of one revolution."""
+
+
+def sights(setup: SimulationSetup) -> Sight:
+    """What the LiDARs see on a walk, a revolution now and then, at its true place."""
+    points, origins = [], []
+    for row, lidar in enumerate(setup.lidars):
+        for begin_s in np.arange(0.3, setup.walk.seconds - 0.3, EVERY_S):
+            first = lidar.packets_before(int(begin_s * 1e9))
+            rng = setup.rng(9, row, first)
+            packets = range(first, first + PACKETS)
+            shots = lidar.fire(packets, setup.walk, setup.surroundings, rng=rng)
+            hit = np.flatnonzero(shots.distance.ravel() > 0)[row::7]
+            up = np.broadcast_to(MODELS["VLP-16"].elevation_rad, shots.distance.shape).ravel()[hit]
+            azimuth = shots.azimuth_rad.ravel()[hit]
+            away = 0.002 * shots.distance.ravel()[hit, None]
+            flat = np.cos(up)
+            along = np.stack([flat * np.cos(azimuth), -flat * np.sin(azimuth), np.sin(up)], axis=1)
+            T_map_body = setup.walk.poses(1e-9 * shots.t_ns.ravel()[hit])
+            mount = lidar.sensor.T_body_sensor
+            for p_sensor, into in ((away * along, points), (0.0 * along, origins)):
+                p_body = mount @ p_sensor
+                into.append(np.einsum("nij,nj->ni", T_map_body.R, p_body) + T_map_body.t)
+    return Sight(np.concatenate(points), np.concatenate(origins))
+
+
+def without_mirrors(world: World) -> World:
+    """The same room with boards in place of the mirrors."""
+    value = np.where(world.mesh.reflectivity <= MIRROR, 0.5, world.mesh.reflectivity)
+    mesh = replace(world.mesh, reflectivity=value.astype(np.float32))
+    return replace(world, mesh=mesh)
+
+
+@pytest.mark.parametrize("world", ["mirrors", "mirrors:2"])
+def test_a_mirror_is_found_with_its_place_and_size(world: str) -> None:
+    setup = prepare(world, seconds=20.0, seed=1)
+    mesh = setup.world.mesh
+    glass = mesh.vertices_m[mesh.triangles[mesh.reflectivity <= MIRROR]].reshape(-1, 3)
+    glass = glass[glass[:, 1] < 0.2]
+    area_m2 = np.ptp(glass[:, 0]) * np.ptp(glass[:, 2])
+
+    found = find_mirrors(sights(setup))
+
+    assert len(found) >= 1
+    x, y = found[0].middle_m
+    assert glass[:, 0].min() < x < glass[:, 0].max()
+    assert y == pytest.approx(0.08, abs=0.15)
+    assert 0.4 * area_m2 < found[0].area_m2 < 1.3 * area_m2
+    assert 0.02 < found[0].behind < 0.6
+    assert "doubles the room" in found[0].text
+
+
+def test_the_same_room_without_the_mirror_has_none() -> None:
+    room = without_mirrors(build_world("mirrors"))
+
+    assert find_mirrors(sights(prepare(room, seconds=20.0, seed=1))) == []
+
+
+@pytest.mark.parametrize("world", ["office", "storeys", "garage"])
+def test_rooms_with_doors_and_windows_have_none(world: str) -> None:
+    assert find_mirrors(sights(prepare(world, seconds=20.0, seed=2))) == []
+
+
+def test_a_map_without_points_has_none() -> None:
+    assert find_mirrors(Sight(np.empty((0, 3)), np.empty((0, 3)))) == []
