@@ -92,6 +92,8 @@ class Run:
     """As `judge` names it."""
     cpu_s: float
     """Processor time of the stages [s]."""
+    stage_cpu_s: Mapping[str, float]
+    """The same by stage."""
 
     def to_json(self) -> dict[str, Any]:
         """Plain JSON values."""
@@ -111,12 +113,14 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str) -> Run:
     truth = read_tum(recording / "truth.tum")
     seconds = round(int(truth.t_ns[-1] - truth.t_ns[0]) / 1e9, 3)
     errors, lost, multiframes, warnings = None, 0, 0, 0
+    spent: Mapping[str, float] = {}
     try:
         runs, verdict = _process(recording, work)
         errors = measure(runs, truth)
         frames, odometry = runs["frames"].figures, runs["odometry"].figures
         lost, multiframes = odometry.lost, frames.multiframes
         warnings = len(frames.warnings) + len(odometry.warnings)
+        spent = {name: round(run.done.cpu_seconds, 1) for name, run in runs.items()}
     except Recon4Error as error:
         verdict = MapVerdict(Usability.DO_NOT_USE, (f"refused: {error}",))
     return Run(
@@ -131,6 +135,7 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str) -> Run:
         reasons=verdict.reasons,
         outcome=judge(errors, verdict),
         cpu_s=round(time.process_time() - begun, 1),
+        stage_cpu_s=spent,
     )
 
 
@@ -223,29 +228,35 @@ def run_walk(
 ) -> Iterator[Run]:
     """Simulate a walk with every degradation and prove each recording.
 
-    With ``keep`` the artifacts without points stay in ``OUT/kept``, for studies of the errors.
+    With ``keep`` the recordings stay in ``OUT/recordings``, where the next run finds them, and the
+    artifacts without points in ``OUT/kept``, for studies of the errors.
     """
-    world, seed = walk.split("/")
-    outdoors = build_world(world).outdoors
+    outdoors = build_world(walk.split("/")[0]).outdoors
     wanted = [d for d in degradations if applies(d, outdoors=outdoors)]
-    work = out / "work"
-    shutil.rmtree(work, ignore_errors=True)
-    work.mkdir(parents=True)
-    folders = {work / f"recording{k}": values_of(d) for k, d in enumerate(wanted)}
-    for people in {values.get(PEOPLE, 0.0) for values in folders.values()}:
-        same = {f: v for f, v in folders.items() if v.get(PEOPLE, 0.0) == people}
-        # The rays of a walk are cast once for all degradations that leave them as they are.
+    name = f"{walk}_{seconds:g}s".replace("/", "-").replace(":", "v")
+    folders = {d: out / "recordings" / name / d.replace("+", "_") for d in wanted}
+    _simulate(walk, {d: f for d, f in folders.items() if not f.exists()}, seconds=seconds)
+    for degradation, recording in folders.items():
+        project = out / "project"
+        shutil.rmtree(project, ignore_errors=True)
+        yield prove(recording, project, walk=walk, degradation=degradation)
+        if keep:
+            _keep(recording, project, out / "kept" / f"{name}_{degradation}")
+        else:
+            shutil.rmtree(recording)
+        shutil.rmtree(project, ignore_errors=True)
+
+
+def _simulate(walk: str, folders: Mapping[str, Path], *, seconds: float) -> None:
+    """Write the recordings of a walk; the rays are cast once for all that do not change them."""
+    world, seed = walk.split("/")
+    values = {degradation: values_of(degradation) for degradation in folders}
+    for people in {of_one.get(PEOPLE, 0.0) for of_one in values.values()}:
+        same = {folders[d]: v for d, v in values.items() if v.get(PEOPLE, 0.0) == people}
+        for folder in same:
+            folder.parent.mkdir(parents=True, exist_ok=True)
         setup = prepare(world, seconds=seconds, seed=int(seed), people=int(people))
         record(setup, same, bag=False, progress=Silent())
-    for k, degradation in enumerate(wanted):
-        project = work / f"project{k}"
-        yield prove(work / f"recording{k}", project, walk=walk, degradation=degradation)
-        if keep:
-            name = f"{walk}_{degradation}".replace("/", "-").replace(":", "v")
-            _keep(work / f"recording{k}", project, out / "kept" / name)
-        shutil.rmtree(project, ignore_errors=True)
-        shutil.rmtree(work / f"recording{k}")
-    shutil.rmtree(work)
 
 
 def _keep(recording: Path, project: Path, into: Path) -> None:
@@ -266,7 +277,7 @@ def main() -> None:
     parser.add_argument("--walks", default=",".join(WALKS))
     parser.add_argument("--degradations", default=",".join(DEGRADATIONS))
     parser.add_argument("--seconds", type=float, default=20.0)
-    parser.add_argument("--keep", action="store_true", help="keep artifacts without points")
+    parser.add_argument("--keep", action="store_true", help="keep recordings and artifacts")
     parser.add_argument("--table", action="store_true", help="only write the table")
     a = parser.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
