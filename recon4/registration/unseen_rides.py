@@ -1,14 +1,15 @@
 """Rides that the IMU feels and no LiDAR sees: a floor that moves with the body.
 
-In the car of an elevator everything that a LiDAR sees stands still, so that the odometry stays
-where it is, sure of itself, and puts one storey onto another. The accelerometer contradicts it:
-over knots ``dt`` apart the second difference of the heights of a trajectory equals the vertical
-acceleration, weighted by a triangle of the same width,
+In the car of an elevator everything that a LiDAR sees stands still. The odometry stays where it is
+or goes some way between what IMU and LiDAR say, sure of itself, and puts one storey onto another.
+The accelerometer contradicts it: over knots ``dt`` apart the second difference of the heights of a
+trajectory equals the vertical acceleration, weighted by a triangle of the same width,
 
     (z(t - dt) - 2 z(t) + z(t + dt)) / dt²  =  sum of w(s) (R f(s) - g) over abs(s - t) < dt
 
 Half a second makes it blind to the steps of a walk. What is left is the bias, the same all along,
-and pushes that only the IMU felt. A ride is a push up and a later one down, or the reverse.
+and pushes that only the IMU felt. A ride is a push up and a later one down, or the reverse. Where
+the difference stays large without that pattern, height and IMU contradict each other.
 """
 
 from __future__ import annotations
@@ -32,8 +33,12 @@ _PUSH_M_S2, _PUSH_SIGMAS = 0.12, 5.0
 """A push is larger than this, and than this multiple of the usual difference."""
 _PUSH_M_S = 0.25
 """It changes the speed by at least this."""
-_MAX_UNRELIABLE_M_S2 = 0.15
-"""With a larger usual difference the IMU or the trajectory is wrong as a whole."""
+_RELIABLE_M_S2 = 0.06
+"""With a larger usual difference no ride can be told from errors of IMU and trajectory."""
+_CONTRADICTION_M_S2, _CONTRADICTION_S = 0.1, 2.0
+"""A difference above the first contradicts the heights, if it lasts for the second. On walks with
+known truth it is 0.003 to 0.04."""
+_BRIDGED_KNOTS = 2
 _BALANCE = 0.4
 """The end of a ride takes back its begin but for this ratio."""
 _LONGEST_S = 120.0
@@ -68,10 +73,31 @@ class UnseenRide:
         )
 
 
+@dataclass(frozen=True, slots=True)
+class HeightContradiction:
+    """A stretch in which the IMU contradicts the heights of the trajectory."""
+
+    start_s: float
+    """After the first pose [s]."""
+    end_s: float
+    largest_m_s2: float
+    usual_m_s2: float
+
+    @property
+    def text(self) -> str:
+        """A sentence for the operator."""
+        return (
+            f"From {self.start_s:.0f} s to {self.end_s:.0f} s the accelerometer contradicts the "
+            f"heights of the trajectory by up to {self.largest_m_s2:.2f} m/s² (usual: "
+            f"{self.usual_m_s2:.2f}): the floor moved with the body, as in an elevator, or the "
+            "trajectory is wrong there."
+        )
+
+
 def unseen_rides(
     trajectory: Trajectory, imu: ImuSamples, rig: Rig, *, lost_ns: Times
-) -> list[UnseenRide]:
-    """Find rides in order of time; an IMU that contradicts the whole walk has none.
+) -> list[UnseenRide | HeightContradiction]:
+    """Find rides, and other contradictions of the heights, in order of time.
 
     Args:
         trajectory: ``T_odom_body``, leveled.
@@ -85,9 +111,29 @@ def unseen_rides(
         return []
     extra = np.where(known, extra - np.median(extra[known]), 0.0)
     usual = 1.4826 * float(np.median(np.abs(extra[known])))
-    if usual > _MAX_UNRELIABLE_M_S2:
+    rides: list[UnseenRide] = []
+    if usual <= _RELIABLE_M_S2:
+        rides = _rides(knots_s, extra, limit=max(_PUSH_M_S2, _PUSH_SIGMAS * usual))
+    others = [
+        stretch for stretch in _contradicted(knots_s, extra, usual)
+        if not any(r.start_s <= stretch.end_s and stretch.start_s <= r.end_s for r in rides)
+    ]  # fmt: skip
+    return sorted([*rides, *others], key=lambda found: found.start_s)
+
+
+def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightContradiction]:
+    """Stretches of `_CONTRADICTION_S` in which most differences are large."""
+    rows = np.flatnonzero(np.abs(extra) > _CONTRADICTION_M_S2)
+    if not len(rows):
         return []
-    return _rides(knots_s, extra, limit=max(_PUSH_M_S2, _PUSH_SIGMAS * usual))
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) > _BRIDGED_KNOTS) + 1)
+    return [
+        HeightContradiction(
+            float(knots_s[run[0]]), float(knots_s[run[-1]]), float(np.abs(extra[run]).max()), usual
+        )
+        for run in runs
+        if len(run) * _KNOT_S >= _CONTRADICTION_S
+    ]
 
 
 def _contradiction(

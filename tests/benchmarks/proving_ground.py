@@ -187,6 +187,24 @@ def values_of(degradation: str) -> dict[str, float]:
     return {} if degradation == "none" else parse_degradations(degradation.split("+"))
 
 
+def matrix(lines: Sequence[Mapping[str, Any]]) -> str:
+    """Error and class of every run in Markdown: a row a degradation, a column a walk."""
+    walks, degradations = (
+        list(dict.fromkeys(line[name] for line in lines)) for name in ("walk", "degradation")
+    )
+    cell = {}
+    for line in lines:
+        ate = _number((line["errors"] or {}).get("ate_m"), 100.0, 1)
+        outcome = line["outcome"]
+        cell[line["walk"], line["degradation"]] = ate if outcome == "right" else f"{ate} {outcome}"
+    rows = ["| ATE cm | " + " | ".join(walks) + " |", "|---|" + "---:|" * len(walks)]
+    rows += [
+        f"| {name} | " + " | ".join(cell.get((walk, name), "") for walk in walks) + " |"
+        for name in degradations
+    ]
+    return "\n".join(rows) + "\n"
+
+
 def table(lines: Sequence[Mapping[str, Any]]) -> str:
     """All runs as a table in Markdown, silent ones first, then a count of each class."""
     order = {"SILENT": 0, "vague": 1, "announced": 2, "right": 3}
@@ -206,7 +224,9 @@ def table(lines: Sequence[Mapping[str, Any]]) -> str:
         reason = (line["reasons"] or [""])[0][:_REASON_LENGTH].replace("|", "/")
         cells = [f"{line['walk']}, {line['seconds']:g} s", line["degradation"], *figures]
         cells += [f"{line['lost']} of {line['multiframes']}", str(line["warnings"])]
-        rows.append("| " + " | ".join([*cells, line["verdict"], line["outcome"], reason]) + " |")
+        # Without the audit of the rig a verdict is not the whole one.
+        verdict = line["verdict"] if line.get("audited", True) else f"({line['verdict']})"
+        rows.append("| " + " | ".join([*cells, verdict, line["outcome"], reason]) + " |")
     counts = {name: sum(line["outcome"] == name for line in lines) for name in order}
     total = ", ".join(f"{count} {name}" for name, count in counts.items())
     return "\n".join([*rows, "", f"{len(lines)} runs: {total}.", "", _calibration(lines)]) + "\n"
@@ -318,8 +338,9 @@ def main() -> None:
             ate = _number(run.errors.ate_m if run.errors else None, 100.0, 1)
             print(f"{walk} {run.degradation}: ATE {ate} cm, {run.verdict}, {run.outcome}, "
                   f"{run.cpu_s} s", flush=True)  # fmt: skip
-    (a.out / "table.md").write_text(table(read_lines(path)), "utf-8")
-    print(table(read_lines(path)))
+    lines = read_lines(path)
+    (a.out / "table.md").write_text(f"{matrix(lines)}\n{table(lines)}", "utf-8")
+    print(table(lines))
 
 
 if __name__ == "__main__":

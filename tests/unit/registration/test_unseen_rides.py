@@ -1,5 +1,7 @@
 """Rides that only the IMU feels: the car of an elevator stands still for a LiDAR."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 
@@ -36,9 +38,16 @@ def walked(
     return Trajectory(true.t_ns, SE3(true.T_a_b.R, place)), imu
 
 
+def only_rides(*args: Any, **how: Any) -> list[UnseenRide]:
+    """What is found, all of it rides."""
+    found = unseen_rides(*args, **how)
+    assert all(isinstance(one, UnseenRide) for one in found), found
+    return found
+
+
 def rides(world: str, **how: float) -> list[UnseenRide]:
     trajectory, imu = walked(world, **how)
-    return unseen_rides(trajectory, imu, RIG, lost_ns=NOTHING_LOST)
+    return only_rides(trajectory, imu, RIG, lost_ns=NOTHING_LOST)
 
 
 @pytest.mark.parametrize("how", [{}, {"imu_grade": 5}, {"imu_clock": 0.02}, {"imu_scale": 0.03}])
@@ -62,10 +71,24 @@ def test_a_recording_that_ends_on_the_way_has_a_begin_alone() -> None:
     early = trajectory.t_ns < trajectory.t_ns[0] + 11_500_000_000
     cut = Trajectory(trajectory.t_ns[early], trajectory.T_a_b[early])
 
-    (found,) = unseen_rides(cut, imu, RIG, lost_ns=NOTHING_LOST)
+    (found,) = only_rides(cut, imu, RIG, lost_ns=NOTHING_LOST)
 
     assert np.isnan(found.rise_m)
     assert "a change of the vertical speed by +" in found.text
+
+
+def test_odometry_between_imu_and_lidar_contradicts_the_imu() -> None:
+    """Measured: it follows the car for 1.5 m of 3.4 m, then sinks by 0.3 m/s for ten seconds."""
+    trajectory, imu = walked("elevator:1", seconds=20.0)
+    t_s = (trajectory.t_ns - trajectory.t_ns[0]) * 1e-9
+    height_m = np.interp(t_s, [5.5, 7.0, 9.5, 16.0, 20.0], [0.0, 0.45, 1.55, -1.85, -2.3])
+    place = trajectory.T_a_b.t + np.outer(height_m, [0.0, 0.0, 1.0])
+    followed = Trajectory(trajectory.t_ns, SE3(trajectory.T_a_b.R, place))
+
+    found = unseen_rides(followed, imu, RIG, lost_ns=NOTHING_LOST)
+
+    assert found[0].start_s == pytest.approx(6.5, abs=1.5)
+    assert "as in an elevator" in found[0].text
 
 
 def test_an_imu_that_contradicts_the_whole_walk_has_no_rides() -> None:
@@ -74,15 +97,19 @@ def test_an_imu_that_contradicts_the_whole_walk_has_no_rides() -> None:
     slow = np.repeat(rng.normal(0.0, 1.0, len(imu) // 100 + 1), 100)[: len(imu), None]
     shaken = ImuSamples(imu.t_ns, imu.gyro_rad_s, imu.accel_m_s2 + slow * [0.0, 0.0, 1.0])
 
-    assert unseen_rides(trajectory, shaken, RIG, lost_ns=NOTHING_LOST) == []
+    found = unseen_rides(trajectory, shaken, RIG, lost_ns=NOTHING_LOST)
+
+    assert found
+    assert not any(isinstance(one, UnseenRide) for one in found)
+    assert "the accelerometer contradicts the heights" in found[0].text
 
 
 def test_where_tracking_was_lost_nothing_is_said() -> None:
     trajectory, imu = walked("elevator:1")
-    up, _ = unseen_rides(trajectory, imu, RIG, lost_ns=NOTHING_LOST)
+    up, _ = only_rides(trajectory, imu, RIG, lost_ns=NOTHING_LOST)
     within = (trajectory.t_ns[0] + 1e9 * np.arange(up.start_s, up.end_s, 0.1)).astype(np.int64)
 
-    (found,) = unseen_rides(trajectory, imu, RIG, lost_ns=within)
+    (found,) = only_rides(trajectory, imu, RIG, lost_ns=within)
 
     assert found.rise_m < 0.0
 

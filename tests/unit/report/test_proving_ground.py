@@ -15,6 +15,7 @@ from tests.benchmarks.proving_ground import (
     ONLY_OUTDOORS,
     WALKS,
     judge,
+    matrix,
     read_lines,
     run_walk,
     table,
@@ -71,13 +72,54 @@ def test_a_line_that_was_cut_off_is_run_again(tmp_path):
     assert read_lines(tmp_path / "runs.jsonl") == [{"walk": "tunnel/1"}]
 
 
+def test_the_matrix_shows_errors_and_classes():
+    def line(walk, degradation, outcome, ate_m):
+        errors = None if ate_m is None else {"ate_m": ate_m}
+        return {"walk": walk, "degradation": degradation, "outcome": outcome, "errors": errors}
+
+    lines = [
+        line("office/1", "none", "right", 0.004),
+        line("office/1", "no-imu", "SILENT", 0.75),
+        line("tunnel/1", "no-imu", "announced", None),
+    ]
+
+    assert matrix(lines).splitlines() == [
+        "| ATE cm | office/1 | tunnel/1 |",
+        "|---|---:|---:|",
+        "| none | 0.4 |  |",
+        "| no-imu | 75.0 SILENT | - announced |",
+    ]
+
+
 @pytest.fixture(scope="module")
-def tunnel(tmp_path_factory):
-    out = tmp_path_factory.mktemp("proving")
-    return {
-        run.degradation: run
-        for run in run_walk("tunnel/1", ("none", "no-imu", "lever-arm"), out, seconds=5.0)
-    }
+def proven(tmp_path_factory):
+    return tmp_path_factory.mktemp("proving")
+
+
+@pytest.fixture(scope="module")
+def tunnel(proven):
+    degradations = ("none", "no-imu", "lever-arm")
+    runs = run_walk("tunnel/1", degradations, proven, seconds=5.0, keep=True, quick=True)
+    return {run.degradation: run for run in runs}
+
+
+def test_the_rig_is_audited_where_the_trajectory_is_wrong(tunnel, proven):
+    (right,) = run_walk("office/1", ("none",), proven, seconds=5.0, quick=True)
+
+    assert right.outcome == "right"
+    assert not right.audited
+    assert f"| ({right.verdict}) |" in table([right.to_json()])
+    for run in tunnel.values():
+        assert run.audited
+
+
+def test_recordings_that_are_kept_are_not_simulated_again(tunnel, proven):
+    recording = proven / "recordings" / "tunnel-1_5s" / "none"
+    before = recording.stat().st_mtime_ns
+    (again,) = run_walk("tunnel/1", ("none",), proven, seconds=5.0, keep=True)
+
+    assert recording.stat().st_mtime_ns == before
+    assert again.errors == tunnel["none"].errors
 
 
 def test_what_cannot_be_observed_is_not_silent(tunnel):
