@@ -36,7 +36,8 @@ _FACING = 0.5
 _SAME_M, _SAME_COSINE = 0.12, 0.85
 """A reflected point lies on a surface within this, with the same normal."""
 _MIN_BEAMS, _MIN_RATIO = 3, 0.75
-"""A cell is mirrored if this many beams cross it, and so many of them show the room before it."""
+"""A cell is mirrored if this many beams cross it, and this ratio of them shows the room before
+it."""
 _MIN_AREA_M2 = 2.5
 _MOST_BEAMS = 20_000
 

@@ -29,7 +29,7 @@ def follow(
 ) -> Hits:
     """Hits of rays (N, 6) with those on mirrors and clear panes replaced by what is seen there.
 
-    The range is the whole length of the way. Normals are turned as the mirrors turn the beam, so
+    The range is the length of the whole path. Normals are turned as the mirrors turn the beam, so
     that the cosine with the ray as it left the sensor is that of the incidence.
 
     Args:
@@ -72,7 +72,7 @@ class _Beams:
     turn: Array
     """Maps the direction as it left the sensor to the one now, (N, 3, 3)."""
     length_m: Array
-    """Of the way so far [m], (N,)."""
+    """Of the path so far [m], (N,)."""
 
     def only(self, rows: NDArray[np.intp]) -> _Beams:
         return _Beams(self.row[rows], self.rays[rows], self.turn[rows], self.length_m[rows])
