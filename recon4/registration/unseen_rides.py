@@ -34,7 +34,7 @@ _PUSH_M_S2, _PUSH_SIGMAS = 0.12, 5.0
 _PUSH_M_S = 0.25
 """It changes the speed by at least this."""
 _RELIABLE_M_S2 = 0.06
-"""With a larger usual difference rides cannot be distinguished from errors of IMU and trajectory."""
+"""With a larger usual difference rides are not distinguished from errors of IMU and trajectory."""
 _CONTRADICTION_M_S2, _CONTRADICTION_S = 0.1, 2.0
 """A difference above the first contradicts the heights, if it lasts for the second. On walks with
 known truth it is 0.003 to 0.04."""
