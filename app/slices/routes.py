@@ -19,7 +19,7 @@ from app.errors import BadRequest, ProblemDetail
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
 from app.projects.routes import REPORT_POLICY
-from app.slices import readers, work
+from app.slices import control_work, readers, work
 from app.slices.exports import ExportRequest
 from app.slices.model import (
     AddReference,
@@ -284,7 +284,9 @@ async def preview_control(
         raise BadRequest("the file must be sent as base64") from error
     terms = Terms(person=caller.name)
     return await caller.wait(
-        server.slices.run_background(terms, work.preview_control, data, file.name, file.order)
+        server.slices.run_background(
+            terms, control_work.preview_control, data, file.name, file.order
+        )
     )
 
 
@@ -307,7 +309,7 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> C
     state = await run_in_threadpool(server.slices.control, project_id)
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
-        server.slices.run_interactive(terms, work.control_report, artifacts, state)
+        server.slices.run_interactive(terms, control_work.control_report, artifacts, state)
     )
 
 
@@ -324,7 +326,9 @@ async def control_file(
     context = ExportContext(project.name, Path(artifacts["map"]).name, evidence)
     terms = slices.terms(project_id, caller.name)
     text = await caller.wait(
-        slices.run_interactive(terms, work.control_file, artifacts, state, ending, context=context)
+        slices.run_interactive(
+            terms, control_work.control_file, artifacts, state, ending, context=context
+        )
     )
     if ending == "csv":
         head = {"Content-Disposition": f'attachment; filename="{project_id}-control.csv"'}

@@ -13,8 +13,6 @@ import numpy as np
 
 from app.slices.model import (
     CompareRequest,
-    ControlState,
-    ExportContext,
     ListedReference,
     OtherMap,
     PickRequest,
@@ -33,11 +31,9 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.plain import to_plain
 from recon4.names import visible
 from recon4.review.evidence import Evidence
-from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_cuts
-from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.cut import Cut, horizontal
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
@@ -51,11 +47,9 @@ from recon4.slices.reference import (
     load_reference,
     read_facts,
 )
-from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import (
     approval_text,
     axis_labels,
-    source_text,
 )
 from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
 from recon4.store.atomic import atomic_file, write_json
@@ -251,53 +245,6 @@ def align_reference(
     assert against is not None
     fit = align_by_icp(tiles_of(map_folder), against, rng=np.random.default_rng(1))
     return set_alignment(folder, fit.T_map_reference, description=fit.description)
-
-
-def preview_control(data: bytes, name: str, order: AxisOrder | None) -> ControlPreview:
-    """Points and open questions of a survey file."""
-    return read_control(data, name=name, order=order)
-
-
-def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:
-    """Residuals of the points found in the map."""
-    return _residuals(artifacts, state)
-
-
-def control_file(
-    artifacts: Artifacts, state: ControlState, ending: str, *, context: ExportContext
-) -> str:
-    """The residuals as CSV or as an HTML sheet.
-
-    Raises:
-        Altered: If the map or its georeference differs from the approved one.
-    """
-    evidence = context.evidence
-    if evidence:
-        map_of(artifacts, evidence)
-        evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
-    found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
-    text = AcceptanceText(
-        project=context.project,
-        frame=map_frame(artifacts).text,
-        sources=sources,
-        approval=stamp_text(evidence),
-    )
-    if ending == "html":
-        return render_acceptance(found, text)
-    line = f"of {text.project}, {text.sources}, {text.frame}. {text.approval}"
-    return residual_csv(found, comment=line)
-
-
-def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
-    own = map_frame(artifacts)
-    here = state.of_map(Path(artifacts["map"]).name)
-    measured = {name: np.array(p_map) for name, p_map in here.items()}
-    if state.frame == "crs":
-        if own.to_crs is None:
-            raise ConfigError("the map is local: CRS coordinates cannot be converted")
-        measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
-    surveyed = [ControlPoint(**point.model_dump()) for point in state.points]
-    return residuals(surveyed, measured, outdated=state.picks.keys() - here.keys())
 
 
 def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:

@@ -6,7 +6,8 @@ import csv
 import io
 import math
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
+from types import MappingProxyType
 
 import numpy as np
 
@@ -19,6 +20,7 @@ from recon4.evaluation.markers import (
 from recon4.geometry.se3 import Array
 from recon4.model.plain import finite_or_none
 from recon4.slices.control_points import ControlPoint, Role
+from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
 
 RELATIVE_LIMIT_M = 0.05
 """Limit for the error of distances between points of the map (requirements, relative)."""
@@ -35,6 +37,8 @@ class Residual:
     up_m: float
     d2_m: float
     d3_m: float
+    stated: ErrorEllipse | None
+    """How well the map says it is known there; None = not stated."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +91,7 @@ def residuals(
     points: Sequence[ControlPoint],
     measured: Mapping[str, Array],
     *,
+    covariances: Mapping[str, Array] = MappingProxyType({}),
     outdated: Collection[str] = (),
 ) -> ControlReport:
     """Compute the residual table, control and check points separately.
@@ -94,9 +99,12 @@ def residuals(
     Args:
         points: Surveyed points.
         measured: Id -> position in the map, in the coordinates of the survey [m], (3,).
+        covariances: Id -> covariance of the map there, east, north, up [m²], (3, 3).
         outdated: Ids of points found in an earlier map.
     """
-    rows = tuple(_residual(p, measured[p.id]) for p in points if p.id in measured)
+    rows = tuple(
+        _residual(p, measured[p.id], covariances.get(p.id)) for p in points if p.id in measured
+    )
     figures = []
     for role in ("check", "control"):
         mine = [row for row in rows if row.role == role]
@@ -124,9 +132,11 @@ def residual_csv(report: ControlReport, *, comment: str = "") -> str:
     out = io.StringIO()
     out.write(f"# recon4 control and check points {' '.join(comment.split())}".rstrip() + "\n")
     rows = csv.writer(out, lineterminator="\n")
-    rows.writerow(["id", "role", "dE_m", "dN_m", "dU_m", "d2D_m", "d3D_m"])
+    stated = ["sd_major_m", "sd_minor_m", "azimuth_deg", "sd_up_m"]
+    rows.writerow(["id", "role", "dE_m", "dN_m", "dU_m", "d2D_m", "d3D_m", *stated])
     for row in report.rows:
         values = (row.east_m, row.north_m, row.up_m, row.d2_m, row.d3_m)
+        values += astuple(row.stated) if row.stated else ()
         rows.writerow([safe_cell(row.id), row.role, *(f"{value:.4f}" for value in values)])
     for name in report.missing:
         rows.writerow([safe_cell(name), "not found in the map"])
@@ -148,10 +158,11 @@ def safe_cell(text: str) -> str:
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 
 
-def _residual(point: ControlPoint, found_m: Array) -> Residual:
+def _residual(point: ControlPoint, found_m: Array, cov: Array | None) -> Residual:
     east, north, up = (float(d) for d in np.asarray(found_m, dtype=np.float64) - point.xyz_m)
     d2 = math.hypot(east, north)
-    return Residual(point.id, point.role, east, north, up, d2, math.hypot(d2, up))
+    stated = None if cov is None else error_ellipse(cov)
+    return Residual(point.id, point.role, east, north, up, d2, math.hypot(d2, up), stated)
 
 
 def _figures(rows: list[Residual], points: list[ControlPoint]) -> ResidualStatistics:

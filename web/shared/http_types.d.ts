@@ -294,6 +294,13 @@ export interface Entry {
   hash: string;
 }
 
+export interface ErrorEllipse {
+  major_m: number;
+  minor_m: number;
+  azimuth_deg: number;
+  up_m: number;
+}
+
 export interface FileView {
   name: string;
   bytes: number;
@@ -678,6 +685,7 @@ export interface Residual {
   up_m: number;
   d2_m: number;
   d3_m: number;
+  stated: ErrorEllipse | null;
 }
 
 export interface ResidualStatistics {

@@ -13,6 +13,11 @@ import { attempt, make } from "../shared/dom.js";
 const MAX_ROWS = 300;
 const MAX_NAMED = 10;
 const cm = (m) => (m * 100).toFixed(1);
+/** Error ellipse and height: long axis x short axis at the azimuth of the long one, height. */
+const stated = (one) =>
+  one
+    ? `${cm(one.major_m)} × ${cm(one.minor_m)} at ${one.azimuth_deg.toFixed(0)}°, ${cm(one.up_m)}`
+    : "–";
 const named = (ids) =>
   ids.slice(0, MAX_NAMED).join(", ") +
   (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
@@ -122,8 +127,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const found = /** @type {any} */ (await readControlReport(id));
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
     const earlier = new Set(found.outdated);
-    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D [cm]", ""].map((text, k) =>
-      make("th", { scope: "col", className: k > 1 ? "number" : "" }, text),
+    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D", "1 σ stated [cm]", ""].map(
+      (text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text),
     );
     const all = make(
       "button",
@@ -204,8 +209,10 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
 
   function row(one, residual, earlier) {
     const values = residual
-      ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m].map(cm)
-      : ["", "", "", "", ""];
+      ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m]
+          .map(cm)
+          .concat(stated(residual.stated))
+      : ["", "", "", "", "", ""];
     const role = make(
       "select",
       { ariaLabel: `Role of ${one.id}` },

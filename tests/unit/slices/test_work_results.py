@@ -10,7 +10,8 @@ import app.review.work
 import app.slices.work
 from app.compute_pool.messages import declared, decode_result, encode_result
 from app.review.work import pair_facts, preview
-from app.slices.work import comparison, control_report
+from app.slices.control_work import control_report
+from app.slices.work import comparison
 from recon4.evaluation.slices import SliceError
 from recon4.review.pairs import PairFacts
 from recon4.review.preview import DecidedEdge, Effect

@@ -1,0 +1,89 @@
+"""Work of the control points in child processes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from app.slices.model import ControlState, ExportContext
+from app.slices.work import Artifacts, map_frame, map_of, stamp_text, tiles_of
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Times
+from recon4.pose_graph.uncertainty_files import load_uncertainty
+from recon4.slices.acceptance import AcceptanceText, render_acceptance
+from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
+from recon4.slices.error_ellipses import place_covariance
+from recon4.slices.residuals import ControlReport, residual_csv, residuals
+from recon4.slices.sheet import source_text
+from recon4.store.arrays import load_trajectory
+
+
+def preview_control(data: bytes, name: str, order: AxisOrder | None) -> ControlPreview:
+    """Points and open questions of a survey file."""
+    return read_control(data, name=name, order=order)
+
+
+def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:
+    """Residuals of the points found in the map."""
+    return _residuals(artifacts, state)
+
+
+def control_file(
+    artifacts: Artifacts, state: ControlState, ending: str, *, context: ExportContext
+) -> str:
+    """The residuals as CSV or as an HTML sheet.
+
+    Raises:
+        Altered: If the map or its georeference differs from the approved one.
+    """
+    evidence = context.evidence
+    if evidence:
+        map_of(artifacts, evidence)
+        evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
+    found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
+    text = AcceptanceText(
+        project=context.project,
+        frame=map_frame(artifacts).text,
+        sources=sources,
+        approval=stamp_text(evidence),
+    )
+    if ending == "html":
+        return render_acceptance(found, text)
+    line = f"of {text.project}, {text.sources}, {text.frame}. {text.approval}"
+    return residual_csv(found, comment=line)
+
+
+def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
+    own = map_frame(artifacts)
+    here = state.of_map(Path(artifacts["map"]).name)
+    measured = {name: np.array(p_map) for name, p_map in here.items()}
+    covariances = _covariances(artifacts, measured)
+    if state.frame == "crs":
+        if own.to_crs is None:
+            raise ConfigError("the map is local: CRS coordinates cannot be converted")
+        for name, cov in covariances.items():
+            steps = own.to_crs(measured[name] + np.vstack([np.zeros(3), np.eye(3)]))
+            R = (steps[1:] - steps[0]).T  # of the axes, within the ppm of the CRS
+            covariances[name] = R @ cov @ R.T
+        measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
+    surveyed = [ControlPoint(**point.model_dump()) for point in state.points]
+    outdated = state.picks.keys() - here.keys()
+    return residuals(surveyed, measured, covariances=covariances, outdated=outdated)
+
+
+def _covariances(artifacts: Artifacts, measured: dict[str, Array]) -> dict[str, Array]:
+    """Covariances of the map at places; none where the map states none."""
+    level = Path(artifacts["level"]) if "level" in artifacts else None
+    found = load_uncertainty(level) if level and measured else None
+    if level is None or found is None:
+        return {}
+    trajectory, tiles = load_trajectory(level / "trajectory.npz"), tiles_of(artifacts["map"])
+
+    def poses_at(t_ns: Times) -> tuple[Array, Array]:
+        inside = np.clip(t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
+        return trajectory.at(inside).t, found.at(inside)
+
+    places = {name: place_covariance(tiles, p, poses_at) for name, p in measured.items()}
+    return {name: cov for name, cov in places.items() if cov is not None}
