@@ -13,11 +13,49 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-PLANE = 10
+from recon4.kernels.voxels import PER_METER
+
+PLANE = 11
 """Unit normal x y z, offset n · p [m], standard deviation across [m] (0 = none), weight,
-planarity, middle of its returns x y z [m] (NaN = not known)."""
+planarity, middle of its returns x y z [m] (NaN = not known), offset at the cell itself [m]."""
 SLOTS = 3
 """Planes of a cell: a surface, an edge of two, a corner of three."""
+OWN_COLUMN = 4
+"""Of the nine columns of 3 x 3 x 3 cells along an axis, the one in the middle."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def unpack_returns(
+    f4: NDArray[np.float32],
+    i2: NDArray[np.int16],
+    u1: NDArray[np.uint8],
+    voxel_m: float,
+    means: NDArray[np.float32],
+    to_sensor: NDArray[np.float32],
+    weight: NDArray[np.float32],
+) -> None:
+    """Unpack what the fits need of records.
+
+    The position is the center of a voxel of several returns: the record kept is the one nearest to
+    the sensor, which lies in front of their mean.
+
+    Args:
+        f4: The records as float32, (N, 8).
+        i2: The records as int16, (N, 16).
+        u1: The records as uint8, (N, 32).
+        voxel_m: Edge of a voxel [m].
+        means: Receives unbiased positions [m], (N, 3).
+        to_sensor: Receives the vectors to the sensor [m], (N, 3).
+        weight: Receives the returns of each voxel, (N,).
+    """
+    per_m = 1.0 / voxel_m
+    for n in range(len(f4)):
+        several = u1[n, 31] > 1
+        for d in range(3):
+            x = f4[n, d]
+            means[n, d] = (np.floor(x * per_m) + 0.5) * voxel_m if several else x
+            to_sensor[n, d] = i2[n, 10 + d] * np.float32(1.0 / PER_METER)
+        weight[n] = u1[n, 31]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -25,6 +63,7 @@ def find_cells(
     xyz: NDArray[np.float32],
     cell_m: float,
     side: int,
+    halo: int,
     starts: NDArray[np.int32],
     cells: NDArray[np.int32],
     where: NDArray[np.int32],
@@ -32,9 +71,10 @@ def find_cells(
     """Runs of points in the same cell; the points are in the order of their cells.
 
     Args:
-        xyz: Points from the tile's origin [m], (N, 3).
+        xyz: Points from the tile's origin [m], (N, 3) or more columns.
         cell_m: Edge of a cell [m].
         side: Cells along tile and halo.
+        halo: Cells of the halo.
         starts: Receives the first point of each cell, and N after the last, int32 (N + 1,).
         cells: Receives the index of each cell, int32 (N,).
         where: Receives the row of each cell index; filled with -1 before, int32 (side**3,).
@@ -47,7 +87,7 @@ def find_cells(
     for p in range(len(xyz)):
         cell = 0
         for d in range(2, -1, -1):
-            c: Any = np.int64(np.floor(xyz[p, d] / cell_m)) + 1
+            c: Any = np.int64(np.floor(xyz[p, d] / cell_m)) + halo
             cell = cell * side + min(max(c, 0), side - 1)
         # Rounding can put a point on a border into the next cell; it stays in its run.
         if cell != last and where[cell] < 0:
@@ -61,45 +101,66 @@ def find_cells(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def means_of_voxels(
-    xyz: NDArray[np.float32],
-    returns: NDArray[np.uint8],
-    voxel_m: float,
-    out: NDArray[np.float32],
-) -> None:
-    """Unbiased positions for the moments: the voxel's center for several returns.
-
-    Of several returns the one nearest to the sensor was kept; it lies in front of their mean.
-
-    Args:
-        xyz: Points [m], (N, 3).
-        returns: Returns in the voxel of each, (N,).
-        voxel_m: Edge of a voxel [m].
-        out: Receives the positions [m], (N, 3).
-    """
-    for p in range(len(xyz)):
-        for d in range(3):
-            out[p, d] = xyz[p, d]
-            if returns[p] > 1:
-                out[p, d] = (np.floor(xyz[p, d] / voxel_m) + 0.5) * voxel_m
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def center_of(cell: int, side: int, cell_m: float) -> tuple[float, float, float]:
+def center_of(cell: int, side: int, halo: int, cell_m: float) -> tuple[float, float, float]:
     """Center of a cell from the tile's origin [m]."""
     i = cell % side
     j = (cell // side) % side
     k = cell // (side * side)
-    return (i - 0.5) * cell_m, (j - 0.5) * cell_m, (k - 0.5) * cell_m
+    middle = 0.5 - halo
+    return (i + middle) * cell_m, (j + middle) * cell_m, (k + middle) * cell_m
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def neighbor(cell: int, k: int, side: int, where: NDArray[np.int32]) -> int:
-    """Row of the k-th of the 3 x 3 x 3 cells around a cell, negative = empty; 13 is the cell."""
-    at = cell + ((k // 9 - 1) * side + k // 3 % 3 - 1) * side + k % 3 - 1
-    if at < 0 or at >= len(where):
-        return -1
-    return where[at]
+@njit(cache=True, nogil=True, error_model="numpy")
+def find_inner(cells: NDArray[np.int32], side: int, out: NDArray[np.bool_]) -> None:
+    """Mark the cells whose windows are complete: all but the outermost.
+
+    Args:
+        cells: Of `find_cells`, (C,).
+        side: Cells along tile and halo.
+        out: Receives the marks, (C,).
+    """
+    for c in range(len(cells)):
+        i, j, k = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
+        out[c] = min(i, j, k) > 0 and max(i, j, k) < side - 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def list_neighbors(
+    cells: NDArray[np.int32],
+    where: NDArray[np.int32],
+    side: int,
+    begin: NDArray[np.int32],
+    near: NDArray[np.int32],
+    at: NDArray[np.uint8],
+) -> int:
+    """List the cells with points among the 3 x 3 x 3 around each cell, itself included.
+
+    Args:
+        cells: Of `find_cells`, (C,).
+        where: Of `find_cells`.
+        side: Cells along tile and halo.
+        begin: Receives the first entry of each cell, and their number after the last, (C + 1,).
+        near: Receives the rows of the cells, int32 (27 C,).
+        at: Receives which of the 27 each is: i + 3 j + 9 k, 13 = the cell itself, (27 C,).
+
+    Returns:
+        Number of entries.
+    """
+    count = 0
+    for c in range(len(cells)):
+        begin[c] = count
+        cell = cells[c]
+        ci, cj, ck = cell % side, cell // side % side, cell // (side * side)
+        for k in range(max(ck - 1, 0), min(ck + 2, side)):
+            for j in range(max(cj - 1, 0), min(cj + 2, side)):
+                for i in range(max(ci - 1, 0), min(ci + 2, side)):
+                    o = where[(k * side + j) * side + i]
+                    if o >= 0:
+                        near[count] = o
+                        at[count] = (i - ci + 1) + 3 * (j - cj + 1) + 9 * (k - ck + 1)
+                        count += 1
+    begin[len(cells)] = count
+    return count
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -113,9 +174,9 @@ def main_axis(normal: NDArray[np.float64]) -> int:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def in_column(di: int, dj: int, dk: int, along: int) -> bool:
-    """Whether a neighbor lies in the same column of cells along an axis."""
-    return (along == 0 or di == 0) and (along == 1 or dj == 0) and (along == 2 or dk == 0)
+def column_of(k: int, along: int) -> int:
+    """Which of the nine columns along an axis a neighbor lies in; `OWN_COLUMN` = the cell's."""
+    return k // 3 if along == 0 else k % 3 + k // 9 * 3 if along == 1 else k % 9
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")

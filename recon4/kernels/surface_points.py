@@ -6,8 +6,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.surface_cells import SLOTS, distance_in_front, neighbor
+from recon4.kernels.surface_cells import SLOTS, distance_in_front
 
+SURFACE = 9
+"""Shift x y z onto the surface [m], unit normal, standard deviation across [m], returns, planarity;
+without a surface 0, the normal of the neighborhood, NaN, 0, 0."""
 _ONE_SIDE_M = 0.012
 """A surface whose middle is nearer to a plane than this lies on both sides of it [m]."""
 
@@ -17,23 +20,25 @@ def onto_planes(
     xyz: NDArray[np.float32],
     to_sensor: NDArray[np.float32],
     starts: NDArray[np.int32],
+    normals: NDArray[np.float64],
     slots: NDArray[np.float64],
     gate: float,
     slot_of: NDArray[np.uint8],
-    shift: NDArray[np.float32],
+    out: NDArray[np.float32],
 ) -> None:
     """Move every point along the normal onto the nearest plane of its cell.
 
     Args:
-        xyz: Points [m], (N, 3).
+        xyz: Points [m], (N, 3) or more columns.
         to_sensor: Vectors to the sensor [m], (N, 3).
         starts: Of `find_cells`, (C + 1,).
+        normals: Of points without a plane [unit], (C, 3).
         slots: Planes of each cell, (C, SLOTS, PLANE).
         gate: Farther points keep their place [standard deviations].
         slot_of: Receives the plane of each point, SLOTS = none, (N,).
-        shift: Receives the shift of each point [m], (N, 3).
+        out: Receives a row of `SURFACE` for each point, (N, SURFACE).
     """
-    side_of = np.zeros((SLOTS, SLOTS))
+    side_of, shift = np.zeros((SLOTS, SLOTS)), np.zeros(3)
     for c in range(len(starts) - 1):
         count = 0
         while count < SLOTS and slots[c, count, 4] > 0.0:
@@ -41,62 +46,71 @@ def onto_planes(
         if count > 1:
             edge_sides(slots[c], count, side_of)
         for p in range(starts[c], starts[c + 1]):
-            slot_of[p] = SLOTS
-            shift[p, :] = 0.0
+            mine = SLOTS
             best = gate
+            off = 0.0
             for s in range(count):
                 away = distance_in_front(slots[c, s], xyz, to_sensor, p)
                 if abs(away) < best * slots[c, s, 4]:
                     best = abs(away) / slots[c, s, 4]
-                    slot_of[p] = s
-            if slot_of[p] == SLOTS:
+                    mine = s
+                    off = away
+            slot_of[p] = mine
+            if mine == SLOTS:
+                for d in range(3):
+                    out[p, d] = 0.0
+                    out[p, 3 + d] = normals[c, d]
+                out[p, 6], out[p, 7], out[p, 8] = np.nan, 0.0, 0.0
                 continue
-            plane = slots[c, slot_of[p]]
-            away = plane[0] * xyz[p, 0] + plane[1] * xyz[p, 1] + plane[2] * xyz[p, 2] - plane[3]
+            plane = slots[c, mine]
             for d in range(3):
-                shift[p, d] = -away * plane[d]
+                shift[d] = -off * plane[d]
             if count > 1:
-                keep_inside(xyz, p, slots[c], count, slot_of[p], side_of, shift)
+                keep_inside(xyz, p, slots[c], count, mine, side_of, shift)
+            for d in range(3):
+                out[p, d] = shift[d]
+                out[p, 3 + d] = plane[d]
+                out[p, 6 + d] = plane[4 + d]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def facts_of_points(
-    starts: NDArray[np.int32],
-    slots: NDArray[np.float64],
-    slot_of: NDArray[np.uint8],
+def spread_surfaces(
+    rows: NDArray[np.int64],
+    surfaces: NDArray[np.float32],
+    offset: NDArray[np.float32],
     normal: NDArray[np.float32],
     facts: NDArray[np.float32],
+    returns: NDArray[np.uint16],
 ) -> None:
-    """Normal of each point's plane, and what is known of it.
+    """Copy what is known of the surfaces of points to columns.
 
     Args:
-        starts: Of `find_cells`, (C + 1,).
-        slots: Planes of each cell, (C, SLOTS, PLANE).
-        slot_of: Plane of each point, SLOTS = none, (N,).
-        normal: Normals [unit], kept where there is no plane, (N, 3).
-        facts: Receives standard deviation across [m], returns and planarity; NaN, 0, 0 without a
-            plane, (3, N).
+        rows: Row of each point in ``surfaces``, (M,).
+        surfaces: Of `onto_planes`, (N, SURFACE).
+        offset: Receives the offset from the surface to where each was measured [m], (M, 3).
+        normal: Receives the normals, (M, 3).
+        facts: Receives standard deviation across [m] and planarity, (2, M).
+        returns: Receives the number of returns, 1 without a surface, (M,).
     """
-    for c in range(len(slots)):
-        for p in range(starts[c], starts[c + 1]):
-            facts[0, p], facts[1, p], facts[2, p] = np.nan, 0.0, 0.0
-            if slot_of[p] < SLOTS:
-                plane = slots[c, slot_of[p]]
-                for d in range(3):
-                    normal[p, d] = plane[d]
-                for k in range(3):
-                    facts[k, p] = plane[4 + k]
+    for m in range(len(rows)):
+        one = surfaces[rows[m]]
+        for d in range(3):
+            offset[m, d] = -one[d]
+            normal[m, d] = one[3 + d]
+        facts[0, m] = one[6]
+        facts[1, m] = one[8]
+        returns[m] = min(max(one[7], 1.0), 65535.0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def find_strays(
     weight: NDArray[np.float32],
     starts: NDArray[np.int32],
-    cells: NDArray[np.int32],
-    where: NDArray[np.int32],
-    side: int,
+    begin: NDArray[np.int32],
+    near: NDArray[np.int32],
     slot_of: NDArray[np.uint8],
     ratio: float,
+    sums: NDArray[np.float64],
     stray: NDArray[np.bool_],
 ) -> None:
     """Mark points on no surface that are few beside the returns of the surfaces around them.
@@ -104,28 +118,27 @@ def find_strays(
     Args:
         weight: Returns of each point, (N,).
         starts: Of `find_cells`, (C + 1,).
-        cells: Of `find_cells`, (C,).
-        where: Of `find_cells`.
-        side: Cells along tile and halo.
+        begin: Of `list_neighbors`, (C + 1,).
+        near: Of `list_neighbors`.
         slot_of: Plane of each point, SLOTS = none, (N,).
         ratio: Largest ratio of such returns in the 3 x 3 x 3 cells around.
+        sums: Receives the returns of each cell, and those on no surface, (C, 2).
         stray: Receives the marks, (N,).
     """
-    sums = np.zeros((len(cells), 2))
-    for c in range(len(cells)):
+    count = len(starts) - 1
+    for c in range(count):
+        sums[c] = 0.0
         for p in range(starts[c], starts[c + 1]):
             sums[c, 0] += weight[p]
             if slot_of[p] == SLOTS:
                 sums[c, 1] += weight[p]
-    for c in range(len(cells)):
+    for c in range(count):
         few = False
         if sums[c, 1] > 0.0:
             every = loose = 0.0
-            for k in range(27):
-                o = neighbor(cells[c], k, side, where)
-                if o >= 0:
-                    every += sums[o, 0]
-                    loose += sums[o, 1]
+            for k in range(begin[c], begin[c + 1]):
+                every += sums[near[k], 0]
+                loose += sums[near[k], 1]
             few = loose <= ratio * every
         for p in range(starts[c], starts[c + 1]):
             stray[p] = few and slot_of[p] == SLOTS
@@ -158,7 +171,7 @@ def keep_inside(
     count: int,
     mine: int,
     side_of: NDArray[np.float64],
-    shift: NDArray[np.float32],
+    shift: NDArray[np.float64],
 ) -> None:
     """Move a point that its plane puts beyond an edge onto the edge."""
     a = planes[mine]
@@ -168,7 +181,7 @@ def keep_inside(
             continue
         away = -q[3]
         for d in range(3):
-            away += q[d] * (xyz[p, d] + shift[p, d])
+            away += q[d] * (xyz[p, d] + shift[d])
         if away * side_of[mine, b] >= 0.0:
             continue
         dot = a[0] * q[0] + a[1] * q[1] + a[2] * q[2]
@@ -177,4 +190,4 @@ def keep_inside(
         # Within plane a, against the part of b's normal that lies in it.
         scale = away / (1.0 - dot * dot)
         for d in range(3):
-            shift[p, d] -= scale * (q[d] - dot * a[d])
+            shift[d] -= scale * (q[d] - dot * a[d])

@@ -6,14 +6,21 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.moments import MOMENTS, add_moved, add_point, plane_of
+from recon4.kernels.moments import MOMENTS, add_point, plane_of
 from recon4.kernels.surface_cells import (
+    OWN_COLUMN,
     center_of,
+    column_of,
     distance_in_front,
-    in_column,
     main_axis,
-    neighbor,
 )
+
+_BESIDE = 0.55
+"""A plane farther from the middle of its cell does not cross it [cells along the main axis]."""
+_THIN = 0.9
+"""The shape of distances is not looked at below this part of the least standard deviation."""
+_CALM_COS = 0.9
+"""A window is calm if the normals of its cells differ less from that of its middle."""
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -22,50 +29,172 @@ def side_moments(
     to_sensor: NDArray[np.float32],
     weight: NDArray[np.float32],
     starts: NDArray[np.int32],
-    cells: NDArray[np.int32],
-    side: int,
-    cell_m: float,
     normals: NDArray[np.float64],
-    planes: NDArray[np.float64],
-    gate: float,
+    todo: NDArray[np.bool_],
     moments: NDArray[np.float64],
     views: NDArray[np.float64],
 ) -> None:
-    """Moments of each cell by the side its returns were seen from.
+    """Moments of each cell by the side its returns were seen from, about the tile's origin.
 
     Args:
         xyz: Points [m], (N, 3).
         to_sensor: Vectors to the sensor [m], (N, 3).
         weight: Of each point, (N,).
         starts: Of `find_cells`, (C + 1,).
-        cells: Of `find_cells`, (C,).
-        side: Cells along tile and halo.
-        cell_m: Edge of a cell [m].
         normals: That define the two sides of each cell, zeros = one side only, (C, 3).
-        planes: Planes of both sides: points farther away than ``gate`` are left out, (C, 2, PLANE).
-        gate: In standard deviations; 0 = all points.
+        todo: Cells to compute; the others keep their sums, (C,).
         moments: Receives the sums, (C, 2, MOMENTS).
-        views: Receives the sums of the unit vectors to the sensor, (C, 2, 3).
+        views: Receives the sums of the unit vectors to the sensor and their weight, (C, 2, 4).
     """
-    moments[:] = 0.0
-    views[:] = 0.0
-    for c in range(len(cells)):
-        cx, cy, cz = center_of(cells[c], side, cell_m)
+    for c in range(len(todo)):
+        if not todo[c]:
+            continue
+        moments[c] = 0.0
+        views[c] = 0.0
         nx, ny, nz = normals[c]
-        for p in range(starts[c], starts[c + 1]):
-            dot = nx * to_sensor[p, 0] + ny * to_sensor[p, 1] + nz * to_sensor[p, 2]
-            s = 1 if dot < 0.0 else 0
-            plane = planes[c, s]
-            if gate > 0.0 and plane[4] > 0.0:
-                away = plane[0] * xyz[p, 0] + plane[1] * xyz[p, 1] + plane[2] * xyz[p, 2] - plane[3]
-                if abs(away) > gate * plane[4]:
+        left = starts[c + 1] - starts[c]
+        for s in range(2):
+            m0 = m1 = m2 = m3 = m4 = m5 = m6 = m7 = m8 = m9 = vx = vy = vz = 0.0
+            if left == 0:
+                break
+            for p in range(starts[c], starts[c + 1]):
+                u, v, w = to_sensor[p, 0], to_sensor[p, 1], to_sensor[p, 2]
+                if (nx * u + ny * v + nz * w < 0.0) != (s == 1):
                     continue
-            add_point(moments[c, s], weight[p], xyz[p, 0] - cx, xyz[p, 1] - cy, xyz[p, 2] - cz)
-            x, y, z = to_sensor[p, 0], to_sensor[p, 1], to_sensor[p, 2]
-            scale = weight[p] / np.sqrt(x * x + y * y + z * z + 1e-6)
-            views[c, s, 0] += scale * x
-            views[c, s, 1] += scale * y
-            views[c, s, 2] += scale * z
+                left -= 1
+                n = np.float64(weight[p])
+                x, y, z = np.float64(xyz[p, 0]), np.float64(xyz[p, 1]), np.float64(xyz[p, 2])
+                m0 += n
+                m1 += n * x
+                m2 += n * y
+                m3 += n * z
+                m4 += n * x * x
+                m5 += n * x * y
+                m6 += n * x * z
+                m7 += n * y * y
+                m8 += n * y * z
+                m9 += n * z * z
+                scale = n / np.sqrt(u * u + v * v + w * w + np.float32(1e-6))
+                vx += scale * u
+                vy += scale * v
+                vz += scale * w
+            moments[c, s] = (m0, m1, m2, m3, m4, m5, m6, m7, m8, m9)
+            views[c, s] = (vx, vy, vz, m0)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def window_normals(
+    starts: NDArray[np.int32],
+    begin: NDArray[np.int32],
+    near: NDArray[np.int32],
+    moments: NDArray[np.float64],
+    views: NDArray[np.float64],
+    least: int,
+    normals: NDArray[np.float64],
+    support: NDArray[np.int32],
+) -> None:
+    """Normal of the plane through the 3 x 3 x 3 cells around each cell, towards the sensors.
+
+    Args:
+        starts: Of `find_cells`, (C + 1,).
+        begin: Of `list_neighbors`, (C + 1,).
+        near: Of `list_neighbors`.
+        moments: Of all points of each cell on the first side, (C, 2, MOMENTS).
+        views: Of the same points, (C, 2, 4).
+        least: Fewer points have no normal.
+        normals: Receives unit normals, or zeros, (C, 3).
+        support: Receives the points of the window, (C,).
+    """
+    total, found = np.zeros(MOMENTS), np.zeros(7)
+    for c in range(len(normals)):
+        m0 = m1 = m2 = m3 = m4 = m5 = m6 = m7 = m8 = m9 = 0.0
+        points = 0
+        for q in range(begin[c], begin[c + 1]):
+            m = moments[near[q], 0]
+            m0 += m[0]
+            m1 += m[1]
+            m2 += m[2]
+            m3 += m[3]
+            m4 += m[4]
+            m5 += m[5]
+            m6 += m[6]
+            m7 += m[7]
+            m8 += m[8]
+            m9 += m[9]
+            points += starts[near[q] + 1] - starts[near[q]]
+        support[c] = points
+        normals[c] = 0.0
+        total[:] = (m0, m1, m2, m3, m4, m5, m6, m7, m8, m9)
+        if points < least or not plane_of(total, found):
+            continue
+        v = views[c, 0]
+        sign = -1.0 if found[0] * v[0] + found[1] * v[1] + found[2] * v[2] < 0.0 else 1.0
+        for d in range(3):
+            normals[c, d] = sign * found[d]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def seen_from_behind(
+    to_sensor: NDArray[np.float32],
+    starts: NDArray[np.int32],
+    normals: NDArray[np.float64],
+    out: NDArray[np.bool_],
+) -> None:
+    """Mark the cells with returns from behind their normal.
+
+    Args:
+        to_sensor: Vectors to the sensor [m], (N, 3).
+        starts: Of `find_cells`, (C + 1,).
+        normals: Of each cell, (C, 3).
+        out: Receives the marks, (C,).
+    """
+    for c in range(len(normals)):
+        nx, ny, nz = normals[c]
+        out[c] = False
+        for p in range(starts[c], starts[c + 1]):
+            out[c] |= nx * to_sensor[p, 0] + ny * to_sensor[p, 1] + nz * to_sensor[p, 2] < 0.0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def near_moments(
+    xyz: NDArray[np.float32],
+    to_sensor: NDArray[np.float32],
+    weight: NDArray[np.float32],
+    starts: NDArray[np.int32],
+    normals: NDArray[np.float64],
+    planes: NDArray[np.float64],
+    gate: float,
+    moments: NDArray[np.float64],
+) -> None:
+    """Take the points far from the planes of their cells out of the moments.
+
+    Args:
+        xyz: Points [m], (N, 3).
+        to_sensor: Vectors to the sensor [m], (N, 3).
+        weight: Of each point, (N,).
+        starts: Of `find_cells`, (C + 1,).
+        normals: That define the two sides of each cell, (C, 3).
+        planes: Planes of both sides, (C, 2, PLANE).
+        gate: Farther points are taken out [standard deviations].
+        moments: Of `side_moments`, changed in place, (C, 2, MOMENTS).
+    """
+    for c in range(len(planes)):
+        nx, ny, nz = normals[c]
+        for s in range(2):
+            if not planes[c, s, 4] > 0.0:
+                continue
+            u, v, w, offset = planes[c, s, 0], planes[c, s, 1], planes[c, s, 2], planes[c, s, 3]
+            reach = gate * planes[c, s, 4]
+            for p in range(starts[c], starts[c + 1]):
+                x, y, z = np.float64(xyz[p, 0]), np.float64(xyz[p, 1]), np.float64(xyz[p, 2])
+                if abs(u * x + v * y + w * z - offset) <= reach:
+                    continue
+                dot = nx * to_sensor[p, 0] + ny * to_sensor[p, 1] + nz * to_sensor[p, 2]
+                if (dot < 0.0) == (s == 1):
+                    add_point(moments[c, s], -np.float64(weight[p]), x, y, z)
+            # Weights are whole numbers: what is left of none is rounding.
+            if moments[c, s, 0] < 0.5:
+                moments[c, s] = 0.0
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -75,6 +204,7 @@ def view_axes(
     starts: NDArray[np.int32],
     planes: NDArray[np.float64],
     axes: NDArray[np.float64],
+    changed: NDArray[np.bool_],
 ) -> None:
     """Replace the normal of cells without a plane by the main axis of the directions to the sensor.
 
@@ -87,11 +217,13 @@ def view_axes(
         starts: Of `find_cells`, (C + 1,).
         planes: Of `window_planes`, (C, 2, PLANE).
         axes: Normals of the cells, changed in place, (C, 3).
+        changed: Receives which cells, (C,).
     """
     m = np.zeros((3, 3))
     v, u = np.zeros(3), np.zeros(3)
     for c in range(len(planes)):
-        if planes[c, 0, 4] > 0.0 or planes[c, 1, 4] > 0.0:
+        changed[c] = not (planes[c, 0, 4] > 0.0 or planes[c, 1, 4] > 0.0)
+        if not changed[c]:
             continue
         m[:] = 0.0
         for p in range(starts[c], starts[c + 1]):
@@ -115,90 +247,160 @@ def view_axes(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def around(
+    marked: NDArray[np.bool_],
+    begin: NDArray[np.int32],
+    near: NDArray[np.int32],
+    out: NDArray[np.bool_],
+) -> None:
+    """Mark the cells with a marked one among the 3 x 3 x 3 around them.
+
+    Args:
+        marked: Cells, (C,).
+        begin: Of `list_neighbors`, (C + 1,).
+        near: Of `list_neighbors`.
+        out: Receives the marks, (C,).
+    """
+    for c in range(len(marked)):
+        out[c] = False
+        for q in range(begin[c], begin[c + 1]):
+            out[c] |= marked[near[q]]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def window_planes(
-    cells: NDArray[np.int32],
-    where: NDArray[np.int32],
-    side: int,
-    cell_m: float,
+    begin: NDArray[np.int32],
+    near: NDArray[np.int32],
+    at: NDArray[np.uint8],
     normals: NDArray[np.float64],
     moments: NDArray[np.float64],
     views: NDArray[np.float64],
     least_cos: float,
     limits: NDArray[np.float64],
+    todo: NDArray[np.bool_],
     planes: NDArray[np.float64],
+    calm: NDArray[np.bool_],
 ) -> None:
     """Planes through the 3 x 3 x 3 cells around each cell, for both sides.
 
     Args:
-        cells: Of `find_cells`, (C,).
-        where: Of `find_cells`.
-        side: Cells along tile and halo.
-        cell_m: Edge of a cell [m].
+        begin: Of `list_neighbors`, (C + 1,).
+        near: Of `list_neighbors`.
+        at: Of `list_neighbors`.
         normals: Of each cell, (C, 3).
         moments: Of `side_moments`, (C, 2, MOMENTS).
-        views: Of `side_moments`, (C, 2, 3).
+        views: Of `side_moments`, (C, 2, 4).
         least_cos: Cells whose normals differ more are left out.
         limits: Least weight, largest standard deviation across [m], least along [m], the limit of
-            `is_bent` [m], ratio of the variance that does not depend on the incidence angle, (5,).
+            `is_bent` [m], ratio of the variance that does not depend on the incidence angle,
+            standard deviation of a cell's own offset [m], (6,).
+        todo: Cells to compute; the others keep their planes, (C,).
         planes: Receives the planes; 0 as standard deviation = none, (C, 2, PLANE).
+        calm: Receives whether all cells of the window have similar normals, (C,).
     """
-    total = np.zeros(MOMENTS)
-    found = np.zeros(7)
-    columns, view = np.zeros((9, 4)), np.zeros(3)
-    for c in range(len(cells)):
+    total, found, columns = np.zeros(MOMENTS), np.zeros(7), np.zeros((9, 4))
+    for c in range(len(todo)):
+        if not todo[c]:
+            continue
+        quiet = True
+        nx, ny, nz = normals[c]
+        along = main_axis(normals[c])
         for s in range(2):
             planes[c, s, 4] = 0.0
             if moments[c, s, 0] <= 0.0:
                 continue
-            total[:] = 0.0
+            m0 = m1 = m2 = m3 = m4 = m5 = m6 = m7 = m8 = m9 = vx = vy = vz = vw = 0.0
             columns[:] = 0.0
-            view[:] = 0.0
-            along = main_axis(normals[c])
-            for k in range(27):
-                o = neighbor(cells[c], k, side, where)
-                if o < 0:
-                    continue
-                di, dj, dk = k % 3 - 1, k // 3 % 3 - 1, k // 9 - 1
-                dot = (
-                    normals[c, 0] * normals[o, 0]
-                    + normals[c, 1] * normals[o, 1]
-                    + normals[c, 2] * normals[o, 2]
-                )
+            for q in range(begin[c], begin[c + 1]):
+                o = near[q]
+                j = column_of(at[q], along)
+                dot = nx * normals[o, 0] + ny * normals[o, 1] + nz * normals[o, 2]
+                quiet &= abs(dot) > _CALM_COS
                 # Noise crosses the borders along the normal: a tail alone is no surface.
-                if abs(dot) < least_cos and not in_column(di, dj, dk, along):
+                if abs(dot) < least_cos and j != OWN_COLUMN:
                     continue
                 t = s if dot >= 0.0 else 1 - s
                 m = moments[o, t]
-                if m[0] > 0.0:
-                    view += views[o, t]
-                    add_moved(total, m, di * cell_m, dj * cell_m, dk * cell_m)
-                    j = k // 3 if along == 0 else k % 3 + k // 9 * 3 if along == 1 else k % 9
-                    columns[j, 0] += m[0]
-                    columns[j, 1] += m[1] + m[0] * di * cell_m
-                    columns[j, 2] += m[2] + m[0] * dj * cell_m
-                    columns[j, 3] += m[3] + m[0] * dk * cell_m
-            if total[0] < limits[0] or not plane_of(total, found):
+                if not m[0] > 0.0:
+                    continue
+                m0 += m[0]
+                m1 += m[1]
+                m2 += m[2]
+                m3 += m[3]
+                m4 += m[4]
+                m5 += m[5]
+                m6 += m[6]
+                m7 += m[7]
+                m8 += m[8]
+                m9 += m[9]
+                vx += views[o, t, 0]
+                vy += views[o, t, 1]
+                vz += views[o, t, 2]
+                vw += views[o, t, 3]
+                columns[j, 0] += m[0]
+                columns[j, 1] += m[1]
+                columns[j, 2] += m[2]
+                columns[j, 3] += m[3]
+            total[:] = (m0, m1, m2, m3, m4, m5, m6, m7, m8, m9)
+            if m0 < limits[0] or not plane_of(total, found):
                 continue
             if is_bent(columns, found, limits[3]):
                 continue
             # Noise lies along the beam: across a surface seen obliquely it is less.
-            facing = found[0] * view[0] + found[1] * view[1] + found[2] * view[2]
-            facing = min(1.0, (facing / total[0]) ** 2 + limits[4])
+            facing = (found[0] * vx + found[1] * vy + found[2] * vz) / vw
+            facing = min(1.0, facing * facing + limits[4])
             if found[4] > facing * limits[1] ** 2 or found[5] < limits[2] ** 2:
                 continue
             sign = 1.0
-            dot = found[0] * normals[c, 0] + found[1] * normals[c, 1] + found[2] * normals[c, 2]
-            if (dot < 0.0) != (s == 1):
+            if (found[0] * nx + found[1] * ny + found[2] * nz < 0.0) != (s == 1):
                 sign = -1.0
-            cx, cy, cz = center_of(cells[c], side, cell_m)
-            p = planes[c, s]
-            p[0], p[1], p[2] = sign * found[0], sign * found[1], sign * found[2]
-            p[3] = sign * found[3] + p[0] * cx + p[1] * cy + p[2] * cz
-            p[4] = max(np.sqrt(found[4]), 1e-4)
-            p[5] = total[0]
+            write_plane(planes[c, s], found, sign, total)
+            planes[c, s, 10] = own_offset(planes[c, s], columns[OWN_COLUMN], limits[5])
+        calm[c] = quiet
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def write_plane(
+    out: NDArray[np.float64], found: NDArray[np.float64], sign: float, total: NDArray[np.float64]
+) -> None:
+    """Write the plane through moments about the tile's origin.
+
+    Args:
+        out: Receives the plane, (PLANE,).
+        found: Of `plane_of`, (7,).
+        sign: 1, or -1 to turn the normal.
+        total: The moments, (MOMENTS,).
+    """
+    for d in range(4):
+        out[d] = sign * found[d]
+    out[4] = max(np.sqrt(found[4]), 1e-4)
+    out[5] = total[0]
+    out[6] = (found[5] - found[4]) / found[6]
+    for d in range(3):
+        out[7 + d] = total[1 + d] / total[0]
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def own_offset(plane: NDArray[np.float64], column: NDArray[np.float64], bend_m: float) -> float:
+    """Offset of the surface at a cell, which need not be quite flat [m].
+
+    The nearest returns say where it is: those of the cell and of the two beyond it along the
+    normal, because noise crosses their borders.
+
+    Args:
+        plane: Of the window, (PLANE,).
+        column: Weight and weighted sums x y z of the three cells.
+        bend_m: Standard deviation of a cell's surface from the plane of its window [m].
+    """
+    if not column[0] > 0.0:
+        return plane[3]
+    x, y, z = column[1] / column[0], column[2] / column[0], column[3] / column[0]
+    own = plane[0] * x + plane[1] * y + plane[2] * z - plane[3]
+    prior = bend_m * bend_m
+    return plane[3] + own * prior / (prior + plane[4] * plane[4] / column[0])
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def is_bent(columns: NDArray[np.float64], plane: NDArray[np.float64], limit_m: float) -> bool:
     """Whether the parts of a window lie on both sides of its plane: an edge, or a round thing.
 
@@ -242,21 +444,27 @@ def shape_sums(
         reach_m: Farther points are left out [m].
         sums: Receives the sums, (C, K, 5).
     """
-    sums[:] = 0.0
     for c in range(len(planes)):
         for s in range(planes.shape[1]):
-            if not planes[c, s, 4] > 0.0:
-                continue
-            for p in range(starts[c], starts[c + 1]):
-                away = distance_in_front(planes[c, s], xyz, to_sensor, p)
-                if abs(away) < reach_m:
-                    power = np.float64(weight[p])
-                    for k in range(5):
-                        sums[c, s, k] += power
+            s0 = s1 = s2 = s3 = s4 = 0.0
+            plane = planes[c, s]
+            if plane[4] > 0.0:
+                for p in range(starts[c], starts[c + 1]):
+                    away = distance_in_front(plane, xyz, to_sensor, p)
+                    if abs(away) < reach_m:
+                        power = np.float64(weight[p])
+                        s0 += power
                         power *= away
+                        s1 += power
+                        power *= away
+                        s2 += power
+                        power *= away
+                        s3 += power
+                        s4 += power * away
+            sums[c, s] = (s0, s1, s2, s3, s4)
 
 
-@njit(cache=True, nogil=True, error_model="numpy")
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def is_one_sheet(sums: NDArray[np.float64], least_m: float, limit: float) -> bool:
     """Whether distances can be the noise of one surface, by their skewness and kurtosis.
 
@@ -285,41 +493,58 @@ def is_one_sheet(sums: NDArray[np.float64], least_m: float, limit: float) -> boo
 @njit(cache=True, nogil=True, error_model="numpy")
 def drop_mixed(
     cells: NDArray[np.int32],
-    where: NDArray[np.int32],
     side: int,
+    halo: int,
+    cell_m: float,
+    begin: NDArray[np.int32],
+    near: NDArray[np.int32],
     sums: NDArray[np.float64],
     least_m: float,
     limit: float,
     planes: NDArray[np.float64],
-    kept: NDArray[np.float64],
+    kept: NDArray[np.bool_],
 ) -> None:
-    """Remove planes that more than one surface has been put into, by the 3 x 3 x 3 cells around.
+    """Find planes that more than one surface has been put into, by the 3 x 3 x 3 cells around.
+
+    Planes beside their cell are dropped too: they were fitted to the end of a surface's noise, and
+    behind an edge to that of two.
 
     Args:
         cells: Of `find_cells`, (C,).
-        where: Of `find_cells`.
         side: Cells along tile and halo.
+        halo: Cells of the halo.
+        cell_m: Edge of a cell [m].
+        begin: Of `list_neighbors`, (C + 1,).
+        near: Of `list_neighbors`.
         sums: Of `shape_sums`, (C, 2, 5).
         least_m: As in `is_one_sheet`.
         limit: As in `is_one_sheet`.
         planes: Of both sides, (C, 2, PLANE).
-        kept: Receives the planes, 0 as standard deviation of those removed, (C, 2, PLANE).
+        kept: Receives which of them are one surface, (C, 2).
     """
     total = np.zeros(5)
-    kept[:] = planes
-    for c in range(len(cells)):
+    for c in range(len(planes)):
+        cx, cy, cz = center_of(cells[c], side, halo, cell_m)
         for s in range(2):
             mine = planes[c, s]
-            if not mine[4] > 0.0:
+            kept[c, s] = mine[4] > 0.0
+            away = mine[0] * cx + mine[1] * cy + mine[2] * cz - mine[3]
+            if abs(away) > _BESIDE * cell_m * abs(mine[main_axis(mine)]):
+                kept[c, s] = False
                 continue
-            total[:] = 0.0
-            for k in range(27):
-                o = neighbor(cells[c], k, side, where)
-                if o < 0:
-                    continue
+            if mine[4] < _THIN * least_m:
+                continue
+            t0 = t1 = t2 = t3 = t4 = 0.0
+            nx, ny, nz = mine[0], mine[1], mine[2]
+            for k in range(begin[c], begin[c + 1]):
+                o = near[k]
                 for t in range(2):
                     q = planes[o, t]
-                    if q[4] > 0.0 and mine[0] * q[0] + mine[1] * q[1] + mine[2] * q[2] > 0.97:
-                        total += sums[o, t]
-            if not is_one_sheet(total, least_m, limit):
-                kept[c, s, 4] = 0.0
+                    if q[4] > 0.0 and nx * q[0] + ny * q[1] + nz * q[2] > 0.97:
+                        t0 += sums[o, t, 0]
+                        t1 += sums[o, t, 1]
+                        t2 += sums[o, t, 2]
+                        t3 += sums[o, t, 3]
+                        t4 += sums[o, t, 4]
+            total[:] = (t0, t1, t2, t3, t4)
+            kept[c, s] = is_one_sheet(total, least_m, limit)

@@ -163,6 +163,7 @@ def voxel_keys(
     voxel_m: float,
     cell_voxels: int,
     side_cells: int,
+    halo_cells: int,
     shift: int,
     out: NDArray[np.int64],
 ) -> None:
@@ -171,8 +172,9 @@ def voxel_keys(
     Args:
         f4: The records as float32, (N, 8).
         voxel_m: Edge of a voxel [m].
-        cell_voxels: Voxels along a cell; the halo is one cell wide.
+        cell_voxels: Voxels along a cell.
         side_cells: Cells of tile and halo along an edge.
+        halo_cells: Cells of the halo.
         shift: Bits of the row.
         out: Receives the keys.
     """
@@ -180,7 +182,7 @@ def voxel_keys(
         cell: Any = np.int64(0)
         inside: Any = np.int64(0)
         for d in range(2, -1, -1):
-            v: Any = np.int64(np.floor(f4[n, d] / voxel_m)) + cell_voxels
+            v: Any = np.int64(np.floor(f4[n, d] / voxel_m)) + halo_cells * cell_voxels
             v = min(max(v, 0), side_cells * cell_voxels - 1)
             c = v // cell_voxels
             cell = cell * side_cells + c

@@ -19,6 +19,7 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs, MapNotes
 from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
+from recon4.mapping.scratch import Scratch
 from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_tile
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.model.events import MapBuilt
@@ -86,7 +87,9 @@ def build_map(
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         _distribute(inputs, buckets, settings=settings, progress=progress)
-        make = partial(_make_tile, buckets, recipe, covariances=inputs.covariances)
+        make = partial(
+            _make_tile, buckets, recipe, scratch=Scratch(), covariances=inputs.covariances
+        )
         removed = _finish_tiles(buckets.tiles(), make, writer, progress=progress)
         writer.notes = MapNotes(
             voxel_m=settings.voxel_m,
@@ -129,9 +132,14 @@ def _distribute(
 
 
 def _make_tile(
-    buckets: TileBuckets, recipe: Recipe, tile: Tile, *, covariances: PoseCovariances | None
+    buckets: TileBuckets,
+    recipe: Recipe,
+    tile: Tile,
+    *,
+    scratch: Scratch,
+    covariances: PoseCovariances | None,
 ) -> MadeTile:
-    made = make_tile(buckets.read(tile), recipe)
+    made = make_tile(buckets.read(tile), recipe, scratch)
     buckets.drop(tile)
     if covariances:
         columns = made.columns

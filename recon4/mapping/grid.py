@@ -19,6 +19,9 @@ class Grid:
     """Cells along a tile."""
     thin: bool
     """Whether one point per voxel is kept, or all."""
+    halo_cells: int = 1
+    """Cells of the halo around a tile. Surfaces need two: planes are taken from the windows of
+    neighboring cells, which must be complete."""
 
     @staticmethod
     def of(settings: MapSettings) -> Grid:
@@ -26,12 +29,18 @@ class Grid:
         voxel_m = settings.voxel_m or 0.01
         cell_voxels = max(1, round(settings.normal_cell_m / voxel_m))
         tile_cells = max(1, round(settings.tile_m / (cell_voxels * voxel_m)))
-        return Grid(voxel_m, cell_voxels, tile_cells, settings.voxel_m > 0.0)
+        halo_cells = 2 if settings.surface == "fitted" else 1
+        return Grid(voxel_m, cell_voxels, tile_cells, settings.voxel_m > 0.0, halo_cells)
 
     @property
     def cell_m(self) -> float:
-        """Edge of a cell; also the width of the halo around a tile [m]."""
+        """Edge of a cell [m]."""
         return self.voxel_m * self.cell_voxels
+
+    @property
+    def halo_m(self) -> float:
+        """Width of the halo around a tile [m]."""
+        return self.cell_m * self.halo_cells
 
     @property
     def tile_m(self) -> float:
@@ -41,7 +50,7 @@ class Grid:
     @property
     def side_cells(self) -> int:
         """Cells along a tile with its halo."""
-        return self.tile_cells + 2
+        return self.tile_cells + 2 * self.halo_cells
 
     @property
     def key_bits(self) -> int:

@@ -67,7 +67,7 @@ def split_into_tiles(
     low = np.floor(least / grid.tile_m).astype(np.int64) - 1
     high = np.floor(most / grid.tile_m).astype(np.int64) + 1
     counts = np.zeros(high - low + 1, np.int64)
-    count_tiles(xyz, chosen, grid.tile_m, grid.cell_m, low, counts)
+    count_tiles(xyz, chosen, grid.tile_m, grid.halo_m, low, counts)
     ends = np.cumsum(counts.ravel()).reshape(counts.shape)
     starts = ends - counts
     records = np.zeros(int(counts.sum()), RECORD)
@@ -81,7 +81,7 @@ def split_into_tiles(
         frame.dt_ns,
         frame.frame_id,
         grid.tile_m,
-        grid.cell_m,
+        grid.halo_m,
         low,
         starts.copy(),
         views.f4,
@@ -109,7 +109,8 @@ def in_voxel_order(records: Records, grid: Grid) -> Records:
     views = Views.of(records)
     shift = n.bit_length()
     order = np.empty(n, np.int64)
-    voxel_keys(views.f4, grid.voxel_m, grid.cell_voxels, grid.side_cells, shift, order)
+    cells = (grid.cell_voxels, grid.side_cells, grid.halo_cells)
+    voxel_keys(views.f4, grid.voxel_m, *cells, shift, order)
     spare = np.empty(n, np.int64)
     order = radix_sort(order, shift, shift + grid.key_bits, spare)
     if not grid.thin:

@@ -9,12 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.kernels.halves import round_to_half
+from recon4.kernels.surface_points import spread_surfaces
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
 from recon4.mapping.grid import Grid
 from recon4.mapping.intensity import normalized_intensity
 from recon4.mapping.normals import local_normals
 from recon4.mapping.records import Records, Views, is_own, to_sensor_m
-from recon4.mapping.surfaces import FittedSurfaces, fit_surfaces
+from recon4.mapping.scratch import Scratch
+from recon4.mapping.surfaces import fit_surfaces
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
@@ -72,42 +75,57 @@ class MadeTile:
     """How many of the last rows are stray returns."""
 
 
-def make_tile(records: Records, recipe: Recipe) -> MadeTile:
+def make_tile(records: Records, recipe: Recipe, scratch: Scratch) -> MadeTile:
     """Remove noise from the records of a tile and compute the columns of the rest.
 
     Args:
         records: In the order of their voxels, thinned, with the halo.
         recipe: Parameters.
+        scratch: Memory to work in.
     """
     settings = recipe.settings
     removed: Counter[str] = Counter()
     if settings.far_ratio > 0.0:
         records, removed["far"] = _without_far(records, settings.far_ratio)
-    normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
+    if settings.surface == "fitted":
+        return _fitted(records, recipe, scratch, removed=removed)
     own = is_own(records)
+    normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
     lonely = own & (normals.support < settings.min_neighborhood)
-    if settings.surface == "raw":
-        removed["lonely"] = int(lonely.sum())
-        rows = progressive(np.flatnonzero(own & ~lonely))
-        return MadeTile(_columns(records, rows, normals.normal, recipe=recipe), removed)
-    surfaces = fit_surfaces(records, normals.normal, recipe.grid, noise_m=settings.range_noise_m)
-    stray = own & (lonely | surfaces.stray)
+    removed["lonely"] = int(lonely.sum())
+    rows = progressive(np.flatnonzero(own & ~lonely))
+    columns = _columns(records, rows, np.take(normals.normal, rows, axis=0), recipe=recipe)
+    return MadeTile(columns, removed)
+
+
+def _fitted(
+    records: Records, recipe: Recipe, scratch: Scratch, *, removed: Counter[str]
+) -> MadeTile:
+    """Columns with the points on their surfaces; ``raw_offset_m`` leads back."""
+    settings, own = recipe.settings, is_own(records)
+    surfaces = fit_surfaces(records, recipe.grid, noise_m=settings.range_noise_m, scratch=scratch)
+    stray = own & (surfaces.stray | (surfaces.support < settings.min_neighborhood))
     strays = progressive(np.flatnonzero(stray))
     rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
-    columns = _columns(records, rows, surfaces.normal, recipe=recipe)
-    _add_surfaces(columns, surfaces, rows)
+    n = len(rows)
+    normal, offset = scratch.array("columns", (2, n, 3), np.float32)
+    facts, returns = scratch.array("facts", (2, n), np.float32), np.empty(n, np.uint16)
+    spread_surfaces(rows, surfaces.rows, offset, normal, facts, returns)
+    columns = _columns(records, rows, normal, recipe=recipe)
+    columns["xyz"] -= offset
+    columns["raw_offset_m"] = as_half(offset)
+    columns["sigma_m"] = as_half(facts[0])
+    columns["planarity"] = as_half(facts[1])
+    columns["returns"] = returns
     return MadeTile(columns, removed, len(strays))
 
 
-def _add_surfaces(columns: Columns, surfaces: FittedSurfaces, rows: NDArray[np.intp]) -> None:
-    """Move the points onto their surfaces; from there ``raw_offset_m`` leads back."""
-    raw = columns["xyz"].copy()
-    columns["xyz"] += np.take(surfaces.shift_m, rows, axis=0)
-    columns["raw_offset_m"] = (raw - columns["xyz"]).astype(np.float16)
-    sigma_m, returns, planarity = (np.take(fact, rows) for fact in surfaces.facts)
-    columns["sigma_m"] = sigma_m.astype(np.float16)
-    columns["planarity"] = planarity.astype(np.float16)
-    columns["returns"] = np.minimum(np.maximum(returns, 1.0), 65535.0).astype(np.uint16)
+def as_half(values: NDArray[np.float32]) -> NDArray[np.float16]:
+    """The nearest float16 of values in any shape."""
+    flat = np.ascontiguousarray(values).ravel()
+    out = np.empty(len(flat), np.uint16)
+    round_to_half(flat, flat.view(np.uint32), out)
+    return out.view(np.float16).reshape(values.shape)
 
 
 def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
@@ -141,7 +159,7 @@ def _strata() -> list[int]:
 
 
 def _columns(
-    records: Records, rows: NDArray[np.intp], normals: NDArray[np.float32], *, recipe: Recipe
+    records: Records, rows: NDArray[np.intp], normal: NDArray[np.float32], *, recipe: Recipe
 ) -> Columns:
     n = len(rows)
     columns: Columns = {
@@ -165,9 +183,8 @@ def _columns(
         columns["t_ns"],
         to_sensor,
     )
-    normal = np.take(normals, rows, axis=0)
     face_sensor(normal, to_sensor, columns["range_m"], columns["incidence_rad"])
-    columns["normal"] = normal.astype(np.float16)
+    columns["normal"] = as_half(normal)
     if recipe.intensity is not None:
         columns["intensity_normalized"] = normalized_intensity(recipe.intensity, columns)
     return columns

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 
 from recon4.mapping.grid import Grid
-from recon4.mapping.normals import local_normals
 from recon4.mapping.records import RECORD, in_voxel_order, to_sensor_m
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.settings import MapSettings
@@ -47,8 +46,7 @@ def fitted(*parts):
     """Thinned records, their points before and after, and the surfaces."""
     records = in_voxel_order(np.concatenate(parts), GRID)
     raw = records["xyz"].astype(float)
-    normals = local_normals(np.ascontiguousarray(records["xyz"]), GRID.cell_m).normal
-    surfaces = fit_surfaces(records, normals, GRID, noise_m=NOISE_M)
+    surfaces = fit_surfaces(records, GRID, noise_m=NOISE_M)
     return records, raw, raw + surfaces.shift_m, surfaces
 
 

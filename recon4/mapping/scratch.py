@@ -1,0 +1,29 @@
+"""Memory that is used again for the next tile."""
+
+from __future__ import annotations
+
+import math
+import threading
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+
+class Scratch(threading.local):
+    """Arrays by name, valid until the same thread asks for the next one of the same name.
+
+    The first write to fresh memory costs more than most of what is computed in it, because the
+    system clears every page.
+    """
+
+    def __init__(self) -> None:
+        self._held: dict[str, NDArray[np.uint8]] = {}
+
+    def array(self, name: str, shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
+        """An array with any content."""
+        size = math.prod(shape) * np.dtype(dtype).itemsize
+        held = self._held.get(name)
+        if held is None or len(held) < size:
+            held = self._held[name] = np.empty(size + size // 4, np.uint8)
+        return held[:size].view(dtype).reshape(shape)
