@@ -1,10 +1,12 @@
 """The pages of the documentation: links, paths, modules, routes, settings and commands exist."""
 
+import inspect
 import re
 import shlex
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from rich.text import Text
@@ -13,8 +15,11 @@ from typer.main import get_command
 from app.access.routes_check import declared
 from app.main import create_app
 from app.settings import ServerSettings
+from recon4 import pipeline
 from recon4.cli.main import app
 from recon4.model.rig import parse_rig
+from recon4.recording.sources import Sources
+from recon4.results import Summary
 from recon4.settings import Settings
 
 ROOT = Path(__file__).parents[2]
@@ -255,3 +260,23 @@ def test_the_patterns_of_these_tests_find_what_they_should():
         ("a", "b"),
         ("graph", "mode"),
     ]
+
+
+def test_the_example_of_the_library_fits_it(monkeypatch, capsys):
+    """What it passes is what the function takes, and what it prints a summary has."""
+    text = (ROOT / "README.md").read_text("utf-8")
+    (example,) = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    takes = inspect.signature(pipeline.process)
+
+    def process(*given, **named):
+        arguments = takes.bind(*given, **named).arguments
+        assert isinstance(arguments["sources"], Sources)
+        assert all(
+            isinstance(path, Path) for path in (arguments["out"], *arguments["sources"].paths)
+        )
+        return SimpleNamespace(**{field.name: field.name for field in fields(Summary)})
+
+    monkeypatch.setattr(pipeline, "process", process)
+    exec(compile(example, "README.md", "exec"), {})
+
+    assert capsys.readouterr().out == "path_length_m edges\n"
