@@ -16,7 +16,7 @@ from starlette.requests import Request
 from app.access.audit import audit
 from app.access.people import Permission, Person, Who, needs, recent_login
 from app.compute_pool import FileAccess, Lane, Terms
-from app.deps import Parts, Server
+from app.deps import Server, ServerParts
 from app.errors import Conflict, ProblemDetail
 from app.jobs.model import JobState
 from app.network.request_caller import CalledBy, Caller
@@ -49,7 +49,7 @@ from recon4.review.approval import (
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval, approval_of, latest_approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
-from recon4.review.journal import JournalChanged, NothingToUndo, Row, append, read_rows
+from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
 from recon4.review.pairs import (
     PairFacts,
     TrajectoryNodes,
@@ -263,7 +263,7 @@ async def approve(
 
 
 async def _of_pairs(
-    server: Parts, caller: Caller, function: Callable[..., T], *args: object, project_id: str
+    server: ServerParts, caller: Caller, function: Callable[..., T], *args: object, project_id: str
 ) -> T:
     """Run a function of the project's graph in the compute pool and return its result."""
     root = server.projects.folder(project_id)
@@ -275,7 +275,7 @@ async def _of_pairs(
 
 
 async def _sign(
-    root: Path, key: Path, signer: dict[str, str], *, asked: Approve, server: Parts
+    root: Path, key: Path, signer: dict[str, str], *, asked: Approve, server: ServerParts
 ) -> Approval:
     """Sign in a separate child process, the only one that may read the key.
 
@@ -294,7 +294,7 @@ async def _sign(
 
 
 def _step(
-    kind: DecisionKind, project_id: str, step: Step, *, server: Parts, who: Person
+    kind: DecisionKind, project_id: str, step: Step, *, server: ServerParts, who: Person
 ) -> ReviewView:
     root = server.projects.folder(project_id)
     try:
@@ -304,7 +304,7 @@ def _step(
     return _view(project_id, server, who)
 
 
-def _view(project_id: str, server: Parts, who: Person) -> ReviewView:
+def _view(project_id: str, server: ServerParts, who: Person) -> ReviewView:
     root = server.projects.folder(project_id)
     rows = read_rows(root)
     decided = fold(row.decision() for row in rows)
@@ -351,7 +351,7 @@ def _map_facts(root: Path) -> MapFacts | None:
     )
 
 
-def _approval(root: Path, rows: Sequence[Row], server: Parts) -> ApprovalView | None:
+def _approval(root: Path, rows: Sequence[JournalRow], server: ServerParts) -> ApprovalView | None:
     """The newest approval, and whether the files still match the signature."""
     latest = latest_approval(root, rows)
     if latest is None:
@@ -369,12 +369,12 @@ def _approval(root: Path, rows: Sequence[Row], server: Parts) -> ApprovalView | 
     return replace(found, check=check.state, altered=check.message)
 
 
-def _busy(project_id: str, server: Parts) -> bool:
+def _busy(project_id: str, server: ServerParts) -> bool:
     jobs = server.jobs.of_project(project_id)
     return any(job.state in (JobState.QUEUED, JobState.RUNNING) for job in jobs)
 
 
-def _now_and_before(rows: Sequence[Row]) -> tuple[Decided, Decided]:
+def _now_and_before(rows: Sequence[JournalRow]) -> tuple[Decided, Decided]:
     """Decisions in force now, and before the last decision."""
     decisions = [row.decision() for row in rows]
     decisions = [one for one in decisions if one.kind is not DecisionKind.APPROVE]

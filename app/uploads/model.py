@@ -8,7 +8,7 @@ from pathlib import Path, PurePosixPath
 
 
 @dataclass(slots=True, kw_only=True)
-class UploadPart:
+class UploadedFile:
     """One file of an upload. Only the store changes it."""
 
     number: int
@@ -48,21 +48,23 @@ class Upload:
     folder: str
     """Name of the recording's folder when it is complete."""
     finished: bool = False
-    parts: dict[str, UploadPart] = field(default_factory=dict)
+    announced: dict[str, UploadedFile] = field(default_factory=dict)
     """Name at the sender -> file."""
 
     @property
     def received(self) -> int:
         """Bytes that are durably on disk, of all files."""
-        return self.bytes if self.finished else sum(part.offset for part in self.parts.values())
+        return self.bytes if self.finished else sum(file.offset for file in self.announced.values())
 
     @property
     def whole(self) -> bool:
         """Whether every announced file is complete."""
-        return len(self.parts) == self.files and all(part.whole for part in self.parts.values())
+        return len(self.announced) == self.files and all(
+            file.whole for file in self.announced.values()
+        )
 
     def recording(self, recordings: Path) -> Path:
         """The path for a job: the file itself if there is only one, else the folder."""
         folder = recordings / self.folder
-        only = next(iter(self.parts.values())) if self.files == 1 else None
+        only = next(iter(self.announced.values())) if self.files == 1 else None
         return folder / only.path if only else folder

@@ -18,11 +18,11 @@ from starlette.types import Message, Receive, Scope, Send
 
 from app.access.audit import audit
 from app.access.people import Permission, Who, needs
-from app.deps import Parts, Server
+from app.deps import Server, ServerParts
 from app.errors import AppError, BadRequest, Conflict, ProblemDetail
 from app.names import Name
 from app.uploads import tus
-from app.uploads.model import Upload, UploadPart
+from app.uploads.model import Upload, UploadedFile
 from app.uploads.receive import receive
 from recon4.names import check_name
 
@@ -144,8 +144,8 @@ def list_files(upload_id: str, server: Server) -> list[FileView]:
     """List the announced files with their offsets, to resume an upload."""
     upload = server.uploads.get(upload_id)
     return [
-        FileView(name=part.name, bytes=part.bytes, offset=part.offset, url=_url(upload, part))
-        for part in upload.parts.values()
+        FileView(name=file.name, bytes=file.bytes, offset=file.offset, url=_url(upload, file))
+        for file in upload.announced.values()
     ]
 
 
@@ -218,25 +218,25 @@ async def create(request: Request, server: Server, who: Who) -> Response:
     """
     tus.check_version(request.headers)
     length = tus.number(request.headers, "Upload-Length")
-    upload, part = await asyncio.to_thread(
+    upload, file = await asyncio.to_thread(
         _announce, server, tus.metadata(request.headers), length, by=who.name
     )
-    headers = {"Location": _url(upload, part)}
-    if request.headers.get("content-type") == tus.CHUNK_TYPE and part.offset == 0:
-        await _take(server, upload, part, request=request)
+    headers = {"Location": _url(upload, file)}
+    if request.headers.get("content-type") == tus.CHUNK_TYPE and file.offset == 0:
+        await _take(server, upload, file, request=request)
     await asyncio.to_thread(server.uploads.finish, upload)
-    return Response(status_code=201, headers=headers | _offset_headers(server, upload, part))
+    return Response(status_code=201, headers=headers | _offset_headers(server, upload, file))
 
 
 @files.head("/{file_id}", summary="Offset of a file")
 async def head(file_id: Annotated[str, Path(max_length=40)], server: Server) -> Response:
     """Read the bytes of a file that are durably on the server's disk, as ``Upload-Offset``."""
-    upload, part = server.uploads.part(file_id)
+    upload, file = server.uploads.file(file_id)
     with contextlib.suppress(TimeoutError):  # an interrupted request may still write its bytes
-        async with asyncio.timeout(SETTLES_WITHIN_S), part.turn:
+        async with asyncio.timeout(SETTLES_WITHIN_S), file.turn:
             pass
-    headers = {"Upload-Length": str(part.bytes), "Cache-Control": "no-store"}
-    return Response(headers=headers | _offset_headers(server, upload, part))
+    headers = {"Upload-Length": str(file.bytes), "Cache-Control": "no-store"}
+    return Response(headers=headers | _offset_headers(server, upload, file))
 
 
 @files.patch("/{file_id}", status_code=204, summary="Send bytes", openapi_extra=CHUNK)
@@ -246,23 +246,23 @@ async def patch(
     """Append bytes to a file. They are durably on disk when the response is 204."""
     tus.check_version(request.headers)
     tus.check_type(request.headers)
-    upload, part = server.uploads.part(file_id)
-    await _take(server, upload, part, request=request)
+    upload, file = server.uploads.file(file_id)
+    await _take(server, upload, file, request=request)
     await asyncio.to_thread(server.uploads.finish, upload)
-    return Response(status_code=204, headers=_offset_headers(server, upload, part))
+    return Response(status_code=204, headers=_offset_headers(server, upload, file))
 
 
 @files.delete("/{file_id}", status_code=204, summary="Remove a file")
 def terminate(file_id: Annotated[str, Path(max_length=40)], server: Server) -> Response:
     """Remove the upload to which this file belongs (tus termination)."""
-    upload, _ = server.uploads.part(file_id)
+    upload, _ = server.uploads.file(file_id)
     server.uploads.remove(upload)
     return Response(status_code=204)
 
 
 def _announce(
-    server: Parts, metadata: dict[str, str], length: int, *, by: str
-) -> tuple[Upload, UploadPart]:
+    server: ServerParts, metadata: dict[str, str], length: int, *, by: str
+) -> tuple[Upload, UploadedFile]:
     name = metadata.get("relativePath") or metadata.get("filename") or metadata.get("name") or ""
     check_name(name, what="the name of a file", most=1000)
     if metadata.get("upload"):
@@ -275,42 +275,44 @@ def _announce(
     return upload, server.uploads.add(upload, name[:1000], length=length)
 
 
-async def _take(server: Parts, upload: Upload, part: UploadPart, *, request: Request) -> None:
+async def _take(
+    server: ServerParts, upload: Upload, file: UploadedFile, *, request: Request
+) -> None:
     """Write the body of a request to its file; one request per file at a time."""
-    if part.turn.locked():
+    if file.turn.locked():
         raise Locked("another request writes to this file; send HEAD and try again")
-    async with part.turn:
+    async with file.turn:
         offset = tus.number(request.headers, "Upload-Offset") if request.method == "PATCH" else 0
-        if upload.finished or offset != part.offset:
-            raise Conflict(f"expected Upload-Offset {part.offset}, got {offset}")
-        path = server.uploads.data(upload, part)
+        if upload.finished or offset != file.offset:
+            raise Conflict(f"expected Upload-Offset {file.offset}, got {offset}")
+        path = server.uploads.data(upload, file)
         try:
-            part.offset = await receive(
+            file.offset = await receive(
                 path,
                 request.stream(),
                 offset=offset,
-                length=part.bytes,
+                length=file.bytes,
                 checksum=tus.checksum(request.headers),
             )
         except (ClientDisconnect, TimeoutError) as error:
             raise BadRequest("the sender disconnected; HEAD returns the offset") from error
         finally:
             if path.exists():  # not if the upload was removed meanwhile
-                part.offset = path.stat().st_size
+                file.offset = path.stat().st_size
 
 
-def _offset_headers(server: Parts, upload: Upload, part: UploadPart) -> dict[str, str]:
-    headers = {"Upload-Offset": str(part.offset)}
+def _offset_headers(server: ServerParts, upload: Upload, file: UploadedFile) -> dict[str, str]:
+    headers = {"Upload-Offset": str(file.offset)}
     if not upload.finished:
         headers["Upload-Expires"] = formatdate(server.uploads.expires(upload), usegmt=True)
     return headers
 
 
-def _url(upload: Upload, part: UploadPart) -> str:
-    return f"{PREFIX}/{upload.id}-{part.number}"
+def _url(upload: Upload, file: UploadedFile) -> str:
+    return f"{PREFIX}/{upload.id}-{file.number}"
 
 
-def _view(server: Parts, upload: Upload) -> UploadView:
+def _view(server: ServerParts, upload: Upload) -> UploadView:
     expires = datetime.fromtimestamp(server.uploads.expires(upload), UTC)
     return UploadView(
         id=upload.id,

@@ -27,7 +27,7 @@ from typing import Any
 
 from app.errors import BadRequest, NoRoom, NotFound, TooLarge, TooMany
 from app.settings import ServerSettings
-from app.uploads.model import Upload, UploadPart
+from app.uploads.model import Upload, UploadedFile
 from app.uploads.names import another, safe_path, slug
 from recon4.errors import StoreError
 from recon4.names import visible
@@ -82,17 +82,17 @@ class UploadStore:
                 )
             return self._uploads[upload_id]
 
-    def part(self, part_id: str) -> tuple[Upload, UploadPart]:
+    def file(self, file_id: str) -> tuple[Upload, UploadedFile]:
         """One file of an upload, by the last part of its URL.
 
         Raises:
             NotFound: If there is none.
         """
-        upload_id, _, number = part_id.partition("-")
+        upload_id, _, number = file_id.partition("-")
         upload = self.get(upload_id)
-        for part in upload.parts.values():
-            if str(part.number) == number:
-                return upload, part
+        for file in upload.announced.values():
+            if str(file.number) == number:
+                return upload, file
         raise NotFound(f"no file {number[:16]!r} in upload {upload_id}")
 
     def begin(self, name: str, *, files: int, total: int, fingerprint: str, by: str) -> Upload:
@@ -124,7 +124,7 @@ class UploadStore:
             self._uploads[upload_id] = upload
             return upload
 
-    def add(self, upload: Upload, name: str, *, length: int) -> UploadPart:
+    def add(self, upload: Upload, name: str, *, length: int) -> UploadedFile:
         """Announce a file of an upload; announced twice, it is the same file.
 
         Raises:
@@ -132,27 +132,27 @@ class UploadStore:
             NoRoom: If the disk is full.
         """
         with self._lock:
-            if name in upload.parts and upload.parts[name].bytes == length:
-                return upload.parts[name]
+            if name in upload.announced and upload.announced[name].bytes == length:
+                return upload.announced[name]
             self._refuse_surplus(upload, name, length)
-            taken = {str(part.path).lower() for part in upload.parts.values()}
+            taken = {str(file.path).lower() for file in upload.announced.values()}
             path = another(safe_path(name), taken)
-            part = UploadPart(number=len(upload.parts), name=name, path=path, bytes=length)
-            data = self._data(upload, part)
+            file = UploadedFile(number=len(upload.announced), name=name, path=path, bytes=length)
+            data = self._data(upload, file)
             try:
                 make_folders(data.parent)
                 os.close(os.open(data, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600))
                 fsync(data.parent)
                 note = {"name": name, "path": str(path), "bytes": length}
-                write_json(self._folder / upload.id / "parts" / f"{part.number}.json", note)
+                write_json(self._folder / upload.id / "parts" / f"{file.number}.json", note)
             except (FileExistsError, NotADirectoryError) as error:
                 raise BadRequest(f"a file and a folder are both called {name[:100]!r}") from error
-            upload.parts[name] = part
-            return part
+            upload.announced[name] = file
+            return file
 
-    def data(self, upload: Upload, part: UploadPart) -> Path:
+    def data(self, upload: Upload, file: UploadedFile) -> Path:
         """The path of a file's bytes."""
-        return self._data(upload, part)
+        return self._data(upload, file)
 
     def finish(self, upload: Upload) -> None:
         """Make a recording of a complete upload; idempotent."""
@@ -231,12 +231,12 @@ class UploadStore:
             )
 
     def _refuse_surplus(self, upload: Upload, name: str, length: int) -> None:
-        announced = sum(part.bytes for part in upload.parts.values())
+        announced_bytes = sum(file.bytes for file in upload.announced.values())
         if (
             upload.finished
-            or name in upload.parts
-            or len(upload.parts) >= upload.files
-            or announced + length > upload.bytes
+            or name in upload.announced
+            or len(upload.announced) >= upload.files
+            or announced_bytes + length > upload.bytes
         ):
             raise BadRequest(
                 f"{name[:100]!r} with {length} bytes was not announced: this upload has "
@@ -245,18 +245,18 @@ class UploadStore:
 
     # -- files
 
-    def _data(self, upload: Upload, part: UploadPart) -> Path:
-        return self._folder / upload.id / "data" / part.path
+    def _data(self, upload: Upload, file: UploadedFile) -> Path:
+        return self._folder / upload.id / "data" / file.path
 
     def _files(self, upload: Upload) -> Iterator[Path]:
         yield self._folder / upload.id / "upload.json"
         if not upload.finished:
             yield from (
-                p for part in upload.parts.values() if (p := self._data(upload, part)).exists()
+                p for file in upload.announced.values() if (p := self._data(upload, file)).exists()
             )
 
     def _note(self, upload: Upload) -> None:
-        facts = {f.name: getattr(upload, f.name) for f in fields(upload) if f.name != "parts"}
+        facts = {f.name: getattr(upload, f.name) for f in fields(upload) if f.name != "announced"}
         write_json(self._folder / upload.id / "upload.json", facts)
 
     def _read(self) -> None:
@@ -280,11 +280,11 @@ class UploadStore:
         moved = upload.finished or not (folder / "data").exists()
         for path in sorted((folder / "parts").glob("*.json"), key=lambda p: int(p.stem)):
             note = read_object(path)
-            part = UploadPart(
+            file = UploadedFile(
                 number=int(path.stem), **{**note, "path": PurePosixPath(note["path"])}
             )
-            part.offset = part.bytes if moved else self._data(upload, part).stat().st_size
-            upload.parts[part.name] = part
+            file.offset = file.bytes if moved else self._data(upload, file).stat().st_size
+            upload.announced[file.name] = file
         return upload
 
 

@@ -30,7 +30,7 @@ _RANKED = 6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Part:
+class _WindowClouds:
     """Some seconds of the walk: a map of the reference, and the points of the other LiDAR."""
 
     tree: cKDTree
@@ -52,9 +52,11 @@ def search_mounts(windows: Sequence[Window], rig: Rig, *, reference: int) -> lis
     ranked: dict[int, list[SE3]] = {}
     for row, sensor in enumerate(rig.sensors):
         if row != reference and sensor.enabled:
-            parts = [part for window in windows if (part := _part(window, reference, row))]
-            if parts:
-                ranked[row] = _ranked(parts, _candidates(rig, row, reference))
+            clouds = [
+                cloud for window in windows if (cloud := _window_clouds(window, reference, row))
+            ]
+            if clouds:
+                ranked[row] = _ranked(clouds, _candidates(rig, row, reference))
     return [_with_mounts(rig, {row: mounts[k] for row, mounts in ranked.items()})
             for k in range(_RANKED if ranked else 0)]  # fmt: skip
 
@@ -101,7 +103,7 @@ def exchanged_mount(rig: Rig, row: int, reference: int) -> SE3:
     return of_reference @ (own.inverse() @ of_reference)
 
 
-def _part(window: Window, reference: int, row: int) -> _Part | None:
+def _window_clouds(window: Window, reference: int, row: int) -> _WindowClouds | None:
     T_body = window.recorded.sensors[reference].T_body_sensor
     of_map, of_other = window.sensor == reference, window.sensor == row
     if of_map.sum() < _SOURCE_POINTS or of_other.sum() < _NEIGHBORS:
@@ -114,7 +116,7 @@ def _part(window: Window, reference: int, row: int) -> _Part | None:
     neighbor_normals(p_map, tree.query(p_map, _NEIGHBORS)[1], normals)
     rows = np.flatnonzero(of_other)
     rows = rows[:: max(1, len(rows) // _SOURCE_POINTS)]
-    return _Part(tree, normals, window.p_sensor[rows], _poses(window, rows))
+    return _WindowClouds(tree, normals, window.p_sensor[rows], _poses(window, rows))
 
 
 def _poses(window: Window, rows: NDArray[Any]) -> SE3:
@@ -122,26 +124,26 @@ def _poses(window: Window, rows: NDArray[Any]) -> SE3:
     return window.trajectory.at(t_ns, slack_ns=10**8)
 
 
-def _ranked(parts: Sequence[_Part], candidates: Sequence[SE3]) -> list[SE3]:
+def _ranked(clouds: Sequence[_WindowClouds], candidates: Sequence[SE3]) -> list[SE3]:
     """The registered candidates with the largest inlier ratios, best first."""
-    found = [_register(parts, candidate) for candidate in candidates]
+    found = [_register(clouds, candidate) for candidate in candidates]
     order = np.argsort([-ratio for _, ratio in found], kind="stable")
     return [found[k][0] for k in order[:_RANKED]]
 
 
-def _register(parts: Sequence[_Part], T_body_sensor: SE3) -> tuple[SE3, float]:
+def _register(clouds: Sequence[_WindowClouds], T_body_sensor: SE3) -> tuple[SE3, float]:
     """Point-to-plane registration of a mount, and the ratio of points on the map afterwards."""
     T, inliers, total = T_body_sensor, 0, 0
     for gate_m in _GATES_M:
         H, g, inliers, total = np.zeros((6, 6)), np.zeros(6), 0, 0
-        for part in parts:
-            arm = part.p_sensor @ T.R.T
-            q = part.T_odom_body @ (arm + T.t)
-            near, row = part.tree.query(q, distance_upper_bound=gate_m)
+        for cloud in clouds:
+            arm = cloud.p_sensor @ T.R.T
+            q = cloud.T_odom_body @ (arm + T.t)
+            near, row = cloud.tree.query(q, distance_upper_bound=gate_m)
             kept = np.isfinite(near)
-            n = part.normals[row[kept]]
-            r = np.sum(n * (q[kept] - part.tree.data[row[kept]]), axis=1)
-            n_body = np.einsum("nij,ni->nj", part.T_odom_body.R[kept], n)
+            n = cloud.normals[row[kept]]
+            r = np.sum(n * (q[kept] - cloud.tree.data[row[kept]]), axis=1)
+            n_body = np.einsum("nij,ni->nj", cloud.T_odom_body.R[kept], n)
             J = np.concatenate([np.cross(arm[kept], n_body), n_body], axis=1)
             w = 1.0 / (1.0 + (r / (0.3 * gate_m)) ** 2)
             H += (J * w[:, None]).T @ J

@@ -21,7 +21,7 @@ from recon4.errors import StoreError
 from recon4.model.usability import MapVerdict, Usability, verdict_in
 from recon4.review.approved import VERSIONS, Approval, approval_of
 from recon4.review.decisions import ApprovalFacts, Decided, Decision, DecisionKind, fold
-from recon4.review.journal import Row, append, broken, head, read_rows
+from recon4.review.journal import JournalRow, append, broken, head, read_rows
 from recon4.review.signature import sign
 from recon4.review.source import graph_key
 from recon4.review.stamp import NO_VERDICT, Stamp, stamp_file
@@ -99,7 +99,7 @@ class _ApprovalRequest:
 
     summary: dict[str, Any]
     decided: Decided
-    rows: Sequence[Row]
+    rows: Sequence[JournalRow]
     signer: Mapping[str, str]
     conflicts: int
     verdict: MapVerdict | None

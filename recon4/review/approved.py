@@ -10,7 +10,7 @@ from typing import Any
 
 from recon4.review.decisions import ApprovalFacts, DecisionKind
 from recon4.review.evidence import Evidence
-from recon4.review.journal import Row, broken, read_rows
+from recon4.review.journal import JournalRow, broken, read_rows
 from recon4.review.signature import fingerprint, is_signed
 from recon4.review.stamp import Stamp
 from recon4.review.state import read_summary
@@ -117,7 +117,7 @@ class LatestApproval:
     """Whether the results in the folder name it."""
 
 
-def latest_approval(root: Path, rows: Sequence[Row]) -> LatestApproval | None:
+def latest_approval(root: Path, rows: Sequence[JournalRow]) -> LatestApproval | None:
     """The newest approval; None if there is none.
 
     Raises:
@@ -139,7 +139,7 @@ def latest_approval(root: Path, rows: Sequence[Row]) -> LatestApproval | None:
     return None
 
 
-def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
+def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
     """The approval named by a row of the journal, and the fingerprint of its key.
 
     Raises:
@@ -170,7 +170,7 @@ def read_approval(folder: Path, row: Row) -> tuple[Approval, str]:
     return approval, key
 
 
-def _counted(root: Path, rows: Sequence[Row], row: Row) -> Approval:
+def _counted(root: Path, rows: Sequence[JournalRow], row: JournalRow) -> Approval:
     version = str(_facts(row).version)
     if wrong := broken(rows):
         raise Altered(f"the journal was altered: {wrong[0]}")
@@ -180,7 +180,7 @@ def _counted(root: Path, rows: Sequence[Row], row: Row) -> Approval:
         raise Altered(f"the approval of version {version} is not valid: {error}") from error
 
 
-def _facts(row: Row) -> ApprovalFacts:
+def _facts(row: JournalRow) -> ApprovalFacts:
     facts = row.decision().facts
     if facts is None:
         raise Altered("the journal has an approval without version and hash")

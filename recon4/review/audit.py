@@ -12,7 +12,7 @@ from recon4.names import visible
 from recon4.progress import Progress, track
 from recon4.review.approved import VERSIONS, read_approval
 from recon4.review.decisions import DecisionKind
-from recon4.review.journal import Row, broken, read_rows
+from recon4.review.journal import JournalRow, broken, read_rows
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
 
@@ -61,7 +61,7 @@ def _in_spite_of(verdict: str, why: str) -> str:
     )
 
 
-def _check(folder: Path, row: Row) -> tuple[list[str], str]:
+def _check(folder: Path, row: JournalRow) -> tuple[list[str], str]:
     """Problems of a version, and the fingerprint of its key."""
     try:
         approval, key = read_approval(folder, row)

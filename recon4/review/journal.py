@@ -56,7 +56,7 @@ class JournalChanged(StoreError):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
+class JournalRow:
     """A row of the journal; the fields are the columns."""
 
     seq: int
@@ -95,7 +95,7 @@ class Row:
         return Decision.of(self.kind, self.who, self.why, pair=pair, body=body)
 
 
-def read_rows(root: Path) -> list[Row]:
+def read_rows(root: Path) -> list[JournalRow]:
     """All rows of a project, oldest first; none if there is no journal.
 
     Raises:
@@ -117,7 +117,7 @@ def read_decided(root: Path) -> Decided:
     return fold(row.decision() for row in read_rows(root))
 
 
-def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> Row:
+def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> JournalRow:
     """Append a row; it is on disk when this returns.
 
     Args:
@@ -144,7 +144,7 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> R
     return row
 
 
-def broken(rows: Sequence[Row]) -> list[str]:
+def broken(rows: Sequence[JournalRow]) -> list[str]:
     """Problems of the hash chain; empty = intact."""
     problems, before = [], START
     for place, row in enumerate(rows, start=1):
@@ -159,12 +159,12 @@ def broken(rows: Sequence[Row]) -> list[str]:
     return problems
 
 
-def head(rows: Sequence[Row]) -> str:
+def head(rows: Sequence[JournalRow]) -> str:
     """Hash of the last row."""
     return rows[-1].hash if rows else START
 
 
-def _check(rows: Sequence[Row], decision: Decision, after_seq: int | None) -> None:
+def _check(rows: Sequence[JournalRow], decision: Decision, after_seq: int | None) -> None:
     if after_seq is not None and after_seq != len(rows):
         raise JournalChanged(
             f"another reviewer made {len(rows) - after_seq} decisions meanwhile; look again"
@@ -176,9 +176,9 @@ def _check(rows: Sequence[Row], decision: Decision, after_seq: int | None) -> No
             raise NothingToUndo(f"there is nothing to {decision.kind}")
 
 
-def _next(rows: Sequence[Row], decision: Decision) -> Row:
+def _next(rows: Sequence[JournalRow], decision: Decision) -> JournalRow:
     frame_i, frame_j = decision.pair or (None, None)
-    row = Row(
+    row = JournalRow(
         seq=len(rows) + 1,
         time=datetime.now(UTC).isoformat(timespec="milliseconds"),
         who=decision.who,
@@ -190,13 +190,15 @@ def _next(rows: Sequence[Row], decision: Decision) -> Row:
         prev_hash=head(rows),
         hash="",
     )
-    return Row(
+    return JournalRow(
         **{name: getattr(row, name) for name in _COLUMNS.split(", ")} | {"hash": row.sealed()}
     )
 
 
-def _rows(db: sqlite3.Connection) -> list[Row]:
-    return [Row(*values) for values in db.execute(f"SELECT {_COLUMNS} FROM journal ORDER BY seq")]
+def _rows(db: sqlite3.Connection) -> list[JournalRow]:
+    return [
+        JournalRow(*values) for values in db.execute(f"SELECT {_COLUMNS} FROM journal ORDER BY seq")
+    ]
 
 
 @contextmanager

@@ -1,4 +1,4 @@
-"""rosbag1 files: the directory at the end of the file, or a scan of all chunks without it."""
+"""rosbag1 files: the index at the end of the file, or a scan of all chunks without it."""
 
 from __future__ import annotations
 
@@ -9,11 +9,11 @@ from typing import NamedTuple
 
 from recon4.errors import CorruptFile
 from recon4.recording.formats.chunks import (
+    BagIndex,
     ChunkMessages,
     ChunkRef,
     ChunkStream,
-    Directory,
-    Row,
+    RawMessage,
     Topic,
     load_chunk,
     require_apart,
@@ -42,34 +42,34 @@ class Bag1:
     ros1 = True
 
     def __init__(self, file: RecordFile, report: ImportReport) -> None:
-        """Read the directory.
+        """Read the index.
 
         Raises:
             CorruptFile: If it is damaged, see `scan`.
         """
         self._file, self.report = file, report
-        self.directory = _indexed(file)
+        self.index = _indexed(file)
 
     @classmethod
     def scan(cls, file: RecordFile, report: ImportReport) -> Bag1:
-        """Read a file whose directory is missing or damaged: chunk by chunk from the front."""
+        """Read a file whose index is missing or damaged: chunk by chunk from the front."""
         bag = cls.__new__(cls)
         bag._file, bag.report = file, report
         topics: dict[int, Topic] = {}
         file.restart_budget()
         chunks = survey(_found_chunks(file), lambda chunk: _load(file, chunk, topics))
         _count(topics, chunks)
-        bag.directory = Directory.of_chunks(topics, chunks)
+        bag.index = BagIndex.of_chunks(topics, chunks)
         return bag
 
-    def messages(self, topics: set[str]) -> Iterator[Row]:
+    def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
 
         def load(chunk: ChunkRef) -> ChunkMessages:
-            return _load(self._file, chunk, self.directory.topics)
+            return _load(self._file, chunk, self.index.topics)
 
         self._file.restart_budget()
-        stream = ChunkStream(self._file.name, self.directory, load, report=self.report)
+        stream = ChunkStream(self._file.name, self.index, load, report=self.report)
         return stream.messages(topics)
 
 
@@ -79,10 +79,10 @@ def is_bag1(path: Path) -> bool:
         return file.read(9) == _MAGIC[:9]
 
 
-# -- directory
+# -- index
 
 
-def _indexed(file: RecordFile) -> Directory:
+def _indexed(file: RecordFile) -> BagIndex:
     file.seek(0)
     magic = file.take(min(len(_MAGIC), file.left), "version")
     if magic != _MAGIC:
@@ -110,7 +110,7 @@ def _indexed(file: RecordFile) -> Directory:
     found = [_chunk_at(file, info, index_at) for info in infos]
     require_apart(found, file.name, index_at)
     _count(topics, found)
-    return Directory.of_chunks(topics, found)
+    return BagIndex.of_chunks(topics, found)
 
 
 def _count(topics: dict[int, Topic], chunks: list[ChunkRef]) -> None:
@@ -136,7 +136,7 @@ def _topic(header: Fields, about: Fields) -> Topic:
 
 
 class _Info(NamedTuple):
-    """Directory entry of a chunk."""
+    """Index entry of a chunk."""
 
     offset: int
     t_first_ns: int
@@ -176,7 +176,7 @@ def _chunk_at(file: RecordFile, info: _Info, index_at: int) -> ChunkRef:
     )
 
 
-# -- without a directory
+# -- without an index
 
 
 def _found_chunks(file: RecordFile) -> list[ChunkRef]:

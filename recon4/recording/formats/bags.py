@@ -19,7 +19,7 @@ from recon4.recording.folders import natural
 from recon4.recording.formats import db3
 from recon4.recording.formats.bag1 import Bag1, is_bag1
 from recon4.recording.formats.bag_folder import BagMetadata, read_metadata
-from recon4.recording.formats.chunks import Directory, Row
+from recon4.recording.formats.chunks import BagIndex, RawMessage
 from recon4.recording.formats.limits import (
     MAX_MESSAGE_BYTES,
     MAX_RATIO,
@@ -71,10 +71,10 @@ class StorageFile(Protocol):
     """One storage file."""
 
     ros1: bool
-    directory: Directory
+    index: BagIndex
     report: ImportReport
 
-    def messages(self, topics: set[str]) -> Iterator[Row]:
+    def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
         ...
 
@@ -193,7 +193,7 @@ class Bag:
         self._compare(path, metadata.messages)
 
     def _compare(self, path: Path, expected: int) -> None:
-        found = sum(source.directory.message_count for source in self._sources)
+        found = sum(source.index.message_count for source in self._sources)
         if found < expected:
             self.report.outcome = "lossy"
             self.report.count("messages_missing", expected - found)
@@ -241,7 +241,7 @@ class Bag:
         return source
 
     def _salvaged(self, source: StorageFile, name: str) -> None:
-        count = source.directory.message_count
+        count = source.index.message_count
         if not count:
             self.report.outcome = "nothing"
             raise CorruptFile(f"{name}: damaged or cut off, not one message is left")
@@ -253,16 +253,16 @@ class Bag:
     def _summarize(self) -> None:
         counts: dict[tuple[str, str], int] = {}
         for source in self._sources:
-            for topic in source.directory.topics.values():
+            for topic in source.index.topics.values():
                 key = (topic.topic, topic.msgtype)
                 counts[key] = counts.get(key, 0) + topic.msgcount
         self.topics = tuple(BagTopic(n, t, c) for (n, t), c in sorted(counts.items()))
-        filled = [s.directory for s in self._sources if s.directory.message_count]
+        filled = [s.index for s in self._sources if s.index.message_count]
         if not filled:
             names = ", ".join(path.name for path in self._paths)
             raise EmptyRecording(f"{names}: a bag without messages")
-        self.t_first_ns = min(directory.start_time for directory in filled)
-        self.t_last_ns = max(directory.end_time for directory in filled) - 1
+        self.t_first_ns = min(index.start_time for index in filled)
+        self.t_last_ns = max(index.end_time for index in filled) - 1
 
     # -- reading
 

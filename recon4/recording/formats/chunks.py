@@ -30,7 +30,7 @@ MAX_OPEN_BYTES = 256 << 20
 MESSAGE_BYTES = 32
 """Memory of a waiting message in addition to its bytes."""
 
-Row = tuple[str, str, int, bytes]
+RawMessage = tuple[str, str, int, bytes]
 """Topic, type, time [ns], bytes."""
 Message = tuple[int, int, bytes]
 """Time [ns], connection, bytes."""
@@ -51,7 +51,7 @@ class Topic:
 
 @dataclass(frozen=True, slots=True)
 class ChunkRef:
-    """Location of a chunk and its directory entry."""
+    """Location of a chunk and its index entry."""
 
     offset: int
     """Offset of its first byte after the header."""
@@ -112,7 +112,7 @@ Load = Callable[[ChunkRef], ChunkMessages]
 
 
 @dataclass(slots=True)
-class Directory:
+class BagIndex:
     """Contents of a bag, from its index or a scan of the file."""
 
     topics: dict[int, Topic]
@@ -125,8 +125,8 @@ class Directory:
     """End of the last message [ns]."""
 
     @classmethod
-    def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> Directory:
-        """A directory whose times are those of its chunks."""
+    def of_chunks(cls, topics: dict[int, Topic], chunks: list[ChunkRef]) -> BagIndex:
+        """An index whose times are those of its chunks."""
         filled = [chunk for chunk in chunks if chunk.t_first_ns <= chunk.t_last_ns]
         first = min((chunk.t_first_ns for chunk in filled), default=2**63 - 1)
         last = max((chunk.t_last_ns + 1 for chunk in filled), default=0)
@@ -171,7 +171,7 @@ def load_chunk(
 
     Args:
         file: The bag.
-        chunk: Of its directory.
+        chunk: Of its index.
         read: Adds the messages, given also the place for reports of damage; returns the end of the
             last complete record.
 
@@ -201,24 +201,22 @@ def load_chunk(
 class ChunkStream:
     """Streams the messages of some topics of a bag."""
 
-    def __init__(
-        self, name: str, directory: Directory, load: Load, *, report: ImportReport
-    ) -> None:
-        self._name, self._directory, self._report = name, directory, report
+    def __init__(self, name: str, index: BagIndex, load: Load, *, report: ImportReport) -> None:
+        self._name, self._index, self._report = name, index, report
         self._load = load
         self._first_damage: CorruptFile | None = None
         self._loaded = 0
         self._found: Counter[int] = Counter()
 
-    def messages(self, topics: set[str]) -> Iterator[Row]:
+    def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages in order of time.
 
         Raises:
             CorruptFile: If not one chunk can be read.
         """
-        names = self._directory.topics
+        names = self._index.topics
         wanted = {number for number, topic in names.items() if topic.topic in topics}
-        chunks = [chunk for chunk in self._directory.chunks if chunk.has(wanted)]
+        chunks = [chunk for chunk in self._index.chunks if chunk.has(wanted)]
         for t_ns, number, data in self._merged(chunks, wanted):
             yield names[number].topic, names[number].msgtype, t_ns, data
         if self._first_damage is not None and not self._loaded:
@@ -229,7 +227,7 @@ class ChunkStream:
             self._report.outcome = "lossy"
             self._report.count("messages_missing", missing)
             self._report.warn(
-                f"{self._name}: {missing} messages fewer than in the directory of the file"
+                f"{self._name}: {missing} messages fewer than in the index of the file"
             )
 
     def _merged(self, chunks: list[ChunkRef], wanted: set[int]) -> Iterator[Message]:
@@ -260,7 +258,7 @@ class ChunkStream:
         self._loaded += 1
         found = Counter(messages.connection)
         self._found += found
-        unknown = sum(n for k, n in found.items() if k not in self._directory.topics)
+        unknown = sum(n for k, n in found.items() if k not in self._index.topics)
         if messages.rejected or unknown:
             self._report.outcome = "lossy"
             self._report.count("messages_corrupt", messages.rejected + unknown)

@@ -19,7 +19,7 @@ import apsw
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording
-from recon4.recording.formats.chunks import Directory, Row, Topic
+from recon4.recording.formats.chunks import BagIndex, RawMessage, Topic
 from recon4.recording.formats.limits import MAX_MESSAGE_BYTES, MAX_TOPICS, clean_name
 from recon4.recording.formats.sqlite_tree import check_table_tree
 from recon4.recording.report import ImportReport
@@ -74,7 +74,7 @@ class Db3:
                 self._rows = self._scan()
             if not whole or self._damage:
                 self._salvaged(whole)
-            self.directory = self._directory(topics)
+            self.index = self._index(topics)
         except BaseException:
             self.close()
             raise
@@ -83,10 +83,10 @@ class Db3:
         """Close the database."""
         self._database.close()
 
-    def messages(self, topics: set[str]) -> Iterator[Row]:
+    def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
         t_ns, row_id, number = self._rows
-        known = self.directory.topics
+        known = self.index.topics
         wanted = [k for k, topic in known.items() if topic.topic in topics]
         kept = np.flatnonzero(np.isin(number, wanted))
         kept = kept[np.argsort(t_ns[kept], kind="stable")]
@@ -156,7 +156,7 @@ class Db3:
             self._corrupt(bad, "a row without a topic or a sensible time")
         return tuple(np.frombuffer(column, np.int64) for column in (t_ns, row_id, number))
 
-    def _directory(self, topics: dict[int, Topic]) -> Directory:
+    def _index(self, topics: dict[int, Topic]) -> BagIndex:
         t_ns, row_id, number = self._rows
         counts = Counter(number.tolist())
         for k, topic in topics.items():
@@ -166,7 +166,7 @@ class Db3:
             kept = np.isin(number, list(topics))
             self._rows = t_ns, row_id, number = t_ns[kept], row_id[kept], number[kept]
         span = (int(t_ns.min()), int(t_ns.max()) + 1) if len(t_ns) else (2**63 - 1, 0)
-        return Directory(topics, [], *span)
+        return BagIndex(topics, [], *span)
 
     def _salvaged(self, whole: bool) -> None:
         count = len(self._rows[0])

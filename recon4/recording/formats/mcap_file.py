@@ -10,11 +10,11 @@ from typing import Any, TypeVar
 
 from recon4.errors import CorruptFile
 from recon4.recording.formats.chunks import (
+    BagIndex,
     ChunkMessages,
     ChunkRef,
     ChunkStream,
-    Directory,
-    Row,
+    RawMessage,
     Topic,
     load_chunk,
     require_apart,
@@ -56,7 +56,7 @@ class Mcap:
             CorruptFile: If it is damaged or not complete, see `scan`.
         """
         self._file, self.report = file, report
-        self.directory = _summary(file)
+        self.index = _summary(file)
 
     @classmethod
     def scan(cls, file: RecordFile, report: ImportReport) -> tuple[Mcap, bool]:
@@ -72,19 +72,19 @@ class Mcap:
             for number, count in chunk.counts.items():
                 if number in topics.channels:
                     topics.channels[number].msgcount += count
-        mcap.directory = Directory.of_chunks(topics.channels, chunks)
+        mcap.index = BagIndex.of_chunks(topics.channels, chunks)
         return mcap, whole
 
-    def messages(self, topics: set[str]) -> Iterator[Row]:
+    def messages(self, topics: set[str]) -> Iterator[RawMessage]:
         """Messages of some topics in order of time."""
         known = _Topics()
-        known.channels = self.directory.topics
+        known.channels = self.index.topics
 
         def load(chunk: ChunkRef) -> ChunkMessages:
             return _load(self._file, chunk, known)
 
         self._file.restart_budget()
-        stream = ChunkStream(self._file.name, self.directory, load, report=self.report)
+        stream = ChunkStream(self._file.name, self.index, load, report=self.report)
         return stream.messages(topics)
 
 
@@ -127,7 +127,7 @@ def _parsed(read: Callable[[], _T], where: str) -> _T:
 # -- summary
 
 
-def _summary(file: RecordFile) -> Directory:
+def _summary(file: RecordFile) -> BagIndex:
     start = _start_of_summary(file)
     file.seek(start)
     body = io.BytesIO(file.take(file.size - _FOOTER_BYTES - start, "summary"))
@@ -149,7 +149,7 @@ def _summary(file: RecordFile) -> Directory:
     found = [_checked(file, chunk, start) for chunk in chunks]
     require_apart(found, file.name, start)
     _require_counts(topics, counts, where)
-    return Directory.of_chunks(topics.channels, found)
+    return BagIndex.of_chunks(topics.channels, found)
 
 
 def _require_counts(topics: _Topics, counts: dict[int, int], where: str) -> None:

@@ -15,7 +15,7 @@ from rosbags.rosbag2 import Reader as Reader2
 from recon4.errors import CorruptFile, NoSpace
 from recon4.recording.formats import scratch
 from recon4.recording.formats.bags import Bag
-from recon4.recording.formats.chunks import ChunkMessages, ChunkRef, ChunkStream, Directory, Topic
+from recon4.recording.formats.chunks import BagIndex, ChunkMessages, ChunkRef, ChunkStream, Topic
 from recon4.recording.formats.limits import decompress
 from recon4.recording.info import describe
 from recon4.recording.report import MAX_TEXTS, ImportReport
@@ -63,9 +63,9 @@ def test_overlapping_chunks_are_merged_by_time():
         for t_ns in range(chunk.offset, 101 + chunk.offset, 5):
             messages.add(t_ns, 1, start=0, stop=1)
         loads[chunk.offset] = messages
-    directory = Directory.of_chunks({1: Topic("/a", "b")}, chunks[::-1])
+    index = BagIndex.of_chunks({1: Topic("/a", "b")}, chunks[::-1])
 
-    stream = ChunkStream("x", directory, lambda chunk: loads[chunk.offset], report=ImportReport())
+    stream = ChunkStream("x", index, lambda chunk: loads[chunk.offset], report=ImportReport())
     times = [row[2] for row in stream.messages({"/a"})]
 
     assert len(times) == 5 * 21
