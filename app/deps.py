@@ -29,7 +29,7 @@ from app.viewer.pool import ViewerPool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Parts:
+class ServerParts:
     """The parts of a server, one of each."""
 
     settings: ServerSettings
@@ -52,10 +52,10 @@ class Parts:
     calibrations: Calibrations
 
 
-def parts(connection: HTTPConnection) -> Parts:
+def parts(connection: HTTPConnection) -> ServerParts:
     """The parts of the server a request or WebSocket came to."""
-    found: Parts = connection.app.state.parts
+    found: ServerParts = connection.app.state.parts
     return found
 
 
-Server = Annotated[Parts, Depends(parts)]
+Server = Annotated[ServerParts, Depends(parts)]

@@ -24,7 +24,7 @@ from app.access.people import Permission, allow_anonymous, needs
 from app.access.routes_check import check_declared
 from app.access.startup_notice import startup_notice
 from app.compute_pool import ComputePool
-from app.deps import Parts, Server
+from app.deps import Server, ServerParts
 from app.description import description
 from app.jobs import choices
 from app.jobs import routes as job_routes
@@ -193,7 +193,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
         seal_state(settings.state)
 
 
-def _open_parts(settings: ServerSettings) -> Parts:
+def _open_parts(settings: ServerSettings) -> ServerParts:
     jobs = JobStore(settings.state / "jobs.sqlite")
     pool = ComputePool(settings.state / "compute", children=child_register(settings))
     checks = ApprovalChecks()
@@ -207,7 +207,7 @@ def _open_parts(settings: ServerSettings) -> Parts:
         sockets=Streams("viewers", _viewer_limits(settings)),
         children=child_register(settings),
     )
-    return Parts(
+    return ServerParts(
         settings=settings,
         access=open_access(settings.state, login=settings.lan),
         projects=projects,
@@ -229,7 +229,7 @@ def _open_parts(settings: ServerSettings) -> Parts:
     )
 
 
-async def _close_parts(parts: Parts) -> None:
+async def _close_parts(parts: ServerParts) -> None:
     await parts.captures.leave()
     await parts.compute_pool.close()
     parts.checks.close()

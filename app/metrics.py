@@ -21,7 +21,7 @@ from prometheus_client.metrics_core import CounterMetricFamily, GaugeMetricFamil
 from prometheus_client.registry import Collector
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from app.deps import Parts
+from app.deps import ServerParts
 from app.jobs.model import JobState
 from app.live.capture import Capture
 from app.logs import Logs
@@ -203,7 +203,7 @@ class ConnectionCollector(Collector):
 class PartsCollector(Collector):
     """Queue, stages, live capture and disk."""
 
-    def __init__(self, parts: Parts) -> None:
+    def __init__(self, parts: ServerParts) -> None:
         self._parts = parts
         self._version = 0
         self._seen: set[tuple[str, int, str]] = set()
@@ -271,7 +271,7 @@ class Metrics:
         )
         version.labels(__version__).set(1)
 
-    def follow(self, parts: Parts) -> None:
+    def follow(self, parts: ServerParts) -> None:
         """Include the parts of a server that has started."""
         self._registry.register(PartsCollector(parts))
 

@@ -92,7 +92,7 @@ def process(server: httpx.Client, recording: str, project: str) -> dict[str, Any
             event = json.loads(line[5:]) if line.startswith("data:") else None
             if event and event["job"]["id"] == started:
                 view = event
-                progress = f"{view['status']['what']} {view['overall']:.0%}"
+                progress = f"{view['status']['what']} {view['run_progress']:.0%}"
                 print(f"\r{progress:40}", end="", file=sys.stderr)
     return dict(view["job"])
 

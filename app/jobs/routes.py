@@ -17,7 +17,7 @@ from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
 from app.access.people import Permission, needs
-from app.deps import Parts, Server
+from app.deps import Server, ServerParts
 from app.errors import NoRoom, NotFound, ProblemDetail, TooMany
 from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
@@ -79,9 +79,9 @@ class JobView:
     status: JobStatus
     fraction: float | None
     """Fraction of the current piece of work, None = not known."""
-    overall: float
+    run_progress: float
     """Fraction of the whole run."""
-    overall_eta_s: float | None
+    run_eta_s: float | None
     """Remaining time of the whole run [s], None = not known yet."""
     resumable: bool
     """Whether it ended early and can be run again."""
@@ -116,7 +116,7 @@ async def start_job(new: NewJob, server: Server, request: Request, *, caller: Ca
     return await run_in_threadpool(add_job, new, server, request)
 
 
-def add_job(new: NewJob, server: Parts, request: Request) -> JobView:
+def add_job(new: NewJob, server: ServerParts, request: Request) -> JobView:
     """Add a job to the queue; a rig file must have been checked."""
     inputs = _checked(new, server)
     _refuse_too_many(server)
@@ -243,7 +243,7 @@ async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
         jobs = [server.jobs.get(job_id) for job_id in touched]
 
 
-def _checked(new: NewJob, server: Parts) -> Inputs:
+def _checked(new: NewJob, server: ServerParts) -> Inputs:
     """The inputs with resolved paths; settings are parsed now, to report mistakes at once."""
     override(preset(new.preset), new.settings)
 
@@ -263,7 +263,7 @@ def _checked(new: NewJob, server: Parts) -> Inputs:
     return inputs
 
 
-def _refuse_hidden(server: Parts, inputs: Inputs) -> None:
+def _refuse_hidden(server: ServerParts, inputs: Inputs) -> None:
     """Check the files of an earlier job again: links may have changed, or the folders."""
     if inputs.remake:
         return
@@ -273,13 +273,13 @@ def _refuse_hidden(server: Parts, inputs: Inputs) -> None:
             server.projects.importable(path)
 
 
-def _refuse_too_many(server: Parts) -> None:
+def _refuse_too_many(server: ServerParts) -> None:
     waiting = len(server.jobs.in_state(JobState.QUEUED))
     if waiting >= server.settings.waiting_jobs:
         raise TooMany(f"{waiting} jobs wait already; try again when some are done, or cancel some")
 
 
-def _refuse_if_full(server: Parts, project: str, inputs: Inputs) -> None:
+def _refuse_if_full(server: ServerParts, project: str, inputs: Inputs) -> None:
     files = () if inputs.remake else (*inputs.recordings, inputs.imu, inputs.gnss)
     given = [Path(path) for path in files if path]
     try:
@@ -290,27 +290,27 @@ def _refuse_if_full(server: Parts, project: str, inputs: Inputs) -> None:
         raise NoRoom(str(error)) from error
 
 
-def _add(server: Parts, project: str, inputs: Inputs) -> JobView:
+def _add(server: ServerParts, project: str, inputs: Inputs) -> JobView:
     job = Job(id=secrets.token_hex(8), project=project, inputs=inputs, created=now())
     server.jobs.add(job)
     server.supervisor.wake(job)
     return _view(server, job)
 
 
-def _is_resumable(server: Parts, job: Job) -> bool:
+def _is_resumable(server: ServerParts, job: Job) -> bool:
     if job.state is not JobState.FAILED:
         return job.state is JobState.CANCELLED
     outcome = server.supervisor.folder(job.id).outcome()
     return outcome is None or outcome.startable
 
 
-def _view(server: Parts, job: Job) -> JobView:
-    status, overall = server.supervisor.status(job), server.supervisor.overall(job)
+def _view(server: ServerParts, job: Job) -> JobView:
+    status, run = server.supervisor.status(job), server.supervisor.run_progress(job)
     return JobView(
         job=job,
         status=status,
         fraction=status.fraction,
-        overall=overall.fraction,
-        overall_eta_s=overall.eta_s,
+        run_progress=run.fraction,
+        run_eta_s=run.eta_s,
         resumable=_is_resumable(server, job),
     )

@@ -40,7 +40,7 @@ class Tail:
 
     def __init__(self, folder: JobFolder) -> None:
         self.status = JobStatus()
-        self.overall = RunProgress()
+        self.run = RunProgress()
         self.unreadable = 0
         """Number of events with numbers out of range."""
         self._path = folder.path / "events.jsonl"
@@ -52,17 +52,17 @@ class Tail:
         events, self._offset = read_events(self._path, self._offset)
         for event in events:
             try:
-                status, overall = after(self.status, event), progress_after(self.overall, event)
+                status, run = after(self.status, event), progress_after(self.run, event)
             except ArithmeticError:
                 self.unreadable += 1  # a worker that a hostile file took over may write anything
             else:
-                self.status, self.overall = status, overall
+                self.status, self.run = status, run
         return self.status != before
 
     def forget(self) -> None:
         """Reset: the events so far are those of another worker."""
         self.read()
-        self.status, self.overall = JobStatus(), RunProgress()
+        self.status, self.run = JobStatus(), RunProgress()
 
 
 class Supervisor:
@@ -97,12 +97,12 @@ class Supervisor:
             return JobStatus()
         return self._tail(job).status
 
-    def overall(self, job: Job) -> RunProgress:
+    def run_progress(self, job: Job) -> RunProgress:
         """The progress of a job's whole run."""
         if job.state is JobState.QUEUED:
             return RunProgress()
-        overall = self._tail(job).overall
-        return replace(overall, over=True) if job.state is JobState.SUCCEEDED else overall
+        run = self._tail(job).run
+        return replace(run, over=True) if job.state is JobState.SUCCEEDED else run
 
     def touched_since(self, version: int) -> list[str]:
         """Jobs that changed after that version."""

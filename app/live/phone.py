@@ -150,7 +150,7 @@ def state_of(captures: Captures, capture: Capture) -> CaptureState:
     return CaptureState(
         project=capture.project,
         state=capture.state,
-        words=found,
+        findings=found,
         rates={} if newest.status is None else rates(captures.rig, newest.status),
         lidars=lidars(captures.rig, newest),
         battery=battery,

@@ -52,7 +52,7 @@ class CaptureState(msgspec.Struct, kw_only=True):
 
     project: str
     state: str
-    words: list[CaptureFinding]
+    findings: list[CaptureFinding]
     """Findings, most urgent first."""
     rates: dict[str, float]
     """Datagrams per second of each sensor."""
@@ -88,7 +88,7 @@ class PhoneMessage(msgspec.Struct, kw_only=True):
     points: PointsPart | UnsetType = UNSET
     project: str | UnsetType = UNSET
     state: str | UnsetType = UNSET
-    words: list[CaptureFinding] | UnsetType = UNSET
+    findings: list[CaptureFinding] | UnsetType = UNSET
     rates: dict[str, float] | UnsetType = UNSET
     lidars: list[LidarHealth] | UnsetType = UNSET
     battery: Battery | UnsetType | None = UNSET

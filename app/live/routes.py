@@ -78,7 +78,7 @@ class CaptureView(BaseModel):
     project: str
     state: str
     """``recording``, ``paused``, ``finishing`` or ``ready`` (to be processed)."""
-    words: list[CaptureFinding]
+    findings: list[CaptureFinding]
     """Warnings, the most urgent first: level (``error``, ``warning``, ``info``) and text."""
     rates: dict[str, float]
     """Datagrams per second of each LiDAR, the IMU and the GNSS receiver."""
@@ -210,7 +210,7 @@ def _view(captures: Captures, may_capture: bool) -> CaptureView:
     return CaptureView(
         project=capture.project,
         state=capture.state,
-        words=state.words,
+        findings=state.findings,
         rates=state.rates,
         phones=captures.streams.open,
         may_capture=may_capture,

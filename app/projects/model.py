@@ -48,7 +48,7 @@ class ResultFile:
     """A finished result."""
 
     name: str
-    words: str
+    label: str
     bytes: int
 
 

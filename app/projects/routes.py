@@ -10,7 +10,7 @@ from starlette.concurrency import run_in_threadpool
 from app.access.audit import audit
 from app.access.people import Permission, needs
 from app.compute_pool import FileAccess, Lane, Terms
-from app.deps import Parts, Server
+from app.deps import Server, ServerParts
 from app.errors import Conflict, ProblemDetail
 from app.jobs.model import JobState
 from app.names import Name
@@ -163,7 +163,7 @@ async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
     )
 
 
-def _refuse_while_busy(server: Parts, project_id: str) -> None:
+def _refuse_while_busy(server: ServerParts, project_id: str) -> None:
     active = (JobState.QUEUED, JobState.RUNNING)
     if any(job.state in active for job in server.jobs.of_project(project_id)):
         raise Conflict(f"a job of {project_id} waits or runs; cancel it first")

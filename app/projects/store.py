@@ -292,8 +292,8 @@ def _is_result(folder: Path, name: str) -> bool:
 
 def _results(folder: Path) -> list[ResultFile]:
     return [
-        ResultFile(name=name, words=words, bytes=(folder / name).stat().st_size)
-        for name, words in RESULTS.items()
+        ResultFile(name=name, label=label, bytes=(folder / name).stat().st_size)
+        for name, label in RESULTS.items()
         if _is_result(folder, name)
     ]
 

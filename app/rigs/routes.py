@@ -13,7 +13,7 @@ from starlette.concurrency import run_in_threadpool
 from app.access.audit import audit
 from app.access.people import Permission, Who, needs
 from app.compute_pool import FileAccess, Lane, Terms
-from app.deps import Parts, Server
+from app.deps import Server, ServerParts
 from app.errors import BadRequest, ProblemDetail
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
@@ -184,13 +184,13 @@ def _text_of(new: NewRig | NewVersion) -> str:
     return new.toml or ""
 
 
-async def _checked_text(text: str, server: Parts, caller: Caller) -> work.CheckedRig:
+async def _checked_text(text: str, server: ServerParts, caller: Caller) -> work.CheckedRig:
     terms = Terms(person=caller.name, limit_s=LIMIT_S)
     pool = server.compute_pool
     return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, work.check_rig, text))
 
 
-async def _checked_file(server: Parts, caller: Caller, path: Path) -> work.CheckedRig:
+async def _checked_file(server: ServerParts, caller: Caller, path: Path) -> work.CheckedRig:
     terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
     pool = server.compute_pool
     return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, work.check_rig_in, path))

@@ -40,9 +40,9 @@ def export(
     """
     path, evidence = Path(out), context.evidence
     tiles, frame = map_of(artifacts, evidence).on(ask.surface), map_frame(artifacts)
-    cuts = ask.cut.cut().repeated(ask.count, spacing_m=ask.spacing_m)
+    planes = ask.plane.slice_plane().repeated(ask.count, spacing_m=ask.spacing_m)
     window = SliceWindow(**ask.window.model_dump()) if ask.window else None
-    chosen = SliceSelection(tiles, cuts, window)
+    chosen = SliceSelection(tiles, planes, window)
     if path.suffix == ".laz":
         write_laz(chosen, path, frame=frame)
     elif path.suffix == ".csv":
@@ -66,12 +66,12 @@ def _export_geotiff(
     reference: str,
     context: ExportContext,
 ) -> None:
-    tiles, cut = map_of(artifacts, context.evidence).on(ask.surface), ask.cut.cut()
-    window = window_of(ask, tiles, cut)
+    tiles, plane = map_of(artifacts, context.evidence).on(ask.surface), ask.plane.slice_plane()
+    window = window_of(ask, tiles, plane)
     side_m = max(window.right - window.left, window.top - window.bottom)
     paper = RasterGrid(window, max(FINEST_M, side_m / MAX_GEOTIFF_PX))
     against = reference_of(reference, ask.method)
-    made = draw(tiles, cut, paper, color=ask.color, reference=against)
+    made = draw(tiles, plane, paper, color=ask.color, reference=against)
     stamp = stamp_text(context.evidence)
     description = f"{context.project}: {surface_text(tiles.surface)}. {stamp}"
     frame = map_frame(artifacts)
@@ -87,10 +87,10 @@ def _export_sheet(
     reference: str,
     context: ExportContext,
 ) -> None:
-    tiles, cut = map_of(artifacts, context.evidence).on(ask.surface), ask.cut.cut()
+    tiles, plane = map_of(artifacts, context.evidence).on(ask.surface), ask.plane.slice_plane()
     against = reference_of(reference, ask.method)
-    layout = lay_out(window_of(ask, tiles, cut), ask.size, ask.scale)
-    made = draw(tiles, cut, layout.paper, color=ask.color, reference=against)
+    layout = lay_out(window_of(ask, tiles, plane), ask.size, ask.scale)
+    made = draw(tiles, plane, layout.paper, color=ask.color, reference=against)
     text = SheetText(
         project=context.project,
         frame=map_frame(artifacts).text,

@@ -26,7 +26,7 @@ KEPT_S = 86_400.0
 MAX_KEPT_BYTES = 20 << 30
 """Limit for all kept exports; the oldest are removed first."""
 LARGE_THICKNESS_M = 0.5
-"""A thicker cut may hold most of the map [m]."""
+"""A thicker slice may hold most of the map [m]."""
 _POINTS = ("laz", "csv", "dxf")
 
 
@@ -60,7 +60,7 @@ class ExportRequest:
         """Whether it may take minutes: many points, written one by one, or many slices."""
         ask = self.ask
         points = self.ending in _POINTS and ask.window is None
-        return ask.count > 1 or points or ask.cut.thickness_m > LARGE_THICKNESS_M
+        return ask.count > 1 or points or ask.plane.thickness_m > LARGE_THICKNESS_M
 
 
 class Exports:

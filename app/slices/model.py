@@ -11,14 +11,21 @@ from app.names import Name
 from recon4.mapping.tiles import Surface
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
-from recon4.slices.cut import MAX_SLICES, MAX_THICKNESS_M, Cut, free, horizontal, vertical
 from recon4.slices.reference import ReferenceFacts
+from recon4.slices.slice_plane import (
+    MAX_SLICES,
+    MAX_THICKNESS_M,
+    SlicePlane,
+    free,
+    horizontal,
+    vertical,
+)
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Xy = tuple[Coordinate, Coordinate]
 Xyz = tuple[Coordinate, Coordinate, Coordinate]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
-"""A coordinate u or v of a cut [m]; its origin is arbitrary."""
+"""A coordinate u or v of a slice [m]; its origin is arbitrary."""
 MAX_SIDE_PX = 4096
 
 
@@ -28,24 +35,24 @@ class Strict(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-class CutSpec(Strict):
-    """Position and thickness of a cut."""
+class SlicePlaneSpec(Strict):
+    """Position and thickness of a slice."""
 
     kind: Literal["horizontal", "vertical", "free"]
     z_m: Coordinate = 0.0
-    """Height of a horizontal cut [m]."""
+    """Height of a horizontal slice [m]."""
     a_m: Xy = (0.0, 0.0)
-    """First point of a vertical cut, seen from above [m]."""
+    """First point of a vertical slice, seen from above [m]."""
     b_m: Xy = (1.0, 0.0)
-    """Second point of a vertical cut [m]."""
+    """Second point of a vertical slice [m]."""
     origin_m: Xyz = (0.0, 0.0, 0.0)
     """A point of a free plane [m]."""
     normal: Xyz = (0.0, 0.0, 1.0)
     """Normal of a free plane."""
     thickness_m: float = Field(default=0.10, gt=0.0, le=MAX_THICKNESS_M)
 
-    def cut(self) -> Cut:
-        """The cut it describes.
+    def slice_plane(self) -> SlicePlane:
+        """The slice it describes.
 
         Raises:
             ConfigError: If it is no plane.
@@ -58,7 +65,7 @@ class CutSpec(Strict):
 
 
 class WindowSpec(Strict):
-    """Part of a cut, in its own coordinates [m]."""
+    """Part of a slice, in its own coordinates [m]."""
 
     left: Reach
     bottom: Reach
@@ -69,7 +76,7 @@ class WindowSpec(Strict):
 class SliceView(Strict):
     """How a slice is shown."""
 
-    cut: CutSpec
+    plane: SlicePlaneSpec
     window: WindowSpec | None = None
     """None = all of it."""
     color: ColorBy = "height"
@@ -110,7 +117,7 @@ class SliceImageView(BaseModel):
     surface: Surface
     """Where they lie: on fitted surfaces, or where they were measured."""
     name: str
-    """Name of the cut."""
+    """Name of the slice."""
     low: float
     high: float
     colors: list[str]
@@ -127,7 +134,7 @@ class SliceImageView(BaseModel):
 class PickRequest(Strict):
     """Request for the map point at a position on a slice."""
 
-    cut: CutSpec
+    plane: SlicePlaneSpec
     uv: Xy
     radius_m: float = Field(default=0.05, gt=0.0, le=5.0)
     source: str = ""
@@ -149,7 +156,7 @@ class CompareRequest(Strict):
 
     reference: str = Field(min_length=1)
     method: Literal["plane", "point"] = "plane"
-    cuts: list[CutSpec] = Field(default=[], max_length=MAX_SLICES)
+    planes: list[SlicePlaneSpec] = Field(default=[], max_length=MAX_SLICES)
     """Empty = eight slices spread over the map, 2 cm thick (V §3.2)."""
     source: str = ""
 
@@ -240,15 +247,15 @@ class ListedReference:
 
 @dataclass(frozen=True, slots=True)
 class OtherMap:
-    """A map that the same cut can show."""
+    """A map that the same slice can show."""
 
     id: str
-    words: str
+    label: str
     """Label of it."""
 
 
 class SliceFacts(BaseModel):
-    """Facts about the map that can be cut."""
+    """Facts about the map that can be sliced."""
 
     points: int
     strays: int

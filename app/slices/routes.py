@@ -95,7 +95,7 @@ async def slice_image(
     evidence = await run_in_threadpool(slices.evidence, project_id, ask.source)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
-    ask.cut.cut()  # an invalid plane is rejected before the request waits
+    ask.plane.slice_plane()  # an invalid plane is rejected before the request waits
     terms = slices.terms(project_id, caller.name, ask.source)
     asking = Asking(ask.page, ask.turn)
     return await caller.wait(
@@ -134,7 +134,7 @@ async def pick(project_id: str, ask: PickRequest, server: Server, *, caller: Cal
     """Coordinates of the nearest full-resolution point, in the map and in its CRS."""
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
-    ask.cut.cut()  # an invalid plane is rejected before the request waits
+    ask.plane.slice_plane()  # an invalid plane is rejected before the request waits
     return await caller.wait(server.slices.run_interactive(terms, work.pick_point, artifacts, ask))
 
 

@@ -33,8 +33,7 @@ from recon4.names import visible
 from recon4.review.evidence import Evidence
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
-from recon4.slices.compare import Comparison, compare, to_csv, usual_cuts
-from recon4.slices.cut import Cut, horizontal
+from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
@@ -52,6 +51,7 @@ from recon4.slices.sheet import (
     axis_labels,
 )
 from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
+from recon4.slices.slice_plane import SlicePlane, horizontal
 from recon4.store.atomic import atomic_file, write_json
 from recon4.store.checked import CheckedArtifact
 
@@ -130,10 +130,10 @@ def slice_image(
 ) -> SliceImageView:
     """Draw an image of a slice; of an approved map only checked tiles are drawn."""
     began = time.perf_counter()
-    tiles, cut = map_of({"map": map_folder}, evidence).on(ask.surface), ask.cut.cut()
-    window = _shaped(window_of(ask, tiles, cut), ask.width / ask.height)
+    tiles, plane = map_of({"map": map_folder}, evidence).on(ask.surface), ask.plane.slice_plane()
+    window = _shaped(window_of(ask, tiles, plane), ask.width / ask.height)
     paper = RasterGrid(window, (window.right - window.left) / ask.width)
-    made = draw(tiles, cut, paper, color=ask.color, reference=reference_of(reference, ask.method))
+    made = draw(tiles, plane, paper, color=ask.color, reference=reference_of(reference, ask.method))
     span = span_of(ask, made)
     image = base64.b64encode(png(made.rgba(span, ask.ground))).decode()
     return SliceImageView(
@@ -142,15 +142,15 @@ def slice_image(
         pixel_m=paper.pixel_m,
         points=made.points,
         surface=tiles.surface,
-        name=cut.name,
+        name=plane.name,
         low=span.low,
         high=span.high,
         colors=_stops(ask.color, ask.ground),
-        axes=axis_labels(cut),
-        origin_m=cut.origin_m,
-        u=cut.u,
-        v=cut.v,
-        offset_m=cut.offset_m,
+        axes=axis_labels(plane),
+        origin_m=plane.origin_m,
+        u=plane.u,
+        v=plane.v,
+        offset_m=plane.offset_m,
         seconds=time.perf_counter() - began,
     )
 
@@ -162,11 +162,11 @@ def overview(map_folder: str, image: str, about: str) -> None:
     if not np.isfinite(low).all():
         raise ConfigError("the map has no points")
     middle, height = float(low[2] + high[2]) / 2.0, float(high[2] - low[2]) + 0.1
-    cut = horizontal(middle, thickness_m=height)
+    plane = horizontal(middle, thickness_m=height)
     margin = 0.02 * float((high - low)[:2].max()) + 0.1
     window = SliceWindow(low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
     pixel_m = max(window.right - window.left, window.top - window.bottom) / 1200.0
-    made = draw(tiles, cut, RasterGrid(window, pixel_m))
+    made = draw(tiles, plane, RasterGrid(window, pixel_m))
     dense = np.log1p(made.count / max(1.0, float(np.percentile(made.count[made.count > 0], 75))))
     rgba = np.zeros((*dense.shape, 4), np.uint8)
     rgba[..., :3] = (100, 116, 130)
@@ -186,7 +186,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
 def pick_point(artifacts: Artifacts, ask: PickRequest) -> PickView:
     """The point of the map nearest to a position on a slice."""
     tiles = tiles_of(artifacts["map"]).on(ask.surface)
-    found = pick(tiles, ask.cut.cut(), ask.uv, radius_m=ask.radius_m)
+    found = pick(tiles, ask.plane.slice_plane(), ask.uv, radius_m=ask.radius_m)
     if found is None:
         return PickView(found=False)
     return PickView(
@@ -209,8 +209,8 @@ def comparison(map_folder: str, reference: str, ask: CompareRequest) -> Comparis
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
-    cuts = [spec.cut() for spec in ask.cuts] or usual_cuts(tiles)
-    return Comparison.of(compare(tiles, cuts, against), against)
+    planes = [spec.slice_plane() for spec in ask.planes] or usual_planes(tiles)
+    return Comparison.of(compare(tiles, planes, against), against)
 
 
 def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
@@ -218,7 +218,9 @@ def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     tiles = tiles_of(map_folder)
     against = reference_of(reference, ask.method)
     assert against is not None
-    return to_csv(compare(tiles, [spec.cut() for spec in ask.cuts] or usual_cuts(tiles), against))
+    return to_csv(
+        compare(tiles, [spec.slice_plane() for spec in ask.planes] or usual_planes(tiles), against)
+    )
 
 
 def add_reference(path: str, out: str, *, name: str, artifacts: Artifacts | None) -> ReferenceFacts:
@@ -290,11 +292,11 @@ def stamp_text(evidence: Evidence | None) -> str:
     return approval_text(evidence.stamp.to_json() if evidence else None)
 
 
-def window_of(ask: SliceView, tiles: TileSet, cut: Cut) -> SliceWindow:
+def window_of(ask: SliceView, tiles: TileSet, plane: SlicePlane) -> SliceWindow:
     """The requested window of a slice, or its whole extent with a margin."""
     if ask.window is not None:
         return SliceWindow(**ask.window.model_dump())
-    all_of_it = extent(tiles, cut)
+    all_of_it = extent(tiles, plane)
     margin = 0.03 * max(all_of_it.right - all_of_it.left, all_of_it.top - all_of_it.bottom) + 0.05
     return SliceWindow(
         all_of_it.left - margin,

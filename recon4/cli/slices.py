@@ -1,4 +1,4 @@
-"""The command ``recon4 slice``: cuts of a finished map as files, and the check for double walls."""
+"""The command ``recon4 slice``: slices of a map as files, and the check for double walls."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from recon4.errors import ConfigError
 if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
     from recon4.review.stamp import Stamp
-    from recon4.slices.cut import Cut
     from recon4.slices.frames import MapFrame
+    from recon4.slices.slice_plane import SlicePlane
 
 slices = typer.Typer()
 
@@ -58,7 +58,7 @@ def cut_map(  # noqa: PLR0913 - options of a command
     from recon4.slices.frames import frame_of
     from recon4.store.project import read_artifacts
 
-    cuts = _cut(z, line, plane, thickness_m=thickness).repeated(count, spacing_m=spacing)
+    planes = _slice_plane(z, line, plane, thickness_m=thickness).repeated(count, spacing_m=spacing)
     artifacts = read_artifacts(project)
     approval = approval_of(project, {stage: folder.name for stage, folder in artifacts.items()})
     if approval:
@@ -68,7 +68,7 @@ def cut_map(  # noqa: PLR0913 - options of a command
         approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
     )
     look = SliceLook(color, project.name, approval.stamp if approval else None)
-    points = _write(tiles, cuts, file, frame=frame, look=look)
+    points = _write(tiles, planes, file, frame=frame, look=look)
     sys.stdout.write(f"{points} points in {file}\n")
 
 
@@ -98,8 +98,8 @@ def double_walls(project: ProjectArgument) -> None:
         raise typer.Exit(1)
 
 
-def _cut(z: float | None, line: str, plane: str, *, thickness_m: float) -> Cut:
-    from recon4.slices.cut import free, horizontal, vertical
+def _slice_plane(z: float | None, line: str, plane: str, *, thickness_m: float) -> SlicePlane:
+    from recon4.slices.slice_plane import free, horizontal, vertical
 
     if (z is not None) + bool(line) + bool(plane) != 1:
         raise ConfigError("say where to cut: one of --z, --line, --plane")
@@ -123,7 +123,7 @@ def _numbers(text: str, count: int) -> list[float]:
 
 
 def _write(
-    tiles: TileSet, cuts: tuple[Cut, ...], file: Path, *, frame: MapFrame, look: SliceLook
+    tiles: TileSet, planes: tuple[SlicePlane, ...], file: Path, *, frame: MapFrame, look: SliceLook
 ) -> int:
     from recon4.review.stamp import stamp_file
     from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
@@ -133,18 +133,20 @@ def _write(
     writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
     if ending in writers:
         with atomic_file(file) as temporary:
-            points = writers[ending](SliceSelection(tiles, cuts), temporary, frame=frame)
+            points = writers[ending](SliceSelection(tiles, planes), temporary, frame=frame)
             if look.stamp:
                 stamp_file(temporary, temporary, look.stamp)
         return points
     if ending not in {".png", ".svg", ".pdf", ".tif"}:
         raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
-    if len(cuts) > 1:
+    if len(planes) > 1:
         raise ConfigError("an image has one slice; use .dxf, .laz or .csv for several")
-    return _write_image(tiles, cuts[0], file, frame=frame, look=look)
+    return _write_image(tiles, planes[0], file, frame=frame, look=look)
 
 
-def _write_image(tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, look: SliceLook) -> int:
+def _write_image(
+    tiles: TileSet, plane: SlicePlane, file: Path, *, frame: MapFrame, look: SliceLook
+) -> int:
     from recon4.slices.colors import LABELS
     from recon4.slices.export import write_geotiff
     from recon4.slices.points import extent
@@ -162,17 +164,17 @@ def _write_image(tiles: TileSet, cut: Cut, file: Path, *, frame: MapFrame, look:
         raise ConfigError(f"colors are {', '.join(LABELS)}; got {look.color!r}")
     color = look.color
     approval = approval_text(look.stamp.to_json() if look.stamp else None)
-    window = extent(tiles, cut)
+    window = extent(tiles, plane)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
-        made = draw(tiles, cut, RasterGrid(window, max(0.005, side_m / 6000)), color=color)
+        made = draw(tiles, plane, RasterGrid(window, max(0.005, side_m / 6000)), color=color)
         title = f"{look.name}: {surface_text(tiles.surface)}. {approval}"
         write_geotiff(
             made, file, frame=frame, rgba=made.rgba(made.span, "light"), description=title
         )
         return made.points
     layout = lay_out(window)
-    made = draw(tiles, cut, layout.paper, color=color)
+    made = draw(tiles, plane, layout.paper, color=color)
     key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
     lie = surface_text(tiles.surface)
     text = SheetText(look.name, frame.text, source_text(key), approval, lie)

@@ -21,9 +21,9 @@ from recon4.evaluation.slices import (
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
-from recon4.slices.cut import ERROR_THICKNESS_M, Cut, horizontal, vertical
 from recon4.slices.points import points_in
 from recon4.slices.reference import Method, Reference
+from recon4.slices.slice_plane import ERROR_THICKNESS_M, SlicePlane, horizontal, vertical
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class Comparison:
         )
 
 
-def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> RelativeError:
+def compare(tiles: TileSet, planes: Sequence[SlicePlane], reference: Reference) -> RelativeError:
     """Mean distance and ratios within 2 and 5 cm of every slice, from all its points.
 
     Points farther than 0.5 m from the reference (people, changed objects) are outliers and counted
@@ -90,9 +90,9 @@ def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> Relati
     Raises:
         ConfigError: Without slices.
     """
-    if not cuts:
+    if not planes:
         raise ConfigError("comparison: expected one slice or more, got none")
-    found = [_one(tiles, cut, reference) for cut in cuts]
+    found = [_one(tiles, plane, reference) for plane in planes]
     rows = tuple(one.slices[0] for one in found)
     measured = [row.mean_m for row in rows if row.points]
     return RelativeError(
@@ -105,33 +105,35 @@ def compare(tiles: TileSet, cuts: Sequence[Cut], reference: Reference) -> Relati
     )
 
 
-def _one(tiles: TileSet, cut: Cut, reference: Reference) -> RelativeError:
+def _one(tiles: TileSet, plane: SlicePlane, reference: Reference) -> RelativeError:
     return relative_error(
-        (cut.to_map(part.uvd) for part in points_in(tiles, cut)),
-        [Slice(cut.name, cut.normal, cut.offset_m, cut.thickness_m)],
+        (plane.to_map(part.uvd) for part in points_in(tiles, plane)),
+        [Slice(plane.name, plane.normal, plane.offset_m, plane.thickness_m)],
         T_model_map=SE3.identity(),
         distance=reference.distance,
     )
 
 
-def usual_cuts(tiles: TileSet, *, thickness_m: float = ERROR_THICKNESS_M) -> tuple[Cut, ...]:
+def usual_planes(
+    tiles: TileSet, *, thickness_m: float = ERROR_THICKNESS_M
+) -> tuple[SlicePlane, ...]:
     """Eight slices spread evenly: four horizontal, two across x, two across y (V §3.2)."""
     low, high = tiles.bounds_m
     if not np.isfinite(low).all():
         raise ConfigError("the map has no points")
     x, y, z = ((low[a] + (np.arange(4) + 0.5) / 4.0 * (high - low)[a]) for a in range(3))
-    cuts = [horizontal(float(h), thickness_m=thickness_m) for h in z]
+    planes = [horizontal(float(h), thickness_m=thickness_m) for h in z]
     for k in (0, 2):
         middle = (x[k] + x[k + 1]) / 2.0
-        cuts.append(
+        planes.append(
             vertical((middle, float(low[1])), (middle, float(high[1])), thickness_m=thickness_m)
         )
     for k in (0, 2):
         middle = (y[k] + y[k + 1]) / 2.0
-        cuts.append(
+        planes.append(
             vertical((float(low[0]), middle), (float(high[0]), middle), thickness_m=thickness_m)
         )
-    return tuple(cuts)
+    return tuple(planes)
 
 
 def to_csv(found: RelativeError) -> str:

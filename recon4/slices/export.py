@@ -20,10 +20,10 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION, progressive
 from recon4.mapping.tiles import TileSet, TileWriter
 from recon4.recording.formats.scratch import scratch_folder
-from recon4.slices.cut import Cut
 from recon4.slices.frames import MapFrame, jacobian
 from recon4.slices.points import SliceWindow, TilePart, points_in
 from recon4.slices.slice_image import SliceImage
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import atomic_file
 
 MAX_DXF_POINTS = 2_000_000
@@ -35,7 +35,7 @@ class SliceSelection:
     """The points of a map that lie in slices."""
 
     tiles: TileSet
-    cuts: Sequence[Cut]
+    planes: Sequence[SlicePlane]
     window: SliceWindow | None = None
     """Only this part of each slice."""
 
@@ -48,10 +48,10 @@ class SliceSelection:
             fields: Columns to read.
             cell_m: Thinned to one point in a cell of this size; 0 = all.
         """
-        for number, cut in enumerate(self.cuts, start=1):
-            for part in points_in(self.tiles, cut, fields, window=self.window):
+        for number, plane in enumerate(self.planes, start=1):
+            for part in points_in(self.tiles, plane, fields, window=self.window):
                 kept = _thinned(part, cell_m) if cell_m else part
-                yield number, kept, cut.to_map(kept.uvd)
+                yield number, kept, plane.to_map(kept.uvd)
 
 
 def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
@@ -105,7 +105,7 @@ def write_csv(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
 
 
 def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool = False) -> int:
-    """Write points as DXF R2010 in meters: one layer per slice, one point per cm² of the cut.
+    """Write points as DXF R2010 in meters: one layer per slice, one point per cm² of the slice.
 
     ezdxf writes the skeleton of the file; the points are streamed into it, so memory does not
     depend on their number.
@@ -123,7 +123,7 @@ def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool
         ConfigError: If there are too many.
         StoreError: If the file cannot be written.
     """
-    layers = [layer_name(k, cut) for k, cut in enumerate(chosen.cuts, start=1)]
+    layers = [layer_name(k, plane) for k, plane in enumerate(chosen.planes, start=1)]
     before, after, owner = _dxf_frame(layers)
     count = 0
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
@@ -145,13 +145,13 @@ def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool
     return count
 
 
-def layer_name(number: int, cut: Cut) -> str:
+def layer_name(number: int, plane: SlicePlane) -> str:
     """Layer name of a slice, in characters every CAD program accepts."""
     place = {
-        "horizontal": f"Z_{cut.origin_m[2]:.3f}",
-        "vertical": f"V_{cut.offset_m:.3f}",
-        "free": f"F_{cut.offset_m:.3f}",
-    }[cut.kind]
+        "horizontal": f"Z_{plane.origin_m[2]:.3f}",
+        "vertical": f"V_{plane.offset_m:.3f}",
+        "free": f"F_{plane.offset_m:.3f}",
+    }[plane.kind]
     return f"SLICE_{number:03d}_{place}".replace(".", "_")
 
 
@@ -166,7 +166,7 @@ def write_geotiff(
     """Write the image as GeoTIFF, colored, transparent where there are no points.
 
     A horizontal slice of a georeferenced map has its CRS, and a transformation that is exact at
-    its center. All other slices have the coordinates of the cut (u, v in meters) and no CRS.
+    its center. All other slices have the coordinates of the slice (u, v in meters) and no CRS.
 
     Args:
         drawn: The slice.
@@ -202,11 +202,11 @@ _NEXT_HANDLE = 0x1000_0000
 
 def _georeference(drawn: SliceImage, frame: MapFrame) -> dict[int, Any]:
     """Tags of GeoTIFF 1.1: the transformation from pixels, and keys that name the CRS."""
-    cut, paper = drawn.cut, drawn.paper
+    plane, paper = drawn.plane, drawn.paper
     u0, v0 = paper.corner
-    if cut.kind == "horizontal" and frame.to_crs is not None:
+    if plane.kind == "horizontal" and frame.to_crs is not None:
         middle = np.array([u0 + paper.width * paper.pixel_m / 2.0,
-                           v0 - paper.height * paper.pixel_m / 2.0, cut.origin_m[2]])  # fmt: skip
+                           v0 - paper.height * paper.pixel_m / 2.0, plane.origin_m[2]])  # fmt: skip
         J, place = jacobian(frame.to_crs, middle)
         _refuse_bent(drawn, frame, middle)
         A = J[:2, :2] * [paper.pixel_m, -paper.pixel_m]
@@ -216,7 +216,7 @@ def _georeference(drawn: SliceImage, frame: MapFrame) -> dict[int, Any]:
         citation = ""
     else:
         A, corner = np.diag([paper.pixel_m, -paper.pixel_m]), np.array([u0, v0])
-        citation = f"recon4 slice {cut.name}, {frame.text}|"
+        citation = f"recon4 slice {plane.name}, {frame.text}|"
         keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, _GEO_ASCII, len(citation), 0)]
         keys.append((3076, 0, 1, 9001))
     matrix = [A[0, 0], A[0, 1], 0, corner[0], A[1, 0], A[1, 1], 0, corner[1],

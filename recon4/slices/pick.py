@@ -8,8 +8,8 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
-from recon4.slices.cut import Cut, Vector
 from recon4.slices.points import SliceWindow, points_in
+from recon4.slices.slice_plane import SlicePlane, Vector
 
 _DESCRIBED = ("intensity", "sensor", "ring", "frame_id", "t_ns")
 _PLANE_M = 0.10
@@ -23,20 +23,22 @@ class Picked:
     p_map: Vector
     """[m]"""
     uv: tuple[float, float]
-    """Position on the cut [m]."""
+    """Position on the slice [m]."""
     off_m: float
     """Distance from the requested position [m]."""
     about: dict[str, float]
     """Intensity, sensor, ring, multiframe, seconds since the start."""
 
 
-def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) -> Picked | None:
+def pick(
+    tiles: TileSet, plane: SlicePlane, uv: tuple[float, float], *, radius_m: float
+) -> Picked | None:
     """The point of a slice nearest to a position on it; None if there is none within the radius."""
     u, v = uv
     window = SliceWindow(u - radius_m, v - radius_m, u + radius_m, v + radius_m)
     fields = [name for name in _DESCRIBED if name in tiles.fields]
     best: tuple[float, Array, dict[str, float]] | None = None
-    for part in points_in(tiles, cut, fields, window=window):
+    for part in points_in(tiles, plane, fields, window=window):
         off = np.hypot(part.uvd[:, 0] - u, part.uvd[:, 1] - v)
         row = int(np.argmin(off))
         if off[row] <= radius_m and (best is None or off[row] < best[0]):
@@ -47,7 +49,7 @@ def pick(tiles: TileSet, cut: Cut, uv: tuple[float, float], *, radius_m: float) 
     off_m, uvd, about = best
     if "t_ns" in about:
         about["time_s"] = (about.pop("t_ns") - tiles.first_ns) / 1e9
-    x, y, z = (float(value) for value in cut.to_map(uvd[None])[0])
+    x, y, z = (float(value) for value in plane.to_map(uvd[None])[0])
     return Picked((x, y, z), (float(uvd[0]), float(uvd[1])), off_m, about)
 
 

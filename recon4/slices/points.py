@@ -1,4 +1,4 @@
-"""The points of a map inside a cut, tile by tile, at full resolution."""
+"""The points of a map inside a slice, tile by tile, at full resolution."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.slices import project, select
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import Tile, TileSet
-from recon4.slices.cut import Cut
+from recon4.slices.slice_plane import SlicePlane
 
 BLOCK = 2_000_000
 """Points processed at once: memory does not depend on the size of a tile."""
@@ -20,7 +20,7 @@ BLOCK = 2_000_000
 
 @dataclass(frozen=True, slots=True)
 class SliceWindow:
-    """Part of a cut, in its own coordinates u, v [m]."""
+    """Part of a slice, in its own coordinates u, v [m]."""
 
     left: float
     bottom: float
@@ -30,7 +30,7 @@ class SliceWindow:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class TilePart:
-    """Points of one tile inside a cut."""
+    """Points of one tile inside a slice."""
 
     tile: Tile
     rows: NDArray[np.int32]
@@ -45,38 +45,42 @@ class TilePart:
 
 
 def points_in(
-    tiles: TileSet, cut: Cut, fields: Sequence[str] = (), *, window: SliceWindow | None = None
+    tiles: TileSet,
+    plane: SlicePlane,
+    fields: Sequence[str] = (),
+    *,
+    window: SliceWindow | None = None,
 ) -> Iterator[TilePart]:
-    """Points of the map in a cut. Tiles that it misses are not read.
+    """Points of the map in a slice. Tiles that it misses are not read.
 
     Args:
         tiles: The map.
-        cut: The slab.
+        plane: The slab.
         fields: Names of fields besides the coordinates.
         window: Only what lies in this part of it.
     """
-    low, high = box_of(cut, window)
+    low, high = box_of(plane, window)
     for tile in tiles:
-        if not may_meet(tile, cut, low, high=high):
+        if not may_meet(tile, plane, low, high=high):
             continue
         columns = tile.read(["xyz", *fields])
-        shift = cut.to_plane(np.array([tile.origin_m]))[0]
+        shift = plane.to_plane(np.array([tile.origin_m]))[0]
         for first in range(0, len(tile), BLOCK):
             xyz = columns["xyz"][first : first + BLOCK]
             rows = np.empty(len(xyz), np.int32)
-            rows = rows[: select(xyz, cut.axes, shift, low, high, rows)].copy()
+            rows = rows[: select(xyz, plane.axes, shift, low, high, rows)].copy()
             if not len(rows):
                 continue
             uvd = np.empty((len(rows), 3))
-            project(xyz, rows, cut.axes, shift, uvd)
+            project(xyz, rows, plane.axes, shift, uvd)
             rows += first
             taken = {name: np.take(columns[name], rows, axis=0) for name in fields}
             yield TilePart(tile, rows, uvd, taken)
 
 
-def box_of(cut: Cut, window: SliceWindow | None) -> tuple[Array, Array]:
-    """Smallest and largest coordinates of a cut on its own axes [m], (3,) each."""
-    half = cut.thickness_m / 2.0
+def box_of(plane: SlicePlane, window: SliceWindow | None) -> tuple[Array, Array]:
+    """Smallest and largest coordinates of a slice on its own axes [m], (3,) each."""
+    half = plane.thickness_m / 2.0
     if window is None:
         return np.array([-np.inf, -np.inf, -half]), np.array([np.inf, np.inf, half])
     return (
@@ -85,19 +89,19 @@ def box_of(cut: Cut, window: SliceWindow | None) -> tuple[Array, Array]:
     )
 
 
-def may_meet(tile: Tile, cut: Cut, low: Array, *, high: Array) -> bool:
-    """Whether a tile's bounding box can reach into the cut's box (a few more may seem to)."""
+def may_meet(tile: Tile, plane: SlicePlane, low: Array, *, high: Array) -> bool:
+    """Whether a tile's bounding box can reach into the slice's box (a few more may seem to)."""
     center = (np.array(tile.low_m) + tile.high_m) / 2.0
     half = (np.array(tile.high_m) - tile.low_m) / 2.0 + 1e-5  # float32 rounding of the points
-    middle = cut.to_plane(center[None])[0]
-    reach = np.abs(cut.axes) @ half
+    middle = plane.to_plane(center[None])[0]
+    reach = np.abs(plane.axes) @ half
     return bool(np.all(middle + reach >= low) and np.all(middle - reach <= high))
 
 
-def extent(tiles: TileSet, cut: Cut) -> SliceWindow:
-    """Window that contains all of a cut: bounds of the tiles it meets [m]."""
-    low, high = box_of(cut, None)
-    met = [tile for tile in tiles if may_meet(tile, cut, low, high=high)]
+def extent(tiles: TileSet, plane: SlicePlane) -> SliceWindow:
+    """Window that contains all of a slice: bounds of the tiles it meets [m]."""
+    low, high = box_of(plane, None)
+    met = [tile for tile in tiles if may_meet(tile, plane, low, high=high)]
     if not met:
         return SliceWindow(-1.0, -1.0, 1.0, 1.0)
     corners = np.array(
@@ -109,6 +113,6 @@ def extent(tiles: TileSet, cut: Cut) -> SliceWindow:
             for k in (0, 1)
         ]
     )
-    uv = cut.to_plane(corners)[:, :2]
+    uv = plane.to_plane(corners)[:, :2]
     (left, bottom), (right, top) = uv.min(axis=0).tolist(), uv.max(axis=0).tolist()
     return SliceWindow(left, bottom, right, top)

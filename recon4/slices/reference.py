@@ -17,8 +17,8 @@ from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.names import visible
-from recon4.slices.cut import Cut
 from recon4.slices.points import SliceWindow, points_in
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.arrays import load_arrays
 from recon4.store.json_files import read_object
 
@@ -75,15 +75,15 @@ class Reference:
             return np.where(found <= FAR_M, found, np.inf)
         return self._to_cloud(p)
 
-    def outline(self, cut: Cut, window: SliceWindow, *, step_m: float) -> Iterator[Array]:
-        """The reference inside a cut, as points u, v, distance from the plane [m], (M, 3) each.
+    def outline(self, plane: SlicePlane, window: SliceWindow, *, step_m: float) -> Iterator[Array]:
+        """The reference inside a slice, as points u, v, distance from the plane [m], (M, 3) each.
 
         Args:
-            cut: In the map.
+            plane: In the map.
             window: Only this part.
             step_m: Lines of a mesh become points this far apart [m].
         """
-        own = moved_cut(cut, self.T_map_reference.inverse())
+        own = moved_plane(plane, self.T_map_reference.inverse())
         if self.mesh is not None:
             yield _along(mesh_lines(self.mesh, own), window, step_m)
         elif self.tiles is not None:
@@ -193,18 +193,18 @@ def _matrix(value: list[list[float]], name: str) -> Array:
     return matrix
 
 
-def moved_cut(cut: Cut, T_b_a: SE3) -> Cut:
-    """The same cut in another frame: points keep their u, v and distance from the plane."""
-    origin = (T_b_a @ np.array([cut.origin_m]))[0]
-    u, v = T_b_a.R @ np.array(cut.u), T_b_a.R @ np.array(cut.v)
-    return Cut("free", _triple(origin), _triple(u), _triple(v), cut.thickness_m)
+def moved_plane(plane: SlicePlane, T_b_a: SE3) -> SlicePlane:
+    """The same slice in another frame: points keep their u, v and distance from the plane."""
+    origin = (T_b_a @ np.array([plane.origin_m]))[0]
+    u, v = T_b_a.R @ np.array(plane.u), T_b_a.R @ np.array(plane.v)
+    return SlicePlane("free", _triple(origin), _triple(u), _triple(v), plane.thickness_m)
 
 
-def mesh_lines(mesh: TriangleMesh, cut: Cut) -> Array:
-    """Where the middle plane of a cut meets the triangles: segments in u, v [m], (S, 2, 2)."""
+def mesh_lines(mesh: TriangleMesh, plane: SlicePlane) -> Array:
+    """Where the middle plane of a slice meets the triangles: segments in u, v [m], (S, 2, 2)."""
     if not len(mesh.triangles):
         raise ConfigError("the mesh has no triangles")
-    uvd = cut.to_plane(mesh.vertices_m)
+    uvd = plane.to_plane(mesh.vertices_m)
     corner = uvd[mesh.triangles]
     d = corner[:, :, 2]
     crossed = (d.min(axis=1) <= 0.0) & (d.max(axis=1) > 0.0)

@@ -45,7 +45,7 @@ class Residual:
 class Requirement:
     """One line of the acceptance table."""
 
-    words: str
+    label: str
     value_m: float
     limit_m: float
     holds: bool
@@ -149,7 +149,7 @@ def residual_csv(report: ControlReport, *, comment: str = "") -> str:
     for f in report.figures:
         for one in f.requirements:
             holds = "yes" if one.holds else "NO"
-            rows.writerow([one.words, f.role, f"{one.value_m:.4f}", f"{one.limit_m:.2f}", holds])
+            rows.writerow([one.label, f.role, f"{one.value_m:.4f}", f"{one.limit_m:.2f}", holds])
     return out.getvalue()
 
 

@@ -23,9 +23,9 @@ from recon4.slices.colors import (
     Span,
     table,
 )
-from recon4.slices.cut import Cut
 from recon4.slices.points import SliceWindow
 from recon4.slices.slice_image import RasterGrid, SliceImage
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import atomic_file
 
 Size = Literal["a4", "a3", "a2", "a1"]
@@ -137,11 +137,11 @@ def grid_step_m(across_m: float) -> float:
     return float(power * next(s for s in (1.0, 2.0, 5.0, 10.0) if s * power >= rough * 0.999))
 
 
-def axis_labels(cut: Cut) -> tuple[str, str]:
+def axis_labels(plane: SlicePlane) -> tuple[str, str]:
     """Labels of the axes u and v."""
-    if cut.kind == "horizontal":
+    if plane.kind == "horizontal":
         return "x [m]", "y [m]"
-    if cut.kind == "vertical":
+    if plane.kind == "vertical":
         return "along the section [m]", "height z [m]"
     return "u [m]", "v [m]"
 
@@ -173,7 +173,7 @@ def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, *, span: Span) -
     axes.tick_params(colors=_QUIET, width=0.4, length=2.5)
     axes.grid(color=_GRID, linewidth=0.35, zorder=0)
     axes.set_axisbelow(True)
-    u_label, v_label = axis_labels(drawn.cut)
+    u_label, v_label = axis_labels(drawn.plane)
     axes.set_xlabel(u_label, color=_QUIET, labelpad=2)
     axes.set_ylabel(v_label, color=_QUIET, labelpad=2)
     for spine in axes.spines.values():
@@ -185,10 +185,10 @@ def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, *, text: SheetTex
     across_mm, up_mm = SIZES_MM[layout.size]
     x = _LEFT_MM / across_mm
     kind = {"horizontal": "Horizontal slice", "vertical": "Vertical slice", "free": "Slice"}
-    title = f"{text.project}   {kind[drawn.cut.kind]}  {drawn.cut.name}"
+    title = f"{text.project}   {kind[drawn.plane.kind]}  {drawn.plane.name}"
     facts = (
         f"1 : {layout.scale} on {layout.size.upper()}     "
-        f"thickness {_length(drawn.cut.thickness_m)}"
+        f"thickness {_length(drawn.plane.thickness_m)}"
         f"     {drawn.points:,} points".replace(",", "\u2009")
         + f" {text.surface}"
         + f"     {text.frame}"

@@ -14,8 +14,8 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.slices import first_of_pixels, splat
 from recon4.mapping.tiles import TileSet
 from recon4.slices.colors import REFERENCE_COLOR, ColorBy, Ground, Span, paint, usual_span
-from recon4.slices.cut import Cut
 from recon4.slices.points import SliceWindow, TilePart, points_in
+from recon4.slices.slice_plane import SlicePlane
 
 if TYPE_CHECKING:
     from recon4.slices.reference import Reference
@@ -36,7 +36,7 @@ _FIRST_OF_PIXEL = {"sensor", "distance"}
 
 @dataclass(frozen=True, slots=True)
 class RasterGrid:
-    """Drawn part of a cut and its pixel size."""
+    """Drawn part of a slice and its pixel size."""
 
     window: SliceWindow
     pixel_m: float
@@ -81,7 +81,7 @@ class RasterGrid:
 class SliceImage:
     """A drawn slice; colors come later (`rgba`)."""
 
-    cut: Cut
+    plane: SlicePlane
     paper: RasterGrid
     color: ColorBy
     points: int
@@ -109,7 +109,7 @@ class SliceImage:
 
 def draw(
     tiles: TileSet,
-    cut: Cut,
+    plane: SlicePlane,
     paper: RasterGrid,
     *,
     color: ColorBy = "height",
@@ -119,7 +119,7 @@ def draw(
 
     Args:
         tiles: The map.
-        cut: The slice.
+        plane: The slice.
         paper: Window and pixel size.
         color: Value to show; the mean of the points of a pixel.
         reference: Drawn beneath; needed for ``distance``.
@@ -133,27 +133,28 @@ def draw(
     taken = np.zeros(shape, np.bool_) if color in _FIRST_OF_PIXEL else None
     far: list[Array] = []
     points = 0
-    for part in points_in(tiles, cut, fields, window=paper.window):
+    for part in points_in(tiles, plane, fields, window=paper.window):
         points += len(part)
         if taken is not None:
             part = _firsts(part, paper, taken)
         if color == "distance":
             far.append(part.uvd)  # measured all at once below: at most one a pixel
         else:
-            _add(part.uvd, _values(part, cut, color, tiles=tiles), paper, count=count, total=total)
+            values = _values(part, plane, color, tiles=tiles)
+            _add(part.uvd, values, paper, count=count, total=total)
     if far and reference is not None:
         uvd = np.concatenate(far)
-        _add(uvd, reference.distance(cut.to_map(uvd)), paper, count=count, total=total)
+        _add(uvd, reference.distance(plane.to_map(uvd)), paper, count=count, total=total)
     with np.errstate(invalid="ignore"):
         value = np.where(count > 0, total / count, np.nan)
     return SliceImage(
-        cut=cut,
+        plane=plane,
         paper=paper,
         color=color,
         points=points,
         count=count,
         value=value,
-        reference=_reference_mask(reference, cut, paper),
+        reference=_reference_mask(reference, plane, paper),
         span=usual_span(value, color=color),
     )
 
@@ -176,9 +177,11 @@ def _fields(tiles: TileSet, color: ColorBy, reference: Reference | None) -> list
     return [field] if field else []
 
 
-def _values(part: TilePart, cut: Cut, color: ColorBy, *, tiles: TileSet) -> NDArray[np.float32]:
+def _values(
+    part: TilePart, plane: SlicePlane, color: ColorBy, *, tiles: TileSet
+) -> NDArray[np.float32]:
     if color == "height":
-        z: Array = part.uvd @ cut.axes[:, 2] + cut.origin_m[2]
+        z: Array = part.uvd @ plane.axes[:, 2] + plane.origin_m[2]
         return z.astype(np.float32)
     column = part.columns[_FIELD[color]]
     if color == "time":
@@ -209,12 +212,14 @@ def _add(
     )
 
 
-def _reference_mask(reference: Reference | None, cut: Cut, paper: RasterGrid) -> NDArray[np.bool_]:
+def _reference_mask(
+    reference: Reference | None, plane: SlicePlane, paper: RasterGrid
+) -> NDArray[np.bool_]:
     shape = (paper.height, paper.width)
     if reference is None:
         return np.zeros(shape, np.bool_)
     count, total = np.zeros(shape, np.int32), np.zeros(shape)
-    for uvd in reference.outline(cut, paper.window, step_m=paper.pixel_m):
+    for uvd in reference.outline(plane, paper.window, step_m=paper.pixel_m):
         ones = np.ones(len(uvd), np.float32)
         splat(uvd, ones, paper.corner, paper.pixel_m, paper.radius_px + 1, count, total)
     return count > 0

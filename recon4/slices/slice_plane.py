@@ -23,10 +23,10 @@ MAX_SLICES = 200
 
 
 @dataclass(frozen=True, slots=True)
-class Cut:
+class SlicePlane:
     """A slab of the map and the axes of its image.
 
-    ``u`` points to the right, ``v`` up, and the viewer looks against ``u × v``. A horizontal cut
+    ``u`` points to the right, ``v`` up, and the viewer looks against ``u × v``. A horizontal slice
     has the map's own x and y; a vertical one the distance along its line, and the map's z.
     """
 
@@ -40,7 +40,7 @@ class Cut:
     def __post_init__(self) -> None:
         numbers = np.array([*self.origin_m, *self.u, *self.v, self.thickness_m])
         if not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e8:
-            raise ConfigError(f"a cut needs finite coordinates, got {numbers.tolist()}")
+            raise ConfigError(f"a slice needs finite coordinates, got {numbers.tolist()}")
         if not 0.0 < self.thickness_m <= MAX_THICKNESS_M:
             raise ConfigError(
                 f"the thickness must be 0 to {MAX_THICKNESS_M:.0f} m, got {self.thickness_m}"
@@ -71,13 +71,13 @@ class Cut:
         out: Array = np.asarray(uvd, dtype=np.float64) @ self.axes + self.origin_m
         return out
 
-    def moved(self, distance_m: float) -> Cut:
-        """The same cut farther along its normal."""
+    def moved(self, distance_m: float) -> SlicePlane:
+        """The same slice farther along its normal."""
         origin = np.array(self.origin_m) + distance_m * self.normal
         return replace(self, origin_m=_vector(origin))
 
-    def repeated(self, count: int, *, spacing_m: float) -> tuple[Cut, ...]:
-        """This cut and those behind it along the normal, at equal distances.
+    def repeated(self, count: int, *, spacing_m: float) -> tuple[SlicePlane, ...]:
+        """This slice and those behind it along the normal, at equal distances.
 
         Raises:
             ConfigError: If there are none or too many, or they do not move.
@@ -100,14 +100,14 @@ class Cut:
         return f"normal ({n}), offset {self.offset_m:.3f} m"
 
 
-def horizontal(z_m: float, *, thickness_m: float = LOOKING_THICKNESS_M) -> Cut:
+def horizontal(z_m: float, *, thickness_m: float = LOOKING_THICKNESS_M) -> SlicePlane:
     """A floor plan at a height of the map."""
-    return Cut("horizontal", (0.0, 0.0, z_m), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness_m)
+    return SlicePlane("horizontal", (0.0, 0.0, z_m), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness_m)
 
 
 def vertical(
     a_m: tuple[float, float], b_m: tuple[float, float], *, thickness_m: float = LOOKING_THICKNESS_M
-) -> Cut:
+) -> SlicePlane:
     """A section through two points seen from above; u counts from the first.
 
     Raises:
@@ -116,13 +116,15 @@ def vertical(
     along = np.array(b_m, dtype=np.float64) - a_m
     length_m = float(np.linalg.norm(along))
     if not length_m >= 0.001:
-        raise ConfigError("the two points of a vertical cut must be 1 mm apart or more")
+        raise ConfigError("the two points of a vertical slice must be 1 mm apart or more")
     u = (*(along / length_m).tolist(), 0.0)
     origin = (float(a_m[0]), float(a_m[1]), 0.0)
-    return Cut("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
+    return SlicePlane("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
 
 
-def free(origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M) -> Cut:
+def free(
+    origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M
+) -> SlicePlane:
     """Any plane. v is as near to the map's z as it can be (to y, if the plane is level).
 
     Raises:
@@ -135,7 +137,7 @@ def free(origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICK
     up = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
     u = np.cross(up, n)
     u /= np.linalg.norm(u)
-    return Cut("free", origin_m, _vector(u), _vector(np.cross(n, u)), thickness_m)
+    return SlicePlane("free", origin_m, _vector(u), _vector(np.cross(n, u)), thickness_m)
 
 
 def _vector(values: Array) -> Vector:

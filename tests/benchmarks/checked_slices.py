@@ -14,9 +14,9 @@ from pathlib import Path
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
 from recon4.settings import Settings
-from recon4.slices.cut import horizontal
 from recon4.slices.points import extent
 from recon4.slices.slice_image import RasterGrid, draw
+from recon4.slices.slice_plane import horizontal
 from recon4.store.checked import CheckedArtifact
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageRunner
@@ -24,10 +24,10 @@ from tests.benchmarks.large_map import _map
 
 
 def _seconds(tiles: TileSet) -> float:
-    cut = horizontal(1.5, thickness_m=0.1)
-    window = extent(tiles, cut)
+    plane = horizontal(1.5, thickness_m=0.1)
+    window = extent(tiles, plane)
     began = time.perf_counter()
-    draw(tiles, cut, RasterGrid(window, 0.02))
+    draw(tiles, plane, RasterGrid(window, 0.02))
     return time.perf_counter() - began
 
 

@@ -24,13 +24,13 @@ import psutil
 from tests.service.secure import Secure, secure_server
 
 LIMIT_S = 150.0
-WHOLE = {"cut": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}
+WHOLE = {"plane": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}
 
 
 def small(z_m: float) -> dict[str, object]:
     """A sheet of one meter of a cut; each request has another size, so that none is cached."""
     window = {"left": 5.0, "bottom": 0.0, "right": 6.0, "top": 1.0}
-    return {"cut": {"kind": "horizontal", "z_m": z_m, "thickness_m": 0.1}, "window": window}
+    return {"plane": {"kind": "horizontal", "z_m": z_m, "thickness_m": 0.1}, "window": window}
 
 
 def export(client: httpx.Client, ending: str, ask: dict[str, object]) -> float:
@@ -45,7 +45,7 @@ def export(client: httpx.Client, ending: str, ask: dict[str, object]) -> float:
 
 def ask_for_all(server: Secure, client: httpx.Client, number: int) -> ssl.SSLSocket:
     """A connection that requests the whole map as CSV; closing it cancels the request."""
-    ask = WHOLE | {"cut": WHOLE["cut"] | {"z_m": number / 1000.0}}
+    ask = WHOLE | {"plane": WHOLE["plane"] | {"z_m": number / 1000.0}}
     cookies = "; ".join(f"{name}={value}" for name, value in client.cookies.items())
     host, port = server.host.split(":")
     line = server.trust().wrap_socket(

@@ -44,7 +44,7 @@ STREAM = """(() => {
     deliverJson(message) { this.deliver(JSON.stringify(message)); }
     async begin() {
       this.dispatchEvent(new Event("open"));
-      this.deliverJson({ project: "walk", state: "recording", words: [], plan: await plan(),
+      this.deliverJson({ project: "walk", state: "recording", findings: [], plan: await plan(),
         path: { start: 0, points: path } });
       for (let start = 0; start < ALL; start += chunk) {
         const count = left(ALL, start);

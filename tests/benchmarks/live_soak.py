@@ -67,7 +67,7 @@ class Heard:
             return
         message = json.loads(data)
         self.newest |= message
-        self.words |= {re.sub(r"\d+(\.\d+)?", "N", w["text"]) for w in message.get("words", [])}
+        self.words |= {re.sub(r"\d+(\.\d+)?", "N", w["text"]) for w in message.get("findings", [])}
         if "pose" in message:
             now_ns = stretched(time.time_ns(), self.speed)
             self.ages_s.append((now_ns - message["pose"]["t_ns"]) / 1e9 / self.speed)

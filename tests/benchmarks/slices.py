@@ -13,10 +13,10 @@ import time
 from pathlib import Path
 
 from recon4.mapping.tiles import TileSet
-from recon4.slices.cut import Cut, free, horizontal, vertical
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.points import SliceWindow, extent
 from recon4.slices.slice_image import RasterGrid, draw, png
+from recon4.slices.slice_plane import SlicePlane, free, horizontal, vertical
 from recon4.store.project import read_artifacts
 
 
@@ -25,7 +25,7 @@ def main(project: Path) -> None:
     tiles = TileSet.open(folder)
     low, high = tiles.bounds_m
     x, y, z = (float(c) for c in (low + high) / 2.0)
-    cuts = {
+    planes = {
         "horizontal, 10 cm": horizontal(float(low[2]) + 1.2),
         "horizontal, 2 cm": horizontal(float(low[2]) + 1.2, thickness_m=0.02),
         "floor, 40 cm": horizontal(float(low[2]) + 0.1, thickness_m=0.4),
@@ -33,13 +33,13 @@ def main(project: Path) -> None:
         "free, 10 cm": free((x, y, z), (0.3, 0.5, 0.8)),
         "all points": horizontal(z, thickness_m=99.0),
     }
-    time_image(tiles, cuts["horizontal, 2 cm"], "height")  # compile, import
+    time_image(tiles, planes["horizontal, 2 cm"], "height")  # compile, import
     print(f"{len(tiles)} points")
-    for name, cut in cuts.items():
+    for name, plane in planes.items():
         dropped = drop(folder)
-        cold = time_image(tiles, cut, "normalized")
+        cold = time_image(tiles, plane, "normalized")
         colors = ("normalized", "height", "sensor", "time")
-        warm = [time_image(tiles, cut, color) for color in colors]
+        warm = [time_image(tiles, plane, color) for color in colors]
         text = f"cold {cold[0]:.2f} s, " if dropped else ""
         slowest = max(warm)
         text += f"warm {slowest[0]:.2f} s ({slowest[1]:.2f} s of processor)"
@@ -56,12 +56,12 @@ def main(project: Path) -> None:
     print(f"peak resident {peak_kb / 1e6:.2f} GB, {' '.join(anonymous[0].split())} at the end")
 
 
-def time_image(tiles: TileSet, cut: Cut, color: str) -> tuple[float, float, int]:
+def time_image(tiles: TileSet, plane: SlicePlane, color: str) -> tuple[float, float, int]:
     """Seconds of an image, PNG included, processor seconds, and its number of points."""
     began, used = time.perf_counter(), time.process_time()
-    seen: SliceWindow = extent(tiles, cut)
+    seen: SliceWindow = extent(tiles, plane)
     pixel_m = max((seen.right - seen.left) / 1600.0, (seen.top - seen.bottom) / 1200.0)
-    made = draw(tiles, cut, RasterGrid(seen, pixel_m), color=color)
+    made = draw(tiles, plane, RasterGrid(seen, pixel_m), color=color)
     png(made.rgba(made.span, "light"))
     return time.perf_counter() - began, time.process_time() - used, made.points
 

@@ -26,9 +26,9 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 from recon4.registration.odometry import Odometry
 from recon4.settings import MapSettings, Settings
-from recon4.slices.cut import horizontal
 from recon4.slices.points import SliceWindow
 from recon4.slices.slice_image import RasterGrid, draw, png
+from recon4.slices.slice_plane import horizontal
 from tests.benchmarks.loaders import muehlburg, nclt, nclt_truth, one_sensor, store
 from tests.benchmarks.real_sequences import DATA, corridor
 

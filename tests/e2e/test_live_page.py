@@ -178,7 +178,7 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screensho
     page.get_by_role("button", name="Stop").click()
     page.locator("#ending").get_by_role("button", name="Stop").click()
     expect(page.get_by_role("button", name="Make the map")).to_be_visible()
-    expect(page.locator("#words li")).to_have_count(0)
+    expect(page.locator("#findings li")).to_have_count(0)
     expect(page.locator("#sensors li")).to_have_count(0)
     marks = (server.root / "walk" / "recordings" / "marks.jsonl").read_text().splitlines()
     assert "crack in the wall" in [json.loads(line).get("text") for line in marks]
@@ -230,7 +230,7 @@ def cut_and_restore(page, link):
     link.cut()
     expect(page.locator("#state")).to_have_text("No link")
     warning = re.compile("No link for 2 s.*recording continues")
-    expect(page.locator("#words li")).to_have_text(warning)
+    expect(page.locator("#findings li")).to_have_text(warning)
     before = points(page)
     at = link.received
     link.restore()

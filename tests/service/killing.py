@@ -262,7 +262,7 @@ def _signal(server: Running, job: str, what: signal.Signals) -> None:
 def _is_due(view: dict[str, Any], moment: float) -> bool:
     state = view["job"]["state"]
     if state == "running":
-        return view["overall"] >= moment and bool(view["status"]["stages"])
+        return view["run_progress"] >= moment and bool(view["status"]["stages"])
     return state != "queued"
 
 

@@ -38,7 +38,7 @@ def test_a_job_runs_reports_its_progress_and_ends(server, recording):
     os.close(gate)
     assert waiting["job"]["state"] == "running"
     assert waiting["fraction"] == 0.0
-    assert 0.0 < waiting["overall"] < done["overall"] == 1.0
+    assert 0.0 < waiting["run_progress"] < done["run_progress"] == 1.0
     assert [row["stage"] for row in done["status"]["stages"]] == ["frames", "odometry"]
     assert server.get("/api/projects/office").json()["finished"]
     assert "succeeded" in server.get(f"/api/jobs/{job}/log").text

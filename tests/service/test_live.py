@@ -112,7 +112,7 @@ def test_a_walk_is_seen_on_the_phone_and_is_a_project_when_it_ends(server, walk)
 
     assert phone.newest["marks"]["marks"][-1]["text"] == "crack"
     assert phone.newest["pose"]["imu"] is True
-    assert phone.newest["words"] is not None
+    assert phone.newest["findings"] is not None
     extent_m = np.ptp(phone.voxels, axis=0) * phone.newest["points"]["voxel_m"]
     assert 5.0 < extent_m[0] < 60.0
     assert len(np.unique(phone.voxels, axis=0)) == len(phone.voxels)

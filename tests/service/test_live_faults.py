@@ -144,7 +144,7 @@ def test_mapper_server_and_recorder_die_and_nothing_recorded_is_lost(tmp_path, w
     sending.join()
 
     assert again != mapper
-    assert any("the recorder died" in word["text"] for word in state["words"])
+    assert any("the recorder died" in one["text"] for one in state["findings"])
     assert json.loads((project / "live" / "outcome.json").read_text())["why"] == "the recorder died"
     live = FrameStore.open(read_artifacts(project)["frames"])
     recordings = project / "recordings"
@@ -217,7 +217,7 @@ def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk
         start(server)
         sending.start()
         while sending.is_alive():
-            texts |= {word["text"] for word in server.get("/api/live").json()["words"]}
+            texts |= {one["text"] for one in server.get("/api/live").json()["findings"]}
             sending.join(0.25)
         server.post("/api/live/stop").raise_for_status()
         wait_for(lambda: server.get("/api/live").json()["state"] == "ready", "not ready")

@@ -39,7 +39,7 @@ CUT_PLY = (
 
 
 def ask(**changes):
-    return {"cut": Z1, "width": 400, "height": 300} | changes
+    return {"plane": Z1, "width": 400, "height": 300} | changes
 
 
 def sent(server, path, body):
@@ -47,7 +47,7 @@ def sent(server, path, body):
 
 
 def exported(server, ending, **changes):
-    asked = json.dumps({"cut": Z1} | changes)
+    asked = json.dumps({"plane": Z1} | changes)
     return server.get(f"{BASE}/export.{ending}", params={"ask": asked})
 
 
@@ -86,7 +86,7 @@ def test_of_several_image_requests_of_a_page_the_latest_is_answered(server):
     answers = {}
 
     def one(k):
-        body = ask(page="p1", cut=Z1 | {"z_m": 1.0 + k / 10})
+        body = ask(page="p1", plane=Z1 | {"z_m": 1.0 + k / 10})
         answers[k] = httpx.post(f"{server.url}{BASE}/image", json=body, timeout=60.0)
 
     threads = [threading.Thread(target=one, args=(k,)) for k in range(8)]
@@ -113,14 +113,14 @@ def test_image_requests_that_arrive_in_another_order(server):
 def test_a_cut_that_begins_far_away_is_drawn(server):
     far = {"kind": "vertical", "a_m": [0.0, 1e8], "b_m": [1.0, 0.0]}
 
-    body = sent(server, "/image", ask(cut=far)).json()
+    body = sent(server, "/image", ask(plane=far)).json()
 
     assert body["points"] > 0 and max(map(abs, body["window"].values())) > 99_999_900.0
-    assert sent(server, "/image", ask(cut=far, window=body["window"])).status_code == 200
+    assert sent(server, "/image", ask(plane=far, window=body["window"])).status_code == 200
 
 
 def test_a_picked_point_is_one_of_the_map(server):
-    found = sent(server, "/pick", {"cut": Z1, "uv": [0.0, 5.0], "radius_m": 0.3}).json()
+    found = sent(server, "/pick", {"plane": Z1, "uv": [0.0, 5.0], "radius_m": 0.3}).json()
 
     assert found["found"] and found["p_map"][0] == pytest.approx(0.0, abs=1e-6)
     assert abs(found["p_map"][2] - 1.5) <= 0.1
@@ -128,7 +128,7 @@ def test_a_picked_point_is_one_of_the_map(server):
 
 
 def test_nothing_is_picked_where_nothing_is(server):
-    found = sent(server, "/pick", {"cut": Z1, "uv": [100.0, 5.0]}).json()
+    found = sent(server, "/pick", {"plane": Z1, "uv": [100.0, 5.0]}).json()
 
     assert not found["found"]
 
@@ -162,14 +162,14 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
     path.write_text("\n".join(lines))
 
     added = sent(server, "/references", {"path": str(path), "name": "Walls"}).json()
-    cut = {"kind": "free", "origin_m": [0, 5, 1], "normal": [1, 0, 0], "thickness_m": 0.04}
-    table = sent(server, "/compare", {"reference": added["id"], "cuts": [cut]}).json()
+    plane = {"kind": "free", "origin_m": [0, 5, 1], "normal": [1, 0, 0], "thickness_m": 0.04}
+    table = sent(server, "/compare", {"reference": added["id"], "planes": [plane]}).json()
     seen = sent(
         server, "/image", ask(color="distance", reference=added["id"], width=160, height=100)
     )
     csv = server.get(
         f"{BASE}/compare.csv",
-        params={"ask": json.dumps({"reference": added["id"], "cuts": [cut]})},
+        params={"ask": json.dumps({"reference": added["id"], "planes": [plane]})},
     )
     pairs = {
         "p_map": [[0, 0, 0], [1, 0, 0], [0, 1, 0]],
@@ -262,7 +262,7 @@ def test_an_export_of_nothing_is_refused_in_words(server):
     folder = server.root / ".recon4" / "slices" / "exports"
     before = sorted(folder.iterdir()) if folder.exists() else []
 
-    answer = exported(server, "laz", cut=Z1 | {"z_m": 90.0})
+    answer = exported(server, "laz", plane=Z1 | {"z_m": 90.0})
 
     assert answer.status_code == 422 and "no points" in answer.json()["detail"]
     assert sorted(folder.iterdir()) == before
@@ -362,9 +362,9 @@ def test_another_project_can_be_set_beside(server):
 @pytest.mark.parametrize(
     ("changes", "status"),
     [
-        ({"cut": Z1 | {"thickness_m": 0}}, 422),
-        ({"cut": {"kind": "free", "normal": [0, 0, 0]}}, 422),
-        ({"cut": {"kind": "vertical", "a_m": [1, 1], "b_m": [1, 1]}}, 422),
+        ({"plane": Z1 | {"thickness_m": 0}}, 422),
+        ({"plane": {"kind": "free", "normal": [0, 0, 0]}}, 422),
+        ({"plane": {"kind": "vertical", "a_m": [1, 1], "b_m": [1, 1]}}, 422),
         ({"width": 100_000}, 422),
         ({"window": {"left": 0, "right": 0, "bottom": 0, "top": 1}}, 422),
         ({"color": "distance"}, 422),

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import {
   bytes,
   count,
-  overallText,
+  runProgressText,
   progressText,
   seconds,
   stateOf,
@@ -59,10 +59,16 @@ test("a project shows the state of its job while that matters", () => {
 
 test("the time left is given once it is known", () => {
   const status = { what: "pairs" };
-  assert.equal(overallText({ overall: 0, overall_eta_s: null, status: { what: "" } }), "Starting");
-  assert.equal(overallText({ overall: 0.124, overall_eta_s: null, status }), "12 % of the run");
   assert.equal(
-    overallText({ overall: 0.5, overall_eta_s: 61, status }),
+    runProgressText({ run_progress: 0, run_eta_s: null, status: { what: "" } }),
+    "Starting",
+  );
+  assert.equal(
+    runProgressText({ run_progress: 0.124, run_eta_s: null, status }),
+    "12 % of the run",
+  );
+  assert.equal(
+    runProgressText({ run_progress: 0.5, run_eta_s: 61, status }),
     "50 % of the run · about 1 min 1 s left",
   );
 });

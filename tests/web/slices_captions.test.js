@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { cutText, distanceText, imageText, pointText } from "../../web/slices/captions.js";
 
 test("a caption names the map, the color and the points", () => {
-  const sources = [{ id: "v1", words: "Version 1" }];
+  const sources = [{ id: "v1", label: "Version 1" }];
   const image = { color: "time", points: "12", surface: "raw" };
   const of = (source) => imageText({ source, ...image }, sources);
   assert.equal(of(""), "This map · Time · 12 points as measured");

@@ -4,7 +4,7 @@ import { test } from "node:test";
 import { roundStep, scaleBar } from "../../web/shared/scale_bar.js";
 import {
   anglesOf,
-  cutOf,
+  planeOf,
   distanceFrom,
   format,
   moved,
@@ -16,7 +16,7 @@ import {
 test("an empty address is the usual horizontal cut", () => {
   const state = parse("");
   assert.equal(state.given, false);
-  assert.deepEqual(cutOf(state), { kind: "horizontal", z_m: 1.5, thickness_m: 0.1 });
+  assert.deepEqual(planeOf(state), { kind: "horizontal", z_m: 1.5, thickness_m: 0.1 });
 });
 
 for (const query of [

@@ -29,7 +29,7 @@ export function drawHealth({ scene, linked, battery, drawsPoints }) {
     make("span", { className: one.error ? "error" : "" }, one.text),
   );
   const warnings = linked
-    ? [...(newest.words ?? []), ...(drawsPoints ? [] : [NO_POINTS])]
+    ? [...(newest.findings ?? []), ...(drawsPoints ? [] : [NO_POINTS])]
     : [linkLost(state, scene.silentS)];
   drawWarnings(warnings);
   if (byId("health", HTMLDialogElement).open) drawSheet(newest, warnings, battery);
@@ -38,7 +38,7 @@ export function drawHealth({ scene, linked, battery, drawsPoints }) {
 function drawWarnings(warnings) {
   const most = innerHeight < SHORT_PX ? 2 : 3;
   const more = warnings.length - most;
-  fill(byId("words"), more > 0 ? [...warnings.slice(0, most), { more }] : warnings, (one) =>
+  fill(byId("findings"), more > 0 ? [...warnings.slice(0, most), { more }] : warnings, (one) =>
     one.more ? moreOf(one.more) : line(one),
   );
   vibrateOnNew(warnings.filter(({ level }) => level === "error"));
@@ -63,11 +63,11 @@ function vibrateOnNew(errors) {
 /** Opens the sheet. */
 export function showHealth({ scene, battery }) {
   byId("health", HTMLDialogElement).showModal();
-  drawSheet(scene.newest, scene.newest.words ?? [], battery);
+  drawSheet(scene.newest, scene.newest.findings ?? [], battery);
 }
 
 function drawSheet(newest, warnings, battery) {
-  fill(byId("all-words"), warnings, line);
+  fill(byId("all-findings"), warnings, line);
   const cell = (text, k) =>
     make(k ? "td" : "th", { className: k === 1 || k === 2 ? "number" : "" }, text);
   fill(byId("lidars"), (newest.lidars ?? []).map(lidarRow), (row) =>

@@ -3,7 +3,7 @@
 import { cancelJob, readMe, retryJob } from "../shared/api.js";
 import { badge } from "../shared/badge.js";
 import { attempt, fill, make } from "../shared/dom.js";
-import { overallText, progressText } from "../shared/format.js";
+import { runProgressText, progressText } from "../shared/format.js";
 
 export class JobStatus extends HTMLElement {
   #view;
@@ -36,8 +36,8 @@ export class JobStatus extends HTMLElement {
       running && status.what ? make("strong", {}, status.what) : null,
     );
     this.#bar.hidden = !running;
-    this.#bar.value = view.overall;
-    this.#text.textContent = running ? overallText(view) : job.note;
+    this.#bar.value = view.run_progress;
+    this.#text.textContent = running ? runProgressText(view) : job.note;
     this.#text.hidden = !this.#text.textContent;
     this.#piece.hidden = !running || !status.what;
     this.#piece.textContent = this.#piece.hidden ? "" : progressText(view);

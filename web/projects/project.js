@@ -74,8 +74,8 @@ function drawFiles() {
   const row = (file) => {
     const report = file.name === "report.html";
     const link = report
-      ? make("a", { href: reportUrl(id), target: "_blank", rel: "noopener" }, file.words)
-      : make("a", { href: fileUrl(id, file.name), download: "" }, file.words);
+      ? make("a", { href: reportUrl(id), target: "_blank", rel: "noopener" }, file.label)
+      : make("a", { href: fileUrl(id, file.name), download: "" }, file.label);
     return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
   };
   fill(byId("files").querySelector("ul"), ...files.map(row));

@@ -53,10 +53,10 @@ export function stateOf(project, view) {
 }
 
 /** Progress of the whole run and its remaining time. */
-export function overallText({ overall, overall_eta_s, status }) {
+export function runProgressText({ run_progress, run_eta_s, status }) {
   if (!status.what) return "Starting";
-  const left = overall_eta_s === null ? [] : [`about ${seconds(overall_eta_s)} left`];
-  return [`${Math.round(overall * 100)} % of the run`, ...left].join(" · ");
+  const left = run_eta_s === null ? [] : [`about ${seconds(run_eta_s)} left`];
+  return [`${Math.round(run_progress * 100)} % of the run`, ...left].join(" · ");
 }
 
 /** Progress of the current stage in one line: fraction, rate, remaining time. */

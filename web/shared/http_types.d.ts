@@ -103,7 +103,7 @@ export interface CaptureFinding {
 export interface CaptureView {
   project: string;
   state: string;
-  words: Array<CaptureFinding>;
+  findings: Array<CaptureFinding>;
   rates: Record<string, number>;
   phones: number;
   may_capture: boolean;
@@ -129,7 +129,7 @@ export interface Choices {
 export interface CompareRequest {
   reference: string;
   method?: "plane" | "point";
-  cuts?: Array<CutSpec>;
+  planes?: Array<SlicePlaneSpec>;
   source?: string;
 }
 
@@ -201,16 +201,6 @@ export interface ControlState {
 export interface Credentials {
   name: string;
   password: string;
-}
-
-export interface CutSpec {
-  kind: "horizontal" | "vertical" | "free";
-  z_m?: number;
-  a_m?: [number, number];
-  b_m?: [number, number];
-  origin_m?: [number, number, number];
-  normal?: [number, number, number];
-  thickness_m?: number;
 }
 
 export interface DecidedEdge {
@@ -385,8 +375,8 @@ export interface JobView {
   job: Job;
   status: JobStatus;
   fraction: number | null;
-  overall: number;
-  overall_eta_s: number | null;
+  run_progress: number;
+  run_eta_s: number | null;
   resumable: boolean;
 }
 
@@ -519,7 +509,7 @@ export interface NewVersion {
 
 export interface OtherMap {
   id: string;
-  words: string;
+  label: string;
 }
 
 export interface PairFacts {
@@ -575,7 +565,7 @@ export interface PasswordConfirmation {
 export type Permission = "look" | "review" | "process" | "capture" | "administer";
 
 export interface PickRequest {
-  cut: CutSpec;
+  plane: SlicePlaneSpec;
   uv: [number, number];
   radius_m?: number;
   source?: string;
@@ -671,7 +661,7 @@ export interface Rename {
 }
 
 export interface Requirement {
-  words: string;
+  label: string;
   value_m: number;
   limit_m: number;
   holds: boolean;
@@ -707,7 +697,7 @@ export interface Restored {
 
 export interface ResultFile {
   name: string;
-  words: string;
+  label: string;
   bytes: number;
 }
 
@@ -890,7 +880,7 @@ export interface SliceFacts {
 }
 
 export interface SliceImageRequest {
-  cut: CutSpec;
+  plane: SlicePlaneSpec;
   window?: WindowSpec | null;
   color?: "height" | "intensity" | "normalized" | "time" | "sensor" | "distance";
   low?: number | null;
@@ -922,6 +912,16 @@ export interface SliceImageView {
   v: [number, number, number];
   offset_m: number;
   seconds: number;
+}
+
+export interface SlicePlaneSpec {
+  kind: "horizontal" | "vertical" | "free";
+  z_m?: number;
+  a_m?: [number, number];
+  b_m?: [number, number];
+  origin_m?: [number, number, number];
+  normal?: [number, number, number];
+  thickness_m?: number;
 }
 
 export interface StageStatus {

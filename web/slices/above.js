@@ -1,7 +1,7 @@
-// <slice-above>: the map from above with the cut on it. Drag the line or its ends; drag beside it
-// for a new cut.
+// <slice-above>: the map from above with the slice on it. Drag the line or its ends; drag beside it
+// for a new slice.
 //
-// Event: "cut" with detail {a, b} [m].
+// Event: "slice" with detail {a, b} [m].
 
 import { make } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
@@ -22,7 +22,7 @@ export class SliceAbove extends HTMLElement {
     this.replaceChildren(this.#canvas);
     this.setAttribute("aria-busy", "true"); // nothing to drag before the image is there
     this.#canvas.setAttribute("role", "img");
-    this.#canvas.setAttribute("aria-label", "The map from above, with the cut");
+    this.#canvas.setAttribute("aria-label", "The map from above, with the slice");
     listenToGestures(this.#canvas, {
       onDown: (at) => this.#down(at),
       onDrag: (_from, to) => this.#dragged(to),
@@ -102,7 +102,7 @@ export class SliceAbove extends HTMLElement {
     });
   }
 
-  /** Ends of the cut's line in the map; null for a level plane. */
+  /** Ends of the slice's line in the map; null for a level plane. */
   #trace() {
     const s = this.#state;
     if (s.kind === "vertical") return [s.a, s.b];
@@ -196,7 +196,7 @@ export class SliceAbove extends HTMLElement {
 
   #emit(a, b) {
     if (Math.hypot(b[0] - a[0], b[1] - a[1]) > 0.05)
-      this.dispatchEvent(new CustomEvent("cut", { detail: { a, b } }));
+      this.dispatchEvent(new CustomEvent("slice", { detail: { a, b } }));
   }
 }
 

@@ -5,12 +5,12 @@ import { COLORS, SURFACES } from "./state.js";
 const KINDS = { horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" };
 const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
 
-/** The kind of the cut and its name. */
+/** The kind of the slice and its name. */
 export const cutText = (kind, name) => `${KINDS[kind]} ${name}`;
 
 /** What a slice image shows. */
 export function imageText({ source, color, points, surface }, sources) {
-  const name = source ? (sources.find((one) => one.id === source)?.words ?? source) : "This map";
+  const name = source ? (sources.find((one) => one.id === source)?.label ?? source) : "This map";
   return `${name} · ${COLORS[color]} · ${points} points ${SURFACES[surface]}`;
 }
 

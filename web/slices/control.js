@@ -286,7 +286,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       make(
         "tr",
         {},
-        make("th", { scope: "row" }, limit.words),
+        make("th", { scope: "row" }, limit.label),
         make(
           "td",
           { className: limit.holds ? "good" : "bad" },

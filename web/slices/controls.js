@@ -39,7 +39,7 @@ function select(options, value, onValue) {
 
 /** Fills the panel; `show(state)` and `facts(facts)` update it. */
 export function controls(root, { change, toKind }) {
-  const kinds = make("div", { className: "segmented", role: "group", ariaLabel: "Kind of cut" });
+  const kinds = make("div", { className: "segmented", role: "group", ariaLabel: "Kind of slice" });
   const where = make("div", { className: "where" });
   const how = make("div", { className: "how" });
   const besideMap = make("select", { ariaLabel: "Map beside" });
@@ -202,7 +202,7 @@ export function controls(root, { change, toKind }) {
     where.dataset.kind = state.kind;
     if (!how.contains(document.activeElement) || !document.activeElement.matches("input, select"))
       how.replaceChildren(...looks(state).filter(Boolean));
-    const sources = [["", "This map"], ...(facts?.sources ?? []).map((one) => [one.id, one.words])];
+    const sources = [["", "This map"], ...(facts?.sources ?? []).map((one) => [one.id, one.label])];
     options(besideMap, sources, state.beside);
     const colors = Object.entries(COLORS).filter(([key]) => key !== "distance" || state.ref);
     options(

@@ -13,7 +13,7 @@ const cm = (m) => `${(m * 100).toFixed(1)} cm`;
 const range = ([from, to]) => `${from}–${to}`;
 const span = ([from, to]) => `${from.toFixed(0)}–${to.toFixed(0)} s`;
 
-/** A close horizontal cut through the middle; if the surface is level, a vertical one across. */
+/** A close horizontal slice through the middle; if the surface is level, a vertical one across. */
 function cutAt(wall) {
   const [x, y, z] = wall.middle_m;
   const close = { t: 0.1, color: "time", lo: null, hi: null, m: 0.003 };
@@ -83,7 +83,7 @@ export function doublesPanel({ id, change, point, state }) {
 
   const inSlice = (wall) => distanceFrom(state(), wall.middle_m) <= state().t / 2 + REACH_M;
 
-  /** Lists the selected rows; with "In this slice" they follow the cut. */
+  /** Lists the selected rows; with "In this slice" they follow the slice. */
   function listed() {
     const focused = table.contains(document.activeElement)
       ? document.activeElement.ariaLabel

@@ -6,7 +6,7 @@ import { doublesPanel } from "./doubles.js";
 import { exportPanel } from "./export.js";
 import { referencePanel } from "./reference.js";
 
-/** Fills the section; returns callbacks for changes of the cut, the map and the picked point. */
+/** Fills the section; returns callbacks for changes of the slice, the map and the picked point. */
 export function findings(root, page) {
   /** @type {Array<[string, any]>} */
   const panels = [

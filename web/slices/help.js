@@ -27,7 +27,7 @@ export function help(dialog) {
     make(
       "p",
       {},
-      "On the map from above: drag for a vertical cut, drag its line or its ends A and B. " +
+      "On the map from above: drag for a vertical slice, drag its line or its ends A and B. " +
         "The arrow shows the viewing direction.",
     ),
     make("form", { method: "dialog" }, make("button", { className: "primary" }, "Close")),

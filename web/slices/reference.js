@@ -12,7 +12,7 @@ import { attempt, make } from "../shared/dom.js";
 import { bytes, count } from "../shared/format.js";
 import { Sending, sorted } from "../projects/resumable_upload.js";
 import { ofInput } from "./picking.js";
-import { cutOf, moved } from "./state.js";
+import { planeOf, moved } from "./state.js";
 
 const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
 const METHODS = { plane: "to the reference's surface", point: "to its nearest point (V)" };
@@ -151,18 +151,18 @@ export function referencePanel({ id, change, state, reload }) {
     await reload();
   }
 
-  function cuts() {
+  function planes() {
     const now = state();
     if (which.value === "usual") return [];
-    if (which.value === "this") return [cutOf(now)];
-    return Array.from({ length: now.count }, (_, k) => cutOf(moved(now, k * now.spacing)));
+    if (which.value === "this") return [planeOf(now)];
+    return Array.from({ length: now.count }, (_, k) => planeOf(moved(now, k * now.spacing)));
   }
 
   async function compare() {
     const ask = {
       reference: state().ref,
       method: method.value,
-      cuts: cuts(),
+      planes: planes(),
       source: state().source,
     };
     if (!ask.reference) throw new Error("Choose a reference first");

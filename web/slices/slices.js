@@ -1,4 +1,4 @@
-// The page of slices: cut, display, findings. The address of the page is the state.
+// The page of slices: plane, display, findings. The address of the page is the state.
 
 import {
   aboveUrl,
@@ -16,7 +16,7 @@ import { controls } from "./controls.js";
 import { findings } from "./findings.js";
 import { legend } from "./legend.js";
 import { help } from "./help.js";
-import { COLORS, SURFACES, cutOf, format, moved, normalFrom, parse, unframed } from "./state.js";
+import { COLORS, SURFACES, planeOf, format, moved, normalFrom, parse, unframed } from "./state.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
@@ -88,7 +88,7 @@ function start(kind) {
 // -- slice images
 
 const ask = (view, more) => ({
-  cut: cutOf(state),
+  plane: planeOf(state),
   color: state.color,
   low: state.lo,
   high: state.hi,
@@ -169,7 +169,7 @@ function describe() {
 
 async function place({ u, v, reach }) {
   const answer = await pickOnSlice(id, {
-    cut: cutOf(state),
+    plane: planeOf(state),
     uv: [u, v],
     radius_m: Math.min(5, Math.max(0.005, reach)),
     source: state.source,
@@ -367,7 +367,7 @@ async function begin() {
   help(byId("help"));
   follow(first, second);
   follow(second, first);
-  above.addEventListener("cut", ({ detail }) =>
+  above.addEventListener("slice", ({ detail }) =>
     change(
       state.kind === "vertical" ? detail : unframed({ ...state, kind: "vertical", ...detail }),
     ),

@@ -64,8 +64,8 @@ export function format(state) {
   return query.toString().replaceAll("%2C", ",").replaceAll("%3A", ":");
 }
 
-/** The cut as the server expects it. */
-export function cutOf(state) {
+/** The slice as the server expects it. */
+export function planeOf(state) {
   const thickness_m = state.t;
   if (state.kind === "horizontal") return { kind: state.kind, z_m: state.z, thickness_m };
   if (state.kind === "vertical")
@@ -73,7 +73,7 @@ export function cutOf(state) {
   return { kind: state.kind, origin_m: state.o, normal: state.n, thickness_m };
 }
 
-/** Unit normal of the cut, the same as on the server. */
+/** Unit normal of the slice, the same as on the server. */
 export function normalOf(state) {
   if (state.kind === "horizontal") return [0, 0, 1];
   if (state.kind === "vertical") {
@@ -85,7 +85,7 @@ export function normalOf(state) {
   return state.n.map((x) => x / length);
 }
 
-/** How far a point lies from the plane of the cut [m]. */
+/** How far a point lies from the plane of the slice [m]. */
 export function distanceFrom(state, p) {
   const n = normalOf(state);
   const on = {
@@ -96,7 +96,7 @@ export function distanceFrom(state, p) {
   return Math.abs(p.reduce((sum, x, k) => sum + (x - on[k]) * n[k], 0));
 }
 
-/** The same cut farther along its normal. */
+/** The same slice farther along its normal. */
 export function moved(state, distance) {
   const n = normalOf(state);
   const shift = (p) => p.map((x, k) => x + distance * n[k]);
@@ -106,8 +106,8 @@ export function moved(state, distance) {
 }
 
 /**
- * The state without the view: horizontal, vertical and free cuts have different coordinates, so the
- * view of one is invalid in another.
+ * The state without the view: horizontal, vertical and free slices have different coordinates, so
+ * the view of one is invalid in another.
  */
 export const unframed = (state) => ({ ...state, u: null, v: null, m: null });
 

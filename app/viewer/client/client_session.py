@@ -115,7 +115,7 @@ class ClientSession:
                 self._screen.follow(bounds(content))
         self._shown, self._content = view, content
         points = [*_preview(content, view), *_window(content, view)]
-        self._screen.show([*describe(content, view), *self._pointer.nodes(), *points])
+        self._screen.show_nodes([*describe(content, view), *self._pointer.nodes(), *points])
         self._panel.show(view, span_of(content, view))
         self._pointer.report(view)
 

@@ -85,7 +85,7 @@ def _css(rgb: tuple[int, ...]) -> str:
 
 def counted(layer: Layer) -> str:
     """The label of a layer with its number of objects."""
-    return f"{layer.words} ({count(layer.count)})" if layer.count else layer.words
+    return f"{layer.label} ({count(layer.count)})" if layer.count else layer.label
 
 
 def count(number: int) -> str:

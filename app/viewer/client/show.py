@@ -111,7 +111,7 @@ class Screen:
             ray = Ray(np.array(event.ray_origin), direction / np.linalg.norm(direction), pixel_rad)
             clicked(ray)
 
-    def show(self, nodes: Iterable[Node]) -> None:
+    def show_nodes(self, nodes: Iterable[Node]) -> None:
         """Draw these nodes and no others beside the map; only differences are sent."""
         with self._client.atomic():
             fresh = {node.path: (node, self._update(node)) for node in nodes}
@@ -119,7 +119,7 @@ class Screen:
                 self._shown[path][1].remove()
         self._shown = fresh
 
-    def put(self, nodes: Iterable[PointsNode], style: object) -> None:
+    def show_points(self, nodes: Iterable[PointsNode], style: object) -> None:
         """Show parts of the map; parts that are loaded are only recolored."""
         with self._client.atomic():
             for node in nodes:
@@ -132,7 +132,7 @@ class Screen:
                 self._points[node.path] = _Drawn(node, handle, style)
         self._client.flush()  # now, not at viser's next tick
 
-    def keep_only(self, paths: set[str], spare: int) -> None:
+    def hide_points_except(self, paths: set[str], spare: int) -> None:
         """Hide the other parts of the map; ``spare`` of their points stay loaded."""
         with self._client.atomic():
             for path in [path for path in reversed(self._points) if path not in paths]:
@@ -149,19 +149,19 @@ class Screen:
         drawn = self._points.get(path)
         return drawn is not None and drawn.style == style and bool(drawn.handle.visible)
 
-    def part(self, path: str) -> PointsNode | None:
+    def points_at(self, path: str) -> PointsNode | None:
         """A part of the map as it was drawn last."""
         drawn = self._points.get(path)
         return None if drawn is None else drawn.node
 
-    def show_map(self, visible: bool) -> None:
+    def set_map_visible(self, visible: bool) -> None:
         """Show or hide the map without sending it again."""
         if self._map.visible != visible:
             self._map.visible = visible
 
     def forget_map(self) -> None:
         """Remove the map from the screen, because there is a new one."""
-        self.keep_only(set(), -1)
+        self.hide_points_except(set(), -1)
 
     @property
     def behind(self) -> int:

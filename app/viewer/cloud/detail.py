@@ -56,17 +56,17 @@ class Detail:
             self._cloud, self.points = cloud, 0
         if cloud is None:
             return True
-        self._screen.show_map(view.points != "multiframe")
+        self._screen.set_map_visible(view.points != "multiframe")
         chosen = choose(cloud.boxes, self._screen.camera, budget - len(cloud.base))
         wanted = {_path(cloud, chunk) for chunk in (None, *chosen)}
-        self._screen.keep_only(wanted, budget)
+        self._screen.hide_points_except(wanted, budget)
         self.points = len(cloud.base) + sum(int(cloud.boxes.sizes[t][k]) for t, k in chosen)
         style = Style(view.color_by, view.palette, span, view.point_size_m)
         for batch in self._batches(cloud, [None, *chosen], style):
             while self._screen.behind > MAX_BEHIND:
                 if self._over(0.002):
                     return False
-            self._screen.put(batch, style)
+            self._screen.show_points(batch, style)
             if self._newer():
                 return False
         return True
@@ -80,7 +80,7 @@ class Detail:
             path = _path(cloud, chunk)
             if self._screen.has(path, style):
                 continue
-            before = self._screen.part(path)
+            before = self._screen.points_at(path)
             node = _node(cloud, chunk, style, before=before)
             weight += len(node.p_node) / (COLOR_BATCH_POINTS if before else BATCH_POINTS)
             batch.append(node)

@@ -21,7 +21,7 @@ class Layer:
 
     key: str
     """Key, also part of a path in the scene."""
-    words: str
+    label: str
     rgb: Rgb
     shown: bool = True
     """Whether it is shown by default."""
@@ -73,8 +73,8 @@ def edge_layer(edge: Edge) -> Layer:
     kind = KIND_LABELS[edge.kind]
     if edge.decided_by != "auto":
         verdict = "rejected" if edge.verdict is Verdict.REJECTED else "accepted"
-        words = f"Operator's decisions, {verdict}"
-        return Layer(f"decided/{verdict}", words, DECIDED_COLORS[edge.verdict], width_px=3.0)
+        label = f"Operator's decisions, {verdict}"
+        return Layer(f"decided/{verdict}", label, DECIDED_COLORS[edge.verdict], width_px=3.0)
     if edge.verdict is Verdict.REJECTED:
         reason = str(edge.reason) or "no reason given"
         return Layer(
@@ -129,5 +129,5 @@ class EdgeTable:
         )
 
 
-def _path(words: str) -> str:
-    return re.sub(r"[^a-z0-9]+", "-", words.lower()).strip("-")
+def _path(label: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", label.lower()).strip("-")

@@ -158,7 +158,7 @@ def test_conflicts_are_confirmed_with_a_reason_or_not_at_all(root, server):
 
 
 def slice_of(server, root, **changes):
-    asked = json.dumps({"cut": {"kind": "horizontal", "z_m": 0.5}} | changes)
+    asked = json.dumps({"plane": {"kind": "horizontal", "z_m": 0.5}} | changes)
     return server.running.get(
         f"/api/projects/{root.name}/slices/export.csv", params={"ask": asked}
     ).text

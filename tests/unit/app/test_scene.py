@@ -151,7 +151,7 @@ def test_positions_of_a_receiver_are_edges_sorted_into_used_and_rejected():
     lines = rejected.position_m + rejected.segments
     np.testing.assert_allclose(lines[:3].mean(axis=1), [marks.p_map[1]] * 3, atol=1e-6)
     np.testing.assert_allclose(lines[3], [marks.p_antenna[1], marks.p_map[1]], atol=1e-6)
-    assert [(layer.words, layer.count) for layer in content.layers[:2]] == [
+    assert [(layer.label, layer.count) for layer in content.layers[:2]] == [
         ("GNSS, used", 2),
         ("GNSS, rejected", 1),
     ]

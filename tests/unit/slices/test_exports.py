@@ -17,7 +17,6 @@ from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.recording.formats.scratch import sweep_scratch
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint, read_control
-from recon4.slices.cut import horizontal, vertical
 from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
@@ -25,6 +24,7 @@ from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.residuals import residual_csv, residuals
 from recon4.slices.sheet import SheetText, approval_text, grid_step_m, lay_out, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw
+from recon4.slices.slice_plane import horizontal, vertical
 from tests.unit.slices.room_map import wall, write_map
 
 BRNO = CrsTransform(
@@ -49,14 +49,16 @@ def tiles(tmp_path_factory):
     )
 
 
-def inside(tiles, *cuts):
-    return [np.concatenate([cut.to_map(p.uvd) for p in points_in(tiles, cut)]) for cut in cuts]
+def inside(tiles, *planes):
+    return [
+        np.concatenate([plane.to_map(p.uvd) for p in points_in(tiles, plane)]) for plane in planes
+    ]
 
 
 def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, tmp_path):
-    cuts = CUT.repeated(3, spacing_m=0.3)
+    planes = CUT.repeated(3, spacing_m=0.3)
 
-    count = write_dxf(SliceSelection(tiles, cuts), tmp_path / "s.dxf", frame=LOCAL)
+    count = write_dxf(SliceSelection(tiles, planes), tmp_path / "s.dxf", frame=LOCAL)
 
     drawing = ezdxf.readfile(tmp_path / "s.dxf")
     points = list(drawing.modelspace())
@@ -70,9 +72,9 @@ def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, 
 
 
 def test_a_flat_dxf_has_the_section_on_the_sheet(tiles, tmp_path):
-    cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.2)
+    plane = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.2)
 
-    write_dxf(SliceSelection(tiles, [cut]), tmp_path / "s.dxf", frame=LOCAL, flat=True)
+    write_dxf(SliceSelection(tiles, [plane]), tmp_path / "s.dxf", frame=LOCAL, flat=True)
 
     xyz = np.array([p.dxf.location.xyz for p in ezdxf.readfile(tmp_path / "s.dxf").modelspace()])
     assert np.abs(xyz[:, 0] - 1.0).max() < 0.06
@@ -95,7 +97,7 @@ import os, signal, sys
 from pathlib import Path
 from recon4.mapping.tiles import TileSet
 from recon4.slices import export
-from recon4.slices.cut import horizontal
+from recon4.slices.slice_plane import horizontal
 from recon4.slices.frames import MapFrame
 
 def killed(*_, **__):
@@ -153,8 +155,8 @@ def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
 
 
 def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
-    cut = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
-    drawn = draw(tiles, cut, RasterGrid(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
+    plane = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
+    drawn = draw(tiles, plane, RasterGrid(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
 
     write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, rgba=drawn.rgba(drawn.span, "light"))
 
@@ -309,7 +311,7 @@ def test_control_and_check_points_are_judged_apart():
     assert (check.role, check.points, control.points) == ("check", 2, 1)
     assert check.mean_2d_m == pytest.approx(0.05) and check.max_up_m == pytest.approx(0.25)
     assert check.rmse_m == pytest.approx((0.03, 0.04, 0.25 / math.sqrt(2)))
-    assert [(one.words, one.limit_m, one.holds) for one in check.requirements] == [
+    assert [(one.label, one.limit_m, one.holds) for one in check.requirements] == [
         ("mean horizontal", 0.14, True),
         ("mean height", 0.12, False),
         ("largest horizontal", 0.28, True),

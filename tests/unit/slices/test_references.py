@@ -12,12 +12,12 @@ from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.slices.align import align_by_icp, align_by_pairs
-from recon4.slices.compare import compare, to_csv, usual_cuts
-from recon4.slices.cut import free, horizontal
+from recon4.slices.compare import compare, to_csv, usual_planes
 from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference, mesh_lines
+from recon4.slices.slice_plane import free, horizontal
 from tests.unit.slices.room_map import wall, write_map
 
 P = np.random.default_rng(4).uniform(-3.0, 3.0, (500, 3)).round(3)
@@ -247,10 +247,10 @@ def test_the_table_says_how_far_the_map_is_off(tmp_path):
 def test_eight_slices_are_spread_over_the_map(tmp_path):
     tiles = write_map(tmp_path, np.array([[0.0, 0.0, 0.0], [8.0, 8.0, 8.0]]))
 
-    cuts = usual_cuts(tiles)
+    planes = usual_planes(tiles)
 
-    assert [cut.origin_m[2] for cut in cuts[:4]] == pytest.approx([1.0, 3.0, 5.0, 7.0])
-    assert len(cuts) == 8 and all(cut.thickness_m == 0.02 for cut in cuts)
+    assert [plane.origin_m[2] for plane in planes[:4]] == pytest.approx([1.0, 3.0, 5.0, 7.0])
+    assert len(planes) == 8 and all(plane.thickness_m == 0.02 for plane in planes)
 
 
 def test_pairs_of_points_lay_a_reference_onto_the_map():
@@ -315,8 +315,8 @@ def test_icp_over_a_distance_is_refused(tmp_path, box_reference):
 
 
 def test_a_free_cut_of_a_mesh_is_in_its_plane():
-    cut = free((2.0, 1.5, 1.0), (1.0, 0.0, 0.0))
+    plane = free((2.0, 1.5, 1.0), (1.0, 0.0, 0.0))
 
-    lines = mesh_lines(BOX, cut)
+    lines = mesh_lines(BOX, plane)
 
     assert np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum() == pytest.approx(10.0)

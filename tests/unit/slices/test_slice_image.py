@@ -6,11 +6,11 @@ from PIL import Image
 
 from recon4.errors import ConfigError
 from recon4.slices.colors import DISTANCE_RANGE_M, REFERENCE_COLOR, Span, paint, table
-from recon4.slices.cut import horizontal
 from recon4.slices.imports import import_reference
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference
 from recon4.slices.slice_image import RasterGrid, draw, png
+from recon4.slices.slice_plane import horizontal
 from tests.unit.slices.room_map import T0_NS, write_map
 
 CUT = horizontal(1.0, thickness_m=0.2)

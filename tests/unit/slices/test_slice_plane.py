@@ -3,9 +3,9 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
-from recon4.slices.cut import Cut, free, horizontal, vertical
 from recon4.slices.points import SliceWindow, extent, points_in
-from recon4.slices.reference import moved_cut
+from recon4.slices.reference import moved_plane
+from recon4.slices.slice_plane import SlicePlane, free, horizontal, vertical
 from tests.unit.slices.room_map import write_map
 
 
@@ -19,7 +19,7 @@ def tiles(cloud, tmp_path_factory):
     return write_map(tmp_path_factory.mktemp("map"), cloud)
 
 
-CUTS = [
+PLANES = [
     horizontal(0.7, thickness_m=0.3),
     vertical((-3.0, -2.0), (5.0, 4.0), thickness_m=0.2),
     vertical((1.0, 1.0), (0.66, 0.06), thickness_m=0.05),
@@ -28,26 +28,26 @@ CUTS = [
 ]
 
 
-@pytest.mark.parametrize("cut", CUTS, ids=lambda cut: cut.kind)
-def test_a_cut_holds_exactly_the_points_within_half_its_thickness(cloud, tiles, cut):
+@pytest.mark.parametrize("plane", PLANES, ids=lambda plane: plane.kind)
+def test_a_cut_holds_exactly_the_points_within_half_its_thickness(cloud, tiles, plane):
     stored = np.concatenate([tile.xyz_m() for tile in tiles])  # as float32 of their tile
-    expected = np.abs((stored - cut.origin_m) @ cut.normal) <= cut.thickness_m / 2.0
+    expected = np.abs((stored - plane.origin_m) @ plane.normal) <= plane.thickness_m / 2.0
 
-    parts = list(points_in(tiles, cut))
+    parts = list(points_in(tiles, plane))
 
-    found = np.concatenate([cut.to_map(part.uvd) for part in parts])
+    found = np.concatenate([plane.to_map(part.uvd) for part in parts])
     assert len(found) == expected.sum() > 50
     assert np.abs(sorted_rows(found) - sorted_rows(stored[expected])).max() < 1e-9
 
 
-@pytest.mark.parametrize("cut", CUTS, ids=lambda cut: cut.kind)
-def test_the_axes_of_a_cut_are_right_handed_and_its_coordinates_lead_back(cut):
+@pytest.mark.parametrize("plane", PLANES, ids=lambda plane: plane.kind)
+def test_the_axes_of_a_cut_are_right_handed_and_its_coordinates_lead_back(plane):
     p = np.random.default_rng(1).uniform(-50, 50, (20, 3))
 
-    back = cut.to_map(cut.to_plane(p))
+    back = plane.to_map(plane.to_plane(p))
 
-    assert np.abs(cut.axes @ cut.axes.T - np.eye(3)).max() < 1e-12
-    assert np.linalg.det(cut.axes) == pytest.approx(1.0)
+    assert np.abs(plane.axes @ plane.axes.T - np.eye(3)).max() < 1e-12
+    assert np.linalg.det(plane.axes) == pytest.approx(1.0)
     assert np.abs(back - p).max() < 1e-9
 
 
@@ -64,28 +64,28 @@ def test_a_vertical_cut_shows_the_way_from_its_first_point_and_the_height():
 
 
 def test_a_window_leaves_out_what_lies_beside_it(tiles):
-    cut = CUTS[1]
+    plane = PLANES[1]
     window = SliceWindow(1.0, -1.0, 3.0, 1.0)
 
-    uvd = np.concatenate([part.uvd for part in points_in(tiles, cut, window=window)])
+    uvd = np.concatenate([part.uvd for part in points_in(tiles, plane, window=window)])
 
-    every = np.concatenate([part.uvd for part in points_in(tiles, cut)])
+    every = np.concatenate([part.uvd for part in points_in(tiles, plane)])
     inside = (every[:, 0] >= 1) & (every[:, 0] <= 3) & (every[:, 1] >= -1) & (every[:, 1] <= 1)
     assert len(uvd) == inside.sum() > 10
 
 
 def test_all_of_a_cut_is_inside_its_extent(tiles):
-    for cut in CUTS:
-        seen = extent(tiles, cut)
-        uvd = np.concatenate([part.uvd for part in points_in(tiles, cut)])
+    for plane in PLANES:
+        seen = extent(tiles, plane)
+        uvd = np.concatenate([part.uvd for part in points_in(tiles, plane)])
         assert seen.left <= uvd[:, 0].min() and uvd[:, 0].max() <= seen.right
         assert seen.bottom <= uvd[:, 1].min() and uvd[:, 1].max() <= seen.top
 
 
 def test_repeated_cuts_are_equally_far_from_each_other():
-    cuts = CUTS[3].repeated(4, spacing_m=0.25)
+    planes = PLANES[3].repeated(4, spacing_m=0.25)
 
-    assert np.diff([cut.offset_m for cut in cuts]) == pytest.approx([0.25] * 3)
+    assert np.diff([plane.offset_m for plane in planes]) == pytest.approx([0.25] * 3)
 
 
 def test_far_from_the_origin_nothing_is_lost(tmp_path):
@@ -102,9 +102,9 @@ def test_a_moved_cut_gives_moved_points_the_same_place():
     T = SE3.from_rpy(0.1, -0.2, 2.0, t=[5.0, -3.0, 1.0])
     p = np.random.default_rng(2).uniform(-5, 5, (10, 3))
 
-    moved = moved_cut(CUTS[1], T)
+    moved = moved_plane(PLANES[1], T)
 
-    assert np.abs(moved.to_plane(T @ p) - CUTS[1].to_plane(p)).max() < 1e-9
+    assert np.abs(moved.to_plane(T @ p) - PLANES[1].to_plane(p)).max() < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_a_plane_without_meaning_is_refused(make):
 
 def test_a_cut_is_a_value():
     assert horizontal(1.0) == horizontal(1.0)
-    assert isinstance(hash(horizontal(1.0)), int) and isinstance(horizontal(1.0), Cut)
+    assert isinstance(hash(horizontal(1.0)), int) and isinstance(horizontal(1.0), SlicePlane)
 
 
 def sorted_rows(p):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from app.slices.model import CutSpec, PickRequest, SliceImageRequest, WindowSpec
+from app.slices.model import PickRequest, SliceImageRequest, SlicePlaneSpec, WindowSpec
 from app.slices.work import pick_point, slice_image
 from app.viewer.client.legend import legend
 from app.viewer.client.view import ViewState, view_from_json
@@ -12,7 +12,7 @@ from app.viewer.scene.build import Content
 from recon4.slices.sheet import surface_text
 from tests.unit.slices.room_map import write_map
 
-LEVEL = CutSpec(kind="horizontal", z_m=1.0, thickness_m=0.5)
+LEVEL = SlicePlaneSpec(kind="horizontal", z_m=1.0, thickness_m=0.5)
 WINDOW = WindowSpec(left=0.5, bottom=0.0, right=1.5, top=2.0)
 OFFSET_M = 0.03125
 """Exact as a half float."""
@@ -28,7 +28,7 @@ def folder(tmp_path):
 
 
 def ask(**changes):
-    return SliceImageRequest(cut=LEVEL, window=WINDOW, width=200, height=400, **changes)
+    return SliceImageRequest(plane=LEVEL, window=WINDOW, width=200, height=400, **changes)
 
 
 @pytest.mark.parametrize("surface", ["fitted", "raw"])
@@ -46,7 +46,7 @@ def test_the_image_shows_the_points_where_they_were_measured(folder):
 
 @pytest.mark.parametrize(("surface", "x_m"), [("fitted", 1.0), ("raw", 1.0 + OFFSET_M)])
 def test_a_picked_point_is_one_of_those_shown(folder, surface, x_m):
-    wanted = PickRequest(cut=LEVEL, uv=(1.01, 1.0), radius_m=0.2, surface=surface)
+    wanted = PickRequest(plane=LEVEL, uv=(1.01, 1.0), radius_m=0.2, surface=surface)
 
     found = pick_point({"map": str(folder)}, wanted)
 
