@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 import sqlalchemy as sa
 from alembic import command
 from alembic.config import Config
 
-from recon4.store.sqlite_files import make_durable
+from recon4.store.sqlite_files import BUSY_S, make_durable
 
 
 def open_engine(path: Path) -> sa.Engine:
     """An engine for a file; a commit survives a power cut."""
-    engine = sa.create_engine(f"sqlite:///{path}")
-    sa.event.listen(engine, "connect", _make_durable)
+    engine = sa.create_engine(f"sqlite:///{path}", connect_args={"timeout": BUSY_S})
+    sa.event.listen(engine, "connect", lambda connection, _: make_durable(connection))
     return engine
 
 
@@ -25,8 +24,3 @@ def migrate(connection: sa.Connection, package: Path) -> None:
     config.set_main_option("script_location", str(package / "migrations"))
     config.attributes["connection"] = connection
     command.upgrade(config, "head")
-
-
-def _make_durable(connection: Any, _: object) -> None:
-    make_durable(connection)
-    connection.execute("PRAGMA busy_timeout = 5000").close()

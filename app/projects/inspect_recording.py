@@ -74,8 +74,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
     Raises:
         RecordingError: If it cannot be read or has an unknown format.
     """
-    import math
-
+    from recon4.model.plain import finite_or_none
     from recon4.recording.info import describe
 
     info = describe(path)
@@ -94,7 +93,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
                 model=sensor.model,
                 content=sensor.content,
                 count=sensor.count,
-                rate_hz=sensor.rate_hz if math.isfinite(sensor.rate_hz) else None,
+                rate_hz=finite_or_none(sensor.rate_hz),
             )
             for sensor in info.sensors
         ),

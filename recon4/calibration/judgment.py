@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from recon4.calibration.joint import JointEstimate
 from recon4.calibration.parameters import Parameter, Unit
 from recon4.model.figures import ParameterFigures, ParameterStatus
+from recon4.model.plain import finite_or_none
 
 _SIGMAS = 3.0
 
@@ -56,7 +57,7 @@ def judge(
             axis=parameter.axis,
             unit=parameter.unit,
             change=float(change),
-            sd=float(sd_of_row) if np.isfinite(sd_of_row) else None,
+            sd=finite_or_none(sd_of_row),
             status=_status(float(change), float(sd_of_row), parameter),
         )
         for parameter, change, sd_of_row in rows

@@ -26,6 +26,7 @@ from recon4.evaluation.text import evaluation_text
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.frames import Frames
+from recon4.model.plain import finite_or_none
 from recon4.model.trajectory import Trajectory
 
 _EVERY = 10
@@ -213,6 +214,4 @@ def _plain(value: object) -> object:
         return _plain(value.tolist())
     if isinstance(value, list | tuple):
         return [_plain(item) for item in value]
-    if isinstance(value, float) and not np.isfinite(value):
-        return None
-    return value
+    return finite_or_none(value) if isinstance(value, float) else value

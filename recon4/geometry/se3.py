@@ -20,6 +20,11 @@ ARM_M = 5.0
 _SMALL_ANGLE = 1e-7
 
 
+def tangent_size_m(step: Array) -> float:
+    """How far a tangent moves a point at `ARM_M` [m]; rotation first, (6,)."""
+    return float(ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION]))
+
+
 def skew(v: Array) -> Array:
     """Cross-product matrices, (..., 3) -> (..., 3, 3)."""
     out = np.zeros((*v.shape, 3))
@@ -184,6 +189,14 @@ class SE3:
     def angle(self) -> Any:
         """Rotation angles [rad], (...)."""
         return np.linalg.norm(so3_log(self.R), axis=-1)
+
+    def size_m(self) -> float:
+        """How far one pose moves a point at `ARM_M` [m]."""
+        return float(np.linalg.norm(self.t)) + ARM_M * float(self.angle())
+
+    def stepped(self, step: Array) -> SE3:
+        """One pose, turned about its own origin and moved by a tangent in the outer axes, (6,)."""
+        return SE3(so3_exp(step[ROTATION]) @ self.R, self.t + step[TRANSLATION])
 
     def inverse(self) -> SE3:
         """``T_b_a`` of ``T_a_b``."""

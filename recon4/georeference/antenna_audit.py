@@ -48,7 +48,7 @@ _PARAMETERS = 4
 """Lever arm (3) and clock."""
 _PRIOR = 1e-6
 """Information of every unknown, so that all are determined."""
-ARM_M, CLOCK_S = 0.05, 0.02
+_LEVER_ARM_M, _CLOCK_S = 0.05, 0.02
 """Smaller errors are not announced."""
 _SIGMAS = 4.5
 _SD_FACTOR = 1.5
@@ -121,7 +121,7 @@ def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
     """
     texts = []
     arm, sd = np.array(found.arm_m), np.array(found.arm_sd_m)
-    if found.arm_sigmas > _SIGMAS and np.linalg.norm(arm) > ARM_M:
+    if found.arm_sigmas > _SIGMAS and np.linalg.norm(arm) > _LEVER_ARM_M:
         parts = (
             f"{name} {100 * value:+.0f} cm ± {100 * sd_of:.0f} cm"
             for name, value, sd_of in zip("xyz", arm, sd, strict=True)
@@ -136,7 +136,7 @@ def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
             f"(± {100 * sd[:2].max():.0f} cm): the walk has too few turns. An error of the rig "
             "file moves the map by as much."
         )
-    if abs(found.clock_s) > max(_SIGMAS * found.clock_sd_s, CLOCK_S):
+    if abs(found.clock_s) > max(_SIGMAS * found.clock_sd_s, _CLOCK_S):
         texts.append(
             "The rig file contradicts the GNSS fixes: their clock differs by "
             f"{1e3 * found.clock_s:.0f} ms ± {1e3 * found.clock_sd_s:.0f} ms. Check the time "

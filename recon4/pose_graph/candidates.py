@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from recon4.geometry.se3 import ARM_M, SE3, Array
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.pose_graph.pairs import Pair
 from recon4.settings import GraphSettings
@@ -131,7 +131,7 @@ def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float
     for edge in rejected:
         T_i_j = graph.T_map_body[edge.i].inverse() @ graph.T_map_body[edge.j]
         moved = expected[edge.i, edge.j].inverse() @ T_i_j
-        if np.linalg.norm(moved.t) + ARM_M * moved.angle() > move_m:
+        if moved.size_m() > move_m:
             pairs.append(Pair(edge.i, edge.j, edge.kind, T_i_j))
     return pairs
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from recon4.geometry.lines import Lines, closest_points
-from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, align_points
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import RegistrationSettings
 
@@ -143,7 +143,7 @@ def _normal_equations(p: Array, n: Array, r: Array, *, w: Array) -> tuple[Array,
 def _stop(errors: list[float], step: _Step, settings: RegistrationSettings) -> StopReason | None:
     """Stop reason, or None: rules of requirements A3.2 for ``svd``, else a small step."""
     if settings.solver == "common_normal":
-        move_m = ARM_M * float(step.T.angle()) + float(np.linalg.norm(step.T.t))
+        move_m = step.T.size_m()
         return StopReason.SMALL_STEP if move_m < settings.converged_step_m else None
     window = settings.error_window
     if len(errors) < window:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.se3 import ARM_M, SE3, Array, proper, so3_exp
+from recon4.geometry.se3 import SE3, Array, proper, so3_exp, tangent_size_m
 from recon4.kernels.imu import place_points
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import observable_directions
@@ -141,9 +141,4 @@ def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
 def _largest_move_m(step: Array) -> float:
     """How far a step moves a point at `ARM_M`, at the start or end of the frame [m]."""
     poses = (step[START], step[END_POSE])
-    return float(
-        max(
-            ARM_M * np.linalg.norm(pose[STATE.rotation]) + np.linalg.norm(pose[STATE.position])
-            for pose in poses
-        )
-    )
+    return float(max(tangent_size_m(pose) for pose in poses))

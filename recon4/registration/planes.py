@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp, so3_log
+from recon4.geometry.se3 import SE3, Array, so3_log, tangent_size_m
 from recon4.registration.degeneracy import observable_pose
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
@@ -45,12 +45,14 @@ def register_to_planes(
             stop = StopReason.TOO_FEW
             break
         step = _gauss_newton_step(match.H[START, START], match.g[START])
-        T_target_source = _corrected(T_target_source, step)
-        if not np.isfinite(step).all() or _moved(initial, T_target_source) > settings.max_move_m:
+        T_target_source = T_target_source.stepped(step)
+        if (
+            not np.isfinite(step).all()
+            or (initial.inverse() @ T_target_source).size_m() > settings.max_move_m
+        ):
             stop = StopReason.UNSTABLE
             break
-        small = ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION])
-        if last_gate and small < settings.converged_step_m:
+        if last_gate and tangent_size_m(step) < settings.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
     H = match.H[START, START]
@@ -74,17 +76,12 @@ def _observable(
     reduced, keep = observable_pose(H, normal_noise_rad)
     moved = np.concatenate([so3_log(found.R @ initial.R.T), found.t - initial.t])
     kept = keep @ moved
-    return reduced, _corrected(initial, kept)
+    return reduced, initial.stepped(kept)
 
 
 def _gauss_newton_step(H: Array, g: Array) -> Array:
     """Step that reduces the distances, damped a little, (6,)."""
     return -np.linalg.solve(H + 1e-6 * np.trace(H) / 6 * np.eye(6), g)
-
-
-def _corrected(T_target_source: SE3, step: Array) -> SE3:
-    """The pose turned about the source's origin and moved, in the target's axes."""
-    return SE3(so3_exp(step[ROTATION]) @ T_target_source.R, T_target_source.t + step[TRANSLATION])
 
 
 def _match_round(target: PlaneMap, T_target_source: SE3, source: Array, *, rounds: int) -> Match:
@@ -108,11 +105,6 @@ def _error(target: PlaneMap, T_target_source: SE3, source: Array) -> float:
         gate_m=_ERROR_GATE_M,
     )
     return wide.mean_m
-
-
-def _moved(initial: SE3, T_target_source: SE3) -> float:
-    delta = initial.inverse() @ T_target_source
-    return float(np.linalg.norm(delta.t)) + ARM_M * float(delta.angle())
 
 
 def _empty(count: int) -> Match:

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from scipy import fft, ndimage
 from scipy.spatial import cKDTree
 
-from recon4.geometry.se3 import ARM_M, ROTATION, SE3, TRANSLATION, Array, so3_exp
+from recon4.geometry.se3 import SE3, Array, tangent_size_m
 from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import ScanSettings
@@ -169,11 +169,8 @@ def _descend(
         if matches < _MIN_MATCHES:
             return _refused(T, done)
         step = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
-        T = SE3(so3_exp(step[ROTATION]) @ T.R, T.t + step[TRANSLATION])
-        if (
-            done > 2
-            and ARM_M * np.linalg.norm(step[ROTATION]) + np.linalg.norm(step[TRANSLATION]) < 1e-3
-        ):
+        T = T.stepped(step)
+        if done > 2 and tangent_size_m(step) < 1e-3:
             stop = StopReason.SMALL_STEP
             break
     match_ratio = inliers / len(p)

@@ -68,7 +68,7 @@ def _changes(S: Array, W: Array, r: Array, *, in_graph: NDArray[np.bool_]) -> Ar
 
 
 def _size(change: Array) -> Array:
-    turn, shift = (np.linalg.norm(part, axis=1) for part in (change[:, :3], change[:, 3:]))
+    turn, shift = (np.linalg.norm(half, axis=1) for half in (change[:, :3], change[:, 3:]))
     size: Array = shift + ARM_M * turn
     return size
 

@@ -24,7 +24,6 @@ from recon4.store.sqlite_files import connect, make_durable, merge_log, sync_com
 NAME = "decisions.sqlite"
 START = "0" * 64
 """``prev_hash`` of the first row."""
-_BUSY_S = 10.0
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS journal (
@@ -205,7 +204,7 @@ def _rows(db: sqlite3.Connection) -> list[JournalRow]:
 def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection]:
     db: sqlite3.Connection | None = None
     try:
-        db = connect(path, busy_s=_BUSY_S)
+        db = connect(path)
         if write:
             make_durable(db)
             db.executescript(_SCHEMA)
