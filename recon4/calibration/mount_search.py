@@ -104,7 +104,7 @@ def exchanged_mount(rig: Rig, row: int, reference: int) -> SE3:
 
 
 def _window_clouds(window: Window, reference: int, row: int) -> _WindowClouds | None:
-    T_body = window.recorded.sensors[reference].T_body_sensor
+    T_body = window.recorded_rig.sensors[reference].T_body_sensor
     of_map, of_other = window.sensor == reference, window.sensor == row
     if of_map.sum() < _SOURCE_POINTS or of_other.sum() < _NEIGHBORS:
         return None

@@ -42,7 +42,7 @@ class Window:
     """Beam, (N,)."""
     t_s: Array
     """Times, (N,)."""
-    recorded: Rig
+    recorded_rig: Rig
     """The rig whose clock offsets are in the times."""
     imu: ImuSamples | None
     trajectory: Trajectory
@@ -103,7 +103,7 @@ def cut_window(frames: RecordedFrames, trajectory: Trajectory, rows: range) -> W
 
 def place(window: Window, rig: Rig) -> PlacedPoints:
     """Place the points of a window with a rig that may differ from the recorded one."""
-    t_s = window.t_s + _clock_change_s(window.recorded, rig)[window.sensor]
+    t_s = window.t_s + _clock_change_s(window.recorded_rig, rig)[window.sensor]
     T = rig.T_body_sensor
     arm_body = np.einsum("nij,nj->ni", T.R[window.sensor], window.p_sensor)
     p_body = arm_body + T.t[window.sensor]

@@ -70,7 +70,7 @@ def line_factor(range_m: NDArray[np.floating], name: str, report: ImportReport) 
     if not len(range_m) or float(np.median(range_m)) <= _FAR_LINE_M:
         return 1.0
     is_mm = float(np.percentile(range_m, 1.0)) > _NEAR_CM
-    return _said(float(np.median(range_m)), is_mm, who=f"{name}: ", report=report)
+    return _reported_unit_m(float(np.median(range_m)), is_mm, prefix=f"{name}: ", report=report)
 
 
 def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: ImportReport) -> float:
@@ -80,13 +80,13 @@ def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: Import
     is_mm = max(float(seen.max()), range_max_m) > _LARGEST_CM or median > _MEDIAN_CM
     if median * (1e-3 if is_mm else 1e-2) > _FAR_M:
         raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
-    return _said(median, is_mm, who="", report=report)
+    return _reported_unit_m(median, is_mm, prefix="", report=report)
 
 
-def _said(median: float, is_mm: bool, *, who: str, report: ImportReport) -> float:
+def _reported_unit_m(median: float, is_mm: bool, *, prefix: str, report: ImportReport) -> float:
     unit = "millimeters" if is_mm else "centimeters"
     report.warn(
-        f"{who}half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
+        f"{prefix}half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
     )
     return 1e-3 if is_mm else 1e-2
 

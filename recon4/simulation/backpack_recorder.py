@@ -41,7 +41,7 @@ class BackpackRecorder:
     def __init__(self, folder: Path, setup: BackpackSetup, degradation: Degradation) -> None:
         self._folder, self._setup, self._degradation = folder, setup, degradation
         self._counts = {"line_scans": 0, "points": 0, "laser2d_scans": 0}
-        self._imu = self._sense()
+        self._imu = self._imu_samples()
         if self._imu is not None:
             write_imu(folder / "imu.csv", self._imu)
         (folder / "rig.toml").write_text(format_rig(degradation.rig_file(setup.rig)), "utf-8")
@@ -85,7 +85,7 @@ class BackpackRecorder:
             self._stuck_rad = float(head[0]) if self._stuck_rad is None else self._stuck_rad
             head = np.full(len(head), self._stuck_rad)
         if "head-pause" in values:
-            head = self._paused(lines.t_ns, head)
+            head = self._with_pause(lines.t_ns, head)
         if "no-head" not in values:
             self._bag.head(sensor.head_topic or "/profiler/head", t_ns, head)
         self._bag.scans(
@@ -103,7 +103,7 @@ class BackpackRecorder:
         self._counts["line_scans"] += len(kept)
         self._counts["points"] += int(np.isfinite(lines.range_m[kept]).sum())
 
-    def _paused(self, t_ns: Times, head: Array) -> Array:
+    def _with_pause(self, t_ns: Times, head: Array) -> Array:
         """Angles with the one of `_SILENT_FROM_S` for as long as the encoder is stuck."""
         t_s = 1e-9 * t_ns
         stuck = t_s >= _SILENT_FROM_S
@@ -134,7 +134,7 @@ class BackpackRecorder:
         self._bag.scans(sensor.topic, scans)
         self._counts["laser2d_scans"] += len(scans)
 
-    def _sense(self) -> ImuSamples | None:
+    def _imu_samples(self) -> ImuSamples | None:
         setup, degradation = self._setup, self._degradation
         if "no-imu" in degradation.values:
             return None

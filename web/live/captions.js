@@ -16,7 +16,7 @@ const LOW_BATTERY = 0.15;
 const HIGH_LOSS = 0.01;
 const GRACE_S = 3; // no sensor is shown as silent this soon after the start
 
-export const records = (state) => state === "recording" || state === "paused";
+export const isCapturing = (state) => state === "recording" || state === "paused";
 
 export function clock(seconds) {
   const s = Math.floor(seconds);
@@ -36,12 +36,13 @@ export function stateText(state, linked) {
 export const linkLost = (state, seconds) => ({
   level: "error",
   text:
-    `No link for ${seconds} s, trying again.` + (records(state) ? " The recording continues" : ""),
+    `No link for ${seconds} s, trying again.` +
+    (isCapturing(state) ? " The recording continues" : ""),
 });
 
 /** Sensors, disk and batteries in brief: [{text, error}]. */
 export function chips({ lidars = [], rates = {}, fix, status, battery }, state, phone) {
-  if (!status || !records(state)) return [];
+  if (!status || !isCapturing(state)) return [];
   const samples = Object.entries(rates).filter(([name, rate]) =>
     name === "GNSS" ? rate > 0 && !fix : name === "IMU",
   );

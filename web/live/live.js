@@ -8,7 +8,7 @@ import { Camera, moveByPointer } from "./camera.js";
 import { drawHealth, showHealth } from "./health.js";
 import { drawOverlay, planImage } from "./overlay.js";
 import { LiveScene } from "./scene.js";
-import { clock, coverageTexts, hint, records, stateText } from "./captions.js";
+import { clock, coverageTexts, hint, isCapturing, stateText } from "./captions.js";
 
 const HEAD_M = 0.5;
 const MIN_FREE_PX = 80;
@@ -151,7 +151,7 @@ function write(id, text) {
 function drawTexts() {
   if (scene.renewed && !document.querySelector("dialog[open]")) location.reload();
   const { state, newest } = scene;
-  document.body.classList.toggle("walking", records(state));
+  document.body.classList.toggle("walking", isCapturing(state));
   const { text, className } = stateText(state, linked);
   write("state", text);
   byId("state").className = className;
@@ -239,11 +239,11 @@ function help() {
   const who = me?.login ? `Signed in as ${me.name}, ${me.role}. ` : "";
   const points = `${scene.total.toLocaleString("en")} points on this phone.`;
   byId("about").textContent = me ? who + points : "";
-  byId("name-it").hidden = !me?.may.includes("capture") || !records(scene.state);
+  byId("name-it").hidden = !me?.may.includes("capture") || !isCapturing(scene.state);
   byId("more", HTMLDialogElement).showModal();
 }
 
-const sensors = () => records(scene.state) && showHealth({ scene, battery });
+const sensors = () => isCapturing(scene.state) && showHealth({ scene, battery });
 
 byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);

@@ -179,7 +179,7 @@ def test_there_are_24_axis_rotations():
 def test_a_lidar_upside_down_is_among_the_first_mounts(dance):
     wrong = mounted(dance.rig, 1, turn_deg=(0.0, 180.0, 0.0))
     alone = replace(dance, rig=without_others(wrong, 0))
-    window = replace(cut_window(dance, dance.truth, range(20, 50)), recorded=wrong)
+    window = replace(cut_window(dance, dance.truth, range(20, 50)), recorded_rig=wrong)
     assert alone.rig.sensors[0].enabled
     assert not alone.rig.sensors[1].enabled
 
