@@ -15,7 +15,7 @@ from recon4.kernels.surface_cells import (
     distance_in_front,
     main_axis,
 )
-from recon4.kernels.surface_windows import own_offset, write_plane
+from recon4.kernels.surface_shapes import own_offset, write_plane
 
 _MOST_LISTED = 24
 _MIN_TAIL = 250.0

@@ -9,7 +9,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from recon4.kernels import surface_cells, surface_points, surface_slots, surface_windows
+from recon4.kernels import (
+    surface_cells,
+    surface_points,
+    surface_shapes,
+    surface_slots,
+    surface_windows,
+)
 from recon4.kernels.moments import MOMENTS
 from recon4.kernels.surface_cells import PLANE, SLOTS
 from recon4.kernels.surface_points import SURFACE
@@ -216,8 +222,8 @@ class _Fit:
         count, found = len(planes), self.found
         sums = self.array("shape_sums", (count, 2, 5), np.float64)
         kept = self.array("kept", (count, 2), np.bool_)
-        surface_windows.shape_sums(*self.points, planes, 4.0 * self.noise_m, sums)
-        surface_windows.drop_mixed(
+        surface_shapes.shape_sums(*self.points, planes, 4.0 * self.noise_m, sums)
+        surface_shapes.drop_mixed(
             *self.step, found.begin, found.near, sums, ONE_SHEET * self.noise_m, 0.35, planes, kept
         )
         planes[:, :, 4] *= kept
