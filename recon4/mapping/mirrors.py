@@ -10,6 +10,7 @@ same for a LiDAR, but smaller than `_MIN_AREA_M2`.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,7 +40,8 @@ _MIN_BEAMS, _MIN_RATIO = 3, 0.75
 """A cell is mirrored if this many beams cross it, and this ratio of them shows the room before
 it."""
 _MIN_AREA_M2 = 2.5
-_MOST_BEAMS = 20_000
+_MOST_BEAMS, _MOST_POINTS = 20_000, 60_000
+"""No more beams through a wall, and points on walls, are used."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,39 +109,62 @@ def find_mirrors(sight: Sight) -> list[MirrorFound]:
         return []
     center = sight.point_m.mean(axis=0)
     found = local_normals((sight.point_m - center).astype(np.float32), _CELL_M)
-    normal = found.normal.astype(np.float64)
-    known = found.support >= _MIN_SUPPORT
-    walls = _walls(sight, normal, known & (np.abs(normal[:, 2]) < _VERTICAL))
-    mirrors = [_mirror(wall, sight, normal, known=known) for wall in walls]
+    # What faces a wall is not level.
+    rows = (found.support >= _MIN_SUPPORT) & (np.abs(found.normal[:, 2]) < np.sqrt(1 - _FACING**2))
+    kept = np.flatnonzero(rows)
+    if not len(kept):
+        return []
+    steep = _Steep(sight[kept], found.normal[kept].astype(np.float64))
+    mirrors = [_mirror(wall, steep, sight) for wall in _walls(steep)]
     return sorted((m for m in mirrors if m is not None), key=lambda m: -m.area_m2)
 
 
-def _walls(sight: Sight, normal: Array, vertical: NDArray[np.bool_]) -> list[_Wall]:
+@dataclass(frozen=True, eq=False)
+class _Steep:
+    """Points on surfaces that are not level, with their normals, (N, 3)."""
+
+    sight: Sight
+    normal: Array
+
+    @cached_property
+    def tree(self) -> cKDTree:
+        """Of all points."""
+        return cKDTree(self.sight.point_m, balanced_tree=False, compact_nodes=False)
+
+
+def _walls(steep: _Steep) -> list[_Wall]:
     """The largest vertical planes, each once."""
-    rows = np.flatnonzero(vertical)
+    rows = np.flatnonzero(np.abs(steep.normal[:, 2]) < _VERTICAL)
+    rows = rows[:: 1 + len(rows) // _MOST_POINTS]
     found: list[_Wall] = []
-    center = sight.point_m.mean(axis=0)
     while len(rows) > _MIN_SUPPORT and len(found) < _MOST_WALLS:
-        n, p = normal[rows, :2], sight.point_m[rows] - center
-        angle = np.mod(np.arctan2(n[:, 1], n[:, 0]), np.pi)
-        slot = np.rint(angle / _ANGLE_RAD) % round(np.pi / _ANGLE_RAD)
-        axis = np.stack([np.cos(slot * _ANGLE_RAD), np.sin(slot * _ANGLE_RAD)], axis=1)
-        shift = np.rint((p[:, :2] * axis).sum(axis=1) / _OFFSET_M)
-        bins, which, count = np.unique(
-            np.stack([slot, shift], axis=1), axis=0, return_inverse=True, return_counts=True
-        )
+        slot, key = _bins(steep, rows)
+        count = np.bincount(key)
         best = int(np.argmax(count))
-        inside = rows[which.ravel() == best]
-        wall = _fitted(sight[inside], normal[inside], bins[best, 0] * _ANGLE_RAD)
-        near = np.abs(wall.height(sight.point_m[rows])) < _OFFSET_M
-        near &= np.abs(normal[rows] @ wall.normal) > np.cos(2.0 * _ANGLE_RAD)
-        used = rows[near]
-        rows = np.setdiff1d(rows[~near], inside)
-        if len(np.unique(wall.cells(sight.point_m[used]), axis=0)) >= _WALL_CELLS:
+        inside = key == best
+        angle_rad = float(slot[inside][0]) * _ANGLE_RAD
+        of_bin = rows[inside]
+        wall = _fitted(steep.sight[of_bin], steep.normal[of_bin], angle_rad)
+        place = steep.sight.point_m[rows]
+        near = np.abs(wall.height(place)) < _OFFSET_M
+        near &= np.abs(steep.normal[rows] @ wall.normal) > np.cos(2.0 * _ANGLE_RAD)
+        if len(np.unique(wall.cells(place[near]), axis=0)) >= _WALL_CELLS:
             found.append(wall)
         elif count[best] < _WALL_CELLS:
             break
+        rows = rows[~(near | inside)]
     return found
+
+
+def _bins(steep: _Steep, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Bin of the direction of each normal, and of direction and offset together, (N,) each."""
+    n, p = steep.normal[rows, :2], steep.sight.point_m[rows, :2]
+    angle = np.mod(np.arctan2(n[:, 1], n[:, 0]), np.pi)
+    slots = round(np.pi / _ANGLE_RAD)
+    slot = np.rint(angle / _ANGLE_RAD).astype(np.int64) % slots
+    axis = np.stack([np.cos(slot * _ANGLE_RAD), np.sin(slot * _ANGLE_RAD)], axis=1)
+    shift = np.rint((p * axis).sum(axis=1) / _OFFSET_M).astype(np.int64)
+    return slot, (shift - shift.min()) * slots + slot
 
 
 def _fitted(sight: Sight, normal: Array, angle_rad: float) -> _Wall:
@@ -151,35 +176,30 @@ def _fitted(sight: Sight, normal: Array, angle_rad: float) -> _Wall:
     return _Wall(axis, offset_m) if before else _Wall(-axis, -offset_m)
 
 
-def _mirror(
-    wall: _Wall, sight: Sight, normal: Array, *, known: NDArray[np.bool_]
-) -> MirrorFound | None:
+def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFound | None:
     """The part of a wall that shows the room before it; None = less than counts."""
+    sight, normal = steep.sight, steep.normal
     before, behind = wall.height(sight.origin_m), -wall.height(sight.point_m)
-    crossing = (before > _BEFORE_M) & (behind > _BEHIND_M)
-    facing = np.abs(normal @ wall.normal) > _FACING
-    beams = np.flatnonzero(crossing & facing & known)
+    beams = np.flatnonzero((before > _BEFORE_M) & (behind > _BEHIND_M))
+    beams = beams[np.abs(normal[beams] @ wall.normal) > _FACING]
     beams = beams[:: 1 + len(beams) // _MOST_BEAMS]
-    if len(beams) < _MIN_BEAMS:
+    if len(beams) * _GRID_M**2 < _MIN_AREA_M2:
         return None
-    own = np.flatnonzero((behind < -_BEFORE_M) & known)
-    if not len(own):
-        return None
-    tree = cKDTree(sight.point_m[own])
-    reach, nearest = tree.query(wall.reflected(sight.point_m[beams]), distance_upper_bound=_SAME_M)
+    point, origin = sight.point_m[beams], sight.origin_m[beams]
+    reach, nearest = steep.tree.query(wall.reflected(point), distance_upper_bound=_SAME_M)
     met = np.isfinite(reach)
     turned = normal[beams] - 2.0 * (normal[beams] @ wall.normal)[:, None] * wall.normal
-    nearest = own[np.where(met, nearest, 0)]
-    met &= np.abs(np.einsum("ni,ni->n", turned, normal[nearest])) > _SAME_COSINE
+    like = np.einsum("ni,ni->n", turned, normal[np.where(met, nearest, 0)])
+    met &= np.abs(like) > _SAME_COSINE
     part = before[beams] / (before[beams] + behind[beams])
-    ray = sight.point_m[beams] - sight.origin_m[beams]
-    at = sight.origin_m[beams] + part[:, None] * ray
+    at = origin + part[:, None] * (point - origin)
     _, which, count = np.unique(wall.cells(at), axis=0, return_inverse=True, return_counts=True)
     which = which.ravel()
-    share = np.bincount(which, met) / count
-    mirrored = (count >= _MIN_BEAMS) & (share >= _MIN_RATIO)
+    mirrored = (count >= _MIN_BEAMS) & (np.bincount(which, met) >= _MIN_RATIO * count)
     area_m2 = float(mirrored.sum()) * _GRID_M**2
     if area_m2 < _MIN_AREA_M2:
         return None
     x, y, _ = at[mirrored[which]].mean(axis=0).tolist()
+    crossing = wall.height(every.origin_m) > _BEFORE_M
+    crossing &= wall.height(every.point_m) < -_BEHIND_M
     return MirrorFound(area_m2, (x, y), float(crossing.mean()))
