@@ -14,7 +14,7 @@ class MapSettings:
 
     voxel_m: float = 0.01
     """Edge of a voxel [m]; the point with the shortest range in each is kept; 0 = keep all."""
-    surface: Literal["raw", "fitted"] = "raw"
+    surface: Literal["raw", "fitted"] = "fitted"
     """Where points lie: where they were measured, or on the surface fitted to all returns around
     them, as far as there is one. Then tiles have both positions, and stray returns are marked."""
     range_noise_m: float = 0.015

@@ -93,6 +93,7 @@ PRESETS: dict[str, Settings] = {
         verification=VerificationSettings(robust="none"),
         gnss=GnssSettings(judge_edges=False),
         intensity=IntensitySettings(method="bins", min_contrast=0.0),
+        map=MapSettings(surface="raw"),
     ),
 }
 

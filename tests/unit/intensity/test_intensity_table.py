@@ -214,7 +214,7 @@ def deviation(curve, count):
 def normalized_map(walk, table, folder):
     """Points of the walk's map with raw and normalized intensity."""
     folder.mkdir()
-    settings = MapSettings(voxel_m=0.02, normal_cell_m=0.15)
+    settings = MapSettings(voxel_m=0.02, normal_cell_m=0.15, surface="raw")
     tiles = list(build_map(MapInputs(walk, walk.trajectory, table), folder, settings=settings))
     columns = [t.read(["intensity", "intensity_normalized"]) for t in tiles]
     fields = ("intensity", "intensity_normalized")

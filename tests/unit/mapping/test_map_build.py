@@ -3,6 +3,7 @@
 import hashlib
 import json
 import tracemalloc
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -16,10 +17,10 @@ from recon4.mapping.tile import FIELDS, SURFACE_FIELDS
 from recon4.mapping.tiles import TileSet
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
-from recon4.settings import MapSettings
+from recon4.settings import MapSettings, preset
 from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
 
-ALL = MapSettings(voxel_m=0.0, min_neighborhood=1)
+ALL = MapSettings(voxel_m=0.0, min_neighborhood=1, surface="raw")
 
 
 def build(walk, folder, settings, *, crs=None, **options):
@@ -68,7 +69,7 @@ def test_without_thinning_every_point_is_in_the_map_once_with_its_fields(tmp_pat
 
 def test_no_two_points_share_a_voxel_and_the_nearest_one_stays(tmp_path):
     walk = room_walk(frames=15, points=4000)
-    settings = MapSettings(voxel_m=0.1, normal_cell_m=0.2, min_neighborhood=1)
+    settings = MapSettings(voxel_m=0.1, normal_cell_m=0.2, min_neighborhood=1, surface="raw")
 
     tiles = build(walk, tmp_path / "thin", settings)
     full = build(walk, tmp_path / "full", ALL)
@@ -100,12 +101,10 @@ def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path):
 
 def test_normals_of_walls_point_to_the_sensor_and_ignore_tile_borders(tmp_path):
     walk = room_walk(frames=20, points=20_000, noise_m=0.002)
-    settings = MapSettings(voxel_m=0.02, tile_m=1.0, normal_cell_m=0.1)
+    settings = MapSettings(voxel_m=0.02, tile_m=1.0, normal_cell_m=0.1, surface="raw")
 
     tiles = build(walk, tmp_path / "small", settings)
-    large = build(
-        walk, tmp_path / "large", MapSettings(voxel_m=0.02, tile_m=4.0, normal_cell_m=0.1)
-    )
+    large = build(walk, tmp_path / "large", replace(settings, tile_m=4.0))
 
     xyz, normal = everything(tiles), points(tiles, "normal").astype(float)
     floor = (np.abs(xyz[:, 2] + 1.4) < 0.01) & (np.abs(xyz[:, :2]) < 2.0).all(axis=1)
@@ -161,7 +160,9 @@ def test_lonely_points_are_removed_and_counted(tmp_path):
     walk = room_walk(frames=10, points=5000)
     walk.frames[3].xyz[7] = [1.0, 0.5, 0.3]
 
-    tiles = build(walk, tmp_path / "map", MapSettings(voxel_m=0.0, normal_cell_m=0.2))
+    tiles = build(
+        walk, tmp_path / "map", MapSettings(voxel_m=0.0, normal_cell_m=0.2, surface="raw")
+    )
     kept = build(walk, tmp_path / "kept", ALL)
 
     assert tiles.notes.removed["lonely"] >= 1
@@ -173,7 +174,7 @@ def test_lonely_points_are_removed_and_counted(tmp_path):
 
 def test_points_of_long_range_are_removed_next_to_points_of_short_range(tmp_path):
     walk = room_walk(frames=20)
-    settings = MapSettings(voxel_m=0.0, far_ratio=1.5, min_neighborhood=1)
+    settings = MapSettings(voxel_m=0.0, far_ratio=1.5, min_neighborhood=1, surface="raw")
 
     tiles = build(walk, tmp_path / "map", settings)
 
@@ -305,6 +306,24 @@ def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp
     assert points(fitted, "returns")[floor].mean() > 10
     assert fitted.as_measured().only_strays().strays == 0
     assert raw.as_measured() is raw
+
+
+def test_surfaces_are_fitted_unless_the_documents_are_followed():
+    assert MapSettings().surface == "fitted"
+    assert preset("thesis").map.surface == "raw"
+
+
+def test_the_tiles_of_a_map_do_not_show_in_its_surfaces(tmp_path):
+    walk = room_walk(frames=30, points=20_000, noise_m=0.01)
+
+    small, large = (
+        build(walk, tmp_path / f"{tile_m:g}", MapSettings(tile_m=tile_m)) for tile_m in (1.0, 10.0)
+    )
+
+    _, a, b = np.intersect1d(points(small, "t_ns"), points(large, "t_ns"), return_indices=True)
+    apart = np.linalg.norm(everything(small)[a] - everything(large)[b], axis=1)
+    assert len(a) > 0.98 * len(large)
+    assert np.mean(apart > 0.001) < 0.04
 
 
 def test_fitted_maps_do_not_depend_on_the_number_of_bursts(tmp_path):
