@@ -225,7 +225,7 @@ def _map(
         points=len(tiles),
         bounds_m=(low, high),
         strays=tiles.strays,
-        surface=tiles.surface,
+        surface="fitted" if tiles.surface == "fitted" else "raw",
         thickness=plane_thickness(tiles),
         thickness_as_measured=(
             plane_thickness(tiles.as_measured()) if tiles.surface == "fitted" else None

@@ -35,8 +35,13 @@ TILE_M = 10.0
 BEGAN_NS = 1_700_000_000_000_000_000
 
 
-def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) -> None:
-    """Make a finished project in an empty folder (or one that has come as far as odometry)."""
+def build_project(
+    root: Path, *, points: int = 60_000, with_map: bool = True, strays: int = 0
+) -> None:
+    """Make a finished project in an empty folder (or one that has come as far as odometry).
+
+    The map has that many stray returns in the middle of each tile, beside its points.
+    """
     with Project.open(root) as project:
         project.describe(preset="indoor", rig="4RECON")
         runner = StageRunner(project, Settings(), Silent())
@@ -46,7 +51,9 @@ def build_project(root: Path, *, points: int = 60_000, with_map: bool = True) ->
             return
         runner.run(Stage("verification", 1, (), _verification), walk=walk)
         runner.run(Stage("level", 1, (), _level), walk=walk)
-        runner.run(Stage("map", 1, (), _map, MapFigures), points=Input(f"points {points}", points))
+        count = Input(f"points {points}", points)
+        loose = Input(f"strays {strays}", strays)
+        runner.run(Stage("map", 1, (), _map, MapFigures), points=count, strays=loose)
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
     (root / "report.html").write_text(
         "<!doctype html><title>Report</title><h1>Report</h1>" + draft_block()
@@ -200,7 +207,7 @@ def _level(context: StageContext, *, walk: Trajectory) -> None:
     )
 
 
-def _map(context: StageContext, *, points: int) -> MapFigures:
+def _map(context: StageContext, *, points: int, strays: int) -> MapFigures:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
     with TileWriter(context.out, list(FIELDS), tile_m=TILE_M) as writer:
@@ -208,7 +215,10 @@ def _map(context: StageContext, *, points: int) -> MapFigures:
         ijk = np.floor(p / TILE_M).astype(np.int64)
         for key in np.unique(ijk, axis=0):
             mine = p[np.all(ijk == key, axis=1)]
-            writer.append(tuple(int(k) for k in key), _columns(mine - key * TILE_M, rng))
+            xyz = np.vstack(
+                [mine - key * TILE_M, np.tile([0.5 * TILE_M, 0.5 * TILE_M, 1.5], (strays, 1))]
+            )
+            writer.append(tuple(int(k) for k in key), _columns(xyz, rng), strays=strays)
     low, high = (tuple(corner.tolist()) for corner in (p.min(axis=0), p.max(axis=0)))
     return MapFigures(points=points, bounds_m=(low, high))
 

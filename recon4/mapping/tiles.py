@@ -37,8 +37,8 @@ RAW_OFFSET = "raw_offset_m"
 """From the surface to where the point was measured; only in maps of fitted surfaces."""
 MARGIN_M = 0.2
 """No point was measured farther than this from its surface [m]."""
-Surface = Literal["fitted", "raw"]
-"""Where points lie: on the surfaces fitted to all returns, or where they were measured."""
+Surface = Literal["fitted", "raw", "strays"]
+"""Points on the surfaces fitted to all returns, or as measured, or only the stray returns."""
 Number = TypeVar("Number", int, float)
 _MALFORMED = (ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError)
 
@@ -112,9 +112,12 @@ class Tile:
         low_m, high_m = np.array(self.low_m) - MARGIN_M, np.array(self.high_m) + MARGIN_M
         return replace(self, raw=True, low_m=_triple(low_m, float), high_m=_triple(high_m, float))
 
-    def stray_part(self) -> Tile:
-        """The stray returns as a tile of their own."""
-        return replace(self, start=self.stop, stop=self.stop + self.strays, strays=0)
+    def stray_part(self, tile_m: float) -> Tile:
+        """The stray returns as a tile of their own; they lie anywhere in it."""
+        low_m = _triple(self.origin_m, float)
+        high_m = _triple(np.array(self.origin_m) + tile_m, float)
+        rows = (self.stop, self.stop + self.strays)
+        return replace(self, start=rows[0], stop=rows[1], strays=0, low_m=low_m, high_m=high_m)
 
     def spatial_order(self) -> NDArray[np.intp]:
         """Rows of the tile in spatial order, (N,)."""
@@ -194,15 +197,18 @@ class TileSet:
         return replace(self, tiles=tiles, surface="raw")
 
     def on(self, surface: Surface) -> TileSet:
-        """The same map with its points on their surfaces, or where they were measured."""
+        """The same map on its surfaces or as measured, or its stray returns, if it has any."""
+        if surface == "strays" and self.strays:
+            return self.only_strays()
         return self.as_measured() if surface == "raw" else self
 
     def only_strays(self) -> TileSet:
-        """The stray returns as a map of their own; its bounds are those of the map."""
+        """The stray returns as a map of their own; its bounds are those of their tiles."""
         return replace(
             self,
-            tiles=tuple(tile.stray_part() for tile in self.tiles if tile.strays),
+            tiles=tuple(tile.stray_part(self.tile_m) for tile in self.tiles if tile.strays),
             points=self.strays,
+            surface="strays",
         )
 
     @property

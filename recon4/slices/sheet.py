@@ -281,9 +281,17 @@ def approval_text(approval: Mapping[str, object] | None) -> str:
     return f"{signed}. Verdict on the map: {verdict}{reason}"
 
 
+SURFACE_TEXT: dict[Surface, str] = {
+    "fitted": "on fitted surfaces",
+    "raw": "as measured",
+    "strays": "stray returns only",
+}
+"""Where the points of a map lie, or which they are."""
+
+
 def surface_text(surface: Surface) -> str:
     """Where the points of a map lie, for sheets and captions."""
-    return "on fitted surfaces" if surface == "fitted" else "as measured"
+    return SURFACE_TEXT[surface]
 
 
 def source_text(artifact_key: str) -> str:

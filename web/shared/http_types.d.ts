@@ -569,7 +569,7 @@ export interface PickRequest {
   uv: [number, number];
   radius_m?: number;
   source?: string;
-  surface?: "fitted" | "raw";
+  surface?: "fitted" | "raw" | "strays";
 }
 
 export interface PickView {
@@ -866,7 +866,7 @@ export interface SettingsCheck {
 export interface SliceFacts {
   points: number;
   strays: number;
-  surface: "fitted" | "raw";
+  surface: "fitted" | "raw" | "strays";
   bounds_m: [[number, number, number], [number, number, number]];
   fields: Array<string>;
   sensors: Array<string>;
@@ -888,7 +888,7 @@ export interface SliceImageRequest {
   reference?: string;
   method?: "plane" | "point";
   source?: string;
-  surface?: "fitted" | "raw";
+  surface?: "fitted" | "raw" | "strays";
   width: number;
   height: number;
   ground?: "light" | "dark";
@@ -901,7 +901,7 @@ export interface SliceImageView {
   window: WindowSpec;
   pixel_m: number;
   points: number;
-  surface: "fitted" | "raw";
+  surface: "fitted" | "raw" | "strays";
   name: string;
   low: number;
   high: number;

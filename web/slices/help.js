@@ -9,7 +9,7 @@ const KEYS = [
   ["+ −", "Twice as thick, half as thick"],
   ["C", "Next color"],
   ["M", "Measure: two points"],
-  ["R", "Points on fitted surfaces or as measured"],
+  ["R", "Points on fitted surfaces, as measured, or only stray returns"],
   ["0", "Whole slice"],
   ["Arrows", "Pan the slice, when it has the focus"],
   ["Enter", "Pick the point in the middle"],

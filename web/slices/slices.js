@@ -152,7 +152,9 @@ function describe() {
     make("strong", {}, cutText(state.kind, name)),
     make("span", {}, `${Number((state.t * 100).toFixed(1))} cm thick`),
     make("span", {}, where),
-    ...(facts.strays ? [make("span", {}, `${count(facts.strays)} stray returns left out`)] : []),
+    ...(facts.strays && shown.surface !== "strays"
+      ? [make("span", {}, `${count(facts.strays)} stray returns left out`)]
+      : []),
     make("span", { className: "frame" }, facts.frame),
     make("span", {}, facts.approval),
   );
@@ -265,8 +267,9 @@ const thicker = (times) =>
   );
 
 function otherSurface() {
-  if (facts.surface === "fitted")
-    change({ surface: state.surface === "raw" ? "fitted" : "raw" }, { keep: true });
+  const every = Object.keys(SURFACES);
+  const next = every[(every.indexOf(state.surface) + 1) % every.length];
+  if (facts.surface === "fitted") change({ surface: next }, { keep: true });
 }
 
 function nextColor() {

@@ -24,7 +24,11 @@ export const COLORS = {
 };
 
 /** Where the points are drawn. */
-export const SURFACES = { fitted: "on fitted surfaces", raw: "as measured" };
+export const SURFACES = {
+  fitted: "on fitted surfaces",
+  raw: "as measured",
+  strays: "stray returns only",
+};
 
 /** The state in the query of an address; an invalid value becomes the default. */
 export function parse(query) {

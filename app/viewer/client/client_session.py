@@ -10,7 +10,7 @@ import logging
 import threading
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
 import numpy as np
 
@@ -166,7 +166,8 @@ def _other_intensity(view: ViewState) -> Any:
 
 
 def _other_surface(view: ViewState) -> Surface:
-    return "raw" if view.surface == "fitted" else "fitted"
+    every: tuple[Surface, ...] = get_args(Surface)
+    return every[(every.index(view.surface) + 1) % len(every)]
 
 
 def _preview(content: Content, view: ViewState) -> list[PointsNode]:

@@ -67,9 +67,14 @@ def surface_caption(content: Content, view: ViewState) -> str:
     """Where the points on screen lie; empty if the map has no fitted surfaces."""
     if content.cloud is None or content.cloud.tiles.surface == "raw":
         return ""
-    where = "On fitted surfaces" if view.surface == "fitted" else "As measured"
     strays = f"{content.cloud.tiles.strays:,}".replace(",", "\u202f")
-    return f"{where}, {strays} stray returns left out"
+    match content.cloud.on(view.surface).tiles.surface:
+        case "strays":
+            return f"Only the {strays} stray returns"
+        case "raw":
+            return f"As measured, {strays} stray returns left out"
+        case _:
+            return f"On fitted surfaces, {strays} stray returns left out"
 
 
 def shows_preview(content: Content, view: ViewState) -> bool:

@@ -20,7 +20,7 @@ from recon4.mapping.tiles import Surface
 Update = Callable[[ViewState], ViewState]
 HOTKEYS: tuple[tuple[str, Any, str], ...] = (
     ("Raw or normalized intensity", "N", "normalized"),
-    ("Points on fitted surfaces or as measured", "R", "surface"),
+    ("Points on fitted surfaces, as measured, or stray returns", "R", "surface"),
     ("Fit the map into the view", "F", "fit"),
     ("View from above", "7", "above"),
     ("View from the south", "1", "south"),
@@ -32,8 +32,12 @@ HOTKEYS: tuple[tuple[str, Any, str], ...] = (
 """Label, key, and name for `PanelCallbacks.command`."""
 
 
-LIE: dict[str, Surface] = {"on fitted surfaces": "fitted", "as measured": "raw"}
-"""Where points lie, as on screen."""
+LIE: dict[str, Surface] = {
+    "on fitted surfaces": "fitted",
+    "as measured": "raw",
+    "stray returns only": "strays",
+}
+"""Where points lie, or which they are, as on screen."""
 
 
 def _lie(view: ViewState) -> str:

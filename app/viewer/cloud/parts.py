@@ -92,7 +92,9 @@ class Cloud:
         return len(self.tiles)
 
     def on(self, surface: Surface) -> Cloud:
-        """The same map with its points on fitted surfaces, or where they were measured."""
+        """The same map on fitted surfaces or as measured, or its stray returns, if it has any."""
+        if surface == "strays":
+            return self._strays
         return self if surface == "fitted" else self._measured
 
     @cached_property
@@ -100,6 +102,12 @@ class Cloud:
         if self.tiles.surface == "raw":
             return self
         return Cloud(self._artifact, began_ns=self.began_ns, surface="raw")
+
+    @cached_property
+    def _strays(self) -> Cloud:
+        if not self.tiles.strays:
+            return self
+        return Cloud(self._artifact, began_ns=self.began_ns, surface="strays")
 
     @property
     def colors(self) -> tuple[ColorBy, ...]:

@@ -12,8 +12,8 @@ TILE_M = 5.0
 T0_NS = 1_700_000_000_000_000_000
 
 
-def write_map(out: Path, p_map, *, crs=None, **columns) -> TileSet:
-    """A map of the given points [m], (N, 3)."""
+def write_map(out: Path, p_map, *, crs=None, strays=0, **columns) -> TileSet:
+    """A map of the given points [m], (N, 3); the last of each tile are stray returns."""
     out.mkdir(parents=True, exist_ok=True)
     n = len(p_map)
     given = {"t_ns": np.full(n, T0_NS, np.int64), **columns}
@@ -28,7 +28,7 @@ def write_map(out: Path, p_map, *, crs=None, **columns) -> TileSet:
             }
             tile["xyz"] = (p_map[mine] - key * TILE_M).astype(np.float32)
             tile |= {name: np.asarray(values)[mine] for name, values in given.items()}
-            writer.append(tuple(key.tolist()), tile)
+            writer.append(tuple(key.tolist()), tile, strays=strays)
     return TileSet.open(out)
 
 

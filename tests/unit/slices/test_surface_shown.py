@@ -68,4 +68,55 @@ def test_the_viewer_draws_either(folder, surface, x_m):
 
 
 def test_a_sheet_names_either():
-    assert surface_text("fitted") != surface_text("raw")
+    assert len({surface_text(surface) for surface in ("fitted", "raw", "strays")}) == 3
+
+
+@pytest.fixture
+def with_strays(tmp_path):
+    """The same wall with nine stray returns half a meter behind it."""
+    rng = np.random.default_rng(2)
+    p = np.column_stack([np.ones(4000), rng.uniform(0, 2, 4000), rng.uniform(0.5, 1.5, 4000)])
+    p[-9:, 0] = 1.5
+    offset = np.tile([OFFSET_M, 0.0, 0.0], (4000, 1))
+    write_map(tmp_path / "strays", p, strays=9, raw_offset_m=offset)
+    return tmp_path / "strays"
+
+
+def test_a_slice_shows_the_stray_returns_alone(with_strays):
+    window = WindowSpec(left=0.5, bottom=0.0, right=2.0, top=2.0)
+    shown = {
+        surface: slice_image(
+            str(with_strays),
+            "",
+            SliceImageRequest(cut=LEVEL, window=window, width=200, height=400, surface=surface),
+        )
+        for surface in ("fitted", "raw", "strays")
+    }
+    wanted = PickRequest(cut=LEVEL, uv=(1.5, 1.0), radius_m=0.5, surface="strays")
+
+    found = pick_point({"map": str(with_strays)}, wanted)
+
+    assert {name: image.surface for name, image in shown.items()} == {n: n for n in shown}
+    assert 0 < shown["strays"].points <= 9
+    assert shown["fitted"].points == shown["raw"].points > 1000
+    assert found.p_map[0] == pytest.approx(1.5, abs=1e-6)
+
+
+def test_the_viewer_draws_the_stray_returns_alone(with_strays):
+    cloud = Cloud(with_strays)
+
+    strays = cloud.on("strays")
+
+    assert len(cloud) == len(cloud.on("raw")) == 3991
+    assert len(strays) == len(strays.part((0, 0)).p_part) == 9
+    assert np.abs(strays.part((0, 0)).p_part[:, 0] - 1.5).max() < 1e-6
+    view = ViewState(surface="strays")
+    assert view_from_json(view.to_json()) == view
+    assert legend(Content(cloud=cloud), view).surface == "Only the 9 stray returns"
+    assert legend(Content(cloud=cloud), ViewState()).surface.endswith("9 stray returns left out")
+
+
+def test_a_map_without_stray_returns_stays_as_it_is(folder):
+    assert len(Cloud(folder).on("strays")) == 4000
+    image = slice_image(str(folder), "", ask(surface="strays"))
+    assert image.surface == "fitted"
