@@ -88,11 +88,11 @@ def test_a_slice_shows_the_stray_returns_alone(with_strays):
         surface: slice_image(
             str(with_strays),
             "",
-            SliceImageRequest(cut=LEVEL, window=window, width=200, height=400, surface=surface),
+            SliceImageRequest(plane=LEVEL, window=window, width=200, height=400, surface=surface),
         )
         for surface in ("fitted", "raw", "strays")
     }
-    wanted = PickRequest(cut=LEVEL, uv=(1.5, 1.0), radius_m=0.5, surface="strays")
+    wanted = PickRequest(plane=LEVEL, uv=(1.5, 1.0), radius_m=0.5, surface="strays")
 
     found = pick_point({"map": str(with_strays)}, wanted)
 
