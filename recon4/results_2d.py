@@ -8,14 +8,21 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from recon4 import stages, stages_2d
+from recon4.bounded import read_json_object
+from recon4.errors import StoreError
 from recon4.geometry.se2 import from_se3
 from recon4.model.figures import Map2dFigures
 from recon4.model.pose_graph import EdgeKind
 from recon4.model.trajectory import Trajectory
+from recon4.model.usability import MapVerdict
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
 from recon4.report.artifacts import path_length_m
+from recon4.report.facts import StageTiming
+from recon4.report.page_2d import GridImage, Page2d, write_page_2d
 from recon4.result_files import write_graph, write_trajectory
 from recon4.run_summary import (
     About,
@@ -27,6 +34,8 @@ from recon4.run_summary import (
     seconds_of,
 )
 from recon4.settings import values_by_group
+from recon4.slam2d.map_files import read_map
+from recon4.slam2d.stage import read_covariance
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.verdict import Facts2d, judge
 from recon4.store.arrays import load_record, load_trajectory
@@ -42,8 +51,10 @@ RESULTS_2D = (
     "odometry.tum",
     "edges.json",
     "graph.g2o",
+    "report.html",
 )
 """Files of a finished run, beside its summary."""
+_MAX_REPORT_BYTES = 16 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,30 +87,58 @@ def publish_2d(
     """
     with changing(root, SUMMARY, compared=False):
         (root / SUMMARY).unlink(missing_ok=True)
-        for write in track(_writers(root, runs), progress, what="results", unit="files"):
+        made = _made(runs)
+        for write in track(_writers(root, made, about), progress, what="results", unit="files"):
             write()
-        summary = _summary(root, runs, about)
+        summary = _summary(root, made, about)
         write_json(root / SUMMARY, summary.to_json())
         return summary
 
 
-def _summary(root: Path, runs: Mapping[str, StageRun[Any]], about: About) -> Summary2d:
-    folder = {name: run.artifact.folder for name, run in runs.items()}
-    trajectory = load_trajectory(folder["map_2d"] / "trajectory.npz")
+@dataclass(frozen=True, slots=True, eq=False)
+class _Made:
+    """A finished run as its results show it."""
+
+    runs: Mapping[str, StageRun[Any]]
+    trajectory: Trajectory
+    facts: Facts2d
+    verdict: MapVerdict
+    created: str
+
+    @property
+    def folder(self) -> dict[str, Path]:
+        """Stage -> folder of its artifact."""
+        return {name: run.artifact.folder for name, run in self.runs.items()}
+
+    @property
+    def loops(self) -> int:
+        """Loop closures in the graph."""
+        edges = self.facts.graph.edges
+        return sum(edge.kind is EdgeKind.LOOP and edge.in_graph for edge in edges)
+
+
+def _made(runs: Mapping[str, StageRun[Any]]) -> _Made:
+    trajectory = load_trajectory(runs["map_2d"].artifact.folder / "trajectory.npz")
     length_m = float(path_length_m(trajectory)[-1]) if len(trajectory) > 1 else 0.0
     facts = _facts(runs, trajectory, length_m)
+    created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
+    return _Made(runs, trajectory, facts, judge(facts), created)
+
+
+def _summary(root: Path, made: _Made, about: About) -> Summary2d:
+    runs, facts = made.runs, made.facts
     return Summary2d(
         name=about.project.name,
-        created=time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime()),
+        created=made.created,
         preset=about.project.preset,
-        duration_s=duration_s(trajectory),
-        path_length_m=round(length_m, 3),
+        duration_s=duration_s(made.trajectory),
+        path_length_m=round(facts.path_length_m, 3),
         scans=facts.scans.scans,
         lost=facts.odometry.lost,
-        loops=sum(edge.kind is EdgeKind.LOOP and edge.in_graph for edge in facts.graph.edges),
+        loops=made.loops,
         edges=facts.graph.verdict_counts(),
         grid=facts.map,
-        verdict=judge(facts),
+        verdict=made.verdict,
         warnings=facts.scans.warnings,
         seconds=seconds_of(runs),
         peak_bytes=peak_bytes_of(runs),
@@ -124,9 +163,9 @@ def _facts(runs: Mapping[str, StageRun[Any]], trajectory: Trajectory, length_m: 
     )
 
 
-def _writers(root: Path, runs: Mapping[str, StageRun[Any]]) -> list[Callable[[], None]]:
+def _writers(root: Path, made: _Made, about: About) -> list[Callable[[], None]]:
     """One function a file of `RESULTS_2D`."""
-    folder = {name: run.artifact.folder for name, run in runs.items()}
+    folder = made.folder
     graph = _final_graph(folder)
     return [
         lambda: copy_file(folder["map_2d"] / "map.png", root / "map.png"),
@@ -135,6 +174,60 @@ def _writers(root: Path, runs: Mapping[str, StageRun[Any]]) -> list[Callable[[],
         lambda: write_trajectory(folder["odometry_2d"], root / "odometry.tum"),
         lambda: copy_file(graph / "edges.json", root / "edges.json"),
         lambda: write_graph(graph, root / "graph.g2o"),
+        lambda: write_page_2d(root / "report.html", _page(made, about)),
+    ]
+
+
+def _page(made: _Made, about: About) -> Page2d:
+    """Content of the report."""
+    folder, facts = made.folder, made.facts
+    written = read_map(folder["map_2d"])
+    sd_m = np.sqrt(np.linalg.eigvalsh(read_covariance(folder["map_2d"])[:, 1:, 1:])[:, -1])
+    return Page2d(
+        title=about.project.name,
+        created=made.created,
+        preset=about.project.preset,
+        settings=about.settings,
+        verdict=made.verdict,
+        warnings=facts.scans.warnings,
+        figures=_key_figures(made),
+        grid=GridImage(
+            (folder["map_2d"] / "map.png").read_bytes(),
+            written.cell_m,
+            written.origin_m,
+            (written.gray.shape[1], written.gray.shape[0]),
+        ),
+        trajectory=made.trajectory,
+        odometry=load_trajectory(folder["odometry_2d"] / "trajectory.npz"),
+        sd_m=sd_m,
+        graph=facts.graph,
+        imported=read_json_object(
+            folder["scans_2d"] / "report.json", _MAX_REPORT_BYTES, failure=StoreError
+        ),
+        stages=tuple(
+            StageTiming(
+                name, run.done.seconds, run.done.cpu_seconds, run.done.peak_bytes, run.reused
+            )
+            for name, run in made.runs.items()
+        ),
+        versions=versions(),
+    )
+
+
+def _key_figures(made: _Made) -> list[tuple[str, str, str]]:
+    """Name, value and unit of the figures on top."""
+    facts, grid = made.facts, made.facts.map
+    seconds = round(duration_s(made.trajectory))
+    width_m, height_m = (cells * grid.cell_m for cells in grid.size)
+    return [
+        ("duration", f"{seconds // 60}:{seconds % 60:02d}", "min:s"),
+        ("path length", f"{facts.path_length_m:.1f}", "m"),
+        ("scans", f"{facts.scans.scans}", f"{facts.odometry.lost} lost"),
+        ("loop closures", f"{made.loops}", ""),
+        ("map", f"{width_m:.0f} x {height_m:.0f}", "m"),
+        ("free area", f"{grid.free_m2:.0f}", "m²"),
+        ("beams that cross walls", f"{100.0 * grid.crossing_ratio:.1f}", "%"),
+        ("largest σ of a position", f"{100.0 * grid.largest_sd_m:.1f}", "cm"),
     ]
 
 

@@ -190,6 +190,7 @@ def _describe_2d(summary: Summary2d) -> str:
         *_describe_verdict(summary.verdict),
         f"map     {summary.folder / 'map.png'}",
         f"nav2    {summary.folder / 'map.yaml'}",
+        f"report  {summary.folder / 'report.html'}",
     ]
     return "\n".join(lines)
 

@@ -28,7 +28,7 @@ from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
 from recon4.slam2d.scan_points import scan_points
 from recon4.slam2d.slam import make_grid, map_poses, run_steps, scan_covariances
 from recon4.slam2d.steps import Steps2d
-from recon4.store.arrays import load_record, save_record, save_trajectory
+from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.line_store import LineStoreWriter, load_laser_scans
 
@@ -189,6 +189,15 @@ def build_map(
         crossing_ratio=round(_crossing(grid, scans, poses, settings=settings), 4),
         largest_sd_m=round(float(np.sqrt(np.linalg.eigvalsh(covariance[:, 1:, 1:]).max())), 4),
     )
+
+
+def read_covariance(folder: Path) -> Array:
+    """Covariances of the poses of all scans: yaw, x, y in the axes of the laser, (N, 3, 3).
+
+    Raises:
+        StoreError: If the artifact of `build_map` is damaged.
+    """
+    return np.asarray(load_arrays(folder / "poses.npz", ["covariance"])["covariance"])
 
 
 def _crossing(grid: OccupancyGrid, scans: LaserScans, poses: Array, *, settings: Settings) -> float:
