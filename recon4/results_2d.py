@@ -23,6 +23,7 @@ from recon4.progress import Progress, track
 from recon4.report.artifacts import path_length_m
 from recon4.report.facts import StageTiming
 from recon4.report.page_2d import GridImage, Page2d, write_page_2d
+from recon4.report.rows import imported_rows
 from recon4.result_files import write_graph, write_trajectory
 from recon4.run_summary import (
     About,
@@ -201,8 +202,10 @@ def _page(made: _Made, about: About) -> Page2d:
         odometry=load_trajectory(folder["odometry_2d"] / "trajectory.npz"),
         sd_m=sd_m,
         graph=facts.graph,
-        imported=read_json_object(
-            folder["scans_2d"] / "report.json", _MAX_REPORT_BYTES, failure=StoreError
+        imported=imported_rows(
+            read_json_object(
+                folder["scans_2d"] / "report.json", _MAX_REPORT_BYTES, failure=StoreError
+            )
         ),
         stages=tuple(
             StageTiming(

@@ -44,19 +44,22 @@ class ClockLag:
     """Time to subtract from the stamps of the IMU [s]."""
     error_rad: float
     """What is left of the difference of the headings, standard deviation [rad]."""
+    blur_s: float = 0.0
+    """How far the time of a planar pose is not known [s]."""
 
     @property
     def is_wrong(self) -> bool:
         """Whether a person should look at the clocks."""
-        return abs(self.ahead_s) > SAID_S
+        return abs(self.ahead_s) > SAID_S + self.blur_s
 
 
-def clock_lag(poses: PlanarPoses, attitude: Trajectory) -> ClockLag | None:
+def clock_lag(poses: PlanarPoses, attitude: Trajectory, *, blur_s: float = 0.0) -> ClockLag | None:
     """Find the difference of the clocks for which the headings agree best.
 
     Args:
         poses: By 2-D SLAM.
         attitude: ``R_map_body`` by the IMU alone; its drift is left out.
+        blur_s: Half the duration of a scan if its beams were not undistorted.
 
     Returns:
         None if the walk turns too little, or no difference makes the headings agree better.
@@ -76,7 +79,7 @@ def clock_lag(poses: PlanarPoses, attitude: Trajectory) -> ClockLag | None:
     ahead_s = float(shifts[best]) + _STEP_S * _vertex(spread[best - 1 : best + 2] ** 2)
     if abs(ahead_s) > SAID_S and spread[best] > _SAME_RATIO * now:
         return None
-    return ClockLag(ahead_s, float(spread[best]))
+    return ClockLag(ahead_s, float(spread[best]), blur_s)
 
 
 def profiler_ahead_s(points: TimedPoints, trajectory: Trajectory) -> float:

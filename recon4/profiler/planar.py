@@ -77,8 +77,17 @@ def map_in_plane(
         progress=progress,
     )
     poses = _tracked(found, T_body_laser)
-    lag = clock_lag(poses, R_map_body) if drive.has_imu else None
+    blur_s = _blur_s(used, settings)
+    lag = clock_lag(poses, R_map_body, blur_s=blur_s) if drive.has_imu else None
     return PlanarMap(poses, found, mirrored, lag)
+
+
+def _blur_s(scans: LaserScans, settings: Settings) -> float:
+    """Half the duration of a scan whose beams are not undistorted [s]: its pose is of any of them."""
+    if scans.time_step_s == 0.0:
+        return 0.5e-9 * float(np.median(np.diff(scans.t_ns)))
+    is_distorted = settings.slam2d.method == "hector"
+    return 0.5 * scans.time_step_s * scans.range_m.shape[1] * is_distorted
 
 
 def _tracked(found: Slam2dResult, T_body_laser: SE3) -> PlanarPoses:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from markupsafe import Markup
@@ -24,7 +23,6 @@ from recon4.report.figures import BLUE, ORANGE, Chart
 from recon4.report.html import changed_settings, environment
 from recon4.report.maps import ABOVE, ImageFrame
 from recon4.report.plan import PlanOverlay, PlanPath, plan_svg
-from recon4.report.rows import imported_rows
 from recon4.settings import Settings
 from recon4.store.atomic import write_text
 
@@ -74,8 +72,8 @@ class Page2d:
     sd_m: Array
     """Largest standard deviation of each position [m], (N,)."""
     graph: PoseGraph
-    imported: Mapping[str, Any]
-    """Import report."""
+    imported: Sequence[tuple[str, str]]
+    """Rows of the import report."""
     stages: Sequence[StageTiming]
     versions: Mapping[str, str]
 
@@ -101,7 +99,7 @@ def write_page_2d(path: Path, page: Page2d) -> None:
             charts=framed(_charts(page)),
             edge_kinds=[str(kind) for kind in EdgeKind],
             edge_rows=edge_rows(page.graph, limit_m=page.settings.verification.limit_m),
-            imported=imported_rows(page.imported),
+            imported=page.imported,
             changed=changed_settings(page.settings, page.preset),
             number=number,
         )

@@ -11,7 +11,7 @@ from urllib.parse import quote
 import numpy as np
 
 from app.viewer.client.view import Position
-from app.viewer.cloud.pick import PickedPoint
+from app.viewer.cloud.pick import PickedCell, PickedPoint
 from app.viewer.scene.build import GnssMarks
 from app.viewer.scene.layers import KIND_LABELS, EdgeTable
 from recon4.geometry.se3 import Array
@@ -86,6 +86,16 @@ def point_facts(
         ("Distance from the sensor", f"{point.range_m:.3f} m"),
     ]
     return Facts("Point", tuple(rows))
+
+
+def cell_facts(cell: PickedCell) -> Facts:
+    """A place of a 2-D map."""
+    rows = (
+        ("x y, m", " ".join(f"{value:.3f}" for value in cell.p_map[:2])),
+        ("What", cell.what),
+        ("Cell", f"{100.0 * cell.cell_m:g} cm"),
+    )
+    return Facts("Place", rows)
 
 
 def measurement_facts(number: int, points: tuple[Position, ...]) -> Facts:

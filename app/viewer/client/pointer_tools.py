@@ -10,6 +10,7 @@ import numpy as np
 
 from app.viewer.client.captions import (
     Facts,
+    cell_facts,
     edge_facts,
     gnss_facts,
     measurement_facts,
@@ -19,11 +20,12 @@ from app.viewer.client.captions import (
 from app.viewer.client.panels import Panel, Update
 from app.viewer.client.show import Screen
 from app.viewer.client.view import MAX_MEASUREMENTS, Position, ViewState
-from app.viewer.cloud.pick import PickedPoint, Ray, pick_edge, pick_gnss, pick_point
+from app.viewer.cloud.pick import Ray, pick_cell, pick_edge, pick_gnss, pick_point
 from app.viewer.scene.build import MEASURED_COLOR, as_position, crosses
 from app.viewer.scene.nodes import LinesNode, Node
 from app.viewer.scene.source import ProjectSource
 from recon4.geometry.se3 import Array
+from recon4.slam2d.map_files import TrinaryMap
 
 PICKED_COLOR = (255, 255, 255)
 
@@ -99,9 +101,9 @@ class PointerTools:
         if point is None:
             return
         if self._first is None:
-            self._first = point.p_map
+            self._first = point
         else:
-            self._keep((self._first, point.p_map))
+            self._keep((self._first, point))
             self._first = None
 
     def _keep(self, points: tuple[Position, ...]) -> None:
@@ -131,8 +133,11 @@ class PointerTools:
         self._show_facts(gnss_facts(content.gnss, row, began_ns=began_ns))
         return True
 
-    def _pick_point(self, ray: Ray, view: ViewState) -> PickedPoint | None:
+    def _pick_point(self, ray: Ray, view: ViewState) -> Position | None:
+        """Pick a point of the map, or a place of a 2-D map; returns where it is."""
         content = self._source.content
+        if content.cloud is None and content.plan is not None:
+            return self._pick_cell(ray, content.plan)
         cloud = content.cloud and content.cloud.on(view.surface)
         point = None if cloud is None else pick_point(cloud, ray)
         self._last = None if point is None else point.p_map
@@ -146,7 +151,16 @@ class PointerTools:
             crs=self._source.crs_coordinates(np.array([point.p_map])),
         )
         self._show_facts(facts)
-        return point
+        return point.p_map
+
+    def _pick_cell(self, ray: Ray, plan: TrinaryMap) -> Position | None:
+        cell = pick_cell(plan, ray)
+        self._last = None if cell is None else cell.p_map
+        if cell is None:
+            self._panel.show_picked(None)
+        else:
+            self._show_facts(cell_facts(cell))
+        return self._last
 
     def _show_facts(self, facts: Facts) -> None:
         """Show facts in the panel; on a phone, where the panel is collapsed, over the map too."""

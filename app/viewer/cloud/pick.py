@@ -16,11 +16,14 @@ from app.viewer.scene.build import GnssMarks, as_position
 from app.viewer.scene.layers import EdgeTable
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import Tile
+from recon4.slam2d.map_files import TrinaryMap
 
 EDGE_PX = 7.0
 """Largest distance on screen at which an edge is picked."""
 POINT_PX = (3.0, 12.0)
 """Search radii around the ray, tried in this order."""
+_MOST_CELLS = 200
+"""Cells on either side in which a surface is looked for."""
 SAME_SURFACE_M = 0.05
 """Points up to this far behind the first hit are on the same surface [m]."""
 
@@ -52,6 +55,18 @@ class PickedPoint:
     intensity: int
     intensity_normalized: float | None
     range_m: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PickedCell:
+    """A place of a 2-D map; on a surface, the middle of its cell."""
+
+    p_map: Position
+    """[m], in the plane of the laser."""
+    what: str
+    """``surface``, ``free`` or ``not seen``."""
+    cell_m: float
+    """Edge of a cell [m]."""
 
 
 def pick_edge(table: EdgeTable, view: ViewState, ray: Ray) -> int | None:
@@ -170,3 +185,36 @@ def _picked(cloud: Cloud, tile: Tile, row: int) -> PickedPoint:
         intensity_normalized=value("intensity_normalized") if known else None,
         range_m=value("range_m"),
     )
+
+
+def pick_cell(plan: TrinaryMap, ray: Ray) -> PickedCell | None:
+    """The place of a 2-D map under a ray, None if it misses the map.
+
+    A surface within a few pixels on screen is meant more likely than the floor beside it.
+    """
+    down = float(ray.direction[2])
+    depth = -float(ray.origin_m[2]) / down if down else -1.0
+    if depth <= 0.0:
+        return None
+    hit = (ray.origin_m + depth * ray.direction)[:2]
+    low = np.asarray(plan.origin_m)
+    rows, columns = plan.gray.shape
+    at = np.floor((hit - low) / plan.cell_m).astype(np.int64)
+    if not (0 <= at[0] < columns and 0 <= at[1] < rows):
+        return None
+    reach = min(int(np.ceil(POINT_PX[-1] * ray.pixel_rad * depth / plan.cell_m)), _MOST_CELLS)
+    first = np.maximum(at - reach, 0)
+    last = np.minimum(at + reach + 1, [columns, rows])
+    # The first row of the image has the largest y.
+    part = plan.occupied[rows - last[1] : rows - first[1], first[0] : last[0]][::-1]
+    y, x = np.nonzero(part)
+    if len(x):
+        middle = low + plan.cell_m * (np.column_stack([x, y]) + first + 0.5)
+        away_m = np.linalg.norm(middle - hit, axis=1)
+        nearest = int(np.argmin(away_m))
+        if away_m[nearest] <= max(plan.cell_m, POINT_PX[-1] * ray.pixel_rad * depth):
+            p_map = as_position(np.append(middle[nearest], 0.0))
+            return PickedCell(p_map=p_map, what="surface", cell_m=plan.cell_m)
+    free = bool(plan.free[rows - 1 - at[1], at[0]])
+    p_map = as_position(np.append(hit, 0.0))
+    return PickedCell(p_map=p_map, what="free" if free else "not seen", cell_m=plan.cell_m)

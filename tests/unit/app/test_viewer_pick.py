@@ -1,13 +1,17 @@
 """Picking edges and points under a click."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from app.viewer.client.pointer_tools import PointerTools
 from app.viewer.client.view import ViewState
 from app.viewer.cloud.parts import Cloud
-from app.viewer.cloud.pick import Ray, pick_edge, pick_gnss, pick_point
-from app.viewer.scene.build import GnssMarks
+from app.viewer.cloud.pick import Ray, pick_cell, pick_edge, pick_gnss, pick_point
+from app.viewer.scene.build import Content, GnssMarks
 from app.viewer.scene.layers import EdgeTable
+from recon4.slam2d.map_files import TrinaryMap
 from tests.project_builder import ROOM_M, build_project, loop_walk, verified_graph
 
 
@@ -97,3 +101,58 @@ def test_a_gnss_position_under_the_click_is_found_when_it_is_shown():
     assert pick_gnss(marks, ViewState(chosen={"gnss/rejected": True}), ray) == 1
     assert pick_gnss(marks, ViewState(chosen={"gnss/used": True}), ray) is None
     assert pick_gnss(marks, ViewState(), ray) is None
+
+
+def plan_with_a_wall():
+    """4 m x 3 m from (-1, -2) on: free, not seen beyond x = 2 m, a wall along y = 0.05 m."""
+    gray = np.full((30, 40), 254, np.uint8)
+    gray[:, 30:] = 205
+    gray[30 - 1 - 20, :25] = 0
+    return TrinaryMap(gray, 0.1, (-1.0, -2.0))
+
+
+@pytest.mark.parametrize(
+    ("target", "expected", "what"),
+    [
+        ((0.02, 0.03, 0.0), (0.05, 0.05), "surface"),
+        ((0.02, 0.12, 0.0), (0.05, 0.05), "surface"),
+        ((0.4, -1.5, 0.0), (0.4, -1.5), "free"),
+        ((2.5, 0.5, 0.0), (2.5, 0.5), "not seen"),
+    ],
+)
+def test_a_click_on_a_2d_map_gives_a_place_or_the_surface_near_it(target, expected, what):
+    found = pick_cell(plan_with_a_wall(), ray((0.5, -0.5, 8.0), target))
+
+    assert found.what == what
+    np.testing.assert_allclose(found.p_map, (*expected, 0.0), atol=1e-9)
+
+
+@pytest.mark.parametrize("target", [(9.0, 0.0, 0.0), (0.5, 0.5, 9.0)])
+def test_a_click_beside_a_2d_map_gives_nothing(target):
+    assert pick_cell(plan_with_a_wall(), ray((0.5, -0.5, 8.0), target)) is None
+
+
+def test_a_distance_on_a_2d_map_is_measured():
+    measured = []
+
+    class Panel:
+        def show_picked(self, facts):
+            pass
+
+    class Screen:
+        phone = False
+
+    content = Content(plan=plan_with_a_wall())
+    source = SimpleNamespace(content=content, crs_coordinates=lambda p: None)
+    tools = PointerTools(source, Screen(), Panel(), project="p", change=measured.append)
+    view = ViewState()
+    tools.command("measure", view)
+    for target in ((-0.45, 0.04, 0.0), (1.05, 0.06, 0.0)):
+        tools.click(ray((0.5, -0.5, 4.0), target), view)
+
+    for update in measured:
+        view = update(view)
+
+    ((first, second),) = view.measurements
+    assert first == pytest.approx((-0.45, 0.05, 0.0))
+    assert np.linalg.norm(np.subtract(second, first)) == pytest.approx(1.5)

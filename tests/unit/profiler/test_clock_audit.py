@@ -13,6 +13,7 @@ from recon4.profiler.clock_audit import clock_lag, profiler_ahead_s, some_points
 from recon4.profiler.fusion import PlanarPoses
 from recon4.profiler.stage_odometry import laser_remarks, run_line_odometry, span_of
 from recon4.progress import Silent
+from recon4.settings import override
 from recon4.store.arrays import save_record
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans
@@ -85,6 +86,24 @@ def test_wrong_clocks_are_said(frames, settings, tmp_path, clocks, words):
     assert len(found.warnings) == 1
     assert "time_offset_s" in found.warnings[0]
     assert re.search(words, found.warnings[0]), found.warnings
+
+
+@pytest.mark.parametrize("changed", ["without times", "as hector"])
+def test_scans_that_are_not_undistorted_do_not_blame_the_clocks(
+    frames, settings, tmp_path, changed
+):
+    shutil.copytree(frames.folder, tmp_path / "frames")
+    arrays = dict(np.load(tmp_path / "frames" / "laser2d.npz"))
+    if changed == "without times":
+        np.savez(tmp_path / "frames" / "laser2d.npz", **arrays | {"time_step_s": 0.0})
+    else:
+        settings = override(settings, ["slam2d.method=hector"])
+    (tmp_path / "out").mkdir()
+    store = FrameStore.open(tmp_path / "frames")
+
+    found = run_line_odometry(store, tmp_path / "out", settings=settings, progress=Silent())
+
+    assert "clock" not in " ".join(found.warnings)
 
 
 def test_a_silent_laser_is_said(frames):
