@@ -83,7 +83,7 @@ def map_in_plane(
 
 
 def _blur_s(scans: LaserScans, settings: Settings) -> float:
-    """Half the duration of a scan whose beams are not undistorted [s]: its pose is of any of them."""
+    """Half the duration of a scan whose beams are not undistorted [s]: which one is not known."""
     if scans.time_step_s == 0.0:
         return 0.5e-9 * float(np.median(np.diff(scans.t_ns)))
     is_distorted = settings.slam2d.method == "hector"
