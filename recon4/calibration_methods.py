@@ -13,6 +13,11 @@ from recon4.calibration.calibrate import calibrated_parameters, reference_of
 from recon4.calibration.entropy import calibrate_by_entropy
 from recon4.calibration.floors import find_inclinations, read_inclinations
 from recon4.calibration.gravity_alignment import align_gravity
+from recon4.calibration.line_entropy import (
+    calibrate_profiler,
+    profiler_parameters,
+    profiler_walk,
+)
 from recon4.calibration.map_alignment import align_maps, with_mount
 from recon4.calibration.parameters import Parameter
 from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pairs
@@ -22,7 +27,7 @@ from recon4.errors import CalibrationError, ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig, RigCalibration
-from recon4.pipeline import calibrate_recording
+from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
 from recon4.recording.sources import Sources
 from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, RigSlice
@@ -87,6 +92,12 @@ def calibrate_by(
         Recon4Error: Whatever stops a stage.
     """
     check_method(method)
+    rig = sources.rig
+    if method in _OF_LIDARS and rig is not None and rig.row_of("profiler") is not None:
+        raise ConfigError(
+            f"{method}: expected a rig with LiDARs, got {rig.name!r:.80} with a profiler; "
+            "use entropy or pairs"
+        )
     return _METHODS[method](_Task(sources, folder, sensors, progress))
 
 
@@ -162,8 +173,23 @@ def _maps(task: _Task) -> CalibratedRig:
     return CalibratedRig(rig, "calibrated by maps", (*_changes(parameters.listed, changed), *lines))
 
 
+def _profiler_entropy(task: _Task, walk: RecordedWalk) -> CalibratedRig:
+    parameters = profiler_parameters(walk.frames.rig)
+    points = profiler_walk(walk.frames, walk.trajectory)
+    task.progress.start("calibration", 0, "evaluations")
+    found = calibrate_profiler(points, parameters, progress=task.progress.advance)
+    lines = _changes(parameters.listed, found.change)
+    note = (
+        f"{len(found.costs)} evaluations; {100.0 * (1.0 - found.costs[-1]):.1f} % fewer places "
+        "than in the step before; the height of the profiler is not observable on a level floor"
+    )
+    return CalibratedRig(found.rig, "calibrated by entropy", (*lines, note))
+
+
 def _entropy(task: _Task) -> CalibratedRig:
     walk, chosen = _walk(task)
+    if walk.frames.rig.row_of("profiler") is not None:
+        return _profiler_entropy(task, walk)
     rig, settings = walk.frames.rig, EntropySettings()
     parameters = calibrated_parameters(
         rig, reference=_reference(rig, chosen), with_imu=False, settings=chosen.calibration
@@ -232,6 +258,10 @@ _METHODS: dict[str, Callable[[_Task], CalibratedRig]] = {
 }
 
 
+_OF_LIDARS = ("joint", "maps")
+"""Methods that compare the LiDARs of a multiframe."""
+
+
 def _settings(*assignments: str) -> Settings:
     return override(preset("indoor"), [text for text in assignments if not text.endswith("=")])
 
@@ -239,7 +269,11 @@ def _settings(*assignments: str) -> Settings:
 def _walk(task: _Task) -> tuple[RecordedWalk, Settings]:
     """The recording with its odometry; the stages run if they have not."""
     chosen = _settings(f"calibration.sensors={task.sensors}", "calibration.mode=off")
-    calibrate_recording(task.sources, task.folder, settings=chosen, progress=task.progress)
+    rig = task.sources.rig
+    if rig is not None and rig.row_of("profiler") is not None:
+        track_lines(task.sources, task.folder, settings=Settings(), progress=task.progress)
+    else:
+        calibrate_recording(task.sources, task.folder, settings=chosen, progress=task.progress)
     return _recorded(task.folder), chosen
 
 

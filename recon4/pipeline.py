@@ -147,6 +147,25 @@ def calibrate_recording(
         return figures, load_rig(calibration.folder / CALIBRATED_RIG) if figures.applied else None
 
 
+def track_lines(sources: Sources, out: Path, *, settings: Settings, progress: Progress) -> None:
+    """Run the stages up to the first trajectory of a rig with a profiler.
+
+    Args:
+        sources: The recording and its rig.
+        out: Project folder; made when missing.
+        settings: All settings.
+        progress: Who watches.
+
+    Raises:
+        Recon4Error: Whatever stops a stage.
+    """
+    sources.require()
+    with Project.open(out) as project:
+        runner = StageRunner(project, settings, progress)
+        frames = runner.run(stages.FRAMES, **_inputs(project, sources, progress))
+        runner.run(stages.LINE_ODOMETRY, frames=frames)
+
+
 def _inputs(project: Project, sources: Sources, progress: Progress) -> dict[str, Input | None]:
     """Inputs of the stage `frames`."""
     rig, imu, gnss = sources.rig, sources.imu, sources.gnss
