@@ -73,24 +73,6 @@ def test_an_image_shows_the_room_from_all_its_points(server):
     assert np.asarray(image)[..., 3].any()
 
 
-def test_points_are_shown_on_surfaces_as_measured_or_stray_returns_alone(tmp_path):
-    build_project(tmp_path / "office", points=20_000, strays=5)
-    with server_thread(tmp_path) as server:
-        facts = server.get(BASE).json()
-        shown = {
-            surface: sent(server, "/image", ask(surface=surface)).json()
-            for surface in ("fitted", "raw", "strays")
-        }
-        unknown = sent(server, "/image", ask(surface="loose"))
-
-    assert facts["surface"] == "fitted"
-    assert facts["points"] == 20_000 and facts["strays"] % 5 == 0
-    assert {name: image["surface"] for name, image in shown.items()} == {n: n for n in shown}
-    assert shown["fitted"]["points"] == shown["raw"]["points"] > 500
-    assert 0 < shown["strays"]["points"] <= facts["strays"]
-    assert unknown.status_code == 422
-
-
 def test_a_window_is_kept_to_and_only_widened_to_the_shape(server):
     window = {"left": 2.0, "bottom": 1.0, "right": 6.0, "top": 2.0}
 
