@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +25,7 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.model.rig import Rig, RigCalibration
+from recon4.model.rig import Rig
 from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
 from recon4.recording.sources import Sources
@@ -61,29 +60,45 @@ class _Task:
     """Project folder for multiframes and odometry."""
     sensors: str
     """Names of the sensors to calibrate; empty = all."""
+    beams: bool
+    """Whether single beams are calibrated, too."""
     progress: Progress
 
 
-def check_method(method: str) -> None:
-    """Check the name of a method.
+@dataclass(frozen=True, slots=True)
+class CalibrationChoice:
+    """What is calibrated, and how."""
+
+    method: str = "joint"
+    """``joint``, ``maps``, ``gravity``, ``entropy`` or ``pairs``."""
+    sensors: str = ""
+    """Names of the sensors to calibrate; empty = all."""
+    beams: bool = False
+    """Whether single beams are calibrated, too; by ``joint`` only."""
+
+
+def check_choice(choice: CalibrationChoice) -> None:
+    """Check the name of a method and what it can do.
 
     Raises:
-        ConfigError: If there is no such method.
+        ConfigError: If there is no such method, or it does not calibrate beams.
     """
+    method = choice.method
     if method not in _METHODS:
         raise ConfigError(f"no method named {method!r:.80}; there are: {', '.join(_METHODS)}")
+    if choice.beams and method != "joint":
+        raise ConfigError(f"single beams: expected the method joint, got {method!r:.80}")
 
 
 def calibrate_by(
-    method: str, sources: Sources, folder: Path, *, sensors: str, progress: Progress
+    choice: CalibrationChoice, sources: Sources, folder: Path, *, progress: Progress
 ) -> CalibratedRig:
     """Calibrate a rig by one of the methods.
 
     Args:
-        method: ``joint``, ``maps``, ``gravity``, ``entropy`` or ``pairs``.
+        choice: The method, and what it calibrates.
         sources: The recording, or a CSV file for ``pairs`` and ``gravity``, and the rig.
         folder: Project folder for multiframes and odometry.
-        sensors: Names of the sensors to calibrate; empty = all.
         progress: Who watches.
 
     Raises:
@@ -91,14 +106,15 @@ def calibrate_by(
         CalibrationError: If the recording does not determine what the method estimates.
         Recon4Error: Whatever stops a stage.
     """
-    check_method(method)
-    rig = sources.rig
+    check_choice(choice)
+    method, rig = choice.method, sources.rig
     if method in _OF_LIDARS and rig is not None and rig.row_of("profiler") is not None:
         raise ConfigError(
             f"{method}: expected a rig with LiDARs, got {rig.name!r:.80} with a profiler; "
             "use entropy or pairs"
         )
-    return _METHODS[method](_Task(sources, folder, sensors, progress))
+    task = _Task(sources, folder, choice.sensors, choice.beams, progress)
+    return _METHODS[method](task)
 
 
 def page_of(
@@ -133,13 +149,15 @@ def page_of(
 
 
 def _joint(task: _Task) -> CalibratedRig:
-    chosen = _settings(f"calibration.sensors={task.sensors}", "calibration.mode=auto")
+    chosen = _settings(
+        f"calibration.sensors={task.sensors}",
+        "calibration.mode=auto",
+        f"calibration.beams={str(task.beams).lower()}",
+    )
     figures, rig = calibrate_recording(
         task.sources, task.folder, settings=chosen, progress=task.progress
     )
-    lines = (*_table(figures.parameters), *figures.warnings)
-    if rig is not None:
-        rig = replace(rig, calibration=_note("joint", figures))
+    lines = (*_table(figures.parameters), *_table(figures.beams), *figures.warnings)
     return CalibratedRig(rig, figures.outcome, lines, figures)
 
 
@@ -289,22 +307,6 @@ def _reference(rig: Rig, settings: Settings) -> int:
     if reference is None:
         raise CalibrationError("expected a rig with a LiDAR that is enabled, got none")
     return reference
-
-
-def _note(method: str, figures: CalibrationFigures) -> RigCalibration:
-    """Date, method and largest standard deviations for the rig file."""
-    known = [row for row in figures.parameters if row.sd is not None]
-    largest = {
-        unit: max((row.sd or 0.0 for row in known if row.unit == unit), default=0.0)
-        for unit in SHOWN
-    }
-    return RigCalibration(
-        date=datetime.now(UTC).date().isoformat(),
-        method=method,
-        sd_deg=round(largest["rad"] * SHOWN["rad"][0], 4),
-        sd_mm=round(largest["m"] * 1e3, 2),
-        sd_ms=round(largest["s"] * 1e3, 3),
-    )
 
 
 def _table(rows: tuple[ParameterFigures, ...]) -> list[str]:

@@ -276,7 +276,7 @@ ODOMETRY = Stage(
 )
 CALIBRATION = Stage(
     "calibration",
-    1,
+    2,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph"),
     _calibration,
     CalibrationFigures,

@@ -8,9 +8,17 @@ from ipaddress import IPv4Address
 
 import numpy as np
 
-from app.rigs.model import GnssContent, ImuContent, RigContent, SensorContent, Triple
-from recon4.errors import WrongSettings
+from app.rigs.model import (
+    BeamsContent,
+    GnssContent,
+    ImuContent,
+    RigContent,
+    SensorContent,
+    Triple,
+)
+from recon4.errors import ConfigError, WrongSettings
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.beams import BeamCorrections, parse_beams
 from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
 from recon4.names import visible
 
@@ -144,9 +152,20 @@ def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[
         yield f"{where}.head_topic", f"{label}: only a profiler has a head"
     if abs(sensor.head_rate_deg_s) > _LARGEST_HEAD_DEG_S:
         yield f"{where}.head_rate_deg_s", f"{label}: expected at most {_LARGEST_HEAD_DEG_S:g} °/s"
+    yield from _beams_problems(sensor, f"{where}.beams", label)
     if sensor.address and not _is_address(sensor.address):
         got = visible(sensor.address)
         yield f"{where}.address", f"{label}: expected an address like 192.168.1.201, got {got!r}"
+
+
+def _beams_problems(sensor: SensorContent, field: str, label: str) -> Iterator[Problem]:
+    if sensor.beams is not None and sensor.kind != "lidar":
+        yield field, f"{label}: only a lidar has corrections of beams"
+        return
+    try:
+        _beams(sensor)
+    except ConfigError as error:
+        yield field, visible(str(error), most=300)
 
 
 def _mount_problems(xyz_m: Triple, rpy: Triple, *, where: str, label: str) -> Iterator[Problem]:
@@ -187,7 +206,13 @@ def _sensor(content: SensorContent) -> Sensor:
         topic=content.topic.strip(),
         enabled=content.enabled,
         serial=content.serial.strip(),
+        beams=_beams(content),
     )
+
+
+def _beams(content: SensorContent) -> BeamCorrections | None:
+    table = content.beams and content.beams.model_dump()
+    return parse_beams(table, f"{content.name}: beams", model=content.model)
 
 
 def _sensor_content(sensor: Sensor) -> SensorContent:
@@ -205,6 +230,17 @@ def _sensor_content(sensor: Sensor) -> SensorContent:
         head_rate_deg_s=math.degrees(sensor.head_rate_rad_s),
         enabled=sensor.enabled,
         serial=visible(sensor.serial),
+        beams=_beams_content(sensor.beams),
+    )
+
+
+def _beams_content(beams: BeamCorrections | None) -> BeamsContent | None:
+    if beams is None:
+        return None
+    return BeamsContent(
+        range_m=beams.range_m.tolist(),
+        elevation_deg=np.rad2deg(beams.elevation_rad).tolist(),
+        azimuth_deg=np.rad2deg(beams.azimuth_rad).tolist(),
     )
 
 

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.names import Name, Note
+from recon4.model.beams import MAX_BEAMS
 from recon4.model.rig import MAX_RIG_BYTES, MAX_SENSORS, SensorKind
 
 Number = Annotated[float, Field(ge=-4e9, le=4e9, allow_inf_nan=False)]
@@ -20,6 +21,17 @@ class RigPart(BaseModel):
     """Part of a rig in a request; without unknown keys."""
 
     model_config = ConfigDict(extra="forbid", frozen=True)
+
+
+class BeamsContent(RigPart):
+    """Corrections of the beams of a LiDAR, ring 0 (the lowest) first."""
+
+    range_m: list[Number] = Field(max_length=MAX_BEAMS)
+    """Added to the measured range [m]."""
+    elevation_deg: list[Number] = Field(max_length=MAX_BEAMS)
+    """Added to the elevation of the data sheet [deg]."""
+    azimuth_deg: list[Number] = Field(max_length=MAX_BEAMS)
+    """Added to the azimuth [deg]."""
 
 
 class SensorContent(RigPart):
@@ -50,6 +62,8 @@ class SensorContent(RigPart):
     """False: its points are stored, but neither registered nor mapped."""
     serial: Name = Field(default="", max_length=LONGEST_TEXT)
     """Serial number; empty = not known."""
+    beams: BeamsContent | None = None
+    """Corrections of single beams; null = none."""
 
 
 class ImuContent(RigPart):

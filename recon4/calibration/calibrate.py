@@ -26,6 +26,8 @@ IMU = "imu"
 """Name of the IMU among the sensors of a calibration."""
 _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
+_KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
+"""The same of single beams."""
 _SIGMAS = 3.0
 _MIN_WINDOWS = 3
 _FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
@@ -111,6 +113,12 @@ def calibrated_parameters(
     )
     imu = with_imu and (not wanted or IMU in wanted)
     return Parameters.of(rig, reference=reference, lidars=lidars, imu=imu)
+
+
+def chosen_lidars(rig: Rig, settings: CalibrationSettings) -> tuple[int, ...]:
+    """Rows of the enabled LiDARs that the settings name, all of them if they name none."""
+    wanted = {name.strip() for name in settings.sensors.split(",") if name.strip()}
+    return tuple(row for name, row in _enabled(rig).items() if not wanted or name in wanted)
 
 
 def _enabled(rig: Rig) -> dict[str, int]:
@@ -266,7 +274,12 @@ def _second_opinion(
 
 def _known_errors(parameters: Parameters) -> Array:
     """The wrong values that are put in, with alternating signs, (P,)."""
-    size = np.array([_KNOWN_ERROR[parameter.unit] for parameter in parameters.listed])
+    size = np.array(
+        [
+            (_KNOWN_BEAM_ERROR if parameter.of_beam else _KNOWN_ERROR)[parameter.unit]
+            for parameter in parameters.listed
+        ]
+    )
     return size * np.where(np.arange(len(size)) % 2, -1.0, 1.0)
 
 
@@ -291,6 +304,8 @@ def _refusal(
     if second is None:
         return "the walk is too short to check the calibrated rig on another part of it"
     if not any(row.status == "off" for row in rows):
+        if first.parameters.beams:
+            return "nothing is corrected: mounts, clocks and beams agree with the rig file"
         return "inconclusive: longer windows do not confirm what the audit found"
     apart = np.abs(first.parameters.between(first.rig, second.rig))
     scatter = _SIGMAS * np.hypot(first.sd, second.sd)

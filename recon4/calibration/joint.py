@@ -82,7 +82,7 @@ def calibrate_jointly(
     first, states = rig, [_first_state(window) for window in windows]
     samples = [window.imu for window in windows if window.imu is not None]
     noise = measured_noise(samples, settings.odometry)
-    prior = np.diag(parameters.prior_sd**-2.0)
+    prior = parameters.prior
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
         for bounds in ROUNDS:

@@ -31,6 +31,10 @@ _LIMITS: dict[Unit, ParameterLimits] = {
     "m": ParameterLimits(0.01, 0.01),
     "s": ParameterLimits(1e-3, 1e-3),
 }
+_BEAM_LIMITS: dict[Unit, ParameterLimits] = {
+    "rad": ParameterLimits(float(np.deg2rad(0.01)), float(np.deg2rad(0.01))),
+    "m": ParameterLimits(0.002, 0.0015),
+}
 _SHOWN: dict[Unit, tuple[float, str]] = {
     "rad": (float(np.rad2deg(1.0)), "°"),
     "m": (100.0, " cm"),
@@ -65,10 +69,18 @@ def judge(
 
 
 def _status(change: float, sd: float, parameter: Parameter) -> ParameterStatus:
-    limits = _LIMITS[parameter.unit]
+    limits = (_BEAM_LIMITS if parameter.of_beam else _LIMITS)[parameter.unit]
     if abs(change) > max(_SIGMAS * sd, limits.tolerance):
         return "off"
     return "consistent" if sd <= limits.observable_sd else "not observable"
+
+
+def split_beams(
+    rows: Sequence[ParameterFigures],
+) -> tuple[tuple[ParameterFigures, ...], tuple[ParameterFigures, ...]]:
+    """The rows of mounts and clocks, and those of single beams."""
+    mounts = tuple(row for row in rows if not row.quantity.startswith("beam"))
+    return mounts, tuple(row for row in rows if row.quantity.startswith("beam"))
 
 
 def contradictions(rows: Sequence[ParameterFigures], *, applied: bool = False) -> tuple[str, ...]:
@@ -96,6 +108,7 @@ def _sentence(sensor: str, rows: Sequence[ParameterFigures]) -> str:
         f"its clock by {_amount(row)}" for row in rows
         if row.quantity == "clock" and row.status == "off"
     ]  # fmt: skip
+    parts += _beams(rows)
     name = "IMU" if sensor == "imu" else f"LiDAR {sensor!r}"
     return (
         f"The rig file contradicts the recording: the {name} differs from it by "
@@ -119,6 +132,18 @@ def _vector(rows: Sequence[ParameterFigures], quantity: str) -> list[str]:
         f"{length * factor:.2f}{unit} ± {sd * factor:.2f}{unit} "
         f"({quantity}, mostly {relation} {main.axis})"
     ]
+
+
+def _beams(rows: Sequence[ParameterFigures]) -> list[str]:
+    """``the range of 7 beams by up to 8.1 mm``, and the same of elevation and azimuth."""
+    parts = []
+    for quantity in ("range", "elevation", "azimuth"):
+        off = [row for row in rows if row.quantity == f"beam {quantity}" and row.status == "off"]
+        if off:
+            most = max(abs(row.change) for row in off)
+            size = f"{1e3 * most:.1f} mm" if quantity == "range" else f"{np.rad2deg(most):.3f}°"
+            parts.append(f"the {quantity} of {len(off)} beams by up to {size}")
+    return parts
 
 
 def _amount(row: ParameterFigures) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -9,12 +10,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
-from recon4.model.rig import Rig
+from recon4.model.beams import BeamCorrections
+from recon4.model.rig import Rig, Sensor
 
 Unit = Literal["rad", "m", "s"]
 
 _PRIOR_SD: dict[Unit, float] = {"rad": 0.2, "m": 0.3, "s": 0.1}
 """Standard deviation of each parameter before the walk is looked at: hardly any knowledge."""
+_BEAM_PRIOR_SD: dict[Unit, float] = {"rad": float(np.deg2rad(0.05)), "m": 0.03}
+"""The same of a beam: assemblies are exact to some hundredths of a degree."""
+_MEAN_SD = 1e-6
+"""Of means that nothing observes [rad], [m]."""
 _KNOWN_SD = 1e-9
 """Of a parameter that keeps its value, in its unit."""
 _AXES = ("x", "y", "z")
@@ -26,10 +32,17 @@ class Parameter:
 
     sensor: str
     """Name of the LiDAR in the rig, or ``imu``."""
-    quantity: Literal["rotation", "position", "clock"]
+    quantity: Literal[
+        "rotation", "position", "clock", "beam range", "beam elevation", "beam azimuth"
+    ]
     axis: str
-    """``x``, ``y`` or ``z`` of the body; empty for a clock."""
+    """``x``, ``y`` or ``z`` of the body; empty for a clock; the ring of a beam."""
     unit: Unit
+
+    @property
+    def of_beam(self) -> bool:
+        """Whether it belongs to a single beam."""
+        return self.quantity.startswith("beam")
 
     @property
     def name(self) -> str:
@@ -40,6 +53,7 @@ class Parameter:
 @dataclass(frozen=True, slots=True, eq=False)
 class Parameters:
     """Seven parameters for each LiDAR but the reference and for the IMU: rotation, position, clock.
+    On request also three for each beam of any LiDAR: range, elevation, azimuth.
 
     The mount of the reference LiDAR defines the body, and its clock defines the time.
     """
@@ -53,6 +67,8 @@ class Parameters:
     listed: tuple[Parameter, ...]
     prior_sd: Array
     """Standard deviation of each before the walk is looked at, (P,)."""
+    beams: tuple[tuple[int, int], ...] = ()
+    """LiDARs whose beams are calibrated: row and number of beams."""
 
     @staticmethod
     def none() -> Parameters:
@@ -67,8 +83,56 @@ class Parameters:
         prior_sd = np.array([_PRIOR_SD[parameter.unit] for parameter in listed])
         return Parameters(reference, lidars, imu, listed, prior_sd)
 
+    def with_beams(self, rig: Rig, counts: Mapping[int, int]) -> Parameters:
+        """The same parameters and those of the beams of some LiDARs.
+
+        Args:
+            rig: Names of the sensors.
+            counts: Number of beams by row of the LiDAR.
+        """
+        added = [
+            parameter
+            for row, count in counts.items()
+            for parameter in _of_beams(rig.sensors[row].name, count)
+        ]
+        sd = [_BEAM_PRIOR_SD[parameter.unit] for parameter in added]
+        return replace(
+            self,
+            listed=(*self.listed, *added),
+            prior_sd=np.concatenate([self.prior_sd, sd]),
+            beams=tuple(counts.items()),
+        )
+
     def __len__(self) -> int:
         return len(self.listed)
+
+    @property
+    def prior(self) -> Array:
+        """Information before the walk is looked at, (P, P).
+
+        An azimuth that all beams of a LiDAR share is the yaw of its mount, and a range bias that
+        all beams of the rig share changes the scale of the walk, which only the accelerometer
+        tells roughly. Both means stay.
+        """
+        information = np.diag(self.prior_sd**-2.0)
+        common = np.zeros(len(self))
+        for row, count in self.beams:
+            first = self.of_beams(row).start
+            common[first : first + count] = 1.0
+            own = np.zeros(len(self))
+            own[first + 2 * count : first + 3 * count] = 1.0 / count
+            information += np.outer(own, own) / _MEAN_SD**2
+        mean = common / max(common.sum(), 1.0)
+        return np.asarray(information + np.outer(mean, mean) / _MEAN_SD**2)
+
+    def of_beams(self, row: int) -> slice:
+        """Columns of the beams of a LiDAR: all ranges, elevations, azimuths."""
+        first = 7 * (len(self.lidars) + self.imu)
+        for other, count in self.beams:
+            if other == row:
+                return slice(first, first + 3 * count)
+            first += 3 * count
+        raise KeyError(row)
 
     def of_lidar(self, row: int) -> slice:
         """Columns of a LiDAR: rotation, position, clock."""
@@ -102,6 +166,9 @@ class Parameters:
                 T_body_sensor=_moved(sensors[row].T_body_sensor, step),
                 time_offset_s=sensors[row].time_offset_s + float(step[6]),
             )
+        for row, count in self.beams:
+            rows = delta[self.of_beams(row)].reshape(3, count) + _beam_rows(sensors[row], count)
+            sensors[row] = replace(sensors[row], beams=BeamCorrections.of(rows))
         rig = replace(rig, sensors=tuple(sensors))
         if not self.imu:
             return rig
@@ -122,7 +189,13 @@ class Parameters:
         if self.imu:
             clock_s = after.imu_time_offset_s - before.imu_time_offset_s
             rows.append((before.T_body_imu, after.T_body_imu, clock_s))
-        return np.concatenate([np.empty(0), *(_change(*row) for row in rows)])
+        beams = [
+            _beam_rows(after.sensors[row], count) - _beam_rows(before.sensors[row], count)
+            for row, count in self.beams
+        ]
+        return np.concatenate(
+            [np.empty(0), *(_change(*row) for row in rows), *(change.ravel() for change in beams)]
+        )
 
 
 def _seven(name: str) -> list[Parameter]:
@@ -131,6 +204,24 @@ def _seven(name: str) -> list[Parameter]:
         *(Parameter(name, "position", axis, "m") for axis in _AXES),
         Parameter(name, "clock", "", "s"),
     ]
+
+
+def _of_beams(name: str, count: int) -> list[Parameter]:
+    rings = [str(ring) for ring in range(count)]
+    return [
+        *(Parameter(name, "beam range", ring, "m") for ring in rings),
+        *(Parameter(name, "beam elevation", ring, "rad") for ring in rings),
+        *(Parameter(name, "beam azimuth", ring, "rad") for ring in rings),
+    ]
+
+
+def _beam_rows(sensor: Sensor, count: int) -> Array:
+    """Range, elevation and azimuth of the first beams, (3, count)."""
+    rows = np.zeros((3, count))
+    if sensor.beams is not None:
+        used = min(count, len(sensor.beams))
+        rows[:, :used] = sensor.beams.rows[:, :used]
+    return rows
 
 
 def _moved(T_body_sensor: SE3, step: Array) -> SE3:

@@ -8,11 +8,20 @@ from pathlib import Path
 import msgspec
 import numpy as np
 
-from recon4.calibration.calibrate import Agreement, Calibration, audit, calibrate, reference_of
+from recon4.calibration.beams import beam_counts
+from recon4.calibration.calibrate import (
+    Agreement,
+    Calibration,
+    audit,
+    calibrate,
+    chosen_lidars,
+    reference_of,
+)
 from recon4.calibration.calibrate import calibrated_parameters as parameters_of
 from recon4.calibration.joint import JointEstimate
-from recon4.calibration.judgment import contradictions, judge
+from recon4.calibration.judgment import contradictions, judge, split_beams
 from recon4.calibration.mount_search import exchanged_mount
+from recon4.calibration.note import calibration_note
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.walk import RecordedWalk
@@ -74,10 +83,13 @@ def run_calibration(
         frames.rig, reference=reference, with_imu=start.imu_usable, settings=settings.calibration
     )
     found = _audit(walk, start, parameters, settings=settings, progress=progress)
-    if settings.calibration.mode == "auto" and found.begin and found.figures.warnings:
-        calibrated = calibrate(walk, found.begin, parameters, settings=settings, progress=progress)
-        if calibrated is not None:
-            found = _calibrated(found, calibrated)
+    if settings.calibration.mode == "auto":
+        begin, parameters = _to_calibrate(walk, found, parameters, settings=settings)
+        calibrated = begin and calibrate(
+            walk, begin, parameters, settings=settings, progress=progress
+        )
+        if calibrated:
+            found = _calibrated(found, calibrated, recorded_ns=int(walk.frames.index["t_ns"][0]))
     for text in found.figures.warnings:
         progress.event(Warned(text=text))
     return found
@@ -112,6 +124,19 @@ def _audit(
     return CalibrationResult(figures=figures, begin=estimate.rig)
 
 
+def _to_calibrate(
+    walk: RecordedWalk, audited: CalibrationResult, parameters: Parameters, *, settings: Settings
+) -> tuple[Rig | None, Parameters]:
+    """Where a calibration begins, None = there is none, and what it estimates."""
+    rig = walk.frames.rig
+    if not settings.calibration.beams:
+        return (audited.begin if audited.figures.warnings else None), parameters
+    counts = beam_counts(walk.frames, chosen_lidars(rig, settings.calibration))
+    if not counts:
+        return (audited.begin if audited.figures.warnings else None), parameters
+    return audited.begin or rig, parameters.with_beams(rig, counts)
+
+
 def _nothing(outcome: str, remarks: tuple[str, ...]) -> CalibrationResult:
     figures = CalibrationFigures(outcome=outcome, warnings=remarks, uncorrected=remarks)
     return CalibrationResult(figures=figures)
@@ -137,14 +162,18 @@ def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
     return f"{text}; {unknown} of {len(rows)} parameters are not observable" if unknown else text
 
 
-def _calibrated(audited: CalibrationResult, found: Calibration) -> CalibrationResult:
+def _calibrated(
+    audited: CalibrationResult, found: Calibration, *, recorded_ns: int
+) -> CalibrationResult:
     """What follows from a calibration; where it must not be used, the audit's findings stand."""
+    mounts, beams = split_beams(found.rows)
     if found.refusal:
-        figures = msgspec.structs.replace(audited.figures, outcome=found.refusal)
+        figures = msgspec.structs.replace(audited.figures, outcome=found.refusal, beams=beams)
         return replace(audited, figures=figures, before=found.before, after=found.after)
     uncorrected = audited.figures.uncorrected
     figures = CalibrationFigures(
-        parameters=found.rows,
+        parameters=mounts,
+        beams=beams,
         windows=len(found.estimate.fits),
         rms_m=found.estimate.rms_m,
         applied=True,
@@ -152,6 +181,6 @@ def _calibrated(audited: CalibrationResult, found: Calibration) -> CalibrationRe
         warnings=(*uncorrected, *contradictions(found.rows, applied=True)),
         uncorrected=uncorrected,
     )
-    return CalibrationResult(
-        figures=figures, rig=found.estimate.rig, before=found.before, after=found.after
-    )
+    note = calibration_note("joint", figures, recorded_ns=recorded_ns)
+    rig = replace(found.estimate.rig, calibration=note)
+    return CalibrationResult(figures=figures, rig=rig, before=found.before, after=found.after)

@@ -8,7 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.calibration.selection import choose_windows
-from recon4.calibration.window import Window, cut_window
+from recon4.calibration.window import (
+    BEAM_POINTS_OF_FRAME,
+    POINTS_OF_FRAME,
+    Window,
+    cut_window,
+)
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -60,13 +65,15 @@ class RecordedWalk:
         Args:
             rows: Multiframes of each window.
             rig: Rig of the odometry; LiDARs that are not enabled do not take part.
-            settings: Of the odometry.
+            settings: Of the odometry; windows for single beams have more points.
             imu: Samples for the odometry; None = without an IMU.
         """
+        points = BEAM_POINTS_OF_FRAME if settings.calibration.beams else POINTS_OF_FRAME
         found = []
         for part in rows:
             odometry = Odometry(rig, settings, imu)
             steps = [odometry.push(self.frames[row]) for row in part]
             if not any(step.lost for step in steps):
-                found.append(cut_window(self.frames, dense_trajectory(steps), part))
+                dense = dense_trajectory(steps)
+                found.append(cut_window(self.frames, dense, part, points=points))
         return found

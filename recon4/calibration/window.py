@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.imu import place_points
+from recon4.model.beams import beam_change
 from recon4.model.frames import RecordedFrames
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -17,11 +18,12 @@ from recon4.model.trajectory import Times, Trajectory
 KNOT_S = 0.05
 """Distance in time of the knots of the trajectory's correction [s]."""
 _KNOT_NS = round(1e9 * KNOT_S)
-_POINTS_OF_FRAME = 600
-"""Largest number of points of one sensor in one multiframe."""
+POINTS_OF_FRAME, BEAM_POINTS_OF_FRAME = 600, 2400
+"""Largest number of points of one sensor in one multiframe; single beams need more."""
 _MARGIN_NS = 100_000_000
 """Samples of the IMU are kept this much longer than the window on both sides [ns]."""
 _VELOCITY_S = 1e-3
+_NEAREST_M = 1e-3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,6 +66,10 @@ class PlacedPoints:
     """From the body to the point, in odometry axes [m], (N, 3)."""
     R_odom_body: Array
     """Rotation at the time of the point, (N, 3, 3)."""
+    p_sensor: Array
+    """In the frame of the sensor, beams corrected [m], (N, 3)."""
+    beam_odom: Array
+    """Unit vectors from the sensor to the point, in odometry axes, (N, 3)."""
     sensor_arm_body: Array
     """From the sensor to the point, in body axes [m], (N, 3)."""
     velocity_odom: Array
@@ -74,15 +80,18 @@ class PlacedPoints:
     """Time since that knot as a part of the interval, 0..1, (N,)."""
 
 
-def cut_window(frames: RecordedFrames, trajectory: Trajectory, rows: range) -> Window:
+def cut_window(
+    frames: RecordedFrames, trajectory: Trajectory, rows: range, *, points: int = POINTS_OF_FRAME
+) -> Window:
     """Collect the measurements of the multiframes ``rows``, thinned evenly.
 
     Args:
         frames: The multiframes with their rig and IMU.
         trajectory: ``T_odom_body``, dense.
         rows: Consecutive multiframes.
+        points: Largest number of points of one sensor in one multiframe.
     """
-    parts = [_thinned(frames, row) for row in rows]
+    parts = [_thinned(frames, row, points) for row in rows]
     start_ns, end_ns = _span(frames, rows, trajectory)
     p, sensor, ring, t_ns = (np.concatenate(column) for column in zip(*parts, strict=True))
     # Exactly so far apart: rows of the IMU count on it. Later points belong to the last knot.
@@ -105,7 +114,8 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
     """Place the points of a window with a rig that may differ from the recorded one."""
     t_s = window.t_s + _clock_change_s(window.recorded_rig, rig)[window.sensor]
     T = rig.T_body_sensor
-    arm_body = np.einsum("nij,nj->ni", T.R[window.sensor], window.p_sensor)
+    p_sensor = _corrected(window, rig)
+    arm_body = np.einsum("nij,nj->ni", T.R[window.sensor], p_sensor)
     p_body = arm_body + T.t[window.sensor]
     part = window.trajectory
     dense_s = np.asarray((part.t_ns - window.start_ns) * 1e-9, np.float64)
@@ -120,15 +130,30 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
     at = t_s / KNOT_S
     knot = np.clip(np.floor(at).astype(np.int64), 0, window.knots - 2)
     R_odom_body = np.stack(axes, axis=2)
+    length = np.maximum(np.linalg.norm(arm_body, axis=1), _NEAREST_M)
     return PlacedPoints(
         odom=odom,
         arm_odom=np.einsum("nij,nj->ni", R_odom_body, p_body),
         R_odom_body=R_odom_body,
+        p_sensor=p_sensor,
+        beam_odom=np.einsum("nij,nj->ni", R_odom_body, arm_body / length[:, None]),
         sensor_arm_body=arm_body,
         velocity_odom=(later - earlier) / (2.0 * _VELOCITY_S),
         knot=knot,
         fraction=np.clip(at - knot, 0.0, 1.0),
     )
+
+
+def _corrected(window: Window, rig: Rig) -> Array:
+    """Points with the corrections of beams of another rig, (N, 3)."""
+    p_sensor = window.p_sensor
+    for row, (old, new) in enumerate(zip(window.recorded_rig.sensors, rig.sensors, strict=True)):
+        change = beam_change(old.beams, new.beams)
+        if change is not None:
+            mine = np.flatnonzero(window.sensor == row)
+            p_sensor = p_sensor.copy() if p_sensor is window.p_sensor else p_sensor
+            p_sensor[mine], _ = change.apply(p_sensor[mine], window.ring[mine])
+    return p_sensor
 
 
 def _clock_change_s(before: Rig, after: Rig) -> Array:
@@ -138,11 +163,11 @@ def _clock_change_s(before: Rig, after: Rig) -> Array:
 
 
 def _thinned(
-    frames: RecordedFrames, row: int
+    frames: RecordedFrames, row: int, points: int
 ) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.uint8], NDArray[np.int64]]:
     frame = frames[row]
     kept = [
-        _evenly(np.flatnonzero((frame.sensor == k) & (frame.echo == 0)), row)
+        _evenly(np.flatnonzero((frame.sensor == k) & (frame.echo == 0)), row, points)
         for k, sensor in enumerate(frames.rig.sensors)
         if sensor.enabled
     ]
@@ -151,9 +176,9 @@ def _thinned(
     return frame.xyz[rows], frame.sensor[rows], frame.ring[rows], t_ns
 
 
-def _evenly(rows: NDArray[np.intp], shift: int) -> NDArray[np.intp]:
+def _evenly(rows: NDArray[np.intp], shift: int, points: int) -> NDArray[np.intp]:
     """Some rows, evenly spaced; an odd step so that all beams are met."""
-    step = max(1, len(rows) // _POINTS_OF_FRAME) | 1
+    step = max(1, len(rows) // points) | 1
     return rows[shift % step :: step]
 
 

@@ -32,6 +32,9 @@ def calibrate(
     sensors: Annotated[
         str, typer.Option(help="Only these, as vertical,imu; for pairs: the sensor.")
     ] = "",
+    beams: Annotated[
+        bool, typer.Option("--beams", help="Also range, elevation and azimuth of single beams.")
+    ] = False,
     project: Annotated[
         Path | None, typer.Option(help="Folder for multiframes and odometry; default: OUT.project.")
     ] = None,
@@ -42,17 +45,18 @@ def calibrate(
     folder = project or out.with_suffix(".project")
     confine_command(write=[result_folder(folder), out.parent])
 
-    from recon4.calibration_methods import calibrate_by, check_method, page_of
+    from recon4.calibration_methods import CalibrationChoice, calibrate_by, check_choice, page_of
     from recon4.model.rig import load_rig
     from recon4.recording.sources import Sources, require_files
     from recon4.report.calibration_page import write_calibration_page
     from recon4.terminal import watcher
 
-    check_method(method)
+    choice = CalibrationChoice(method, sensors, beams)
+    check_choice(choice)
     require_files([*recordings, *([imu] if imu else [])])
     sources = Sources(tuple(recordings), load_rig(rig), imu, None)
     with watcher() as progress:
-        found = calibrate_by(method, sources, folder, sensors=sensors, progress=progress)
+        found = calibrate_by(choice, sources, folder, progress=progress)
     write("\n".join(found.lines))
     page = out.with_suffix(".html")
     write_calibration_page(page, page_of(method, found, sources, folder=folder))

@@ -103,9 +103,10 @@ def process(  # noqa: PLR0913 - an argument for each option
     calibrate: Annotated[
         str,
         typer.Option(
-            metavar="auto|off|SENSORS",
-            help="auto: calibrate a rig file that contradicts the recording; off: do not compare "
-            "them; SENSORS: calibrate these only, as vertical,imu. Default: compare and warn.",
+            metavar="auto|beams|off|SENSORS",
+            help="auto: calibrate a rig file that contradicts the recording; beams: single beams "
+            "as well; off: do not compare them; SENSORS: calibrate these only, as vertical,imu. "
+            "Default: compare and warn.",
         ),
     ] = "",
     assignments: SetOption = None,
@@ -142,6 +143,8 @@ def _calibrate(word: str) -> list[str]:
         return []
     if word in ("auto", "off"):
         return [f"calibration.mode={word}"]
+    if word == "beams":
+        return ["calibration.mode=auto", "calibration.beams=true"]
     return ["calibration.mode=auto", f"calibration.sensors={word}"]
 
 

@@ -41,7 +41,7 @@ def simulate(
     from recon4.model.rig import load_rig
     from recon4.simulation.backpack import prepare_backpack, simulate_backpack
     from recon4.simulation.degradation import PEOPLE, parse_degradations
-    from recon4.simulation.setup import prepare
+    from recon4.simulation.setup import models_with, prepare
     from recon4.simulation.simulate import simulate as run
     from recon4.terminal import watcher
 
@@ -56,6 +56,9 @@ def simulate(
             walk = prepared(seconds=seconds or 0.0, seed=seed, people=people)
             simulate_backpack(walk, out, degradations=degradations, progress=progress)
         else:
-            setup = prepare(world, seconds=seconds or 60.0, seed=seed, rig=mounted, people=people)
+            models = models_with(degradations)
+            setup = prepare(
+                world, seconds=seconds or 60.0, seed=seed, rig=mounted, models=models, people=people
+            )
             run(setup, out, bag=bag, degradations=degradations, progress=progress)
     write(f"{out}")

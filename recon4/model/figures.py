@@ -56,9 +56,10 @@ class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
     sensor: str
     """Name of the LiDAR, or ``imu``."""
     quantity: str
-    """``rotation``, ``position`` or ``clock``."""
+    """``rotation``, ``position``, ``clock``; of a beam ``beam range``, ``beam elevation`` or
+    ``beam azimuth``."""
     axis: str
-    """Of the body: ``x``, ``y``, ``z``; empty for a clock."""
+    """Of the body: ``x``, ``y``, ``z``; empty for a clock; the ring of a beam."""
     unit: Literal["rad", "m", "s"]
     change: float
     """To be added to the rig file's value, in the unit."""
@@ -76,6 +77,8 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
 
     parameters: tuple[ParameterFigures, ...] = ()
     """Change from the rig file; empty = nothing could be compared."""
+    beams: tuple[ParameterFigures, ...] = ()
+    """The same of single beams; ``axis`` is the ring. Empty = they were not estimated."""
     windows: int = 0
     """Number of windows of the walk they come from."""
     rms_m: float | None = None

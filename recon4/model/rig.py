@@ -14,6 +14,7 @@ import numpy as np
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
+from recon4.model.beams import BeamCorrections, format_beams, parse_beams
 from recon4.model.toml_tables import TomlTable, parse_toml
 
 IMU_PORT, GNSS_PORT = 8309, 8310
@@ -29,10 +30,12 @@ _KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "kind", "head_topic",
-    "head_rate_deg_s",
+    "head_rate_deg_s", "beams",
 }  # fmt: skip
 _IMU_KEYS = _MOUNTING_KEYS
 _GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial"}
+_SD_KEYS = ("sd_deg", "sd_mm", "sd_ms")
+_BEAM_SD_KEYS = ("sd_beam_deg", "sd_beam_mm")
 _MAX_HEAD_DEG_S = 3600.0
 
 
@@ -66,6 +69,8 @@ class Sensor:
     """Off = its points are read and stored but neither registered nor mapped (V §3.4)."""
     serial: str = ""
     """Serial number; empty = not known."""
+    beams: BeamCorrections | None = None
+    """Corrections of its single beams; None = those of the data sheet."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -82,6 +87,10 @@ class RigCalibration:
     """Of a position [mm]."""
     sd_ms: float
     """Of a clock [ms]."""
+    sd_beam_deg: float = 0.0
+    """Of the elevation or azimuth of a beam [°]; 0 = beams were not estimated."""
+    sd_beam_mm: float = 0.0
+    """Of the range of a beam [mm]; 0 = beams were not estimated."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -188,7 +197,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
 def _calibration(value: object, where: str) -> RigCalibration | None:
     if value is None:
         return None
-    row = TomlTable.of(value, where, {"date", "method", "sd_deg", "sd_mm", "sd_ms"})
+    row = TomlTable.of(value, where, {"date", "method", *_SD_KEYS, *_BEAM_SD_KEYS})
     text = row.text("date")
     try:
         date.fromisoformat(text)
@@ -197,9 +206,7 @@ def _calibration(value: object, where: str) -> RigCalibration | None:
     return RigCalibration(
         date=text,
         method=row.text("method"),
-        sd_deg=row.number("sd_deg"),
-        sd_mm=row.number("sd_mm"),
-        sd_ms=row.number("sd_ms"),
+        **{key: row.number(key) for key in (*_SD_KEYS, *_BEAM_SD_KEYS)},
     )
 
 
@@ -223,6 +230,7 @@ def format_rig(rig: Rig) -> str:
         lines += [f"address = {_quoted(sensor.address)}", f"topic = {_quoted(sensor.topic)}"]
         lines += [f"serial = {_quoted(sensor.serial)}"] if sensor.serial else []
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
+        lines += format_beams(sensor.beams)
     lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
     lines += ["", "[gnss]"]
@@ -233,7 +241,9 @@ def format_rig(rig: Rig) -> str:
     if rig.calibration:
         c = rig.calibration
         lines += ["[calibration]", f"date = {_quoted(c.date)}", f"method = {_quoted(c.method)}"]
-        lines += [f"sd_deg = {c.sd_deg!r}", f"sd_mm = {c.sd_mm!r}", f"sd_ms = {c.sd_ms!r}", ""]
+        lines += [f"{key} = {getattr(c, key)!r}" for key in _SD_KEYS]
+        lines += [f"{key} = {getattr(c, key)!r}" for key in _BEAM_SD_KEYS if getattr(c, key)]
+        lines += [""]
     return "\n".join(lines)
 
 
@@ -265,6 +275,8 @@ def _sensor(row: TomlTable) -> Sensor:
         )
     if kind != "profiler" and ("head_topic" in row or "head_rate_deg_s" in row):
         raise ConfigError(f"{row.where}: only a profiler has a head, this is a {kind}")
+    if kind != "lidar" and "beams" in row:
+        raise ConfigError(f"{row.where}: only a lidar has corrections of beams, this is a {kind}")
     name = row.text("name")
     if not name:
         raise ConfigError(f"{row.where}: name must be a text, got {row.get('name')!r:.80}")
@@ -281,6 +293,7 @@ def _sensor(row: TomlTable) -> Sensor:
         topic=row.text("topic"),
         enabled=row.flag("enabled", default=True),
         serial=row.text("serial"),
+        beams=parse_beams(row.get("beams"), f"{row.where}: beams", model=model),
     )
 
 

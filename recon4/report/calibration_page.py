@@ -8,6 +8,7 @@ from pathlib import Path
 
 from recon4.geometry.se3 import Array
 from recon4.model.figures import CalibrationFigures
+from recon4.report.beams import beam_charts, beam_rows
 from recon4.report.chart_groups import framed
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.html import environment
@@ -59,6 +60,8 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
             outcome=page.outcome,
             rows=rig_rows(page.figures),
             charts=framed(rig_charts(page.figures)),
+            beams=beam_rows(page.figures),
+            beam_charts=framed(beam_charts(page.figures)),
             slices=framed([(_chart(one), one.name) for one in page.slices]),
             thickness_m=THICKNESS_M,
             lines=page.lines,

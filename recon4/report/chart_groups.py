@@ -8,6 +8,7 @@ from markupsafe import Markup
 
 from recon4.report import charts
 from recon4.report.artifacts import Results
+from recon4.report.beams import beam_charts
 from recon4.report.drift import DriftClosed
 from recon4.report.edges import edge_paths
 from recon4.report.facts import ReportFacts
@@ -124,7 +125,7 @@ def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigu
 
 def rig_figures(results: Results) -> list[ChartFigure]:
     """Differences of the recording from the rig file."""
-    return framed(rig_charts(results.calibration))
+    return framed([*rig_charts(results.calibration), *beam_charts(results.calibration)])
 
 
 def georeference_figures(results: Results) -> list[ChartFigure]:

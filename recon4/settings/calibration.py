@@ -19,6 +19,8 @@ class CalibrationSettings:
     """Names of the LiDARs to calibrate and ``imu``, separated by commas; empty = all of them."""
     reference: str = ""
     """Name of the LiDAR whose mount and clock stay; empty = the first one that is enabled."""
+    beams: bool = False
+    """A calibration also estimates range, elevation and azimuth of each beam of the LiDARs."""
     audit_windows: int = 4
     """Largest number of windows of the walk that are compared in an audit."""
     audit_window_s: float = 4.0

@@ -1,8 +1,8 @@
 """Errors of a recording that its rig file does not know: ``recon4 simulate --degrade``.
 
-Nothing here changes the walk, and only `PEOPLE` the rays. A degradation changes what is written:
-what the rig file says, the clocks of the stamps, the samples of the IMU, which shots and packets
-there are.
+Nothing here changes the walk, and only `PEOPLE` and `BEAM_ANGLE` the rays. A degradation changes
+what is written: what the rig file says, the clocks of the stamps, the samples of the IMU, which
+shots and packets there are.
 """
 
 from __future__ import annotations
@@ -58,6 +58,9 @@ KINDS: Mapping[str, DegradationKind] = {
     "lever-arm": DegradationKind(0.15, 10, "m", "the antenna is not where the rig file says"),
     "dead-beams": DegradationKind(6, LASERS, "", "number of lasers that return nothing"),
     "beam-bias": DegradationKind(0.03, 1, "m", "standard deviation of a range bias of each laser"),
+    "beam-angle": DegradationKind(
+        0.03, 1, "°", "standard deviation of the elevation and azimuth of each laser"
+    ),
     "packet-loss": DegradationKind(0.25, 0.95, "", "ratio of packets or line scans lost, in runs"),
     "people": DegradationKind(5, 12, "", "number of people who walk along and hide the view"),
     "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
@@ -71,13 +74,15 @@ KINDS: Mapping[str, DegradationKind] = {
     "no-laser2d": DegradationKind(_SWITCH, 1, "", "no 2-D laser was recorded"),
 }
 PEOPLE = "people"
-"""The only one that changes the rays, see `recon4.simulation.companions`."""
+"""It changes the rays, see `recon4.simulation.companions`."""
+BEAM_ANGLE = "beam-angle"
+"""The only other one that does, see `recon4.simulation.lidar.LidarModel.beam_angle_sd_rad`."""
 ONLY_PROFILER = frozenset(
     {"no-head", "head-stuck", "head-pause", "lines-cm", "laser2d-cm", "laser2d-clock"}
     | {"laser2d-silent", "laser2d-mirrored", "no-laser2d"}
 )
 """Degradations of rigs with a profiler."""
-NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars"})
+NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars", BEAM_ANGLE})
 """Degradations that a rig with a profiler cannot have."""
 
 
@@ -193,14 +198,16 @@ class Degradation:
         distance, truth = shots.distance.copy(), shots.reflectivity.copy()
         distance[..., self.dead[row]] = 0
         truth[..., self.dead[row]] = 0
-        units = np.rint(self.bias_m[row] / RESOLUTION_M).astype(np.int64)
-        biased = np.clip(distance + units, 1, 65535)
-        distance = np.where(distance > 0, biased, 0).astype(np.uint16)
+        if "beam-bias" in self.values:
+            # Rounded at random, so that the mean is the bias and not a multiple of the resolution.
+            rng = np.random.default_rng([self.seed, 9, row, second])
+            units = self.bias_m[row] / RESOLUTION_M + rng.uniform(-0.5, 0.5, distance.shape)
+            distance = np.where(distance > 0, np.clip(np.rint(distance + units), 1, 65535), 0)
         kept = self._kept(len(distance), row, second)
         return Firings(
             shots.t_ns[kept],
             shots.azimuth_rad[kept],
-            distance[kept],
+            distance[kept].astype(np.uint16),
             shots.intensity[kept],
             truth[kept],
         )

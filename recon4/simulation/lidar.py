@@ -57,6 +57,8 @@ class LidarModel:
     """Absolute noise of the intensity."""
     gain_spread: float = 0.25
     """Largest relative deviation of the gain of a laser."""
+    beam_angle_sd_rad: float = 0.0
+    """Standard deviation of the elevation and azimuth of a laser against the data sheet."""
     carrier: bool = True
     """The person hides what is behind."""
 
@@ -82,7 +84,7 @@ class Firings:
     t_ns: Times
     """Time of each shot since the start of the walk [ns], (P, 24, 16)."""
     azimuth_rad: Array
-    """Azimuth of each shot, clockwise seen from above, (P, 24, 16)."""
+    """Azimuth of each shot by the encoder, clockwise seen from above, (P, 24, 16)."""
     distance: NDArray[np.uint16]
     """In units of 2 mm, 0 = no return, (P, 24, 16)."""
     intensity: NDArray[np.uint8]
@@ -105,6 +107,9 @@ class Lidar:
     """Near 10 Hz; two sensors are not phase locked."""
     gain: Array
     """Gain of each laser, (16,)."""
+    turned_rad: Array
+    """By which the elevation (upwards) and azimuth (clockwise) of each laser differ from the data
+    sheet, (2, 16)."""
 
     @staticmethod
     def drawn(sensor: Sensor, model: LidarModel, rng: np.random.Generator) -> Lidar:
@@ -116,6 +121,7 @@ class Lidar:
             float(rng.uniform(0.0, 2.0 * np.pi)),
             10.0 * float(1.0 + 5e-4 * rng.uniform(-1.0, 1.0)),
             1.0 + model.gain_spread * rng.uniform(-1.0, 1.0, LASERS),
+            model.beam_angle_sd_rad * rng.standard_normal((2, LASERS)),
         )
 
     def packets_before(self, t_ns: int) -> int:
@@ -134,8 +140,10 @@ class Lidar:
         count = t_ns.size
         t_s = 1e-9 * t_ns.ravel()
         shot = np.empty((count, 5))
-        shot[:, 0] = self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s
-        shot[:, 1] = np.tile(_VLP16.elevation_rad, count // LASERS)
+        stated = self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s
+        elevation, azimuth = np.stack([_VLP16.elevation_rad, np.zeros(LASERS)]) + self.turned_rad
+        shot[:, 0] = stated + np.tile(azimuth, count // LASERS)
+        shot[:, 1] = np.tile(elevation, count // LASERS)
         shot[:, 2] = np.tile(_VLP16.height_m, count // LASERS)
         half = 0.5 * self.model.divergence_rad
         shot[:, 3:] = rng.uniform(-half, half, (count, 2))
@@ -153,8 +161,8 @@ class Lidar:
             model=self.model,
         )
         columns = (found.distance, found.intensity, found.reflectivity)
-        azimuth = np.mod(shot[:, 0], 2.0 * np.pi).reshape(t_ns.shape)
-        return Firings(t_ns, azimuth, *(column.reshape(t_ns.shape) for column in columns))
+        encoder = np.mod(stated, 2.0 * np.pi).reshape(t_ns.shape)
+        return Firings(t_ns, encoder, *(column.reshape(t_ns.shape) for column in columns))
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import json
 from contextlib import ExitStack
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from pathlib import Path
 from typing import TypeVar
 
 import numpy as np
 
 from recon4.geometry.mesh import write_ply
-from recon4.model.rig import format_rig
+from recon4.model.beams import BeamCorrections
+from recon4.model.rig import Rig, format_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.velodyne.encode import PcapWriter
+from recon4.recording.velodyne.models import MODELS
 from recon4.simulation.bag import BagWriter, open_bag
 from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
 from recon4.simulation.degradation import Degradation
@@ -87,10 +89,24 @@ class WalkRecorder:
         write_ply(folder / "model.ply", setup.world.mesh)
         write_markers(folder / "markers.csv", setup.world)
         if self._degradation.values:
-            (folder / "rig_true.toml").write_text(format_rig(setup.rig), "utf-8")
+            true = true_rig(setup, self._degradation)
+            (folder / "rig_true.toml").write_text(format_rig(true), "utf-8")
         parameters = _parameters(setup) | {"degradations": self._degradation.to_json()}
         text = json.dumps(parameters, indent=1, allow_nan=False)
         (folder / "world.json").write_text(text + "\n", "utf-8")
+
+
+def true_rig(setup: SimulationSetup, degradation: Degradation) -> Rig:
+    """The rig that was simulated, with the errors of its beams as corrections."""
+    ring = MODELS["VLP-16"].ring
+    sensors = []
+    for lidar, bias_m in zip(setup.lidars, degradation.bias_m, strict=True):
+        rows = np.zeros((3, len(ring)))
+        elevation_rad, clockwise_rad = lidar.turned_rad
+        rows[:, ring] = [-bias_m, elevation_rad, -clockwise_rad]
+        beams = BeamCorrections.of(rows) if rows.any() else None
+        sensors.append(replace(lidar.sensor, beams=beams))
+    return replace(setup.rig, sensors=tuple(sensors))
 
 
 def _sense(setup: SimulationSetup, degradation: Degradation) -> ImuSamples | None:
@@ -133,6 +149,7 @@ def _parameters(setup: SimulationSetup) -> dict[str, object]:
                 "azimuth_rad": lidar.azimuth_rad,
                 "turn_rate_hz": lidar.turn_rate_hz,
                 "gain_by_laser": lidar.gain.tolist(),
+                "turned_rad_by_laser": lidar.turned_rad.tolist(),
             }
             for lidar in setup.lidars
         ],

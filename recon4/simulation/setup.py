@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from recon4.geometry.raycast import Scene
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.simulation.companions import Companions
+from recon4.simulation.degradation import BEAM_ANGLE
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.gnss import GnssModel, simulate_gnss
 from recon4.simulation.imu import ImuModel, simulate_imu
@@ -36,6 +38,12 @@ class Models:
     def perfect() -> Models:
         """Sensors without errors."""
         return Models(lidar=LidarModel.perfect(), imu=ImuModel.perfect(), gnss=GnssModel.perfect())
+
+
+def models_with(degradations: Mapping[str, float]) -> Models:
+    """Error models of real sensors, with the errors of their beams that change the rays."""
+    sd_rad = float(np.deg2rad(degradations.get(BEAM_ANGLE, 0.0)))
+    return Models(lidar=replace(LidarModel(), beam_angle_sd_rad=sd_rad))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -131,12 +139,13 @@ def gnss_samples(setup: SimulationSetup) -> GnssSamples | None:
 
 
 def _addressed(rig: Rig) -> Rig:
-    """The rig with unique addresses and topics for all sensors."""
+    """The rig with unique addresses and topics for all sensors, and beams as in the data sheet."""
     sensors = tuple(
         replace(
             sensor,
             address=sensor.address or f"192.168.1.{201 + row}",
             topic=sensor.topic or f"/{sensor.name}/velodyne_packets",
+            beams=None,
         )
         for row, sensor in enumerate(rig.sensors)
     )

@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress
-from recon4.simulation.degradation import ONLY_PROFILER, PEOPLE, Degradation
+from recon4.simulation.degradation import BEAM_ANGLE, ONLY_PROFILER, PEOPLE, Degradation
 from recon4.simulation.lidar import Firings
 from recon4.simulation.recorder import WalkRecorder
 from recon4.simulation.setup import SimulationSetup
@@ -63,9 +63,8 @@ def record(
         ConfigError: If a degradation cannot be simulated.
         StoreError: If a folder exists with something in it or cannot be written.
     """
-    people = setup.surroundings.companions
     for values in folders.values():
-        _check_possible(values, people=len(people) if people else 0)
+        _check_possible(values, setup)
     degraded = {
         folder: Degradation.drawn(values, sensors=len(setup.lidars), seed=setup.seed)
         for folder, values in folders.items()
@@ -102,14 +101,19 @@ def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
         yield parts
 
 
-def _check_possible(values: Mapping[str, float], *, people: int) -> None:
+def _check_possible(values: Mapping[str, float], setup: SimulationSetup) -> None:
     wrong = sorted(ONLY_PROFILER & set(values))
     if wrong:
         raise ConfigError(f"{wrong[0]}: only possible on a rig with a profiler")
-    if values.get(PEOPLE, 0) != people:
-        raise ConfigError(
-            f"{PEOPLE}: the rays were prepared for {people}, got {values.get(PEOPLE, 0)}"
-        )
+    cast = {
+        PEOPLE: float(len(setup.surroundings.companions or ())),
+        BEAM_ANGLE: float(np.rad2deg(setup.models.lidar.beam_angle_sd_rad)),
+    }
+    for name, prepared in cast.items():
+        if not np.isclose(values.get(name, 0.0), prepared):
+            raise ConfigError(
+                f"{name}: the rays were prepared for {prepared:g}, got {values.get(name, 0):g}"
+            )
 
 
 def _check_empty(out: Path) -> None:

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 
 from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, NoSpace, StoreError
+from recon4.model.beams import beam_change
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -202,6 +203,7 @@ class FrameStore:
         columns = {name: _map_rows(self.folder, name, start, stop=stop) for name in COLUMNS}
         if self.rig is not self.recorded:
             columns["dt_ns"] = columns["dt_ns"] + self._clock_change_ns()[columns["sensor"]]
+            columns["xyz"] = self._with_beams(columns["xyz"], columns["ring"], columns["sensor"])
         return Multiframe(
             int(row["frame_id"]), int(row["t_ns"]), int(row["duration_ns"]), **columns
         )
@@ -221,6 +223,20 @@ class FrameStore:
         pairs = zip(self.rig.sensors, self.recorded.sensors, strict=True)
         change_s = [new.time_offset_s - old.time_offset_s for new, old in pairs]
         return np.rint(1e9 * np.array(change_s)).astype(np.int32)
+
+    def _with_beams(
+        self,
+        xyz: NDArray[np.float32],
+        ring: NDArray[np.uint8],
+        sensor: NDArray[np.uint8],
+    ) -> NDArray[np.float32]:
+        """Points with the corrections of beams by which the rig differs from that in the files."""
+        for row, (new, old) in enumerate(zip(self.rig.sensors, self.recorded.sensors, strict=True)):
+            change = beam_change(old.beams, new.beams)
+            if change is not None:
+                mine = np.flatnonzero(sensor == row)
+                xyz[mine], _ = change.apply(xyz[mine], ring[mine])
+        return xyz
 
     @property
     def t_mid_ns(self) -> Times:

@@ -72,6 +72,12 @@ export interface Assignments {
   settings?: Array<string>;
 }
 
+export interface BeamsContent {
+  range_m: Array<number>;
+  elevation_deg: Array<number>;
+  azimuth_deg: Array<number>;
+}
+
 export interface CalibratedVersion {
   rig: string;
   create?: boolean;
@@ -808,6 +814,7 @@ export interface SensorContent {
   head_rate_deg_s?: number;
   enabled?: boolean;
   serial?: string;
+  beams?: BeamsContent | null;
 }
 
 export interface SensorModel {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
@@ -87,6 +87,7 @@ class Assembler:
         """
         self._on_cut, self._begun = on_cut, False
         self._settings, self._report = settings, report
+        self._beams = [sensor.beams for sensor in rig.sensors]
         self._wait_ns = int(wait_s * 1e9)
         self._streams = [
             _Stream(s.name, delivers=s.kind != "laser2d", spins=s.kind == "lidar")
@@ -110,7 +111,7 @@ class Assembler:
         Raises:
             ConfigError: If the clocks of the sensors have nothing to do with each other.
         """
-        kept = drop_invalid(shots, settings=self._settings, report=self._report)
+        kept = drop_invalid(self._corrected(shots), settings=self._settings, report=self._report)
         for part in _runs(kept, round(self._settings.gap_s * 1e9)):
             self._take(part)
         if self._start_ns is None and not self._head_complete():
@@ -131,6 +132,15 @@ class Assembler:
         return frames if held is None or self._too_small(held) else [*frames, held]
 
     # -- taking in
+
+    def _corrected(self, shots: Shots) -> Shots:
+        """The shots with the corrections of beams that the rig file lists."""
+        beams = self._beams[shots.sensor]
+        if beams is None:
+            return shots
+        xyz, unknown = beams.apply(shots.xyz, shots.ring)
+        self._report.count("points_of_beams_without_correction", unknown)
+        return replace(shots, xyz=xyz)
 
     def _take(self, shots: Shots) -> None:
         stream = self._streams[shots.sensor]

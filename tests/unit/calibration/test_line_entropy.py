@@ -11,7 +11,7 @@ from recon4.calibration.line_entropy import (
     profiler_parameters,
     profiler_walk,
 )
-from recon4.calibration_methods import calibrate_by
+from recon4.calibration_methods import CalibrationChoice, calibrate_by
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import load_rig
@@ -75,4 +75,4 @@ def test_methods_that_compare_lidars_refuse_a_profiler(tmp_path, method):
     sources = Sources((tmp_path / "bag",), load_rig("wuerzburg"))
 
     with pytest.raises(ConfigError, match="with a profiler; use entropy or pairs"):
-        calibrate_by(method, sources, tmp_path / "out", sensors="", progress=Silent())
+        calibrate_by(CalibrationChoice(method), sources, tmp_path / "out", progress=Silent())

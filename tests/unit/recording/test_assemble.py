@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
 from recon4.recording.assembly.assembler import Assembler, drop_invalid, moved
 from recon4.recording.assembly.rotation import nominal, rotation_rate
@@ -60,6 +61,21 @@ def test_no_point_is_lost_or_changed():
     np.testing.assert_array_equal(np.concatenate([f.xyz for f in frames]), shots.xyz)
     times = np.concatenate([f.t_ns + f.dt_ns.astype(np.int64) for f in frames])
     np.testing.assert_array_equal(times, shots.t_ns)
+
+
+def test_corrections_of_beams_in_the_rig_file_are_applied():
+    shots, rig = spin(seconds=0.5), load_rig("single-vlp16")
+    beams = BeamCorrections.of(np.full((3, 8), 0.01))
+    sensor = replace(rig.sensors[0], beams=beams)
+    report = ImportReport()
+    assembler = Assembler(replace(rig, sensors=(sensor,)), settings=SETTINGS, report=report)
+
+    frames = [*assembler.push(shots), *assembler.flush()]
+
+    expected, unknown = beams.apply(shots.xyz, shots.ring)
+    np.testing.assert_array_equal(np.concatenate([f.xyz for f in frames]), expected)
+    assert 0 < unknown == report.counts["points_of_beams_without_correction"]
+    assert not np.array_equal(expected, shots.xyz)
 
 
 def test_a_faster_sensor_is_cut_at_its_own_rate():

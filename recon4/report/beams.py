@@ -1,0 +1,98 @@
+"""Corrections of single beams: a table of each LiDAR and one chart for each quantity."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
+
+
+@dataclass(frozen=True, slots=True)
+class _Quantity:
+    name: str
+    factor: float
+    unit: str
+    digits: int
+
+
+_QUANTITIES = (
+    _Quantity("range", 1e3, " mm", 2),
+    _Quantity("elevation", 57.295779513082, "°", 4),
+    _Quantity("azimuth", 57.295779513082, "°", 4),
+)
+_COLORS = (BLUE, ORANGE, GREEN, PINK)
+_WIDTH_SD = 2.0
+"""Standard deviations that the bars extend to each side."""
+
+
+class BeamRow(NamedTuple):
+    """One beam in the table."""
+
+    name: str
+    """LiDAR and ring."""
+    range: str
+    """With sign, standard deviation and unit; or that the walk does not show it."""
+    elevation: str
+    azimuth: str
+
+
+def beam_rows(found: CalibrationFigures | None) -> list[BeamRow]:
+    """What the recording says of each beam; empty if beams were not estimated."""
+    by_beam: dict[tuple[str, str], dict[str, ParameterFigures]] = {}
+    for one in found.beams if found else ():
+        by_beam.setdefault((one.sensor, one.axis), {})[one.quantity] = one
+    return [
+        BeamRow(
+            f"{sensor} {ring}",
+            *(_text(of_beam.get(f"beam {quantity.name}"), quantity) for quantity in _QUANTITIES),
+        )
+        for (sensor, ring), of_beam in by_beam.items()
+    ]
+
+
+def beam_charts(found: CalibrationFigures | None) -> list[tuple[str, str]]:
+    """Corrections over the beams with bars of two standard deviations, as SVG and caption."""
+    out = []
+    for quantity in _QUANTITIES:
+        rows = [
+            one
+            for one in (found.beams if found else ())
+            if one.quantity == f"beam {quantity.name}" and one.sd is not None
+        ]
+        if rows:
+            caption = (
+                f"Correction of the {quantity.name} of each beam; bars: two standard deviations. "
+                "Beams that the walk does not show are left out."
+            )
+            out.append((_chart(rows, quantity), caption))
+    return out
+
+
+def _text(one: ParameterFigures | None, quantity: _Quantity) -> str:
+    if one is None or one.sd is None or one.status == "not observable":
+        return "not observable"
+    change, sd = (f"{quantity.factor * v:.{quantity.digits}f}" for v in (one.change, one.sd))
+    sign = "" if one.change < 0.0 else "+"
+    return f"{sign}{change} ± {sd}{quantity.unit}"
+
+
+def _chart(rows: Sequence[ParameterFigures], quantity: _Quantity) -> str:
+    chart = Chart(f"beams-{quantity.name}")
+    for k, sensor in enumerate(dict.fromkeys(one.sensor for one in rows)):
+        own = [one for one in rows if one.sensor == sensor]
+        chart.axes.errorbar(
+            [int(one.axis) + 0.15 * k for one in own],
+            [quantity.factor * one.change for one in own],
+            yerr=[_WIDTH_SD * quantity.factor * (one.sd or np.nan) for one in own],
+            fmt="o",
+            ms=4.0,
+            color=_COLORS[k % len(_COLORS)],
+            label=sensor,
+        )
+    chart.axes.set(xlabel="ring (0 = lowest)", ylabel=f"{quantity.name} [{quantity.unit.strip()}]")
+    return chart.svg()
