@@ -170,7 +170,8 @@ def _bins(steep: _Steep, rows: NDArray[np.intp]) -> tuple[NDArray[np.int64], NDA
 def _fitted(sight: Sight, normal: Array, angle_rad: float) -> _Wall:
     axis = np.array([np.cos(angle_rad), np.sin(angle_rad), 0.0])
     mean = (normal * np.sign(normal @ axis)[:, None]).mean(axis=0) * [1.0, 1.0, 0.0]
-    axis = mean / np.linalg.norm(mean)
+    if (length := float(np.linalg.norm(mean))) > 0.0:  # else all are across the axis of their bin
+        axis = mean / length
     offset_m = float(np.median(sight.point_m @ axis))
     before = np.median(sight.origin_m @ axis) > offset_m
     return _Wall(axis, offset_m) if before else _Wall(-axis, -offset_m)

@@ -15,7 +15,7 @@ import pytest
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 
-ASK = quote(json.dumps({"cut": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}))
+ASK = quote(json.dumps({"plane": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}))
 EXPORT = f"/api/projects/office/slices/export.csv?ask={ASK}"
 CROSS = {"Sec-Fetch-Site": "cross-site"}
 NAVIGATION = {"Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "document"}

@@ -154,7 +154,7 @@ def test_a_tile_the_cut_does_not_touch_does_not_stop_it(office, tmp_path):
 def test_the_server_writes_no_approval_on_an_altered_map(office, attack, endings):
     """Every ending under every attack is cut by command above; here each is a child process."""
     base = "/api/projects/office/slices"
-    asked = {"cut": CUT}
+    asked = {"plane": CUT}
     with server_thread(office.parent) as server:
         before = server.get(base).json()
         attack(office)
@@ -195,7 +195,7 @@ def test_an_issued_file_that_was_altered_is_neither_served_nor_put_back(office):
 
 def test_a_picture_of_altered_points_beside_an_approval_is_refused(office):
     base = "/api/projects/office/slices"
-    asked = {"cut": CUT, "width": 64, "height": 64}
+    asked = {"plane": CUT, "width": 64, "height": 64}
     with server_thread(office.parent) as server:
         whole = server.post(f"{base}/image", json=asked)
         checked = server.get("/api/projects/office/review").json()["approval"]["check"]
