@@ -5,7 +5,6 @@ import shutil
 import sqlite3
 
 import laspy
-import numpy as np
 import pytest
 
 from recon4.cli.main import main
