@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -31,19 +32,21 @@ def write_pose_covariances(frames: Path, level: Path, path: Path) -> None:
     write_covariances(path, Trajectory(t_ns, dense.at(t_ns)), load_uncertainty(level))
 
 
-def pose_covariances(t_ns: Times, trajectory: Trajectory, level: Path) -> PoseCovariances | None:
-    """Positions and covariances at some times; None where none are stated.
+def covariances_of(level: Path) -> Callable[[Times], PoseCovariances] | None:
+    """Positions and covariances by time, from the stage ``level``; None where none are stated.
 
-    Args:
-        t_ns: Times [ns], (F,); those outside the trajectory get its nearest end.
-        trajectory: ``T_map_body``.
-        level: Artifact of the stage ``level``.
+    Times [ns], (N,), outside the trajectory get its nearest end.
     """
     found = load_uncertainty(level)
     if found is None:
         return None
-    inside = np.clip(t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
-    return PoseCovariances(trajectory.at(inside).t, found.at(inside))
+    trajectory = load_trajectory(level / "trajectory.npz")
+
+    def at(t_ns: Times) -> PoseCovariances:
+        inside = np.clip(t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
+        return PoseCovariances(trajectory.at(inside).t, found.at(inside))
+
+    return at
 
 
 def write_graph(artifact: Path, path: Path) -> None:

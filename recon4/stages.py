@@ -201,16 +201,16 @@ def _map(
     from recon4.export.points import CRS_OF_MAP, OutputCrs
     from recon4.georeference.stage import read_crs
     from recon4.mapping.build import MapInputs, build_map
-    from recon4.result_files import pose_covariances
+    from recon4.result_files import covariances_of
     from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.frames import open_frames
 
-    store, trajectory = open_frames(frames, calibration), load_trajectory(level / "trajectory.npz")
+    store, covariances_at = open_frames(frames, calibration), covariances_of(level)
     inputs = MapInputs(
         store,
-        trajectory,
+        load_trajectory(level / "trajectory.npz"),
         load_intensity_table(intensity / "table.npz"),
-        covariances=pose_covariances(store.t_mid_ns, trajectory, level),
+        covariances=covariances_at and covariances_at(store.t_mid_ns),
     )
     tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
     crs = read_crs(level)

@@ -10,14 +10,12 @@ from app.slices.model import ControlState, ExportContext
 from app.slices.work import Artifacts, map_frame, map_of, stamp_text, tiles_of
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-from recon4.model.trajectory import Times
-from recon4.pose_graph.uncertainty_files import load_uncertainty
+from recon4.result_files import covariances_of
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
 from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import source_text
-from recon4.store.arrays import load_trajectory
 
 
 def preview_control(data: bytes, name: str, order: AxisOrder | None) -> ControlPreview:
@@ -75,15 +73,9 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
 
 def _covariances(artifacts: Artifacts, measured: dict[str, Array]) -> dict[str, Array]:
     """Covariances of the map at places; none where the map states none."""
-    level = Path(artifacts["level"]) if "level" in artifacts else None
-    found = load_uncertainty(level) if level and measured else None
-    if level is None or found is None:
+    covariances_at = covariances_of(Path(artifacts["level"])) if "level" in artifacts else None
+    if covariances_at is None:
         return {}
-    trajectory, tiles = load_trajectory(level / "trajectory.npz"), tiles_of(artifacts["map"])
-
-    def poses_at(t_ns: Times) -> tuple[Array, Array]:
-        inside = np.clip(t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
-        return trajectory.at(inside).t, found.at(inside)
-
-    places = {name: place_covariance(tiles, p, poses_at) for name, p in measured.items()}
+    tiles = tiles_of(artifacts["map"])
+    places = {name: place_covariance(tiles, p, covariances_at) for name, p in measured.items()}
     return {name: cov for name, cov in places.items() if cov is not None}

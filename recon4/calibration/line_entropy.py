@@ -15,6 +15,7 @@ from scipy.optimize import minimize
 
 from recon4.calibration.entropy import EntropyEstimate
 from recon4.calibration.parameters import Parameters
+from recon4.geometry.cubes import count_cubes
 from recon4.geometry.se3 import Array, so3_exp
 from recon4.kernels.imu import place_points
 from recon4.model.rig import Rig
@@ -52,7 +53,7 @@ def profiler_walk(frames: FrameStore, trajectory: Trajectory) -> ProfilerWalk:
     rig = frames.rig
     row = rig.row_of("profiler")
     assert row is not None
-    every = max(1, sum(int(one["stop"] - one["start"]) for one in frames.index) // _POINTS)
+    every = max(1, frames.points // _POINTS)
     times, points = [], []
     for frame in frames:
         rows = np.flatnonzero(frame.sensor == row)[frame.frame_id % every :: every]
@@ -130,7 +131,4 @@ def occupied(walk: ProfilerWalk, rig: Rig, *, cube_m: float) -> int:
     T = walk.trajectory.T_a_b
     p_body = sensor.T_body_sensor @ walk.p_sensor[inside]
     p = place_points(t_s, T.R, T.t, at_s[inside] + later_s, np.ascontiguousarray(p_body))
-    cube = np.floor(p @ _SKEW / cube_m).astype(np.int64)
-    cube -= cube.min(axis=0)
-    size = cube.max(axis=0) + 1
-    return len(np.unique((cube[:, 0] * size[1] + cube[:, 1]) * size[2] + cube[:, 2]))
+    return count_cubes(p @ _SKEW, cube_m)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import Array
 
 _MIN_NEIGHBORS = 10
@@ -140,13 +141,7 @@ def _merged(kept: Array, more: list[Array], voxel_m: float) -> Array:
 
 
 def _first_in_voxel(p: Array, voxel_m: float) -> NDArray[np.intp]:
-    if not len(p):
-        return np.empty(0, dtype=np.intp)
-    cell = np.floor(p / voxel_m).astype(np.int64)
-    cell -= cell.min(axis=0)
-    size = cell.max(axis=0) + 1
-    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
-    return np.sort(np.unique(key, return_index=True)[1])
+    return np.sort(np.unique(cube_keys(cubes_of(p, voxel_m)), return_index=True)[1])
 
 
 def _covariances(tree: cKDTree, where: Array, radius_m: float) -> Array:

@@ -10,6 +10,7 @@ from math import ceil
 
 import numpy as np
 
+from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaceThickness, PlaneThickness
@@ -64,10 +65,8 @@ def _variances(p: Array) -> Array:
     """Eigenvalues of the covariances of the cubes with enough points, ascending, (C, 3) [m²]."""
     if not len(p):
         return np.empty((0, 3))
-    cell = np.floor(p / CELL_M).astype(np.int64)
-    cell -= cell.min(axis=0)
-    size = cell.max(axis=0) + 1
-    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
+    cell = cubes_of(p, CELL_M)
+    key = cube_keys(cell)
     n = np.bincount(key)
     used = np.flatnonzero(n >= _MIN_POINTS)
     local = p - (cell + 0.5) * CELL_M  # small numbers: sums of squares keep their digits

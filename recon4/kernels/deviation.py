@@ -24,15 +24,14 @@ def worst_deviation(
         cov: Covariances of (turn, shift) [rad, m], (P, 6, 6).
         out: Receives the square root of the largest eigenvalue [m], (N,).
     """
+    j, m = np.zeros((3, 6)), np.zeros((3, 3))
+    j[0, 3] = j[1, 4] = j[2, 5] = 1.0
     for k in range(len(d)):
         c = cov[pose[k]]
-        j = np.zeros((3, 6))
         x, y, z = d[k]
         j[0, 1], j[0, 2] = z, -y
         j[1, 0], j[1, 2] = -z, x
         j[2, 0], j[2, 1] = y, -x
-        j[0, 3] = j[1, 4] = j[2, 5] = 1.0
-        m = np.zeros((3, 3))
         for a in range(3):
             for b in range(a, 3):
                 s = 0.0

@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from recon4.geometry.cubes import count_cubes
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.fusion import PlanarPoses
@@ -103,18 +104,14 @@ def profiler_ahead_s(points: TimedPoints, trajectory: Trajectory) -> float:
 
 def some_points(frames: FrameStore, *, min_range_m: float) -> TimedPoints:
     """Points of the whole walk, few enough to be placed many times."""
-    total = sum(int(row["stop"] - row["start"]) for row in frames.index)
-    every = max(1, total // _LINE_POINTS)
+    every = max(1, frames.points // _LINE_POINTS)
     return joined(list(all_lines(frames, every=every, min_range_m=min_range_m)))
 
 
 def _places(points: TimedPoints, trajectory: Trajectory, *, shift_s: float) -> int:
     """Cubes with a point, if the points were measured that much earlier than stamped."""
     shifted = TimedPoints(points.t_ns - round(1e9 * shift_s), points.p_body)
-    cube = np.floor(shifted.placed(trajectory) / _PLACE_M).astype(np.int64)
-    cube -= cube.min(axis=0)
-    size = cube.max(axis=0) + 1
-    return len(np.unique((cube[:, 0] * size[1] + cube[:, 1]) * size[2] + cube[:, 2]))
+    return count_cubes(shifted.placed(trajectory), _PLACE_M)
 
 
 def _steady(poses: PlanarPoses, attitude: Trajectory) -> PlanarPoses:

@@ -28,14 +28,9 @@ def in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
         EmptyRecording: If there is not one return.
         CorruptFile: If no unit makes sense.
     """
-    seen = scans.range_m[np.isfinite(scans.range_m)]
-    if not len(seen):
+    if not np.isfinite(scans.range_m).any():
         raise EmptyRecording("the scans have not one return")
-    factor = _laser_factor(seen, scans.range_max_m, report)
-    if factor == 1.0:
-        return scans
-    report.count("scans_converted", len(scans))
-    return _scaled(scans, factor)
+    return LaserUnit(report).in_meters(scans)
 
 
 class LaserUnit:
@@ -56,7 +51,11 @@ class LaserUnit:
         if self._factor in (0.0, 1.0):
             return scans
         self._report.count("scans_converted", len(scans))
-        return _scaled(scans, self._factor)
+        return replace(
+            scans,
+            range_m=(scans.range_m * np.float32(self._factor)).astype(np.float32),
+            range_max_m=scans.range_max_m * self._factor,
+        )
 
 
 def line_factor(range_m: NDArray[np.floating], name: str, report: ImportReport) -> float:
@@ -89,11 +88,3 @@ def _reported_unit_m(median: float, is_mm: bool, *, prefix: str, report: ImportR
         f"{prefix}half of the ranges are above {median:.0f}: they are taken as {unit}, not meters"
     )
     return 1e-3 if is_mm else 1e-2
-
-
-def _scaled(scans: LaserScans, factor: float) -> LaserScans:
-    return replace(
-        scans,
-        range_m=(scans.range_m * np.float32(factor)).astype(np.float32),
-        range_max_m=scans.range_max_m * factor,
-    )

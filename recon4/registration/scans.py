@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from scipy import fft, ndimage
 from scipy.spatial import cKDTree
 
+from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import SE3, Array, tangent_size_m
 from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
 from recon4.registration.result import Registration, StopReason
@@ -196,10 +197,7 @@ def thinned(p: Array, voxel_m: float) -> Array:
     """Mean of the points in each voxel, (M, 3)."""
     if not len(p):
         return np.empty((0, 3))
-    cell = np.floor(p / voxel_m).astype(np.int64)
-    cell -= cell.min(axis=0)
-    size = cell.max(axis=0) + 1
-    key = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
+    key = cube_keys(cubes_of(p, voxel_m))
     _, row, count = np.unique(key, return_inverse=True, return_counts=True)
     sums = [np.bincount(row, p[:, axis]) / count for axis in range(3)]
     return np.ascontiguousarray(np.stack(sums, axis=1))

@@ -163,8 +163,7 @@ def _contradiction(
     extra = np.where(enough, measured[1:count] / np.maximum(weight[1:count], 1e-9) - seen, np.nan)
     lost_at = (lost_ns - first_ns) * 1e-9 / _KNOT_S
     rows = np.arange(1, count)
-    for at in lost_at:
-        extra[np.abs(rows - at) < 1.5] = np.nan
+    extra[np.isin(rows, np.rint(lost_at)[:, None] + [-1, 0, 1])] = np.nan
     return rows * _KNOT_S + (first_ns - trajectory.t_ns[0]) * 1e-9, extra
 
 

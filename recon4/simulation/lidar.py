@@ -177,9 +177,8 @@ class Surroundings:
     @cached_property
     def reflectivity(self) -> NDArray[np.float32]:
         """Of all triangles: of the mesh, of the car of an elevator, and the last of people."""
-        parts = [self.mesh.reflectivity, self.car.reflectivity] if self.car else []
-        standing = np.concatenate(parts) if parts else self.mesh.reflectivity
-        return np.append(standing, np.float32(REFLECTIVITY))
+        car = [self.car.reflectivity] if self.car else []
+        return np.concatenate([self.mesh.reflectivity, *car, [np.float32(REFLECTIVITY)]])
 
     @cached_property
     def _car_scene(self) -> CarScene:

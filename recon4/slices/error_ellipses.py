@@ -9,12 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array, skew
+from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Times
-
-PosesAt = Callable[[Times], tuple[Array, Array]]
-"""Times [ns], (N,) -> positions in the map [m], (N, 3), and covariances of (turn about the pose's
-own origin, shift) in the axes of the map, (N, 6, 6)."""
 
 _NEAR_M = 0.1
 _SAMPLE = 200_000
@@ -37,7 +34,9 @@ class ErrorEllipse:
     """Of the height [m]."""
 
 
-def place_covariance(tiles: TileSet, p_map: Array, poses_at: PosesAt) -> Array | None:
+def place_covariance(
+    tiles: TileSet, p_map: Array, covariances_at: Callable[[Times], PoseCovariances]
+) -> Array | None:
     """Covariance of the map at a place; None without points within 10 cm of it.
 
     The mean over the points around it: a place that several passes measured has a mean error.
@@ -45,7 +44,7 @@ def place_covariance(tiles: TileSet, p_map: Array, poses_at: PosesAt) -> Array |
     Args:
         tiles: The map.
         p_map: The place [m], (3,).
-        poses_at: Poses with their covariances.
+        covariances_at: Positions and covariances of the poses by time [ns].
 
     Returns:
         Covariance in the axes of the map [m²], (3, 3).
@@ -53,11 +52,11 @@ def place_covariance(tiles: TileSet, p_map: Array, poses_at: PosesAt) -> Array |
     t_ns = _times_near(tiles, p_map)
     if not len(t_ns):
         return None
-    position_m, cov = poses_at(t_ns)
+    poses = covariances_at(t_ns)
     J = np.concatenate(
-        [-skew(p_map - position_m), np.broadcast_to(np.eye(3), (len(t_ns), 3, 3))], axis=2
+        [-skew(p_map - poses.position_m), np.broadcast_to(np.eye(3), (len(t_ns), 3, 3))], axis=2
     )
-    mean: Array = (J @ cov @ J.transpose(0, 2, 1)).mean(axis=0)
+    mean: Array = (J @ poses.cov @ J.transpose(0, 2, 1)).mean(axis=0)
     return mean
 
 

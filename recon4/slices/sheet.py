@@ -281,7 +281,7 @@ def approval_text(approval: Mapping[str, object] | None) -> str:
     return f"{signed}. Verdict on the map: {verdict}{reason}"
 
 
-SURFACE_TEXT: dict[Surface, str] = {
+_SURFACE_TEXT: dict[Surface, str] = {
     "fitted": "on fitted surfaces",
     "raw": "as measured",
     "strays": "stray returns only",
@@ -291,7 +291,7 @@ SURFACE_TEXT: dict[Surface, str] = {
 
 def surface_text(surface: Surface) -> str:
     """Where the points of a map lie, for sheets and captions."""
-    return SURFACE_TEXT[surface]
+    return _SURFACE_TEXT[surface]
 
 
 def source_text(artifact_key: str) -> str:

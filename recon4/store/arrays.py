@@ -25,14 +25,14 @@ Record = TypeVar("Record")
 
 MAX_ARRAY_BYTES = 1 << 30
 """Limit of the size of all arrays that are read from one file [bytes]."""
-_MAX_RATIO = 200
-_FREE_BYTES = 64 << 20
+MAX_RATIO = 200
+FREE_BYTES = 64 << 20
 """Size below which any compression ratio is allowed: an intensity table is mostly zeros [bytes]."""
-_HEADERS = {
+ARRAY_HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,
 }
-_DAMAGED = (
+DAMAGED = (
     *(OSError, KeyError, ValueError, EOFError, TypeError, NotImplementedError, OverflowError),
     *(zipfile.BadZipFile, zlib.error, tokenize.TokenError, RuntimeError, SyntaxError),
     *(AttributeError, IndexError),
@@ -119,7 +119,7 @@ def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, NDArray
         try:
             with zipfile.ZipFile(raw) as archive:
                 return _members(archive, names, path.name)
-        except _DAMAGED as error:
+        except DAMAGED as error:
             raise StoreError(f"{path.name}: expected arrays {names or ''}: {error}") from error
 
 
@@ -133,7 +133,7 @@ def load_array(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
         check_file_size(raw, path, MAX_ARRAY_BYTES, failure=StoreError)
         try:
             return _array(raw.read(), path.name, dtype)
-        except _DAMAGED as error:
+        except DAMAGED as error:
             raise StoreError(f"{path.name}: expected an array of {dtype}: {error}") from error
 
 
@@ -149,9 +149,9 @@ def _members(
     chosen = {name: found[f"{name}.npy"] for name in names}
     size = sum(info.file_size for info in chosen.values())
     packed = sum(info.compress_size for info in chosen.values())
-    if size > MAX_ARRAY_BYTES or size > _MAX_RATIO * packed + _FREE_BYTES:
+    if size > MAX_ARRAY_BYTES or size > MAX_RATIO * packed + FREE_BYTES:
         raise StoreError(
-            f"{where}: expected at most {MAX_ARRAY_BYTES} bytes and {_MAX_RATIO} times the "
+            f"{where}: expected at most {MAX_ARRAY_BYTES} bytes and {MAX_RATIO} times the "
             f"packed size, got {size} bytes from {packed}"
         )
     out = {}
@@ -166,9 +166,9 @@ def _array(data: bytes, where: str, dtype: np.dtype[Any] | None) -> NDArray[Any]
     """Parse an ``.npy`` file; its header must match its size before memory is allocated."""
     file = io.BytesIO(data)
     version = np.lib.format.read_magic(file)
-    if version not in _HEADERS:
+    if version not in ARRAY_HEADERS:
         raise StoreError(f"{where}: expected an array of version 1 or 2, got {version}")
-    shape, fortran, found = _HEADERS[version](file)
+    shape, fortran, found = ARRAY_HEADERS[version](file)
     if found.hasobject or (dtype is not None and (found != dtype or len(shape) != 1)):
         raise StoreError(f"{where}: expected {dtype or 'plain values'}, got {found} of {shape}")
     left = len(data) - file.tell()

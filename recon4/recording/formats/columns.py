@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import zipfile
-import zlib
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from numpy.typing import NDArray
 from recon4.bounded import check_file_size, lines_limited, open_regular
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.recording.samples.csv_files import csv_header, csv_number, csv_separator, csv_time
+from recon4.store.arrays import ARRAY_HEADERS, DAMAGED, FREE_BYTES, MAX_RATIO
 
 TIME = "t_ns"
 """The column of absolute times; all others are numbers."""
@@ -26,21 +26,9 @@ _MAX_NPZ_BYTES = 2 << 30
 """About ninety million rows of six columns, not compressed."""
 _MAX_DIRECTORY_BYTES = 1 << 16
 _END_BYTES = 22
-_MAX_RATIO = 200
-_FREE_BYTES = 64 << 20
-"""Any compression is allowed up to this size of all columns: a constant column is small."""
 _MAX_HEADER_BYTES = 4096
 _MAX_LINE_BYTES = 16 * 1024
 _HEAD_BYTES = 1 << 16
-_HEADERS = {
-    (1, 0): np.lib.format.read_array_header_1_0,
-    (2, 0): np.lib.format.read_array_header_2_0,
-}
-_DAMAGED = (
-    *(OSError, KeyError, ValueError, EOFError, TypeError, NotImplementedError, OverflowError),
-    *(zipfile.BadZipFile, zlib.error, RuntimeError, SyntaxError, AttributeError, IndexError),
-)
-"""Errors that numpy and zipfile raise for a file that is truncated, altered or foreign."""
 
 Columns = Mapping[str, NDArray[Any]]
 """Name -> values of a block: `TIME` int64, all others float64; a column without a value is NaN."""
@@ -55,7 +43,7 @@ def column_names(path: Path) -> frozenset[str]:
                 return frozenset(csv_header(path))
             with _archive(file, path.name) as archive:
                 names = archive.namelist()
-    except (RecordingError, *_DAMAGED):
+    except (RecordingError, *DAMAGED):
         return frozenset()
     return frozenset(name.removesuffix(".npy") for name in names if name.endswith(".npy"))
 
@@ -75,7 +63,7 @@ def estimate_rows(path: Path) -> int:
         try:
             archive = stack.enter_context(_archive(file, path.name))
             return _column(archive, TIME, stack=stack, where=path.name).rows
-        except _DAMAGED as error:
+        except DAMAGED as error:
             raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
 
 
@@ -159,16 +147,16 @@ def _npz_blocks(path: Path, wanted: Sequence[str]) -> Iterator[Columns]:
             for start in range(0, columns[0].rows, _BLOCK_ROWS):
                 count = min(_BLOCK_ROWS, columns[0].rows - start)
                 yield {column.name: _values(column, count, path.name) for column in columns}
-        except _DAMAGED as error:
+        except DAMAGED as error:
             raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
 
 
 def _check_sizes(archive: zipfile.ZipFile, wanted: Sequence[str], path: Path) -> None:
     size = sum(archive.getinfo(f"{name}.npy").file_size for name in wanted)
-    most = max(_FREE_BYTES, _MAX_RATIO * path.stat().st_size)
+    most = max(FREE_BYTES, MAX_RATIO * path.stat().st_size)
     if size > most:
         raise CorruptFile(
-            f"{path.name}: expected columns of at most {most} bytes, {_MAX_RATIO} times the file, "
+            f"{path.name}: expected columns of at most {most} bytes, {MAX_RATIO} times the file, "
             f"got {size}"
         )
 
@@ -177,9 +165,9 @@ def _column(archive: zipfile.ZipFile, name: str, *, stack: ExitStack, where: str
     info = archive.getinfo(f"{name}.npy")
     file = stack.enter_context(archive.open(info))
     version = np.lib.format.read_magic(file)
-    if version not in _HEADERS:
+    if version not in ARRAY_HEADERS:
         raise CorruptFile(f"{where}: {name}: expected an array of version 1 or 2, got {version}")
-    shape, _, dtype = _HEADERS[version](file, max_header_size=_MAX_HEADER_BYTES)
+    shape, _, dtype = ARRAY_HEADERS[version](file, max_header_size=_MAX_HEADER_BYTES)
     kinds = "iu" if name == TIME else "iuf"
     if dtype.kind not in kinds or dtype.itemsize > 8 or len(shape) != 1 or shape[0] < 0:
         what = "whole numbers" if name == TIME else "numbers"
@@ -249,7 +237,8 @@ class _CsvBlock:
         if name == TIME:
             return np.array(self._each(cells, csv_time), np.int64)
         # An underscore is a digit group to Python, and a comma a decimal point to a table.
-        if not any(sign in text for text in ("".join(cells),) for sign in "_,"):
+        text = "".join(cells)
+        if "_" not in text and "," not in text:
             try:
                 return np.array(cells).astype(np.float64)
             except ValueError:

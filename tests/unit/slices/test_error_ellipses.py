@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.mapping.build import MapInputs, build_map
+from recon4.mapping.deviation import PoseCovariances
 from recon4.settings import MapSettings
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.error_ellipses import error_ellipse, place_covariance
@@ -36,10 +37,11 @@ def test_a_turn_of_the_pose_moves_a_place_across_the_line_of_sight(room):
     heading = np.zeros((6, 6))
     heading[2, 2] = 0.01**2  # about the vertical
 
-    def poses_at(t_ns):
-        return np.tile(here, (len(t_ns), 1)), np.broadcast_to(heading, (len(t_ns), 6, 6))
+    def covariances_at(t_ns):
+        cov = np.broadcast_to(heading, (len(t_ns), 6, 6))
+        return PoseCovariances(np.tile(here, (len(t_ns), 1)), cov)
 
-    found = error_ellipse(place_covariance(tiles, place, poses_at))
+    found = error_ellipse(place_covariance(tiles, place, covariances_at))
 
     d = place - here
     across_deg = np.rad2deg(np.arctan2(d[1], -d[0])) % 180.0
@@ -49,7 +51,7 @@ def test_a_turn_of_the_pose_moves_a_place_across_the_line_of_sight(room):
 
 
 def test_a_place_without_points_has_no_covariance(room):
-    assert place_covariance(room[0], np.array([500.0, 0.0, 0.0]), lambda t_ns: (t_ns, t_ns)) is None
+    assert place_covariance(room[0], np.array([500.0, 0.0, 0.0]), lambda _: None) is None
 
 
 def test_residuals_carry_what_the_map_states_of_their_place():
