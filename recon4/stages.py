@@ -276,8 +276,8 @@ ODOMETRY = Stage(
 )
 CALIBRATION = Stage(
     "calibration",
-    2,
-    ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph"),
+    3,
+    ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,
 )

@@ -17,6 +17,7 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.georeference.antenna_calibration import GNSS
 from recon4.model.figures import ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress
@@ -102,10 +103,10 @@ def calibrated_parameters(
     """
     names = _enabled(rig)
     wanted = [name.strip() for name in settings.sensors.split(",") if name.strip()]
-    unknown = [name for name in wanted if name not in names and name != IMU]
+    unknown = [name for name in wanted if name not in names and name not in (IMU, GNSS)]
     if unknown:
         raise ConfigError(
-            f"calibration.sensors: expected some of {', '.join([*names, IMU])}, "
+            f"calibration.sensors: expected some of {', '.join([*names, IMU, GNSS])}, "
             f"got {unknown[0]!r:.80}"
         )
     lidars = tuple(

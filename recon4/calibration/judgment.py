@@ -35,6 +35,7 @@ _BEAM_LIMITS: dict[Unit, ParameterLimits] = {
     "rad": ParameterLimits(float(np.deg2rad(0.01)), float(np.deg2rad(0.01))),
     "m": ParameterLimits(0.002, 0.0015),
 }
+_NAMES = {"imu": "IMU", "gnss": "GNSS antenna"}
 _SHOWN: dict[Unit, tuple[float, str]] = {
     "rad": (float(np.rad2deg(1.0)), "°"),
     "m": (100.0, " cm"),
@@ -109,7 +110,7 @@ def _sentence(sensor: str, rows: Sequence[ParameterFigures]) -> str:
         if row.quantity == "clock" and row.status == "off"
     ]  # fmt: skip
     parts += _beams(rows)
-    name = "IMU" if sensor == "imu" else f"LiDAR {sensor!r}"
+    name = _NAMES.get(sensor, f"LiDAR {sensor!r}")
     return (
         f"The rig file contradicts the recording: the {name} differs from it by "
         f"{' and '.join(parts)}."

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import UTC, datetime
 
 import numpy as np
 
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.model.rig import RigCalibration
+from recon4.model.rig import Rig, RigCalibration
 
 _FIRST_UTC_NS = 946_684_800_000_000_000
 """2000-01-01: earlier times are those of a clock that was never set."""
@@ -25,11 +26,12 @@ def calibration_note(
         figures: What was estimated.
         recorded_ns: Start of the recording [ns].
     """
-    if recorded_ns < _FIRST_UTC_NS:
+    date = _date(recorded_ns)
+    if not date:
         return None
     mounts, beams = figures.parameters, figures.beams
     return RigCalibration(
-        date=datetime.fromtimestamp(recorded_ns / 1e9, UTC).date().isoformat(),
+        date=date,
         method=method,
         sd_deg=round(float(np.rad2deg(_largest(mounts, "rad"))), 4),
         sd_mm=round(1e3 * _largest(mounts, "m"), 2),
@@ -37,6 +39,37 @@ def calibration_note(
         sd_beam_deg=round(float(np.rad2deg(_largest(beams, "rad"))), 4),
         sd_beam_mm=round(1e3 * _largest(beams, "m"), 2),
     )
+
+
+def with_antenna_note(rig: Rig, rows: tuple[ParameterFigures, ...], *, recorded_ns: int) -> Rig:
+    """A rig whose note also has the standard deviations of lever arm and clock of the receiver.
+
+    The date of mounts that were calibrated on another day stays.
+
+    Args:
+        rig: With or without a note.
+        rows: What was estimated of the receiver.
+        recorded_ns: Start of the recording [ns].
+    """
+    date = _date(recorded_ns)
+    if rig.calibration is None and not date:
+        return rig
+    note = rig.calibration or RigCalibration(
+        date=date, method="gnss", sd_deg=0.0, sd_mm=0.0, sd_ms=0.0
+    )
+    antenna = replace(
+        note,
+        sd_antenna_mm=round(1e3 * _largest(rows, "m"), 2),
+        sd_gnss_ms=round(1e3 * _largest(rows, "s"), 3),
+    )
+    return replace(rig, calibration=antenna)
+
+
+def _date(recorded_ns: int) -> str:
+    """Day of a recording, as ``2026-11-22``; empty = its clock was never set."""
+    if recorded_ns < _FIRST_UTC_NS:
+        return ""
+    return datetime.fromtimestamp(recorded_ns / 1e9, UTC).date().isoformat()
 
 
 def _largest(rows: tuple[ParameterFigures, ...], unit: str) -> float:

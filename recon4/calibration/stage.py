@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import msgspec
 import numpy as np
 
+from recon4.calibration.antenna import with_antenna
 from recon4.calibration.beams import beam_counts
 from recon4.calibration.calibrate import (
-    Agreement,
     Calibration,
     audit,
     calibrate,
@@ -23,41 +23,19 @@ from recon4.calibration.judgment import contradictions, judge, split_beams
 from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.note import calibration_note
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.result import CalibrationResult
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.walk import RecordedWalk
 from recon4.model.events import Warned
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.model.plain import to_plain
-from recon4.model.rig import Rig, format_rig
+from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import load_arrays, load_trajectory
-from recon4.store.atomic import write_json
-from recon4.store.frames import CALIBRATED_RIG, FrameStore
+from recon4.store.frames import FrameStore
 
 _SAME_RAD, _SAME_M = 0.1, 0.1
 """Two mounts are the same within this."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class CalibrationResult:
-    """What the stage found."""
-
-    figures: CalibrationFigures
-    rig: Rig | None = None
-    """The calibrated rig, if it is used."""
-    begin: Rig | None = None
-    """Where a calibration begins."""
-    before: Agreement | None = None
-    after: Agreement | None = None
-
-    def save(self, out: Path) -> CalibrationFigures:
-        """Write ``calibration.json`` and, if the calibrated rig is used, ``rig.toml``."""
-        record = {"figures": self.figures, "before": self.before, "after": self.after}
-        write_json(out / "calibration.json", to_plain(record))
-        if self.rig is not None:
-            (out / CALIBRATED_RIG).write_text(format_rig(self.rig), "utf-8")
-        return self.figures
 
 
 def run_calibration(
@@ -89,7 +67,8 @@ def run_calibration(
             walk, begin, parameters, settings=settings, progress=progress
         )
         if calibrated:
-            found = _calibrated(found, calibrated, recorded_ns=int(walk.frames.index["t_ns"][0]))
+            found = _calibrated(found, calibrated, recorded_ns=walk.start_ns)
+    found = with_antenna(found, walk, settings=settings)
     for text in found.figures.warnings:
         progress.event(Warned(text=text))
     return found

@@ -33,6 +33,11 @@ class RecordedWalk:
     lost: NDArray[np.bool_]
     """Multiframes where tracking was lost, (N,)."""
 
+    @property
+    def start_ns(self) -> int:
+        """Start of the recording [ns]."""
+        return int(self.frames.index["t_ns"][0])
+
     def with_rig(self, rig: Rig) -> RecordedWalk:
         """The same recording with the mounts and clocks of another rig."""
         return replace(self, frames=self.frames.with_rig(rig))
@@ -56,6 +61,11 @@ class RecordedWalk:
         """Windows with the trajectory of the odometry."""
         rows = self.rows(count, seconds)
         return [cut_window(self.frames, self.trajectory, part) for part in rows]
+
+    def tracked_freely(self, settings: Settings) -> Trajectory:
+        """``T_odom_body``, dense, of an odometry that no fixes pull."""
+        odometry = Odometry(self.frames.rig, settings, self.frames.imu)
+        return dense_trajectory([odometry.push(frame) for frame in self.frames])
 
     def tracked_windows(
         self, rows: list[range], rig: Rig, settings: Settings, *, imu: ImuSamples | None

@@ -18,7 +18,7 @@ calibration = typer.Typer()
 
 
 @calibration.command()
-def calibrate(
+def calibrate(  # noqa: PLR0913 - an argument for each option
     recordings: Annotated[
         list[Path], typer.Argument(help="pcap, bag or folder of clouds; for pairs: a CSV.")
     ],
@@ -26,11 +26,12 @@ def calibrate(
     rig: Annotated[str, typer.Option(help="Rig preset or .toml to begin with.")],
     out: Annotated[Path, typer.Option(help="Calibrated rig to write, .toml.")],
     imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
+    gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
     method: Annotated[
         str, typer.Option(help="joint, maps, gravity, entropy or pairs; see docs/calibration.md.")
     ] = "joint",
     sensors: Annotated[
-        str, typer.Option(help="Only these, as vertical,imu; for pairs: the sensor.")
+        str, typer.Option(help="Only these, as vertical,imu,gnss; for pairs: the sensor.")
     ] = "",
     beams: Annotated[
         bool, typer.Option("--beams", help="Also range, elevation and azimuth of single beams.")
@@ -53,8 +54,8 @@ def calibrate(
 
     choice = CalibrationChoice(method, sensors, beams)
     check_choice(choice)
-    require_files([*recordings, *([imu] if imu else [])])
-    sources = Sources(tuple(recordings), load_rig(rig), imu, None)
+    require_files([*recordings, *(path for path in (imu, gnss) if path)])
+    sources = Sources(tuple(recordings), load_rig(rig), imu, gnss)
     with watcher() as progress:
         found = calibrate_by(choice, sources, folder, progress=progress)
     write("\n".join(found.lines))

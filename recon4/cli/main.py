@@ -105,8 +105,8 @@ def process(  # noqa: PLR0913 - an argument for each option
         typer.Option(
             metavar="auto|beams|off|SENSORS",
             help="auto: calibrate a rig file that contradicts the recording; beams: single beams "
-            "as well; off: do not compare them; SENSORS: calibrate these only, as vertical,imu. "
-            "Default: compare and warn.",
+            "as well; off: do not compare them; SENSORS: calibrate these only, as "
+            "vertical,imu,gnss. Default: compare and warn.",
         ),
     ] = "",
     assignments: SetOption = None,

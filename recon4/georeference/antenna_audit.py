@@ -1,53 +1,42 @@
 """Audit of the GNSS receiver against the trajectory: lever arm of the antenna, and its clock.
 
-A fix lies beside the antenna of the trajectory by the drift of the trajectory and the slow error of
-GNSS, by an error of the lever arm, which turns with the body, and by an error of the clock, which
-grows with the speed:
-
-    p_fix - (p_body + R p_body_antenna)  =  drift(t) + R d_arm + v d_clock + noise
-
-Drift is a random walk. Turns, stops and the sway of the body tell the others from it.
+A fix lies beside the antenna of the trajectory by an error of the lever arm, which turns with the
+body, and by an error of the clock, which grows with the speed (`recon4.georeference.drift_fit`).
+The attitudes of an INS lie beside those of the trajectory by the clock times the angular rate: in
+the sway of the body a millisecond of it shows.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csr_array, diags_array, eye_array, kron
-from scipy.sparse.linalg import splu
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_log
 from recon4.georeference.crs import GeodeticOrigin, to_enu
+from recon4.georeference.drift_fit import DriftFit, DriftRows, fit_drift
+from recon4.georeference.gnss_aiding import attitudes
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times, Trajectory
 
-_KNOT_S = 2.0
-"""The drift is linear between knots this far apart [s]."""
 _DRIFT_M = 0.01
 """Random walk of the drift [m/sqrt(s)]: of the trajectory and of the slow error of GNSS."""
+_DRIFT_RAD = 5e-4
+"""The same of attitudes [rad/sqrt(s)]."""
 _MIN_SD_M = 0.008
 """No fix has a smaller white error [m]."""
+_SD_RAD = 7e-4
+"""White error of the attitudes of an INS [rad]; residuals that are larger raise it."""
 _MAX_SD_M = 0.1
 """Fixes with a larger stated standard deviation are not used [m]."""
 _SPEED_NS = 50_000_000
-"""The velocity is measured over this time before and after a fix [ns]."""
-_CAUCHY_SD = 3.0
-_ROUNDS = 8
+"""Rates are measured over this time before and after a fix [ns]."""
 _CREDIBLE_S = 1.0
 """A larger error of the clock is one of the trajectory: nothing can be compared [s]."""
-_RELINEARIZED = 2
+_RELINEARIZED = 3
 """How many times the fixes are shifted by the clock: a body sways within 100 ms."""
 _MIN_FIXES = 50
-_LAGS = 30
-"""Longest lag of the residuals' correlation, in fixes."""
-_PARAMETERS = 4
-"""Lever arm (3) and clock."""
-_PRIOR = 1e-6
-"""Information of every unknown, so that all are determined."""
 _LEVER_ARM_M, _CLOCK_S = 0.05, 0.02
 """Smaller errors are not announced."""
 _SIGMAS = 4.5
@@ -55,22 +44,6 @@ _SD_FACTOR = 1.5
 """True errors of the estimate against the stated ones, on 32 walks with a drift of 5 mm/sqrt(s)."""
 _UNKNOWN_M = 0.05
 """With a larger standard deviation the walk says nothing of a lever arm [m]."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class FixRows:
-    """Fixes beside the trajectory. All in east, north, up."""
-
-    t_s: Array
-    """After the first of them [s], (N,)."""
-    offset_m: Array
-    """Measured minus predicted position of the antenna, (N, 3)."""
-    R_enu_body: Array
-    """(N, 3, 3)."""
-    velocity_m_s: Array
-    """Of the antenna, (N, 3)."""
-    sd_m: Array
-    """(N, 3)."""
 
 
 def audit_antenna(
@@ -88,20 +61,21 @@ def audit_antenna(
         What is to be added to the rig file's values, with standard deviations; None = too few
         fixes.
     """
-    rows = _beside(trajectory, gnss, rig, origin=origin, clock_s=0.0)
-    if rows is None:
-        return None
-    x, cov = _solve(rows)
-    clock_s = float(x[3])
-    for _ in range(_RELINEARIZED):
-        shifted = _beside(trajectory, gnss, rig, origin=origin, clock_s=clock_s)
-        if shifted is None:
+    clock_s = 0.0
+    found = None
+    for _ in range(1 + _RELINEARIZED):
+        rows = _positions(trajectory, gnss, rig, origin=origin, clock_s=clock_s)
+        if rows is None:
             break
-        rows = shifted
-        x, cov = _solve(rows)
+        position = fit_drift(rows, drift=_DRIFT_M)
+        turned = _attitudes(trajectory, gnss, clock_s=clock_s)
+        attitude = None if turned is None else fit_drift(turned, drift=_DRIFT_RAD)
+        x, cov = _together(position, attitude)
         clock_s += float(x[3])
-    if abs(clock_s) > _CREDIBLE_S:
+        found = x, cov, len(rows.t_s)
+    if found is None or abs(clock_s) > _CREDIBLE_S:
         return None
+    x, cov, fixes = found
     sd = np.sqrt(np.diag(cov))
     return AntennaFigures(
         arm_m=_triple(x[:3]),
@@ -109,8 +83,23 @@ def audit_antenna(
         arm_sigmas=float(np.sqrt(x[:3] @ np.linalg.solve(cov[:3, :3], x[:3]))),
         clock_s=clock_s,
         clock_sd_s=float(sd[3]),
-        fixes=len(rows.t_s),
+        fixes=fixes,
     )
+
+
+def unexplained(
+    trajectory: Trajectory, gnss: GnssSamples, rig: Rig, *, origin: GeodeticOrigin
+) -> float:
+    """What a drift does not explain of the fixes, normalized; infinite = too few fixes.
+
+    Args:
+        trajectory: As `audit_antenna`, and so are the others.
+        gnss: The fixes.
+        rig: Lever arm and time offset that are judged.
+        origin: Of the local frame.
+    """
+    rows = _positions(trajectory, gnss, rig, origin=origin, clock_s=0.0)
+    return np.inf if rows is None else fit_drift(rows, drift=_DRIFT_M, fixed=True).rms
 
 
 def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
@@ -128,7 +117,8 @@ def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
         )
         texts.append(
             "The rig file contradicts the GNSS fixes: the antenna differs from it by "
-            f"{', '.join(parts)} in axes of the body. Measure the lever arm."
+            f"{', '.join(parts)} in axes of the body. Measure the lever arm, or calibrate the rig "
+            "(recon4 calibrate)."
         )
     elif sd[:2].max() > _UNKNOWN_M:
         texts.append(
@@ -140,7 +130,7 @@ def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
         texts.append(
             "The rig file contradicts the GNSS fixes: their clock differs by "
             f"{1e3 * found.clock_s:.0f} ms ± {1e3 * found.clock_sd_s:.0f} ms. Check the time "
-            "offset of the receiver."
+            "offset of the receiver, or calibrate the rig (recon4 calibrate)."
         )
     return tuple(texts)
 
@@ -150,103 +140,73 @@ def _triple(v: Array) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _beside(
+def _together(position: DriftFit, attitude: DriftFit | None) -> tuple[Array, Array]:
+    """Lever arm and clock, (4,), and their covariance, (4, 4), from positions and attitudes.
+
+    Attitudes that contradict the positions have another latency in the receiver: they are left out.
+    """
+    x, cov = position.x, _SD_FACTOR**2 * position.cov
+    if attitude is None:
+        return x, cov
+    clock_s, variance = float(attitude.x[3]), _SD_FACTOR**2 * float(attitude.cov[3, 3])
+    if abs(clock_s - x[3]) > _SIGMAS * np.sqrt(variance + cov[3, 3]):
+        return x, cov
+    gain = cov[:, 3] / (cov[3, 3] + variance)
+    return x + gain * (clock_s - x[3]), cov - np.outer(gain, cov[3])
+
+
+def _used(trajectory: Trajectory, gnss: GnssSamples, t_ns: Times) -> NDArray[np.bool_]:
+    """Fixes with decimeters or better during the walk, (N,)."""
+    sd_m = np.nan_to_num(gnss.sd_enu_m, nan=_MIN_SD_M)
+    good = (gnss.quality == GnssQuality.RTK_FIXED) & (sd_m.max(axis=1) <= _MAX_SD_M)
+    good &= np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
+    good &= t_ns - _SPEED_NS >= trajectory.t_ns[0]
+    return np.asarray(good & (t_ns + _SPEED_NS <= trajectory.t_ns[-1]))
+
+
+def _positions(
     trajectory: Trajectory,
     gnss: GnssSamples,
     rig: Rig,
     *,
     origin: GeodeticOrigin,
     clock_s: float,
-) -> FixRows | None:
+) -> DriftRows | None:
     t_ns = gnss.t_ns + round(1e9 * clock_s)
-    sd_m = np.nan_to_num(gnss.sd_enu_m, nan=_MIN_SD_M)
-    good = (gnss.quality == GnssQuality.RTK_FIXED) & (sd_m.max(axis=1) <= _MAX_SD_M)
-    good &= np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
-    good &= t_ns - _SPEED_NS >= trajectory.t_ns[0]
-    good &= t_ns + _SPEED_NS <= trajectory.t_ns[-1]
+    good = _used(trajectory, gnss, t_ns)
     if good.sum() < _MIN_FIXES:
         return None
     t_ns = t_ns[good]
     p_fix = to_enu(origin, gnss.lat_rad[good], gnss.lon_rad[good], height_m=gnss.height_m[good])
     T_enu_body = trajectory.at(t_ns)
-    return FixRows(
+    before, after = (_antenna(trajectory.at(t_ns + d), rig) for d in (-_SPEED_NS, _SPEED_NS))
+    return DriftRows(
         t_s=(t_ns - t_ns[0]) / 1e9,
-        offset_m=p_fix - _antenna(T_enu_body, rig),
+        offset=p_fix - _antenna(T_enu_body, rig),
         R_enu_body=T_enu_body.R,
-        velocity_m_s=_velocity(trajectory, rig, t_ns),
-        sd_m=np.maximum(sd_m[good], _MIN_SD_M),
+        rate=(after - before) / (2e-9 * _SPEED_NS),
+        sd=np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=_MIN_SD_M), _MIN_SD_M),
+    )
+
+
+def _attitudes(trajectory: Trajectory, gnss: GnssSamples, *, clock_s: float) -> DriftRows | None:
+    """Attitudes of the INS beside those of the trajectory, whatever its mount; None = too few."""
+    t_ns = gnss.t_ns + round(1e9 * clock_s)
+    good = _used(trajectory, gnss, t_ns) & np.isfinite(gnss.rpy_ned_rad).all(axis=1)
+    if good.sum() < _MIN_FIXES:
+        return None
+    t_ns = t_ns[good]
+    R_enu_body, R_enu_ins = trajectory.at(t_ns).R, attitudes(gnss.rpy_ned_rad[good])
+    R_body_ins = mean_rotation(np.swapaxes(R_enu_body, 1, 2) @ R_enu_ins)
+    before, after = (trajectory.at(t_ns + d).R for d in (-_SPEED_NS, _SPEED_NS))
+    return DriftRows(
+        t_s=(t_ns - t_ns[0]) / 1e9,
+        offset=so3_log(R_enu_ins @ np.swapaxes(R_enu_body @ R_body_ins, 1, 2)),
+        R_enu_body=R_enu_body,
+        rate=so3_log(after @ np.swapaxes(before, 1, 2)) / (2e-9 * _SPEED_NS),
+        sd=np.full((len(t_ns), 3), _SD_RAD),
     )
 
 
 def _antenna(T_enu_body: SE3, rig: Rig) -> Array:
     return T_enu_body @ np.broadcast_to(rig.p_body_antenna, (len(T_enu_body), 3))
-
-
-def _velocity(trajectory: Trajectory, rig: Rig, t_ns: Times) -> Array:
-    before, after = (_antenna(trajectory.at(t_ns + d), rig) for d in (-_SPEED_NS, _SPEED_NS))
-    return np.asarray((after - before) / (2e-9 * _SPEED_NS))
-
-
-def _solve(rows: FixRows) -> tuple[Array, Array]:
-    """Lever arm and clock, (4,), and their covariance from the residuals, (4, 4).
-
-    The drift has three unknowns every two seconds; it is eliminated, so that the work grows with
-    the length of the walk.
-    """
-    J, J_drift, walk = _design(rows)
-    y = (rows.offset_m / rows.sd_m).ravel()
-    weight = np.ones(len(y))
-    for _ in range(_ROUNDS):
-        weighted = J_drift.multiply(weight[:, None]).tocsc()
-        drift = splu((J_drift.T @ weighted + walk).tocsc())
-        cross, of_y = weighted.T @ J, weighted.T @ y
-        eliminated = drift.solve(cross)
-        H = (J * weight[:, None]).T @ J + _PRIOR * np.eye(_PARAMETERS) - cross.T @ eliminated
-        x = np.linalg.solve(H, J.T @ (weight * y) - eliminated.T @ of_y)
-        residual = y - J @ x - J_drift @ drift.solve(of_y - cross @ x)
-        z2 = np.repeat((residual.reshape(-1, 3) ** 2).sum(axis=1), 3)
-        scale2 = max(float(np.median(z2)) / 2.37, 1.0)  # the median of chi-square with 3 degrees
-        weight = 1.0 / (1.0 + z2 / (scale2 * _CAUCHY_SD**2))
-    used = np.sqrt(weight) * residual
-    inflated = _SD_FACTOR**2 * scale2 * _correlation(used.reshape(-1, 3))
-    return np.asarray(x, np.float64), np.asarray(inflated * np.linalg.inv(H), np.float64)
-
-
-def _design(rows: FixRows) -> tuple[Array, csr_array, csr_array]:
-    """Jacobians of the normalized offsets, and the information of the drift.
-
-    Returns:
-        Of lever arm and clock, (3 N, 4); of the drift at its knots, (3 N, 3 K); (3 K, 3 K).
-    """
-    count = len(rows.t_s)
-    at = rows.t_s / _KNOT_S
-    knots = int(at[-1]) + 2
-    left = np.minimum(at.astype(np.int64), knots - 2)
-    s = at - left
-    J = np.concatenate([rows.R_enu_body, rows.velocity_m_s[:, :, None]], axis=2)
-    J = (J / rows.sd_m[:, :, None]).reshape(3 * count, _PARAMETERS)
-    fix = np.arange(count)
-    between = csr_array(
-        (np.concatenate([1.0 - s, s]), (np.tile(fix, 2), np.concatenate([left, left + 1]))),
-        shape=(count, knots),
-    )
-    J_drift = (
-        kron(between, np.eye(3), format="csr").multiply(1.0 / rows.sd_m.reshape(-1, 1)).tocsr()
-    )
-    change = diags_array([-1.0, 1.0], offsets=[0, 1], shape=(knots - 1, knots))
-    walk = kron(change.T @ change, np.eye(3)) / (_DRIFT_M**2 * _KNOT_S)
-    return J, J_drift, (walk + _PRIOR * eye_array(3 * knots)).tocsr()
-
-
-def _correlation(residual: NDArray[np.float64]) -> float:
-    """How many consecutive residuals (N, 3) count as one, at least 1."""
-    centered = residual - residual.mean(axis=0)
-    power = float((centered**2).sum())
-    if power <= 0.0:
-        return 1.0
-    lags = [
-        float((centered[lag:] * centered[:-lag]).sum()) / power
-        for lag in range(1, min(_LAGS, len(centered) - 1))
-    ]
-    first_negative = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
-    return 1.0 + 2.0 * float(sum(lags[:first_negative]))

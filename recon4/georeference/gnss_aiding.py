@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.se3 import so3_exp
+from recon4.geometry.se3 import Array, so3_exp
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
@@ -35,17 +35,22 @@ def make_gnss_aiding(
     first = int(np.flatnonzero(good)[0])
     origin = GeodeticOrigin(gnss.lat_rad[first], gnss.lon_rad[first], gnss.height_m[first])
     p_enu = to_enu(origin, gnss.lat_rad[good], gnss.lon_rad[good], height_m=gnss.height_m[good])
-    roll, pitch, heading = gnss.rpy_ned_rad[good].T
-    x, y, z = np.eye(3)
-    R_ned_down = (
-        so3_exp(heading[:, None] * z) @ so3_exp(pitch[:, None] * y) @ so3_exp(roll[:, None] * x)
-    )
     sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), settings.gnss_sd_m)
     return GnssAiding(
         t_ns=gnss.t_ns[good],
         p_enu=p_enu,
         sd_m=sd_m,
-        R_enu_body=_R_ENU_NED @ R_ned_down @ _R_DOWN_UP,
+        R_enu_body=attitudes(gnss.rpy_ned_rad[good]),
         attitude_sd_rad=settings.heading_sd_rad,
         p_body_antenna=rig.p_body_antenna,
     )
+
+
+def attitudes(rpy_ned_rad: Array) -> Array:
+    """Attitudes of an INS as ``R_enu_body``, (N, 3, 3), from roll, pitch, heading, (N, 3)."""
+    roll, pitch, heading = rpy_ned_rad.T
+    x, y, z = np.eye(3)
+    R_ned_down = (
+        so3_exp(heading[:, None] * z) @ so3_exp(pitch[:, None] * y) @ so3_exp(roll[:, None] * x)
+    )
+    return np.asarray(_R_ENU_NED @ R_ned_down @ _R_DOWN_UP)

@@ -54,7 +54,7 @@ class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
     """What a recording says of one parameter of its rig."""
 
     sensor: str
-    """Name of the LiDAR, or ``imu``."""
+    """Name of the LiDAR, ``imu`` or ``gnss``."""
     quantity: str
     """``rotation``, ``position``, ``clock``; of a beam ``beam range``, ``beam elevation`` or
     ``beam azimuth``."""
@@ -93,9 +93,14 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
 
     @property
     def is_severe(self) -> bool:
-        """Whether a map that was made with the rig file must not be used."""
-        return any(row.status == "off" and abs(row.change) > _SEVERE[row.unit]
-                   for row in self.parameters)  # fmt: skip
+        """Whether a map that was made with the rig file must not be used.
+
+        A lever arm or the clock of the GNSS receiver moves a map and bends it, but no wall doubles.
+        """
+        return any(
+            row.status == "off" and row.sensor != "gnss" and abs(row.change) > _SEVERE[row.unit]
+            for row in self.parameters
+        )
 
 
 class GraphFigures(Figures, frozen=True, kw_only=True):

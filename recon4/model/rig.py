@@ -35,7 +35,7 @@ _SENSOR_KEYS = _MOUNTING_KEYS | {
 _IMU_KEYS = _MOUNTING_KEYS
 _GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial"}
 _SD_KEYS = ("sd_deg", "sd_mm", "sd_ms")
-_BEAM_SD_KEYS = ("sd_beam_deg", "sd_beam_mm")
+_OPTIONAL_SD_KEYS = ("sd_beam_deg", "sd_beam_mm", "sd_antenna_mm", "sd_gnss_ms")
 _MAX_HEAD_DEG_S = 3600.0
 
 
@@ -91,6 +91,10 @@ class RigCalibration:
     """Of the elevation or azimuth of a beam [°]; 0 = beams were not estimated."""
     sd_beam_mm: float = 0.0
     """Of the range of a beam [mm]; 0 = beams were not estimated."""
+    sd_antenna_mm: float = 0.0
+    """Of the lever arm of the GNSS antenna [mm]; 0 = it was not estimated."""
+    sd_gnss_ms: float = 0.0
+    """Of the clock of the GNSS receiver [ms]; 0 = it was not estimated."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -197,7 +201,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
 def _calibration(value: object, where: str) -> RigCalibration | None:
     if value is None:
         return None
-    row = TomlTable.of(value, where, {"date", "method", *_SD_KEYS, *_BEAM_SD_KEYS})
+    row = TomlTable.of(value, where, {"date", "method", *_SD_KEYS, *_OPTIONAL_SD_KEYS})
     text = row.text("date")
     try:
         date.fromisoformat(text)
@@ -206,7 +210,7 @@ def _calibration(value: object, where: str) -> RigCalibration | None:
     return RigCalibration(
         date=text,
         method=row.text("method"),
-        **{key: row.number(key) for key in (*_SD_KEYS, *_BEAM_SD_KEYS)},
+        **{key: row.number(key) for key in (*_SD_KEYS, *_OPTIONAL_SD_KEYS)},
     )
 
 
@@ -242,7 +246,7 @@ def format_rig(rig: Rig) -> str:
         c = rig.calibration
         lines += ["[calibration]", f"date = {_quoted(c.date)}", f"method = {_quoted(c.method)}"]
         lines += [f"{key} = {getattr(c, key)!r}" for key in _SD_KEYS]
-        lines += [f"{key} = {getattr(c, key)!r}" for key in _BEAM_SD_KEYS if getattr(c, key)]
+        lines += [f"{key} = {getattr(c, key)!r}" for key in _OPTIONAL_SD_KEYS if getattr(c, key)]
         lines += [""]
     return "\n".join(lines)
 

@@ -138,7 +138,8 @@ def _calibration(results: Results) -> list[Finding]:
             for text in found.warnings
         ]
     text = f"Rig: {found.outcome}."
-    return [Finding(Level.GOOD if found.parameters else Level.NOTE, text)]
+    agrees = found.parameters and not any(row.status == "off" for row in found.parameters)
+    return [Finding(Level.GOOD if agrees else Level.NOTE, text)]
 
 
 def _observability(results: Results) -> list[Finding]:

@@ -16,7 +16,7 @@ class CalibrationSettings:
     """``audit`` compares the rig file with the recording and warns; ``auto`` also calibrates it and
     uses the calibrated rig, if windows that were not used confirm it."""
     sensors: str = ""
-    """Names of the LiDARs to calibrate and ``imu``, separated by commas; empty = all of them."""
+    """Names of the LiDARs to calibrate, ``imu`` and ``gnss``, separated by commas; empty = all."""
     reference: str = ""
     """Name of the LiDAR whose mount and clock stay; empty = the first one that is enabled."""
     beams: bool = False

@@ -55,7 +55,7 @@ MAY_IMPORT = {
     | {"recon4.recording.laser2d", "recon4.recording.report"},
     "recon4/calibration": STAGE
     | {"recon4.calibration", "recon4.registration", "recon4.semi_rigid.knots"}
-    | {"recon4.mapping.place"},
+    | {"recon4.mapping.place", "recon4.georeference.antenna_calibration"},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
     "recon4/profiler": STAGE
     | {f"recon4.{room}" for room in ("registration", "pose_graph", "slam2d", "semi_rigid")}

@@ -1,0 +1,115 @@
+"""The GNSS receiver in the stage ``calibration``: after the mounts, because it needs them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import msgspec
+
+from recon4.calibration.judgment import contradictions
+from recon4.calibration.note import with_antenna_note
+from recon4.calibration.result import CalibrationResult
+from recon4.calibration.walk import RecordedWalk
+from recon4.georeference.antenna_calibration import GNSS, AntennaCalibration, calibrate_antenna
+from recon4.settings import Settings
+
+_VAGUE_M = 0.01
+"""A lever arm that is known no better is named [m]."""
+_AIDED_SD_FACTOR = 3.0
+"""True errors against stated ones, of an estimate from a trajectory that the fixes pulled."""
+
+
+def with_antenna(
+    found: CalibrationResult, walk: RecordedWalk, *, settings: Settings
+) -> CalibrationResult:
+    """Add what the fixes say of lever arm and clock of the receiver; correct them on request.
+
+    The trajectory of the odometry follows a wrong lever arm in part, where the LiDARs observe
+    little. If it contradicts the rig file, a calibration tracks the walk again without the fixes.
+    With mounts that are wrong and not corrected nothing is calibrated.
+
+    Args:
+        found: What was found of LiDARs and IMU.
+        walk: The recording with its odometry.
+        settings: Uses calibration, gnss and those of the odometry.
+    """
+    wanted = [name.strip() for name in settings.calibration.sensors.split(",") if name.strip()]
+    if wanted and GNSS not in wanted:
+        return found
+    moved = walk.with_rig(found.rig) if found.rig else walk
+    antenna = _estimate(moved, settings)
+    if antenna is None:
+        return found
+    may = settings.calibration.mode == "auto" and (found.rig or not found.figures.warnings)
+    if not (may and antenna.is_off):
+        return _with_rows(found, _doubted(antenna))
+    moved = replace(moved, trajectory=moved.tracked_freely(settings))
+    free = _estimate(moved, settings)
+    if free is None or not free.is_off:
+        return _with_rows(
+            found, _doubted(antenna), "; without the fixes the walk shows no error of theirs"
+        )
+    if free.refusal:
+        return _with_rows(found, free, f"; GNSS inconclusive: {free.refusal}")
+    return _corrected(found, free, recorded_ns=walk.start_ns)
+
+
+def _estimate(walk: RecordedWalk, settings: Settings) -> AntennaCalibration | None:
+    frames = walk.frames
+    return calibrate_antenna(
+        walk.trajectory, frames.gnss, frames.rig, imu=frames.imu, settings=settings.gnss
+    )
+
+
+def _doubted(antenna: AntennaCalibration) -> AntennaCalibration:
+    """With the standard deviations of a trajectory that the fixes pulled."""
+    rows = tuple(
+        msgspec.structs.replace(row, sd=_AIDED_SD_FACTOR * (row.sd or 0.0)) for row in antenna.rows
+    )
+    return replace(antenna, rows=rows)
+
+
+def _with_rows(
+    found: CalibrationResult, antenna: AntennaCalibration, remark: str = ""
+) -> CalibrationResult:
+    """The rows of the receiver beside the others; its contradictions are said with the map."""
+    figures = found.figures
+    remark = remark or ("; GNSS fixes contradict it" if antenna.is_off else "")
+    figures = msgspec.structs.replace(
+        figures,
+        parameters=(*figures.parameters, *antenna.rows),
+        outcome=figures.outcome + remark,
+    )
+    return replace(found, figures=figures)
+
+
+def _corrected(
+    found: CalibrationResult, antenna: AntennaCalibration, *, recorded_ns: int
+) -> CalibrationResult:
+    figures = found.figures
+    outcome = figures.outcome if figures.applied else "calibrated"
+    figures = msgspec.structs.replace(
+        figures,
+        parameters=(*figures.parameters, *antenna.rows),
+        applied=True,
+        outcome=f"{outcome}; fixes that were not used confirm the GNSS receiver",
+        warnings=(
+            *figures.warnings,
+            *contradictions(antenna.rows, applied=True),
+            *_vague(antenna),
+        ),
+    )
+    rig = with_antenna_note(antenna.rig, antenna.rows, recorded_ns=recorded_ns)
+    return replace(found, figures=figures, rig=rig)
+
+
+def _vague(antenna: AntennaCalibration) -> tuple[str, ...]:
+    """The axes of the lever arm that the walk shows only roughly."""
+    rows = [row for row in antenna.rows if row.unit == "m" and (row.sd or 0.0) > _VAGUE_M]
+    if not rows:
+        return ()
+    parts = ", ".join(f"{row.axis} ± {100 * (row.sd or 0.0):.1f} cm" for row in rows)
+    return (
+        f"The walk shows the lever arm of the GNSS antenna only roughly along {parts}: measure it "
+        "there, or bend forward and to the sides while you walk.",
+    )

@@ -1,0 +1,220 @@
+"""Calibration of the GNSS receiver in a rig: lever arm and clock, checked on fixes not used."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.georeference.antenna_audit import audit_antenna, unexplained
+from recon4.georeference.crs import GeodeticOrigin, to_enu
+from recon4.georeference.gnss import align_heading
+from recon4.georeference.gnss_priors import GnssPriors
+from recon4.georeference.level import level
+from recon4.model.figures import AntennaFigures, ParameterFigures, ParameterStatus
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.settings import GnssSettings
+
+GNSS = "gnss"
+"""Name of the receiver among the sensors of a calibration."""
+_BLOCK_NS = 8_000_000_000
+"""Every second stretch of this length is not used by the first estimate, but checks it [ns]."""
+_TOLERANCE = np.array([0.02, 0.02, 0.02, 0.002])
+"""Smaller changes of lever arm [m] and clock [s] are no reason to calibrate, (4,)."""
+_OBSERVABLE_SD = np.array([0.01, 0.01, 0.01, 0.001])
+"""With a larger standard deviation a parameter counts as not observable, (4,)."""
+_KNOWN_ERROR = np.array([0.05, -0.05, 0.05, 0.02])
+"""Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
+_SIGMAS, _CERTAIN_SIGMAS = 3.0, 4.5
+_BETTER = 0.99
+"""Ratio of what is not explained, after against before."""
+_AXES = ("x", "y", "z", "")
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class AntennaCalibration:
+    """What the fixes say of the receiver in the rig file."""
+
+    rows: tuple[ParameterFigures, ...]
+    """Lever arm along x, y, z of the body, and clock."""
+    rig: Rig
+    """With the values that are off corrected."""
+    refusal: str
+    """Why the corrected rig must not be used; empty = it may."""
+
+    @property
+    def is_off(self) -> bool:
+        """Whether the rig file contradicts the fixes."""
+        return any(row.status == "off" for row in self.rows)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Placed:
+    """A walk on the earth."""
+
+    trajectory: Trajectory
+    """``T_enu_body``, dense."""
+    origin: GeodeticOrigin
+
+    def audit(self, gnss: GnssSamples, rig: Rig) -> AntennaFigures | None:
+        return audit_antenna(self.trajectory, gnss, rig, origin=self.origin)
+
+    def unexplained(self, gnss: GnssSamples, rig: Rig) -> float:
+        return unexplained(self.trajectory, gnss, rig, origin=self.origin)
+
+
+def calibrate_antenna(
+    trajectory: Trajectory,
+    gnss: GnssSamples | None,
+    rig: Rig,
+    *,
+    imu: ImuSamples | None,
+    settings: GnssSettings,
+) -> AntennaCalibration | None:
+    """Estimate lever arm and clock of the receiver, and check them on other parts of the walk.
+
+    Args:
+        trajectory: ``T_odom_body``, dense.
+        gnss: The fixes, in the time of the rig.
+        rig: Mounts, lever arm and clocks that the trajectory was made with.
+        imu: Levels the walk, if the receiver measures no attitudes.
+        settings: Gate of the fixes, to find the heading.
+
+    Returns:
+        None if there are too few fixes, or the walk cannot be placed on the earth.
+    """
+    placed = _place(trajectory, gnss, rig, imu=imu, settings=settings) if gnss else None
+    found = placed and gnss and placed.audit(gnss, rig)
+    if not placed or not gnss or not found:
+        return None
+    change, sd = _change(found), _deviation(found)
+    off = _off(found)
+    rows = tuple(
+        ParameterFigures(
+            sensor=GNSS,
+            quantity="position" if axis else "clock",
+            axis=axis,
+            unit="m" if axis else "s",
+            change=float(change[k]),
+            sd=float(sd[k]),
+            status=_status(bool(off[k]), bool(sd[k] > _OBSERVABLE_SD[k])),
+        )
+        for k, axis in enumerate(_AXES)
+    )
+    return AntennaCalibration(
+        rows=rows,
+        rig=_corrected(rig, np.where(off, change, 0.0)),
+        refusal=_refusal(placed, gnss, rig, off=off),
+    )
+
+
+def _status(off: bool, vague: bool) -> ParameterStatus:
+    if off:
+        return "off"
+    return "not observable" if vague else "consistent"
+
+
+def _off(found: AntennaFigures) -> NDArray[np.bool_]:
+    """Which of the parameters the fixes contradict, (4,).
+
+    All axes of the lever arm are judged together: the sway of a person shows its vertical part only
+    roughly, and beside a large error of another axis.
+    """
+    change, sd = np.abs(_change(found)), _deviation(found)
+    sigmas = np.array([found.arm_sigmas] * 3 + [change[3] / sd[3]])
+    size = np.array([float(np.linalg.norm(change[:3]))] * 3 + [change[3]])
+    certain = (sigmas > _CERTAIN_SIGMAS) & (size > _TOLERANCE)
+    return np.asarray(certain & (change > np.maximum(_SIGMAS * sd, 0.5 * _TOLERANCE)))
+
+
+def _refusal(placed: _Placed, gnss: GnssSamples, rig: Rig, *, off: NDArray[np.bool_]) -> str:
+    """Why the corrected rig must not be used; empty = it may."""
+    if not off.any():
+        return ""
+    odd = (gnss.t_ns - gnss.t_ns[0]) // _BLOCK_NS % 2 == 1
+    used, others = _taken(gnss, ~odd), _taken(gnss, odd)
+    first = placed.audit(used, rig)
+    second = placed.audit(_later(others, _KNOWN_ERROR[3]), _corrected(rig, _KNOWN_ERROR))
+    if first is None or second is None:
+        return "the walk is too short to check the receiver on another part of it"
+    apart = np.abs(_change(first) - _change(second) - _KNOWN_ERROR)
+    scatter = _SIGMAS * np.hypot(_deviation(first), _deviation(second))
+    wrong = off & (apart > np.maximum(scatter, 0.5 * np.abs(_KNOWN_ERROR)))
+    if wrong.any():
+        names = ", ".join(f"position {axis}" if axis else "clock"
+                          for axis, bad in zip(_AXES, wrong, strict=True) if bad)  # fmt: skip
+        return f"another part of the walk gives another value for the {names} of the receiver"
+    change = np.where(off, _change(first), 0.0)
+    after = placed.unexplained(_later(others, change[3]), _corrected(rig, change))
+    if not after < _BETTER * placed.unexplained(others, rig):
+        return "the fixes of another part of the walk are explained no better"
+    return ""
+
+
+def _corrected(rig: Rig, change: Array) -> Rig:
+    """The rig with a change of lever arm [m] and clock [s], (4,)."""
+    return replace(
+        rig,
+        p_body_antenna=rig.p_body_antenna + change[:3],
+        gnss_time_offset_s=rig.gnss_time_offset_s + float(change[3]),
+    )
+
+
+def _change(found: AntennaFigures) -> Array:
+    return np.array([*found.arm_m, found.clock_s])
+
+
+def _deviation(found: AntennaFigures) -> Array:
+    return np.array([*found.arm_sd_m, found.clock_sd_s])
+
+
+def _place(
+    trajectory: Trajectory,
+    gnss: GnssSamples,
+    rig: Rig,
+    *,
+    imu: ImuSamples | None,
+    settings: GnssSettings,
+) -> _Placed | None:
+    """Level a walk and turn it to the fixes; None if that is not possible."""
+    good = (gnss.quality == GnssQuality.RTK_FIXED) & np.isfinite(gnss.lat_rad)
+    good &= np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
+    good &= (gnss.t_ns >= trajectory.t_ns[0]) & (gnss.t_ns <= trajectory.t_ns[-1])
+    rows = np.flatnonzero(good)
+    leveling = level(trajectory, imu, rig, gnss=gnss)
+    if leveling.source == "none" or len(rows) < 2:
+        return None
+    leveled = Trajectory(trajectory.t_ns, leveling.T_level_odom @ trajectory.T_a_b)
+    few = rows[:: 1 + len(rows) // 500]
+    first = few[0]
+    origin = GeodeticOrigin(
+        float(gnss.lat_rad[first]), float(gnss.lon_rad[first]), float(gnss.height_m[first])
+    )
+    p_body = np.broadcast_to(rig.p_body_antenna, (len(few), 3))
+    p_level = leveled.at(gnss.t_ns[few]) @ p_body
+    priors = GnssPriors(
+        t_ns=gnss.t_ns[few],
+        row=few,
+        p_enu=to_enu(origin, gnss.lat_rad[few], gnss.lon_rad[few], height_m=gnss.height_m[few]),
+        sd_m=np.fmax(gnss.sd_enu_m[few], settings.min_sd_m),
+        node=np.arange(len(few)),
+        p_node_antenna=p_body,
+    )
+    T_enu_level, near = align_heading(p_level, priors, settings=settings)
+    extent_m = float(np.linalg.norm(np.ptp(p_level[near, :2], axis=0))) if near.any() else 0.0
+    if extent_m < settings.min_extent_m:
+        return None
+    return _Placed(Trajectory(leveled.t_ns, T_enu_level @ leveled.T_a_b), origin)
+
+
+def _taken(gnss: GnssSamples, rows: NDArray[np.bool_]) -> GnssSamples:
+    return GnssSamples(*(getattr(gnss, name)[rows] for name in GnssSamples.__slots__))
+
+
+def _later(gnss: GnssSamples, clock_s: float) -> GnssSamples:
+    """The fixes in the time of a rig whose clock offset of the receiver is larger."""
+    return replace(gnss, t_ns=gnss.t_ns + round(1e9 * clock_s))
