@@ -114,9 +114,15 @@ def find_mirrors(sight: Sight) -> list[MirrorFound]:
     kept = np.flatnonzero(rows)
     if not len(kept):
         return []
-    steep = _Steep(sight[kept], found.normal[kept].astype(np.float64))
+    steep = _Steep(sight[kept], _to_sensor(sight[kept], found.normal[kept].astype(np.float64)))
     mirrors = [_mirror(wall, steep, sight) for wall in _walls(steep)]
     return sorted((m for m in mirrors if m is not None), key=lambda m: -m.area_m2)
+
+
+def _to_sensor(sight: Sight, normal: Array) -> Array:
+    """Normals (N, 3) that point to the side from which their points were seen."""
+    side = np.einsum("ni,ni->n", normal, sight.origin_m - sight.point_m)
+    return np.where(side[:, None] < 0.0, -normal, normal)
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,6 +131,7 @@ class _Steep:
 
     sight: Sight
     normal: Array
+    """To the side that was seen."""
 
     @cached_property
     def tree(self) -> cKDTree:
@@ -191,7 +198,9 @@ def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFound | None:
     met = np.isfinite(reach)
     turned = normal[beams] - 2.0 * (normal[beams] @ wall.normal)[:, None] * wall.normal
     like = np.einsum("ni,ni->n", turned, normal[np.where(met, nearest, 0)])
-    met &= np.abs(like) > _SAME_COSINE
+    # A mirror shows the side that faces it. In a row of columns, each as far from the next, a plane
+    # of their fronts maps columns onto columns, but onto their other sides.
+    met &= like > _SAME_COSINE
     part = before[beams] / (before[beams] + behind[beams])
     at = origin + part[:, None] * (point - origin)
     _, which, count = np.unique(wall.cells(at), axis=0, return_inverse=True, return_counts=True)

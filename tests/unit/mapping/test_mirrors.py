@@ -79,3 +79,22 @@ def test_rooms_with_doors_and_windows_have_none(world: str) -> None:
 
 def test_a_map_without_points_has_none() -> None:
     assert find_mirrors(Sight(np.empty((0, 3)), np.empty((0, 3)))) == []
+
+
+def test_evenly_spaced_boards_have_none() -> None:
+    """Seen from one side, the plane of a row maps the row behind it onto the one before it."""
+    rows_m, period_m, width_m = (0.0, 3.0, 6.0), 2.0, 1.2
+    y, z = np.meshgrid(np.linspace(-0.45, 0.45, 240), np.linspace(-0.14, 0.14, 70))
+    direction = np.stack([np.ones(y.size), y.ravel(), z.ravel()], axis=1)
+    points, origins = [], []
+    for y0 in np.arange(-6.0, 6.0, 0.45):
+        origin = np.array([-5.0, y0, 1.5])
+        seen = np.zeros(len(direction), bool)
+        for x in rows_m:
+            p = origin + (x - origin[0]) * direction
+            hit = ~seen & (np.mod(p[:, 1], period_m) < width_m)
+            seen |= hit
+            points.append(p[hit])
+            origins.append(np.tile(origin, (int(hit.sum()), 1)))
+
+    assert find_mirrors(Sight(np.concatenate(points), np.concatenate(origins))) == []
