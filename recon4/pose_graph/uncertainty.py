@@ -18,6 +18,7 @@ from scipy.linalg import cho_factor, cho_solve
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
+from recon4.pose_graph.error_model import CALIBRATED, Agreement, ErrorModel, agreement
 from recon4.pose_graph.solve import PositionPriors
 
 _MAX_KNOTS = 300
@@ -30,51 +31,6 @@ _POINT_M = 0.01
 """Standard deviation of a control point [m]."""
 _NEARLY = 1.2
 """Places where a control point leaves at most this multiple of the smallest deviation."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ErrorModel:
-    """True errors of edges against the covariances that the stages state.
-
-    Where the LiDAR observes a direction, the stated deviations of odometry are several times too
-    large, because they are those of single multiframes added up. Where it does not, they are those
-    of the predicted velocity, whose error stays the same for seconds.
-    """
-
-    observed: float = 0.08
-    """Factor on the standard deviation of an odometry edge along directions that are observed."""
-    weak: float = 1.0
-    """The same along directions that are not."""
-    observed_m: float = 0.002
-    """Half a second of odometry along observed directions is not more wrong than this [m] …"""
-    observed_rad: float = 3e-4
-    """… and its turn than this [rad]."""
-    weak_m: float = 0.05
-    """Stated deviation of half a second of odometry at which a direction is weak [m] …"""
-    weak_rad: float = 0.01
-    """… and of its turn [rad]."""
-    weak_ratio: float = 10.0
-    """The same as a multiple of what is usual on the walk: without an IMU odometry states
-    centimeters also where it is right to millimeters."""
-    turn_s: float = 5.0
-    """Time over which errors of turns are correlated [s] …"""
-    shift_s: float = 1.0
-    """… those of shifts along observed directions [s] …"""
-    weak_s: float = 10.0
-    """… and along weak ones [s]."""
-    registered: float = 0.5
-    """Factor on the standard deviation of neighbor and loop edges."""
-    anchor_rad: float = 3e-4
-    """Error of a single pose that no other shares: of the first, and of each [rad] …"""
-    anchor_m: float = 1.5e-3
-    """… and of its position [m]."""
-    anchor_ratio: float = 0.06
-    """The same as a ratio of what half a second of odometry usually states."""
-    gnss_m: float = 0.02
-    """Error of GNSS that all fixes of a walk share [m]."""
-
-
-CALIBRATED = ErrorModel()
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,10 +103,11 @@ def pose_uncertainty(
     """
     if len(graph) < 2:
         return None
-    chain = _chain(graph, model)
+    agrees = agreement(graph, model)
+    chain = _chain(graph, model, agrees)
     knots = len(chain.t_ns)
     information = _odometry_information(chain)
-    _add_edges(information, graph, chain, model=model)
+    _add_edges(information, graph, chain, factor=model.registered * agrees.ratio)
     # On the earth only the tilt is known beforehand, by leveling; else the first pose is exact.
     loose = np.diag([_TILT_RAD**-2.0, _TILT_RAD**-2.0, 1e-2, 1e-6, 1e-6, 1e-6])
     first = np.eye(6) * 1e9 if positions is None else loose
@@ -159,7 +116,7 @@ def pose_uncertainty(
         _add_positions(information, positions, graph=graph, chain=chain)
     every = cho_solve(cho_factor(information), np.eye(6 * knots)).reshape(knots, 6, knots, 6)
     own = np.arange(knots)
-    alone = _alone(chain, model, on_earth=positions is not None)
+    alone = _alone(chain, model, agrees.ratio, on_earth=positions is not None)
     cov = every[own, :, own, :] + alone
     place = every[:, TRANSLATION, :, TRANSLATION].transpose(0, 2, 1, 3)
     helpful = _helpful(place, alone[:, TRANSLATION, TRANSLATION], chain.t_ns)
@@ -193,11 +150,11 @@ def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
     return HelpfulPoint(int(t_ns[first]), int(t_ns[last]), float(largest_m[best]))
 
 
-def _chain(graph: PoseGraph, model: ErrorModel) -> _Chain:
+def _chain(graph: PoseGraph, model: ErrorModel, agrees: Agreement) -> _Chain:
     """Join nodes to at most `_MAX_KNOTS` knots."""
     stride = -(-len(graph) // _MAX_KNOTS)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
-    step_cov, rate, usual = _steps(graph, model)
+    step_cov, rate, usual = _steps(graph, model, agrees)
     step_s = _step_seconds(graph.t_ns)
     covs, rhos = [], []
     for first, last in pairwise(rows.tolist()):
@@ -226,7 +183,7 @@ def _transport(arm_m: Array) -> Array:
     return out
 
 
-def _steps(graph: PoseGraph, model: ErrorModel) -> tuple[Array, Array, Array]:
+def _steps(graph: PoseGraph, model: ErrorModel, agrees: Agreement) -> tuple[Array, Array, Array]:
     """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
 
     Returns:
@@ -251,12 +208,13 @@ def _steps(graph: PoseGraph, model: ErrorModel) -> tuple[Array, Array, Array]:
         ratio = half_s * np.sqrt(values) / max(weak_at, model.weak_ratio * usual[row])
         weak = ratio**4 / (1.0 + ratio**4)
         observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
+        observed *= agrees.ratio[row] ** 2
         # Bounded, so that a walk that was lost leaves numbers that can be worked with.
         true = np.minimum(observed + weak * model.weak**2 * values, _UNKNOWN_STEP[row] ** 2)
         inverse_s = (1.0 - weak) / observed_s + weak / model.weak_s
         cov[:, part, part] = V * true[:, None, :] @ np.swapaxes(V, 1, 2)
         rate[:, part, part] = V * inverse_s[:, None, :] @ np.swapaxes(V, 1, 2)
-    return cov, rate, usual
+    return cov + model.moved**2 * agrees.moved, rate, usual
 
 
 def _odometry_information(chain: _Chain) -> Array:
@@ -282,8 +240,8 @@ def _odometry_information(chain: _Chain) -> Array:
     return np.asarray(flat.T @ flat)
 
 
-def _add_edges(information: Array, graph: PoseGraph, chain: _Chain, *, model: ErrorModel) -> None:
-    """Add what registered edges measure, in place."""
+def _add_edges(information: Array, graph: PoseGraph, chain: _Chain, *, factor: Array) -> None:
+    """Add what registered edges measure, in place; ``factor`` on their turns and shifts, (2,)."""
     of = graph.relations
     i, j = chain.knot_of[of.i], chain.knot_of[of.j]
     used = np.flatnonzero(of.in_graph & (of.j > of.i + 1) & (i != j))
@@ -293,9 +251,10 @@ def _add_edges(information: Array, graph: PoseGraph, chain: _Chain, *, model: Er
     places = np.stack([i[used] // 2, j[used] // 2], axis=1)
     _, which, count = np.unique(places, axis=0, return_inverse=True, return_counts=True)
     move = _transport(chain.T_map_body.t[j[used]] - chain.T_map_body.t[i[used]])
+    scale = 1.0 / np.repeat(factor, 3)
     for row, F, shared in zip(used, move, count[which.ravel()], strict=True):
         into_map = np.kron(np.eye(2), graph.T_map_body.R[of.j[row]])
-        W = into_map @ of.information[row] @ into_map.T / (model.registered**2 * shared)
+        W = scale * (into_map @ of.information[row] @ into_map.T) * scale[:, None] / shared
         a, b = slice(6 * i[row], 6 * i[row] + 6), slice(6 * j[row], 6 * j[row] + 6)
         information[a, a] += F.T @ W @ F
         information[b, b] += W
@@ -318,9 +277,10 @@ def _add_positions(
         information[own, own] += row.T @ np.diag(sd_m**-2.0) @ row
 
 
-def _alone(chain: _Chain, model: ErrorModel, *, on_earth: bool) -> Array:
+def _alone(chain: _Chain, model: ErrorModel, ratio: Array, *, on_earth: bool) -> Array:
     """What the errors of single poses add, and on earth that of all positions, (K, 6, 6)."""
-    single = np.maximum([model.anchor_rad, model.anchor_m], model.anchor_ratio * chain.usual)
+    anchor = ratio * [model.anchor_rad, model.anchor_m]
+    single = np.maximum(anchor, model.anchor_ratio * chain.usual)
     alone = np.diag(np.repeat(single, 3) ** 2)
     if on_earth:
         common = np.diag(np.repeat([0.0, model.gnss_m], 3) ** 2)

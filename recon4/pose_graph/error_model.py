@@ -1,0 +1,121 @@
+"""How wrong edges are: factors from walks with known truth, and what a graph shows of itself.
+
+Registered edges of a walk measure the same motions many times. How far they disagree with the
+solved graph, and how far the graph moves the odometry, shows how wrong both are: in a garage of
+large planes a fifth of what is usual in an office, with a clock that is off many times as much.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import correlate1d
+
+from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+
+_MIN_EDGES = 8
+"""Fewer registered edges say nothing of the walk."""
+_LEAST, _MOST = 0.15, 30.0
+"""Bounds of the ratio of the errors of a walk to the usual ones."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ErrorModel:
+    """True errors of edges against the covariances that the stages state.
+
+    Where the LiDAR observes a direction, the stated deviations of odometry are several times too
+    large, because they are those of single multiframes added up. Where it does not, they are those
+    of the predicted velocity, whose error stays the same for seconds.
+    """
+
+    observed: float = 0.08
+    """Factor on the standard deviation of an odometry edge along directions that are observed."""
+    weak: float = 1.0
+    """The same along directions that are not."""
+    observed_m: float = 0.002
+    """Half a second of odometry along observed directions is not more wrong than this [m] …"""
+    observed_rad: float = 3e-4
+    """… and its turn than this [rad]."""
+    weak_m: float = 0.05
+    """Stated deviation of half a second of odometry at which a direction is weak [m] …"""
+    weak_rad: float = 0.01
+    """… and of its turn [rad]."""
+    weak_ratio: float = 10.0
+    """The same as a multiple of what is usual on the walk: without an IMU odometry states
+    centimeters also where it is right to millimeters."""
+    turn_s: float = 5.0
+    """Time over which errors of turns are correlated [s] …"""
+    shift_s: float = 1.0
+    """… those of shifts along observed directions [s] …"""
+    weak_s: float = 10.0
+    """… and along weak ones [s]."""
+    registered: float = 0.5
+    """Factor on the standard deviation of neighbor and loop edges."""
+    anchor_rad: float = 3e-4
+    """Error of a single pose that no other shares: of the first, and of each [rad] …"""
+    anchor_m: float = 1.5e-3
+    """… and of its position [m]."""
+    anchor_ratio: float = 0.06
+    """The same as a ratio of what half a second of odometry usually states."""
+    gnss_m: float = 0.02
+    """Error of GNSS that all fixes of a walk share [m]."""
+    usual_rad: float = 9e-4
+    """Median residual of registered edges where these factors hold: turn [rad] …"""
+    usual_m: float = 2.5e-3
+    """… and shift [m]. Where the edges agree better or worse, the errors are smaller or larger."""
+    moved: float = 2.0
+    """An odometry edge is wrong by this multiple of what the graph moves it by."""
+
+
+CALIBRATED = ErrorModel()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Agreement:
+    """What the residuals of a solved graph say of the errors of its edges."""
+
+    ratio: Array
+    """Errors of turns and of shifts as a multiple of the usual ones, (2,)."""
+    moved: Array
+    """Covariance of what the graph moved the odometry by around each edge, in axes of the map,
+    turns and shifts apart, (N - 1, 6, 6)."""
+
+
+def agreement(graph: PoseGraph, model: ErrorModel) -> Agreement:
+    """Compare the edges of a solved graph with its poses.
+
+    Args:
+        graph: Solved; its odometry edges connect consecutive nodes.
+        model: What is usual, and over which time errors are correlated.
+    """
+    of = graph.relations
+    xi = (of.T_i_j.inverse() @ graph.T_map_body[of.i].inverse() @ graph.T_map_body[of.j]).log()
+    registered = of.in_graph & (of.j > of.i + 1)
+    ratio: Array = np.ones(2)
+    if registered.sum() >= _MIN_EDGES:
+        sizes = [
+            np.linalg.norm(xi[registered][:, part], axis=1) for part in (ROTATION, TRANSLATION)
+        ]
+        usual = np.array([model.usual_rad, model.usual_m])
+        ratio = np.clip(np.median(sizes, axis=1) / usual, _LEAST, _MOST)
+    moved, weight = np.zeros((len(graph) - 1, 6, 6)), np.zeros(len(graph) - 1)
+    for edge, residual in zip(graph.edges, xi, strict=True):
+        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1 and _is_strong(edge, model):
+            into_map = graph.T_map_body.R[edge.j]
+            for part in (ROTATION, TRANSLATION):
+                r = into_map @ residual[part]
+                moved[edge.i, part, part] = np.outer(r, r)
+            weight[edge.i] = 1.0
+    step_s = float(np.median(np.diff(graph.t_ns))) / 1e9
+    size = 2 * round(model.turn_s / max(step_s, 1e-3)) + 1
+    near = correlate1d(weight, np.ones(size), mode="constant")
+    total = correlate1d(moved, np.ones(size), axis=0, mode="constant")
+    return Agreement(ratio, total / np.maximum(near, 1.0)[:, None, None])
+
+
+def _is_strong(edge: Edge, model: ErrorModel) -> bool:
+    """Whether odometry was sure of an edge: what was lost is moved by the graph as it should be."""
+    sd_m = np.linalg.eigvalsh(np.linalg.inv(edge.information)[TRANSLATION, TRANSLATION])[-1] ** 0.5
+    return bool(sd_m < model.weak_m)

@@ -1,0 +1,64 @@
+"""What a solved graph shows of the errors of its edges."""
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.pose_graph.error_model import CALIBRATED, agreement
+from recon4.pose_graph.uncertainty import pose_uncertainty
+from tests.unit.pose_graph.test_uncertainty import STEP_SD, edge, walk
+
+NODES = 60
+PAIRS = [(k, k + 4) for k in range(0, 56, 4)]
+
+
+def solved(*, pair_m: float, step_m: float = 0.0, sd: Array = STEP_SD) -> PoseGraph:
+    """A graph whose registered edges, and one odometry edge, lie beside its poses."""
+    t_ns, T = walk(NODES)
+    edges = [edge(T, k, k + 1, EdgeKind.ODOMETRY, sd) for k in range(NODES - 1)]
+    edges[30] = beside(edges[30], step_m)
+    pairs = [edge(T, i, j, EdgeKind.NEIGHBOR, np.full(6, 0.01)) for i, j in PAIRS]
+    edges += [beside(pair, pair_m) for pair in pairs]
+    return PoseGraph(np.arange(NODES), t_ns, T, tuple(edges))
+
+
+def beside(wrong: Edge, size_m: float) -> Edge:
+    return wrong.evolve(T_i_j=wrong.T_i_j @ SE3.exp([0.5 * size_m, 0, 0, 0, size_m, 0]))
+
+
+def largest_m(graph: PoseGraph) -> float:
+    found = pose_uncertainty(graph)
+    assert found is not None
+    return float(found.sd_m.max())
+
+
+def test_errors_are_in_proportion_to_the_residuals_of_pairs() -> None:
+    small, large = (agreement(solved(pair_m=m), CALIBRATED).ratio for m in (0.002, 0.02))
+
+    assert large == pytest.approx(10.0 * small, rel=1e-3)
+    assert small[1] == pytest.approx(0.002 / CALIBRATED.usual_m, rel=0.02)
+    assert largest_m(solved(pair_m=0.02)) > 3.0 * largest_m(solved(pair_m=0.002))
+
+
+def test_few_pairs_leave_the_usual_errors() -> None:
+    graph = solved(pair_m=0.02)
+    few = graph.with_edges(graph.edges[: NODES - 1 + 5])
+
+    assert agreement(few, CALIBRATED).ratio.tolist() == [1.0, 1.0]
+
+
+def test_where_the_graph_moves_the_odometry_it_is_wrong() -> None:
+    found = agreement(solved(pair_m=0.002, step_m=0.05), CALIBRATED).moved
+    size_m = np.sqrt(np.trace(found[:, 3:, 3:], axis1=1, axis2=2))
+
+    assert 0.009 < size_m[30] < 0.05
+    assert size_m[25] == pytest.approx(size_m[35], rel=1e-6)
+    assert size_m[5] < 1e-9
+    assert largest_m(solved(pair_m=0.002, step_m=0.05)) > 2.0 * largest_m(solved(pair_m=0.002))
+
+
+def test_where_tracking_was_lost_the_graph_may_move_the_odometry() -> None:
+    unsure = solved(pair_m=0.002, step_m=0.05, sd=np.full(6, 0.2))
+
+    assert agreement(unsure, CALIBRATED).moved.max() < 1e-12
