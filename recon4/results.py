@@ -294,6 +294,7 @@ def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: st
         rig=figures_of(runs, stages.FRAMES).rig,
         crs=figures_of(runs, stages.LEVEL).crs,
         warnings=_later_warnings(runs),
+        severe=figures_of(runs, stages.ODOMETRY).severe,
     )
 
 

@@ -42,6 +42,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     imu: bool = False
     """Whether the IMU was used."""
     warnings: tuple[str, ...] = ()
+    severe: tuple[str, ...] = ()
+    """Those of the warnings that forbid the use of the map: heights that are wrong by meters."""
     gnss: bool = False
     """Whether fixes were used."""
 

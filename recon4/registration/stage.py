@@ -14,6 +14,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.imu_consistency import consistent_imu
+from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.make import make_odometry
 from recon4.registration.odometry import OdometryStep
 from recon4.registration.unseen_rides import unseen_rides
@@ -59,19 +60,22 @@ def run_odometry(
     trajectory = dense_trajectory(steps)
     save_trajectory(out / "trajectory.npz", trajectory)
     _save_steps(out / "steps.npz", steps)
-    rides: tuple[str, ...] = ()
+    contradicted: tuple[str, ...] = ()
+    severe: tuple[str, ...] = ()
     if imu is not None and settings.odometry.use_imu:
         lost_ns = np.array([step.t_mid_ns for step in steps if step.lost], np.int64)
         found = unseen_rides(trajectory, imu, frames.rig, lost_ns=lost_ns)
-        rides = tuple(ride.text for ride in found)
-    for text in rides:
+        contradicted = (*(ride.text for ride in found), *wrong_gravity(trajectory, imu, frames.rig))
+        severe = tuple(ride.text for ride in found if ride.is_severe)
+    for text in contradicted:
         progress.event(Warned(text=text))
     lost = sum(step.lost for step in steps)
     return OdometryFigures(
         multiframes=len(steps),
         lost=lost,
         imu=imu is not None,
-        warnings=(remark, *rides) if remark else rides,
+        warnings=(remark, *contradicted) if remark else contradicted,
+        severe=severe,
         gnss=aiding is not None,
     )
 

@@ -42,6 +42,8 @@ _BRIDGED_KNOTS = 2
 _BALANCE = 0.4
 """The changes of the speed at both ends of a ride cancel out but for this ratio."""
 _LONGEST_S = 120.0
+_STOREY_M = 1.0
+"""Heights that are wrong by more than this put one storey onto another [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,6 +57,11 @@ class UnseenRide:
     """Up is positive [m]; NaN = only its begin or its end was recorded."""
     speed_m_s: float
     """Change of the vertical speed at its begin."""
+
+    @property
+    def is_severe(self) -> bool:
+        """Whether heights are wrong by meters: also if a ride has no end, or no begin."""
+        return not abs(self.rise_m) < _STOREY_M
 
     @property
     def text(self) -> str:
@@ -82,6 +89,13 @@ class HeightContradiction:
     end_s: float
     largest_m_s2: float
     usual_m_s2: float
+    rise_m: float
+    """Largest height that the IMU measures meanwhile and the trajectory has not [m]."""
+
+    @property
+    def is_severe(self) -> bool:
+        """Whether the heights are contradicted by meters."""
+        return abs(self.rise_m) >= _STOREY_M
 
     @property
     def text(self) -> str:
@@ -89,8 +103,8 @@ class HeightContradiction:
         return (
             f"From {self.start_s:.0f} s to {self.end_s:.0f} s the accelerometer contradicts the "
             f"heights of the trajectory by up to {self.largest_m_s2:.2f} m/s² (usual: "
-            f"{self.usual_m_s2:.2f}): the floor moved with the body, as in an elevator, or the "
-            "trajectory is wrong there."
+            f"{self.usual_m_s2:.2f}), {abs(self.rise_m):.1f} m in all: the floor moved with the "
+            "body, as in an elevator, or the trajectory is wrong there."
         )
 
 
@@ -129,11 +143,21 @@ def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightCont
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > _BRIDGED_KNOTS) + 1)
     return [
         HeightContradiction(
-            float(knots_s[run[0]]), float(knots_s[run[-1]]), float(np.abs(extra[run]).max()), usual
+            float(knots_s[run[0]]),
+            float(knots_s[run[-1]]),
+            float(np.abs(extra[run]).max()),
+            usual,
+            _rise_m(extra[run[0] : run[-1] + 1]),
         )
         for run in runs
         if len(run) * _KNOT_S >= _CONTRADICTION_S
     ]
+
+
+def _rise_m(extra: Array) -> float:
+    """Height with the largest size that a stretch of accelerations leads to, from rest [m]."""
+    height_m = np.cumsum(np.cumsum(extra)) * _KNOT_S**2
+    return float(height_m[np.argmax(np.abs(height_m))])
 
 
 def _contradiction(

@@ -52,3 +52,5 @@ class ReportFacts:
     """Evaluation against ground truth; None = there is none."""
     warnings: tuple[str, ...] = ()
     """Further warnings for the operator."""
+    severe: tuple[str, ...] = ()
+    """Those of them that forbid the use of the map."""

@@ -73,7 +73,10 @@ def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> lis
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
     found += [*_imported(results), *_accuracy(facts)]
-    found += [Finding(Level.WARNING, text) for text in facts.warnings]
+    found += [
+        Finding(Level.BAD if text in facts.severe else Level.WARNING, text)
+        for text in facts.warnings
+    ]
     return sorted(found, key=lambda finding: -finding.level)
 
 

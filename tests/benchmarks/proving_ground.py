@@ -55,8 +55,8 @@ DEGRADATIONS = (
     "lever-arm", "gnss-clock", "no-imu", "people",
 )  # fmt: skip
 ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss"}
-GENERIC = "No loop closure was accepted"
-"""A reason that says nothing of the recording but that nobody came back to a place."""
+GENERIC = ("No loop closure was accepted", "no IMU: motion within a frame")
+"""Reasons that say nothing but that nobody came back to a place, or that there is no IMU."""
 _REASON_LENGTH = 160
 
 
@@ -65,14 +65,15 @@ def judge(errors: Errors | None, verdict: MapVerdict) -> str:
 
     ``right``: the trajectory is right. ``announced``: it is wrong or there is none, and the
     verdict is *check* or *do not use* with at least one reason. ``vague``: the same, but the only
-    reason is one that every walk without a loop gets. ``SILENT``: it is wrong and the verdict is
+    reasons are those of `GENERIC`, right or wrong. ``SILENT``: it is wrong and the verdict is
     *good*.
     """
     if errors is not None and errors.right:
         return "right"
     if verdict.usability is Usability.GOOD or not verdict.reasons:
         return "SILENT"
-    return "vague" if all(GENERIC in reason for reason in verdict.reasons) else "announced"
+    generic = [any(text in reason for text in GENERIC) for reason in verdict.reasons]
+    return "vague" if all(generic) else "announced"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

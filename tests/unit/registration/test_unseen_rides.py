@@ -9,7 +9,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.registration.unseen_rides import UnseenRide, unseen_rides
+from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.simulation.degradation import Degradation
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.imu import ImuModel, simulate_imu
@@ -56,6 +56,7 @@ def test_rides_up_and_down_are_found_with_their_height(how: dict[str, float]) ->
 
     assert (up.rise_m, down.rise_m) == pytest.approx((3.4, -3.4), abs=0.6)
     assert 8.0 < up.start_s < up.end_s < down.start_s < down.end_s < 40.0
+    assert up.is_severe and down.is_severe
     assert "a ride of about 3." in up.text
     assert " m down that no LiDAR sees" in down.text
 
@@ -74,6 +75,7 @@ def test_a_recording_that_ends_on_the_way_has_a_begin_alone() -> None:
     (found,) = only_rides(cut, imu, RIG, lost_ns=NOTHING_LOST)
 
     assert np.isnan(found.rise_m)
+    assert found.is_severe
     assert "a change of the vertical speed by +" in found.text
 
 
@@ -89,6 +91,15 @@ def test_odometry_between_imu_and_lidar_contradicts_the_imu() -> None:
 
     assert found[0].start_s == pytest.approx(6.5, abs=1.5)
     assert "as in an elevator" in found[0].text
+    assert any(one.is_severe for one in found)
+
+
+def test_a_step_of_a_lift_is_announced_but_forbids_nothing() -> None:
+    platform = UnseenRide(3.0, 6.0, 0.4, 0.3)
+
+    assert not platform.is_severe
+    assert not HeightContradiction(3.0, 6.0, 0.15, 0.03, -0.6).is_severe
+    assert HeightContradiction(3.0, 6.0, 0.15, 0.03, -1.2).is_severe
 
 
 def test_an_imu_that_contradicts_the_whole_walk_has_no_rides() -> None:

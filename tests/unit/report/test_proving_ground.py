@@ -23,7 +23,7 @@ from tests.benchmarks.proving_ground import (
 )
 
 GOOD = MapVerdict(Usability.GOOD, ())
-CHECK = MapVerdict(Usability.CHECK, (f"{GENERIC}: the drift is not corrected.", "Tilted."))
+CHECK = MapVerdict(Usability.CHECK, (f"{GENERIC[0]}: the drift is not corrected.", "Tilted."))
 FINE = Errors(
     length_m=50.0, ate_m=0.09, largest_m=0.2, closing_m=0.1, stated_m=0.2, nees=1.0,
     bad_places=3, bad_announced=2, placed_m=None,
@@ -53,6 +53,7 @@ def test_a_wrong_trajectory_is_silent_unless_the_verdict_says_why():
     assert judge(FINE, CHECK) == "right"
     assert judge(wrong, CHECK) == "announced"
     assert judge(wrong, vague) == "vague"
+    assert judge(wrong, MapVerdict(Usability.CHECK, GENERIC)) == "vague"
     assert judge(wrong, GOOD) == "SILENT"
     assert judge(wrong, MapVerdict(Usability.CHECK, ())) == "SILENT"
     assert judge(None, MapVerdict(Usability.DO_NOT_USE, ("refused: no packets",))) == "announced"

@@ -1,5 +1,7 @@
 """Unobservable stretches, impossible speeds, and the verdict they lead to."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -162,3 +164,13 @@ def test_the_control_point_that_helps_most_is_proposed():
 def test_a_map_nothing_is_known_of_is_not_good():
     assert map_verdict([]).usability is Usability.CHECK
     assert map_verdict([Finding(Level.GOOD, "fine")]).reasons == ()
+
+
+def test_heights_that_are_wrong_by_meters_forbid_the_map():
+    told = replace(facts(), warnings=("a ride of 3.4 m", "no IMU"), severe=("a ride of 3.4 m",))
+    verdict = map_verdict(find(told, Results(), None))
+
+    assert verdict.usability is Usability.DO_NOT_USE
+    assert verdict.reasons[0] == "a ride of 3.4 m"
+    milder = find(replace(told, severe=()), Results(), None)
+    assert map_verdict(milder).usability is Usability.CHECK

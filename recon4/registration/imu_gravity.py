@@ -1,0 +1,61 @@
+"""Gravity as an accelerometer measures it over a walk: its scale, and with it that of the unit.
+
+Over a walk the accelerations of the body cancel out but for the change of its velocity; what is
+left of the specific force, turned into the axes of the trajectory, is gravity and the bias. A
+scale that is 3 % off is 0.3 m/s². The turn rates of such a unit are as wrong, and nothing else
+shows that: scans that are undistorted by them fit each other.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.model.rig import Rig
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.motion import imu_in_body
+
+_MOST_M_S2 = 0.2
+"""A larger difference is not the bias of a unit in order, which has a standard deviation of half
+of this [m/s²]."""
+_MIN_S = 10.0
+"""In a shorter walk the change of the velocity matters too much [s]."""
+_SPEED_NS = 500_000_000
+"""Velocities at the ends are measured over this time [ns]."""
+
+
+def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[str, ...]:
+    """A warning if the accelerometer measures another gravity than there is; else none.
+
+    Args:
+        trajectory: ``T_odom_body``.
+        imu: Samples as they were used.
+        rig: Where the IMU is.
+    """
+    first_ns = max(int(trajectory.t_ns[0]), int(imu.t_ns[0]))
+    last_ns = min(int(trajectory.t_ns[-1]), int(imu.t_ns[-1]))
+    seconds = (last_ns - first_ns) * 1e-9
+    inside = (imu.t_ns >= first_ns) & (imu.t_ns <= last_ns)
+    if seconds < _MIN_S or inside.sum() < 2:
+        return ()
+    _, accel = imu_in_body(imu, rig)
+    force = np.einsum("nij,nj->ni", trajectory.at(imu.t_ns[inside]).R, accel[inside]).mean(axis=0)
+    ends = np.array([first_ns, last_ns - _SPEED_NS])
+    gained = np.diff(_velocities(trajectory, ends), axis=0)[0]
+    found = float(np.linalg.norm(force - gained / seconds))
+    difference = found - STANDARD_GRAVITY_M_S2
+    if not abs(difference) > _MOST_M_S2:  # NaN: no accelerometer
+        return ()
+    ratio = 100.0 * difference / STANDARD_GRAVITY_M_S2
+    return (
+        f"The IMU measures {found:.2f} m/s² over the walk where gravity is "
+        f"{STANDARD_GRAVITY_M_S2:.2f} m/s²: its scale is {ratio:+.1f} % off, or its accelerometer "
+        "has such a bias. If its turn rates are as wrong, so is every turn of the map.",
+    )
+
+
+def _velocities(trajectory: Trajectory, t_ns: Times) -> Array:
+    """Mean velocities [m/s] over `_SPEED_NS` from these times on, (N, 3)."""
+    moved = trajectory.at(t_ns + _SPEED_NS).t - trajectory.at(t_ns).t
+    return np.asarray(moved / (_SPEED_NS * 1e-9))

@@ -1,0 +1,53 @@
+"""Gravity over a walk, by an accelerometer with the errors of real units."""
+
+import numpy as np
+import pytest
+
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.registration.imu_gravity import wrong_gravity
+from tests.unit.registration.test_unseen_rides import RIG, walked
+
+
+@pytest.mark.parametrize("scale", [0.04, 0.1])
+@pytest.mark.parametrize("world", ["office", "staircase"])
+def test_a_wrong_scale_is_measured(world: str, scale: float) -> None:
+    (text,) = wrong_gravity(*walked(world, seconds=20.0, imu_scale=scale), RIG)
+
+    percent = float(text.split("its scale is ")[1].split(" %")[0])
+    assert percent == pytest.approx(100.0 * scale, abs=1.5)
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("world", ["office", "staircase", "elevator:1"])
+def test_a_unit_in_order_measures_gravity(world: str, seed: int) -> None:
+    trajectory, imu = walked(world, seconds=20.0, seed=seed)
+
+    assert wrong_gravity(trajectory, imu, RIG) == ()
+
+
+def test_the_change_of_the_velocity_is_no_gravity() -> None:
+    """A walk that is cut while the body moves fast."""
+    trajectory, imu = walked("office", seconds=20.0)
+    s = (trajectory.t_ns - trajectory.t_ns[0]) * 1e-9
+    faster = trajectory.T_a_b
+    faster.t[:, 2] += 0.15 * s**2  # 0.3 m/s², 6 m/s after 20 s
+    pushed = imu.accel_m_s2 + np.einsum("nji,j->ni", _attitude(trajectory, imu), [0.0, 0.0, 0.3])
+
+    assert wrong_gravity(trajectory, ImuSamples(imu.t_ns, imu.gyro_rad_s, pushed), RIG) == ()
+
+
+def test_without_an_accelerometer_or_in_a_short_walk_nothing_is_said() -> None:
+    trajectory, imu = walked("office", seconds=20.0, imu_scale=0.1)
+    early = trajectory.t_ns < trajectory.t_ns[0] + 5_000_000_000
+    cut = Trajectory(trajectory.t_ns[early], trajectory.T_a_b[early])
+    silent = ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))
+
+    assert wrong_gravity(cut, imu, RIG) == ()
+    assert wrong_gravity(trajectory, silent, RIG) == ()
+
+
+def _attitude(trajectory: Trajectory, imu: ImuSamples) -> np.ndarray:
+    inside = np.clip(imu.t_ns, trajectory.t_ns[0], trajectory.t_ns[-1])
+    R = trajectory.at(inside).R @ RIG.T_body_imu.R
+    return np.asarray(R)
