@@ -22,9 +22,9 @@ from recon4.model.figures import AntennaFigures, LevelFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.relations import with_residuals
-from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again

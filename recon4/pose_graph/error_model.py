@@ -73,7 +73,7 @@ CALIBRATED = ErrorModel()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Agreement:
+class GraphAgreement:
     """What the residuals of a solved graph say of the errors of its edges."""
 
     ratio: Array
@@ -83,7 +83,7 @@ class Agreement:
     turns and shifts apart, (N - 1, 6, 6)."""
 
 
-def agreement(graph: PoseGraph, model: ErrorModel) -> Agreement:
+def agreement(graph: PoseGraph, model: ErrorModel) -> GraphAgreement:
     """Compare the edges of a solved graph with its poses.
 
     Args:
@@ -112,7 +112,7 @@ def agreement(graph: PoseGraph, model: ErrorModel) -> Agreement:
     size = 2 * round(model.turn_s / max(step_s, 1e-3)) + 1
     near = correlate1d(weight, np.ones(size), mode="constant")
     total = correlate1d(moved, np.ones(size), axis=0, mode="constant")
-    return Agreement(ratio, total / np.maximum(near, 1.0)[:, None, None])
+    return GraphAgreement(ratio, total / np.maximum(near, 1.0)[:, None, None])
 
 
 def _is_strong(edge: Edge, model: ErrorModel) -> bool:

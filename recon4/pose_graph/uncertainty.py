@@ -18,7 +18,7 @@ from scipy.linalg import cho_factor, cho_solve
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
-from recon4.pose_graph.error_model import CALIBRATED, Agreement, ErrorModel, agreement
+from recon4.pose_graph.error_model import CALIBRATED, GraphAgreement, ErrorModel, agreement
 from recon4.pose_graph.solve import PositionPriors
 
 _MAX_KNOTS = 300
@@ -150,7 +150,7 @@ def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
     return HelpfulPoint(int(t_ns[first]), int(t_ns[last]), float(largest_m[best]))
 
 
-def _chain(graph: PoseGraph, model: ErrorModel, agrees: Agreement) -> _Chain:
+def _chain(graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement) -> _Chain:
     """Join nodes to at most `_MAX_KNOTS` knots."""
     stride = -(-len(graph) // _MAX_KNOTS)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
@@ -183,7 +183,9 @@ def _transport(arm_m: Array) -> Array:
     return out
 
 
-def _steps(graph: PoseGraph, model: ErrorModel, agrees: Agreement) -> tuple[Array, Array, Array]:
+def _steps(
+    graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement
+) -> tuple[Array, Array, Array]:
     """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
 
     Returns:

@@ -9,8 +9,8 @@ from recon4.geometry.se3 import SE3, Array, so3_log
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph import uncertainty
-from recon4.pose_graph.solve import PositionPriors
 from recon4.pose_graph.error_model import ErrorModel
+from recon4.pose_graph.solve import PositionPriors
 from recon4.pose_graph.uncertainty import pose_uncertainty
 from recon4.pose_graph.uncertainty_files import (
     load_uncertainty,

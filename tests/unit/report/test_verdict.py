@@ -167,10 +167,10 @@ def test_a_map_nothing_is_known_of_is_not_good():
 
 
 def test_heights_that_are_wrong_by_meters_forbid_the_map():
-    told = replace(facts(), warnings=("a ride of 3.4 m", "no IMU"), severe=("a ride of 3.4 m",))
-    verdict = map_verdict(find(told, Results(), None))
+    given = replace(facts(), warnings=("a ride of 3.4 m", "no IMU"), severe=("a ride of 3.4 m",))
+    verdict = map_verdict(find(given, Results(), None))
 
     assert verdict.usability is Usability.DO_NOT_USE
     assert verdict.reasons[0] == "a ride of 3.4 m"
-    milder = find(replace(told, severe=()), Results(), None)
+    milder = find(replace(given, severe=()), Results(), None)
     assert map_verdict(milder).usability is Usability.CHECK
