@@ -18,7 +18,7 @@ from scipy.linalg import cho_factor, cho_solve
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
-from recon4.pose_graph.error_model import CALIBRATED, GraphAgreement, ErrorModel, agreement
+from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement, agreement
 from recon4.pose_graph.solve import PositionPriors
 
 _MAX_KNOTS = 300
