@@ -17,6 +17,7 @@ from recon4.export.points import OutputCrs
 from recon4.georeference.stage import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import UncertaintyFigures
+from recon4.model.rig_origin import RigOrigin
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
@@ -38,11 +39,11 @@ from recon4.run_summary import (
     peak_bytes_of,
     seconds_of,
 )
-from recon4.settings import values_by_group
+from recon4.settings import Settings, values_by_group
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
 from recon4.store.checked import Altered
-from recon4.store.frames import FrameStore
+from recon4.store.frames import FrameStore, open_frames
 from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun, figures_of, versions
@@ -73,6 +74,8 @@ class Summary(RunSummary):
     """Multiframes the odometry could not place."""
     points: int
     """In the map."""
+    rig_origin: RigOrigin
+    """Serial numbers, date and accuracy of the rig's calibration."""
     uncertainty: UncertaintyFigures | None
     """How well the poses are known; null = not stated."""
     approval: Stamp | None
@@ -113,6 +116,7 @@ def _publish(
         created=created,
         preset=about.project.preset,
         rig=frames.rig,
+        rig_origin=_rig_origin(runs, about.settings),
         crs=level.crs,
         duration_s=duration_s(trajectory),
         path_length_m=round(float(path_length_m(trajectory)[-1]), 3),
@@ -284,17 +288,28 @@ def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: st
         settings=about.settings,
         artifacts={name: run.artifact.folder for name, run in runs.items()},
         stages=tuple(
-            StageTiming(
-                name, run.done.seconds, run.done.cpu_seconds, run.done.peak_bytes, run.reused
-            )
+            StageTiming(name, run.seconds, run.cpu_seconds, run.peak_bytes, run.reused)
             for name, run in runs.items()
         ),
         inputs=about.project.inputs,
         versions=versions(),
         rig=figures_of(runs, stages.FRAMES).rig,
+        rig_origin=_rig_origin(runs, about.settings),
         crs=figures_of(runs, stages.LEVEL).crs,
         warnings=_later_warnings(runs),
         severe=figures_of(runs, stages.ODOMETRY).severe,
+    )
+
+
+def _rig_origin(runs: Mapping[str, StageRun[Any]], settings: Settings) -> RigOrigin:
+    """Where the rig that the map was made with comes from."""
+    found = runs.get(stages.CALIBRATION.name)
+    used = found.artifact.folder if found and found.figures.applied else None
+    store = open_frames(runs[stages.FRAMES.name].artifact.folder, used)
+    return RigOrigin.of(
+        store.rig,
+        recorded_ns=int(store.index["t_ns"][0]) if len(store) else 0,
+        max_age_days=settings.rig.max_age_days,
     )
 
 

@@ -208,9 +208,7 @@ def _page(made: _Made, about: About) -> Page2d:
             )
         ),
         stages=tuple(
-            StageTiming(
-                name, run.done.seconds, run.done.cpu_seconds, run.done.peak_bytes, run.reused
-            )
+            StageTiming(name, run.seconds, run.cpu_seconds, run.peak_bytes, run.reused)
             for name, run in made.runs.items()
         ),
         versions=versions(),

@@ -57,9 +57,9 @@ class StageSummary:
             stage=done.stage,
             version=done.version,
             finished=done.finished,
-            seconds=round(done.seconds, 3),
-            cpu_seconds=round(done.cpu_seconds, 3),
-            peak_bytes=done.peak_bytes,
+            seconds=round(run.seconds, 3),
+            cpu_seconds=round(run.cpu_seconds, 3),
+            peak_bytes=run.peak_bytes,
             reused=run.reused,
             figures=run.figures,
         )
@@ -110,12 +110,12 @@ def duration_s(trajectory: Trajectory) -> float:
 
 def seconds_of(runs: Mapping[str, StageRun[Any]]) -> float:
     """Wall clock of all stages, of the earlier run where reused [s]."""
-    return round(sum(run.done.seconds for run in runs.values()), 3)
+    return round(sum(run.seconds for run in runs.values()), 3)
 
 
 def peak_bytes_of(runs: Mapping[str, StageRun[Any]]) -> int:
     """Largest resident memory of any stage [bytes]."""
-    return max(run.done.peak_bytes for run in runs.values())
+    return max(run.peak_bytes for run in runs.values())
 
 
 def hashes_of(

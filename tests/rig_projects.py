@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from recon4.calibration.calibrate import Agreement
-from recon4.calibration.stage import CalibrationResult
+from recon4.calibration.result import CalibrationResult
 from recon4.geometry.se3 import SE3
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig

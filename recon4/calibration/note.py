@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from datetime import UTC, datetime
 
 import numpy as np
 
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig, RigCalibration
-
-_FIRST_UTC_NS = 946_684_800_000_000_000
-"""2000-01-01: earlier times are those of a clock that was never set."""
+from recon4.model.rig_origin import recording_day
 
 
 def calibration_note(
@@ -67,9 +64,8 @@ def with_antenna_note(rig: Rig, rows: tuple[ParameterFigures, ...], *, recorded_
 
 def _date(recorded_ns: int) -> str:
     """Day of a recording, as ``2026-11-22``; empty = its clock was never set."""
-    if recorded_ns < _FIRST_UTC_NS:
-        return ""
-    return datetime.fromtimestamp(recorded_ns / 1e9, UTC).date().isoformat()
+    day = recording_day(recorded_ns)
+    return day.isoformat() if day else ""
 
 
 def _largest(rows: tuple[ParameterFigures, ...], unit: str) -> float:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from recon4.evaluation.evaluate import Evaluation
+from recon4.model.rig_origin import RigOrigin
 from recon4.settings import Settings
 from recon4.store.project import InputFile
 
@@ -46,6 +47,8 @@ class ReportFacts:
     """Package -> version; ``recon4`` and ``python`` among them."""
     rig: str = ""
     """Name of the rig."""
+    rig_origin: RigOrigin | None = None
+    """Serial numbers and calibration of the rig; None = not known."""
     crs: str = ""
     """Name of the map's CRS or ``EPSG:…``; empty = a local frame."""
     evaluation: Evaluation | None = None

@@ -68,7 +68,7 @@ def headline(findings: Sequence[Finding]) -> tuple[Level, str]:
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:
     """All findings, worst first."""
     found = [*_tracking(results), *_converged(results), *_observability(results)]
-    found += [*_calibration(results), *_uncertain(results)]
+    found += [*_calibration(results), *_old_rig(facts), *_uncertain(results)]
     found += [*_pieces(results), *_look_alike(results.graph)]
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
@@ -143,6 +143,12 @@ def _calibration(results: Results) -> list[Finding]:
     text = f"Rig: {found.outcome}."
     agrees = found.parameters and not any(row.status == "off" for row in found.parameters)
     return [Finding(Level.GOOD if agrees else Level.NOTE, text)]
+
+
+def _old_rig(facts: ReportFacts) -> list[Finding]:
+    """Whether the rig was calibrated long before the walk."""
+    remark = facts.rig_origin.remark if facts.rig_origin else ""
+    return [Finding(Level.NOTE, remark)] if remark else []
 
 
 def _observability(results: Results) -> list[Finding]:

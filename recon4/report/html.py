@@ -22,7 +22,7 @@ from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import headline
 from recon4.report.maps import map_chunks, rasterize
-from recon4.report.rig import rig_rows
+from recon4.report.rig import origin_rows, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
 from recon4.report.verdict import Assessment
 from recon4.settings import Settings, preset
@@ -67,6 +67,7 @@ def render(assessed: Assessment) -> str:
             edge_rows=_edge_rows(facts, results),
             accuracy=chart_groups.accuracy_figures(facts),
             intensity=chart_groups.intensity_figures(results, rasters),
+            rig_origin=origin_rows(facts.rig_origin),
             rig_rows=rig_rows(results.calibration),
             rig_figures=chart_groups.rig_figures(results),
             placed=placed_rows(results.georeference),

@@ -7,12 +7,15 @@ from typing import NamedTuple
 
 from recon4.evaluation.table import number
 from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.rig import RigCalibration
+from recon4.model.rig_origin import RigOrigin
 from recon4.report.figures import BLUE, GRAY, ORANGE, Chart
 
 SHOWN = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
 """Factor and unit in which parameters are shown."""
 _COLORS = {"consistent": BLUE, "off": ORANGE, "not observable": GRAY}
 _TITLES = {"rad": "rotation [°]", "m": "position [mm]", "s": "clock [ms]"}
+_NO_SERIAL = "serial number not known"
 _WIDTH_SD = 2.0
 """Standard deviations that the bars extend to each side."""
 
@@ -29,6 +32,37 @@ class RigRow(NamedTuple):
 def rig_rows(found: CalibrationFigures | None) -> list[RigRow]:
     """What the recording says of each parameter of the rig."""
     return [_row(one) for one in found.parameters] if found else []
+
+
+def origin_rows(origin: RigOrigin | None) -> list[tuple[str, str]]:
+    """Serial numbers, and date, method and standard deviations of the calibration."""
+    if origin is None:
+        return []
+    rows = [
+        (f"{one.name}, {one.model}", f"serial number {one.serial}" if one.serial else _NO_SERIAL)
+        for one in origin.sensors
+    ]
+    note = origin.calibration
+    if note is None:
+        return [*rows, ("calibrated", "not known: the rig file does not say")]
+    age = "" if origin.age_days is None else f", {origin.age_days} days before the walk"
+    rows.append(("calibrated", f"{note.date}{age}"))
+    rows.append(("method", note.method))
+    return rows + [(f"standard deviation, {name}", text) for name, text in _deviations(note)]
+
+
+def _deviations(note: RigCalibration) -> list[tuple[str, str]]:
+    """Largest standard deviations; what was not estimated is left out."""
+    parts = (
+        ("rotation", note.sd_deg, "°"),
+        ("position", note.sd_mm, " mm"),
+        ("clock", note.sd_ms, " ms"),
+        ("angle of a beam", note.sd_beam_deg, "°"),
+        ("range of a beam", note.sd_beam_mm, " mm"),
+        ("GNSS lever arm", note.sd_antenna_mm, " mm"),
+        ("GNSS clock", note.sd_gnss_ms, " ms"),
+    )
+    return [(name, f"{value:g}{unit}") for name, value, unit in parts if value]
 
 
 def rig_charts(found: CalibrationFigures | None) -> list[tuple[str, str]]:

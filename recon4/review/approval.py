@@ -44,6 +44,7 @@ _FIGURES = (
     "lost",
     "edges",
     "crs",
+    "rig_origin",
     "warnings",
 )
 

@@ -5,7 +5,7 @@ own groups, so that a changed setting reruns only the stages that depend on it.
 """
 
 from recon4.settings.assign import canonical, override, to_json, values_by_group
-from recon4.settings.calibration import CalibrationSettings, EntropySettings
+from recon4.settings.calibration import CalibrationSettings, EntropySettings, RigSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
@@ -49,6 +49,7 @@ __all__ = [
     "RecognitionSettings",
     "RefineSettings",
     "RegistrationSettings",
+    "RigSettings",
     "ScanSettings",
     "SegmentSettings",
     "Settings",

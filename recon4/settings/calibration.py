@@ -40,6 +40,19 @@ class CalibrationSettings:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class RigSettings:
+    """What is said of the rig in summary, report and approval; no stage depends on it."""
+
+    max_age_days: int = 365
+    """A rig that was calibrated more days before the walk is mentioned as old."""
+
+    def __post_init__(self) -> None:
+        require(
+            1 <= self.max_age_days <= 36_500, "max_age_days must be 1 to 36500", self.max_age_days
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class EntropySettings:
     """Calibration by the entropy of the map (requirements L-CAL-1)."""
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from recon4.errors import ConfigError
-from recon4.settings.calibration import CalibrationSettings
+from recon4.settings.calibration import CalibrationSettings, RigSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
@@ -40,6 +40,7 @@ class Settings:
     scans: ScanSettings = field(default_factory=ScanSettings)
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
     calibration: CalibrationSettings = field(default_factory=CalibrationSettings)
+    rig: RigSettings = field(default_factory=RigSettings)
     graph: GraphSettings = field(default_factory=GraphSettings)
     recognition: RecognitionSettings = field(default_factory=RecognitionSettings)
     verification: VerificationSettings = field(default_factory=VerificationSettings)

@@ -132,6 +132,24 @@ class StageRun(Generic[OfStage]):
     """Whether a finished artifact was reused."""
     figures: OfStage
     """Return value of its function."""
+    before: tuple[FinishedStage, ...] = ()
+    """The same stage with other inputs earlier in this run: a rig that is calibrated repeats the
+    odometry."""
+
+    @property
+    def seconds(self) -> float:
+        """Wall clock, with that of the times before [s]."""
+        return sum(done.seconds for done in (*self.before, self.done))
+
+    @property
+    def cpu_seconds(self) -> float:
+        """Processor time, with that of the times before [s]."""
+        return sum(done.cpu_seconds for done in (*self.before, self.done))
+
+    @property
+    def peak_bytes(self) -> int:
+        """Largest resident memory of all times [bytes]."""
+        return max(done.peak_bytes for done in (*self.before, self.done))
 
 
 class StageRunner:
@@ -186,7 +204,9 @@ class StageRunner:
         name, key = artifact.stage, artifact.key
         self._project.ledger.set_current(name, key)
         figures = read_figures(artifact.folder, stage.figures)
-        self.runs[name] = StageRun(artifact, done, reused, figures)
+        earlier = self.runs.get(name)
+        before = (*earlier.before, earlier.done) if earlier else ()
+        self.runs[name] = StageRun(artifact, done, reused, figures, before)
         state = "reused" if reused else "done"
         self._progress.event(
             StageChanged(stage=name, key=key, state=state, seconds=round(done.seconds, 3))

@@ -2,6 +2,18 @@
 
 import { bytes, count, seconds } from "./format.js";
 
+/** Date, age and accuracy of a calibration as text. */
+function calibrated({ calibration, age_days: days, max_age_days: most }) {
+  if (!calibration) return "not known: the rig file does not say";
+  const { date, method, sd_deg: deg, sd_mm: mm, sd_ms: ms } = calibration;
+  const known = [deg && `${deg}°`, mm && `${mm} mm`, ms && `${ms} ms`].filter(Boolean);
+  const age = days === null ? "" : `, ${days} days before the walk${days > most ? " (old)" : ""}`;
+  return `${date} by ${method}${age}${known.length ? `; σ ${known.join(", ")}` : ""}`;
+}
+
+const serials = ({ sensors }) =>
+  sensors.map(({ name, serial }) => `${name} ${serial || "not known"}`).join(", ");
+
 /** @type {Array<[string, string, (value: any) => string]>} */
 const ROWS = [
   ["Path length", "path_length_m", (m) => `${m.toFixed(1)} m`],
@@ -12,13 +24,16 @@ const ROWS = [
   ["Edges accepted", "edges", (edges) => count(edges.accepted ?? 0)],
   ["Edges rejected", "edges", (edges) => count(edges.rejected ?? 0)],
   ["Edges unverified", "edges", (edges) => count(edges.unverified ?? 0)],
+  ["Rig", "rig_origin", ({ name }) => name],
+  ["Serial numbers", "rig_origin", serials],
+  ["Rig calibrated", "rig_origin", calibrated],
   ["Processing time", "seconds", seconds],
   ["Peak memory", "peak_bytes", bytes],
 ];
 
 /** [caption, value] rows; figures that are missing are left out. */
 export const figures = (summary) =>
-  ROWS.filter(([, key]) => summary[key] !== undefined).map(([text, key, format]) => [
+  ROWS.filter(([, key]) => summary[key] !== undefined && summary[key] !== null).map(([text, key, format]) => [
     text,
     format(summary[key]),
   ]);

@@ -36,6 +36,7 @@ def test_an_approval_is_signed_and_every_export_carries_it(server, root):
     record = json.loads((folder / "approval.json").read_text())
     assert set(record["issued"]) == {*RESULTS, "summary.json"}
     assert record["statement"]["figures"]["points"] > 100_000
+    assert [one["serial"] for one in record["statement"]["figures"]["rig_origin"]["sensors"]]
     assert json.loads((root / "summary.json").read_text())["approval"]["hash"] == sha
     for name in ("report.html", "trajectory.tum", "odometry.tum", "graph.g2o"):
         assert sha in (root / name).read_text()

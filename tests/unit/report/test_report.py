@@ -13,6 +13,8 @@ from recon4.evaluation.evaluate import evaluate
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileWriter
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.rig import RigCalibration, load_rig
+from recon4.model.rig_origin import RigOrigin
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.report.drift import drift_closed
@@ -352,3 +354,21 @@ def test_the_rig_is_compared_parameter_by_parameter(facts: ReportFacts, tmp_path
     assert "Outcome: the rig file differs." in page.text
     assert ("data-name", "rig-rad") in page.attributes
     assert ("data-name", "rig-s") not in page.attributes  # without any standard deviation
+
+
+def test_the_report_quotes_serial_numbers_and_calibration_of_the_rig(facts: ReportFacts) -> None:
+    note = RigCalibration(
+        date="2026-01-02", method="joint", sd_deg=0.02, sd_mm=1.1, sd_ms=0.1, sd_antenna_mm=3.7
+    )
+    rig = replace(load_rig("4recon"), calibration=note)
+    rig = replace(rig, sensors=(replace(rig.sensors[0], serial="<AF17>"), rig.sensors[1]))
+    day_ns = 1_795_348_800_000_000_000  # 2026-11-22
+    origin = RigOrigin.of(rig, recorded_ns=day_ns, max_age_days=30)
+
+    page = Tags(render(assess(replace(facts, rig_origin=origin))))
+
+    assert "serial number <AF17>" in page.text
+    assert "serial number not known" in page.text
+    assert "2026-01-02, 324 days before the walk" in page.text
+    assert "3.7 mm" in page.text
+    assert "after 30 days (rig.max_age_days) it should be done again" in page.text

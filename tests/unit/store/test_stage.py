@@ -164,3 +164,18 @@ def test_the_watcher_hears_of_every_stage(tmp_path):
         ("total", "running"),
         ("total", "done"),
     ]
+
+
+def test_the_time_of_a_repeated_stage_is_counted_each_time(tmp_path):
+    with Project.open(tmp_path / "p") as project:
+        runner = StageRunner(project, SETTINGS, Silent())
+        stage = Stage("odometry", 1, (), lambda context, walk: None)
+        first = runner.run(stage, walk=Input("recorded rig", None))
+        seconds = runner.runs["odometry"].seconds
+        runner.run(stage, walk=Input("calibrated rig", None))
+
+        again = runner.runs["odometry"]
+        assert again.artifact.key != first.key
+        assert again.seconds == seconds + again.done.seconds
+        assert again.cpu_seconds == again.before[0].cpu_seconds + again.done.cpu_seconds
+        assert again.peak_bytes >= again.before[0].peak_bytes
