@@ -21,7 +21,7 @@ from recon4.recording.bag_recording import (
     pose_row,
 )
 from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
-from recon4.recording.formats.carmen import CarmenScans, is_carmen, read_carmen
+from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
 from recon4.recording.line_tables import is_laser_table, read_laser_table
 from recon4.recording.open import RecordingKind, bag_paths, recognize
@@ -141,6 +141,9 @@ def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
     if not np.ptp(log.laser, axis=0).any() and not np.ptp(log.robot, axis=0).any():
         report.derive("the odometry of the log never changes: it is not used")
         return None
+    if log.message.encode() in REAR and np.array_equal(log.robot, log.laser):
+        report.derive("the poses of the rear laser are those of the robot: it looks backward")
+        return log.robot + [0.0, 0.0, np.pi]
     mounted = between(log.robot, log.laser)
     mounted[:, 2] = np.unwrap(mounted[:, 2])
     if float(np.std(mounted, axis=0).max()) < _MOUNTING_SD:

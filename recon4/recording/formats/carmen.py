@@ -5,6 +5,7 @@
         laser_x laser_y laser_theta robot_x robot_y robot_theta tv rv … time host logger_time
     RAWLASER1 type start fov step max accuracy mode n r1 … rn m i1 … im time host logger_time
 
+RLASER, ROBOTLASER2 and RAWLASER2 are the same of a laser at the back of the robot.
 Angles count counter-clockwise, ranges and positions are in meters.
 """
 
@@ -23,11 +24,12 @@ from recon4.geometry.se3 import Array
 from recon4.recording.formats.text_logs import first_lines, log_lines
 from recon4.recording.report import ImportReport
 
-MESSAGES = (b"FLASER", b"ROBOTLASER1", b"RAWLASER1")
+FRONT = (b"FLASER", b"ROBOTLASER1", b"RAWLASER1")
 """Messages that are read; of several kinds in one log the one with the most scans is used."""
-_OTHERS = frozenset(
-    b"PARAM SYNC ODOM RLASER TRUEPOS NMEA-GGA ROBOTLASER2 RAWLASER2 IMU MESSAGE BUMPER".split()
-)
+REAR = (b"RLASER", b"ROBOTLASER2", b"RAWLASER2")
+"""Those of a second laser, which are read in a log without the others."""
+MESSAGES = (*FRONT, *REAR)
+_OTHERS = frozenset(b"PARAM SYNC ODOM TRUEPOS NMEA-GGA IMU MESSAGE BUMPER".split())
 _PROBED_LINES = 200
 _MAX_BEAMS = 20_000
 _MAX_SCANS = 5_000_000
@@ -100,11 +102,9 @@ def read_carmen(path: Path, report: ImportReport) -> CarmenScans:
         EmptyRecording: If it has no scan.
         CorruptFile: If it cannot be read.
     """
-    counts: Counter[_Layout] = Counter()
     lines: list[_Line] = []
     values = 0
     for line in _scan_lines(path, report):
-        counts[line.layout] += 1
         lines.append(line)
         values += len(line.ranges)
         if len(lines) > _MAX_SCANS or values > _MAX_VALUES:
@@ -116,7 +116,8 @@ def read_carmen(path: Path, report: ImportReport) -> CarmenScans:
             f"{path.name}: no scan of a laser; expected lines that begin with "
             f"{', '.join(name.decode() for name in MESSAGES)}"
         )
-    layout, most = max(counts.items(), key=lambda item: item[1])
+    lines = _of_one_laser(lines, report)
+    layout, most = Counter(line.layout for line in lines).most_common(1)[0]
     if most < len(lines):
         report.count("scans_of_another_layout", len(lines) - most)
         report.warn(
@@ -124,6 +125,16 @@ def read_carmen(path: Path, report: ImportReport) -> CarmenScans:
             f"read: {most} scans {layout.message.decode()} of {layout.beams} beams"
         )
     return _collected([line for line in lines if line.layout == layout], layout)
+
+
+def _of_one_laser(lines: list[_Line], report: ImportReport) -> list[_Line]:
+    """The scans of the front laser; without one those of the rear laser."""
+    front = [line for line in lines if line.layout.message in FRONT]
+    if not front:
+        return lines
+    if len(front) < len(lines):
+        report.count("scans_of_the_rear_laser", len(lines) - len(front))
+    return front
 
 
 def _collected(lines: list[_Line], layout: _Layout) -> CarmenScans:
@@ -146,7 +157,8 @@ def _scan_lines(path: Path, report: ImportReport) -> Iterator[_Line]:
         if name not in MESSAGES:
             continue
         try:
-            yield _flaser(rest) if name == b"FLASER" else _laser1(name, rest)
+            has_header = name not in (b"FLASER", b"RLASER")
+            yield _laser1(name, rest) if has_header else _flaser(name, rest)
         except (ValueError, IndexError, OverflowError) as error:
             report.count("scans_damaged")
             report.outcome = "lossy"
@@ -154,7 +166,7 @@ def _scan_lines(path: Path, report: ImportReport) -> Iterator[_Line]:
                 report.warn(f"{path.name}: line {number}: a damaged scan is left out: {error}")
 
 
-def _flaser(text: bytes) -> _Line:
+def _flaser(name: bytes, text: bytes) -> _Line:
     words = text.split()
     beams = _count(words[0])
     if len(words) < 1 + beams + _TAIL:
@@ -165,7 +177,7 @@ def _flaser(text: bytes) -> _Line:
     # 180 beams of 1 degree begin at -90 and end at 89; 181 end at 90.
     steps = beams if beams % 2 == 0 and fov_deg == 180.0 else beams - 1
     step = float(np.deg2rad(fov_deg / max(steps, 1)))
-    layout = _Layout(b"FLASER", beams, float(-np.deg2rad(fov_deg) / 2.0), step, 0.0)
+    layout = _Layout(name, beams, float(-np.deg2rad(fov_deg) / 2.0), step, 0.0)
     return _Line(layout, _time_ns(words[7 + beams]), ranges, poses[:3], poses[3:])
 
 
@@ -179,7 +191,7 @@ def _laser1(name: bytes, text: bytes) -> _Line:
     behind = words[9 + beams + int(words[8 + beams]) :]
     if step <= 0.0:
         raise ValueError(f"expected an angle between beams above 0, got {step}")
-    poses = _poses(behind[:6]) if name == b"ROBOTLASER1" else ()
+    poses = _poses(behind[:6]) if name.startswith(b"ROBOTLASER") else ()
     layout = _Layout(name, beams, start, step, max_m)
     return _Line(layout, _time_ns(behind[-3]), ranges, poses[:3], poses[3:])
 

@@ -241,3 +241,33 @@ def test_info_says_what_a_log_holds(tmp_path, walk):
     assert "CARMEN log of a 2-D laser" in text
     assert "30 scans of 271 beams over 270°, 10.0 a second" in text
     assert "odometry" in text
+
+
+def rear_log(scans, *, turned):
+    """A log of a laser at the back, whose poses are those of the laser or of the robot."""
+    lines = []
+    for k, robot in enumerate(scans.odometry):
+        laser = robot + [0.0, 0.0, np.pi if turned else 0.0]
+        ranges = np.nan_to_num(scans.range_m[k], nan=scans.range_max_m)
+        lines.append("R" + flaser(ranges, scans.t_ns[k] / 1e9, laser, robot)[1:])
+    return "".join(lines)
+
+
+@pytest.mark.parametrize("turned", [True, False])
+def test_a_log_of_the_rear_laser_alone_is_read_and_looks_backward(tmp_path, walk, turned):
+    scans, report = read(tmp_path / "rear.log", rear_log(walk.scans, turned=turned))
+
+    assert recognize(tmp_path / "rear.log") is RecordingKind.CARMEN
+    assert scans.range_m.shape == walk.scans.range_m.shape
+    turn = scans.odometry[:, 2] - walk.scans.odometry[:, 2]
+    np.testing.assert_allclose(turn, np.pi, atol=1e-6)
+    assert any("looks backward" in note for note in report.derived) is not turned
+
+
+def test_the_front_laser_goes_before_the_rear_one(tmp_path, walk):
+    rear = rear_log(walk.scans, turned=True)
+
+    scans, report = read(tmp_path / "both.log", rear + flaser([2.0, 3.0, 4.0], 1e6))
+
+    assert scans.range_m.shape == (1, 3)
+    assert report.counts["scans_of_the_rear_laser"] == 30
