@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -15,7 +15,7 @@ from recon4.model.rig import Rig, load_rig
 from recon4.progress import Progress
 from recon4.simulation.backpack_recorder import BackpackRecorder
 from recon4.simulation.companions import Companions
-from recon4.simulation.degradation import NOT_PROFILER, Degradation
+from recon4.simulation.degradation import NOT_PROFILER, UPSIDE_DOWN, Degradation
 from recon4.simulation.figures import along_figure, figure_named
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.imu import ImuModel
@@ -170,6 +170,9 @@ def simulate_backpack(
         raise StoreError(f"{out} exists already; give a new folder")
     if out.exists():
         out.rmdir()
+    if setup.laser2d is not None and UPSIDE_DOWN in values:
+        model = replace(setup.laser2d.model, upside_down=True)
+        setup = replace(setup, laser2d=replace(setup.laser2d, model=model))
     with (
         atomic_folder(out) as folder,
         BackpackRecorder(folder, setup, degradation) as recorder,

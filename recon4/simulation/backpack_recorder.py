@@ -129,8 +129,6 @@ class BackpackRecorder:
             range_m=scans.range_m * np.float32(unit),
             range_max_m=scans.range_max_m * unit,
         )
-        if "laser2d-mirrored" in values:
-            scans = replace(scans, range_m=scans.range_m[:, ::-1])
         self._bag.scans(sensor.topic, scans)
         self._counts["laser2d_scans"] += len(scans)
 

@@ -1,8 +1,8 @@
 """Errors of a recording that its rig file does not know: ``recon4 simulate --degrade``.
 
-Nothing here changes the walk, and only `PEOPLE` and `BEAM_ANGLE` the rays. A degradation changes
-what is written: what the rig file says, the clocks of the stamps, the samples of the IMU, which
-shots and packets there are.
+Nothing here changes the walk, and only `PEOPLE`, `BEAM_ANGLE` and `UPSIDE_DOWN` the rays. A
+degradation changes what is written: what the rig file says, the clocks of the stamps, the samples
+of the IMU, which shots and packets there are.
 """
 
 from __future__ import annotations
@@ -76,7 +76,9 @@ KINDS: Mapping[str, DegradationKind] = {
 PEOPLE = "people"
 """It changes the rays, see `recon4.simulation.companions`."""
 BEAM_ANGLE = "beam-angle"
-"""The only other one that does, see `recon4.simulation.lidar.LidarModel.beam_angle_sd_rad`."""
+"""See `recon4.simulation.lidar.LidarModel.beam_angle_sd_rad`."""
+UPSIDE_DOWN = "laser2d-mirrored"
+"""The beams of the 2-D laser sweep the other way."""
 ONLY_PROFILER = frozenset(
     {"no-head", "head-stuck", "head-pause", "lines-cm", "laser2d-cm", "laser2d-clock"}
     | {"laser2d-silent", "laser2d-mirrored", "no-laser2d"}

@@ -66,6 +66,8 @@ class Laser2dModel:
     beams: int = 1081
     angle_min_rad: float = float(np.deg2rad(-135.0))
     angle_step_rad: float = float(np.deg2rad(0.25))
+    upside_down: bool = False
+    """Whether it is mounted with its z axis down, which its angles do not say."""
     errors: LidarModel = field(default_factory=_laser2d_errors)
 
 
@@ -171,7 +173,7 @@ class SimulatedLaser2d:
         t_s = 1e-9 * t_ns[:, None] + self.beam_s * np.arange(model.beams)
         direction = np.zeros((t_s.size, 2))
         angles = model.angle_min_rad + model.angle_step_rad * np.arange(model.beams)
-        direction[:, 0] = np.tile(angles, len(t_ns))
+        direction[:, 0] = np.tile(-angles if model.upside_down else angles, len(t_ns))
         returns = shoot(
             BeamShots(t_s.ravel(), direction, self.sensor.T_body_sensor),
             walk=walk, surroundings=surroundings, model=model.errors, rng=rng,

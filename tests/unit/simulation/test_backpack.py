@@ -1,12 +1,13 @@
 """The simulated Wuerzburg backpack: head motion, line timing, carrier, counts of L Table 1."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, so3_exp
 from recon4.kernels.carrier import carrier_range
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
@@ -121,3 +122,22 @@ def test_what_cannot_be_walked_is_refused(arguments, text):
 def test_a_rig_of_lidars_is_refused():
     with pytest.raises(ConfigError, match="expected a profiler"):
         prepare_backpack("hall", seed=1, rig=load_rig("4recon"))
+
+
+def test_a_2d_laser_upside_down_sweeps_the_other_way(setup):
+    over = SE3(so3_exp(np.array([np.pi, 0.0, 0.0])), np.zeros(3))
+    laser = setup.laser2d
+    mount = replace(laser.sensor, T_body_sensor=laser.sensor.T_body_sensor @ over)
+    said_upright = replace(laser, model=replace(laser.model, upside_down=True))
+    said_as_it_is = replace(laser, sensor=mount)
+
+    found, expected = (
+        one.measure(range(20, 22), setup.walk, setup.surroundings, rng=np.random.default_rng(1))
+        for one in (said_upright, said_as_it_is)
+    )
+
+    assert np.nanmedian(np.abs(found.range_m - expected.range_m)) < 0.02  # the noise differs
+    upright = laser.measure(
+        range(20, 22), setup.walk, setup.surroundings, rng=np.random.default_rng(1)
+    )
+    assert np.nanmedian(np.abs(found.range_m - upright.range_m)) > 0.1
