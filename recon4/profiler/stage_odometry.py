@@ -15,7 +15,9 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.clock_audit import SAID_S, profiler_ahead_s, some_points
 from recon4.profiler.fusion import fuse
 from recon4.profiler.imu_chain import Drive, linearize, make_drive
+from recon4.profiler.mount_audit import mount_change
 from recon4.profiler.planar import PlanarMap, map_in_plane
+from recon4.profiler.samples import TimedPoints
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
@@ -143,31 +145,37 @@ def remarks(
     if lost.any():
         seconds = float(lost.sum() * frames.index["duration_ns"][0]) * 1e-9
         found.append(f"2-D tracking is missing for {seconds:.1f} s: only the IMU bridges that time")
-    steps = planar.found.steps
-    blind = (steps.degeneracy < 0.02) & ~steps.lost
-    if blind.mean() > 0.02:
-        found.append(
-            f"in {100.0 * blind.mean():.0f} % of the 2-D scans a direction is unobservable: a long "
-            "homogeneous corridor, or open space beyond the range of the 2-D laser"
-        )
     return tuple(found)
 
 
 def _profiler_remarks(
     frames: FrameStore, planar: PlanarMap | None, trajectory: Trajectory, *, min_range_m: float
 ) -> tuple[str, ...]:
-    """Whether the profiler has another clock than IMU and 2-D laser, if these two agree."""
+    """Whether the profiler has another clock or mount than the rig file says.
+
+    It is compared with IMU and 2-D laser, if the clocks of these two agree.
+    """
     if planar is None or planar.lag is None or planar.lag.is_wrong:
         return ()
     points = some_points(frames, min_range_m=min_range_m)
     ahead_s = profiler_ahead_s(points, trajectory)
-    if abs(ahead_s) < SAID_S:
-        return ()
-    way = "ahead of" if ahead_s > 0 else "behind"
-    return (
-        f"the clock of the profiler is {1e3 * abs(ahead_s):.0f} ms {way} those of the IMU and the "
-        f"2-D laser: in the rig file add {-ahead_s:+.3f} to its time_offset_s",
-    )
+    found = []
+    if abs(ahead_s) >= SAID_S:
+        way = "ahead of" if ahead_s > 0 else "behind"
+        found.append(
+            f"the clock of the profiler is {1e3 * abs(ahead_s):.0f} ms {way} those of the IMU and "
+            f"the 2-D laser: in the rig file add {-ahead_s:+.3f} to its time_offset_s"
+        )
+        points = TimedPoints(points.t_ns - round(1e9 * ahead_s), points.p_body)
+    sensor = frames.rig.sensors[frames.rig.row_of("profiler") or 0]
+    change = mount_change(points, sensor.T_body_sensor.t, trajectory)
+    if change is not None and change.is_wrong:
+        found.append(
+            "the map is sharper with the profiler mounted otherwise than the rig file says: "
+            f"{change.describe()} of the body, against the 2-D laser; calibrate with recon4 "
+            "calibrate --method entropy"
+        )
+    return tuple(found)
 
 
 def _lost(t_ns: Times, planar: PlanarMap | None, drive: Drive) -> NDArray[np.bool_]:

@@ -1,0 +1,106 @@
+"""Whether the profiler is mounted as the rig file says.
+
+With the right mount the points of all turns of the head lie on the fewest places. The trajectory is
+that of IMU and 2-D laser: a refined one would have bent to fit the wrong mount.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.cubes import count_cubes
+from recon4.geometry.se3 import Array, so3_exp
+from recon4.model.trajectory import Trajectory
+from recon4.profiler.samples import TimedPoints
+
+SAID_RAD = float(np.deg2rad(0.5))
+"""Smaller rotations are not said."""
+SAID_M = 0.03
+"""Smaller shifts are not said [m]."""
+_COARSE_POINTS, _FINE_POINTS = 40_000, 80_000
+_UNIT = np.array([*np.deg2rad([0.25, 0.25, 0.25]), 0.01, 0.01])
+"""Step of the search: rotation about x, y, z of the body, shift along x and y."""
+_COARSE, _FINE = np.arange(-12.0, 13.0, 3.0), np.arange(-2.0, 3.0)
+"""Changes that are tried, in steps."""
+_COARSE_M, _FINE_M = 0.2, 0.1
+"""Edges of the cubes [m]."""
+_CYCLES = 5
+_CLEAR_RATIO = 0.98
+"""Fewer places than this part of those as mounted show that the mount is another one."""
+_SKEW = so3_exp(np.array([0.4, 0.7, 0.3]))
+"""Turns the cubes: a tilt would bring a floor along their faces into one layer of them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MountChange:
+    """How the profiler is mounted against the rig file."""
+
+    turn_rad: Array
+    """Rotation vector about its origin, in axes of the body, (3,)."""
+    shift_m: Array
+    """Along x and y of the body, (2,)."""
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether a person should look at the mount."""
+        return bool(
+            np.linalg.norm(self.turn_rad) > SAID_RAD or np.linalg.norm(self.shift_m) > SAID_M
+        )
+
+    def describe(self) -> str:
+        """The change in words."""
+        turn = ", ".join(
+            f"{np.rad2deg(value):+.1f}° about {axis}"
+            for axis, value in zip("xyz", self.turn_rad, strict=True)
+        )
+        x_cm, y_cm = 100.0 * self.shift_m
+        return f"{turn}, {x_cm:+.0f} cm in x, {y_cm:+.0f} cm in y"
+
+
+def mount_change(
+    points: TimedPoints, origin_m: Array, trajectory: Trajectory
+) -> MountChange | None:
+    """Find the mount of the profiler with which its points lie on the fewest places.
+
+    Args:
+        points: Some of all line scans, in the body as the rig file says.
+        origin_m: Position of the profiler in the body, (3,).
+        trajectory: ``T_map_body`` by IMU and 2-D laser.
+
+    Returns:
+        None if no other mount is clearly better. The height is not sought: on a level floor it
+        cannot be seen.
+    """
+    inside = points.between(int(trajectory.t_ns[0]), int(trajectory.t_ns[-1]))
+    if not len(inside):
+        return None
+
+    def places(change: Array, count: int, cube_m: float) -> int:
+        every = max(1, len(inside) // count)
+        moved = (inside.p_body[::every] - origin_m) @ so3_exp(change[:3]).T + origin_m
+        moved[:, :2] += change[3:]
+        at = TimedPoints(inside.t_ns[::every], np.ascontiguousarray(moved)).placed(trajectory)
+        return count_cubes(at @ _SKEW, cube_m)
+
+    found = _lowest(np.zeros(5), _COARSE, lambda x: places(x, _COARSE_POINTS, _COARSE_M))
+    found = _lowest(found, _FINE, lambda x: places(x, _FINE_POINTS, _FINE_M))
+    before, after = (places(x, _FINE_POINTS, _FINE_M) for x in (np.zeros(5), found))
+    return MountChange(found[:3], found[3:]) if after <= _CLEAR_RATIO * before else None
+
+
+def _lowest(start: Array, steps: Array, cost: Callable[[Array], int]) -> Array:
+    """The lowest cost along each coordinate in turn, again while one changes."""
+    best, value = start, cost(start)
+    for _ in range(_CYCLES):
+        before = best
+        for axis in range(len(best)):
+            tried = [best + step * _UNIT * (np.arange(len(best)) == axis) for step in steps if step]
+            costs = [cost(change) for change in tried]
+            if min(costs) < value:
+                best, value = tried[int(np.argmin(costs))], min(costs)
+        if np.array_equal(before, best):
+            break
+    return best
