@@ -295,7 +295,7 @@ MAP = Stage("map", 4, ("map",), _map, MapFigures)
 
 _PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(
-    "odometry", 102, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
+    "odometry", 103, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
 )
 """The stages of rigs with a profiler have the names of those of LiDARs, and other versions."""
 TURN_GRAPH = Stage(
@@ -305,7 +305,7 @@ TURN_GRAPH = Stage(
     _turn_graph,
     GraphFigures,
 )
-LINE_REFINE = Stage("refine", 101, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
+LINE_REFINE = Stage("refine", 102, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
 
 
 def reviewed(runner: StageRunner, graph: Artifact, decided: Decided) -> Artifact:

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.events import RoundRefined
@@ -31,6 +32,7 @@ from recon4.profiler.mirrored import is_mirrored, upright
 from recon4.profiler.published_refine import PublishedRefiner
 from recon4.profiler.samples import joined, laser_points, line_points
 from recon4.profiler.stage_odometry import span_of
+from recon4.profiler.surface_support import surface_support
 from recon4.progress import Progress
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.semi_rigid.refine import Refinement, corrected_by_graph
@@ -78,14 +80,20 @@ class LineRefiner:
     planes: PlaneSettings
     progress: Progress
 
-    def refine(self, chain: ImuChain) -> tuple[ImuChain, list[RefineRound]]:
-        """Correct all states in rounds, each with a map of the newest poses."""
+    def refine(self, chain: ImuChain) -> tuple[ImuChain, list[RefineRound], Matched | None]:
+        """Correct all states in rounds, each with a map of the newest poses.
+
+        Returns:
+            The chain, the rounds, and what matched in the last one.
+        """
         found: list[RefineRound] = []
+        last: Matched | None = None
         for number in range(self.settings.rounds):
-            chain, done = self._round(chain, ROUNDS[min(number, len(ROUNDS) - 1)])
+            chain, done, matched = self._round(chain, ROUNDS[min(number, len(ROUNDS) - 1)])
             if done is None:
                 break
             found.append(done)
+            last = matched
             self.progress.event(
                 RoundRefined(
                     mean_m=done.mean_m,
@@ -95,9 +103,11 @@ class LineRefiner:
             )
             if number >= 3 and done.largest_step_m < self.settings.converged_step_m:
                 break
-        return chain, found
+        return chain, found, last
 
-    def _round(self, chain: ImuChain, wide: LineRound) -> tuple[ImuChain, RefineRound | None]:
+    def _round(
+        self, chain: ImuChain, wide: LineRound
+    ) -> tuple[ImuChain, RefineRound | None, Matched]:
         linear = linearize(chain)
         dense = linear.trajectory()
         count = len(self.frames)
@@ -105,7 +115,7 @@ class LineRefiner:
         sweep = _LineSweep(self, dense, wide)
         matched = sweep.match(chain)
         if matched.matches == 0:
-            return chain, None
+            return chain, None, matched
         step = linear.solve(matched.information, anchor=self._anchor())
         largest_m = float(np.linalg.norm(step[:, POSITION], axis=1).max())
         done = RefineRound(
@@ -113,7 +123,7 @@ class LineRefiner:
             match_ratio=matched.matches / max(matched.points, 1),
             largest_step_m=largest_m,
         )
-        return chain.moved(step), done
+        return chain.moved(step), done, matched
 
     def _anchor(self) -> Array:
         """Weak prior that keeps the map where it is: nothing else says where that is."""
@@ -126,16 +136,25 @@ class Matched:
     """Normal equations of one round with their counts."""
 
     information: Information
-    points: int = 0
-    matches: int = 0
+    counts: NDArray[np.int64]
+    """Points and matches of each interval, (K - 1, 2)."""
     total_m: float = 0.0
+
+    @property
+    def points(self) -> int:
+        """Points that were compared with the map."""
+        return int(self.counts[:, 0].sum())
+
+    @property
+    def matches(self) -> int:
+        """Those that found a plane."""
+        return int(self.counts[:, 1].sum())
 
     def add(self, interval: int, match: Match, scale: float) -> None:
         """Add the matches of some points of an interval."""
         self.information.H[interval] += scale * match.H
         self.information.g[interval] += scale * match.g
-        self.points += len(match.residual_m)
-        self.matches += match.matches
+        self.counts[interval] += len(match.residual_m), match.matches
         if match.matches:
             self.total_m += match.matches * match.mean_m
 
@@ -159,7 +178,8 @@ class _LineSweep:
     def match(self, chain: ImuChain) -> Matched:
         """Match all points; those near in time are not in the map meanwhile."""
         count = len(self._r.frames)
-        found = Matched(Information.none(len(chain) - 1))
+        intervals = len(chain) - 1
+        found = Matched(Information.none(intervals), np.zeros((intervals, 2), np.int64))
         stride = self._r.settings.map_stride
         for row in range(0, count, stride):
             placed = self._map_points(row)
@@ -258,8 +278,17 @@ def refine_lines(
     chain = initial_chain(drive).following(start)
     scans = _turned_over(load_laser_scans(frames.folder), frames, start)
     refiner = LineRefiner(frames, scans, settings.lines, settings.planes, progress)
-    chain, rounds = refiner.refine(chain)
-    return Refinement(linearize(chain).trajectory(), tuple(rounds))
+    chain, rounds, matched = refiner.refine(chain)
+    support = None
+    if matched is not None:
+        support = surface_support(
+            frames.t_mid_ns,
+            drive.knot_ns,
+            H=matched.information.H,
+            counts=matched.counts,
+            normal_noise_rad=settings.odometry.normal_noise_rad,
+        )
+    return Refinement(linearize(chain).trajectory(), tuple(rounds), support)
 
 
 def _turned_over(

@@ -143,7 +143,7 @@ def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
         return None
     if log.message.encode() in REAR and np.array_equal(log.robot, log.laser):
         report.derive("the poses of the rear laser are those of the robot: it looks backward")
-        return log.robot + [0.0, 0.0, np.pi]
+        return log.robot + np.array([0.0, 0.0, np.pi])
     mounted = between(log.robot, log.laser)
     mounted[:, 2] = np.unwrap(mounted[:, 2])
     if float(np.std(mounted, axis=0).max()) < _MOUNTING_SD:

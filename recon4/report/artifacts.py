@@ -16,12 +16,13 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.model.figures import CalibrationFigures, MapFigures, PlaneThickness
 from recon4.model.pose_graph import PoseGraph
+from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import load_uncertainty
 from recon4.report.placement import Placement, placement_in
-from recon4.store.arrays import load_arrays, load_trajectory
+from recon4.store.arrays import load_arrays, load_record, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 from recon4.store.stage import read_figures
 
@@ -45,6 +46,8 @@ class Results:
     final: Trajectory | None = None
     """The latest trajectory after the odometry."""
     refine: dict[str, object] = field(default_factory=dict)
+    support: SurfaceSupport | None = None
+    """What holds each multiframe of line scans; None = not worked out."""
     georeference: dict[str, object] = field(default_factory=dict)
     uncertainty: PoseUncertainty | None = None
     """Covariances of the final poses; None = not stated."""
@@ -78,6 +81,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         verification=_json(artifacts, "verification", "verification.json"),
         final=_latest_trajectory(artifacts, ("level", "refine")),
         refine=_json(artifacts, "refine", "refine.json"),
+        support=_support(artifacts),
         georeference=_json(artifacts, "level", "georeference.json"),
         uncertainty=load_uncertainty(artifacts["level"]) if "level" in artifacts else None,
         intensity=_arrays(artifacts, "intensity", "diagnostics.npz"),
@@ -131,6 +135,11 @@ def _calibration(artifacts: Mapping[str, Path]) -> CalibrationFigures | None:
         return msgspec.convert(record, CalibrationFigures)
     except msgspec.ValidationError as error:
         raise StoreError(f"calibration/calibration.json cannot be read: {error}") from error
+
+
+def _support(artifacts: Mapping[str, Path]) -> SurfaceSupport | None:
+    path = _file(artifacts, "refine", "support.npz")
+    return None if path is None else load_record(path, SurfaceSupport)
 
 
 def _thickness(artifacts: Mapping[str, Path]) -> PlaneThickness | None:

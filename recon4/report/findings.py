@@ -7,19 +7,23 @@ from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.evaluation.table import number, percentage
 from recon4.model.import_notes import import_notes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
+from recon4.model.trajectory import Times
 from recon4.model.usability import UNOBSERVED_SECONDS
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
 from recon4.report.artifacts import Results, path_length_m
 from recon4.report.contradictions import rejected_runs
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
-from recon4.report.observability import WeakStretch, weak_stretches
+from recon4.report.observability import WeakStretch, held_by_surfaces, weak_stretches
 from recon4.report.places import ambiguous_places, separate_pieces
 from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
+
+Flags = NDArray[np.bool_]
 
 _GOAL_M = 0.05
 """Required relative error, V §3 [m]."""
@@ -82,6 +86,9 @@ def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> lis
 
 def _tracking(results: Results) -> list[Finding]:
     lost = np.asarray(results.steps.get("lost", np.empty(0)), dtype=bool)
+    held = held_by_surfaces(results.support, lost)
+    if held is not None:
+        return _bridged(lost, held, results.steps["t_mid_ns"])
     if not len(lost):
         return []
     if not lost.any():
@@ -92,6 +99,20 @@ def _tracking(results: Results) -> list[Finding]:
         where = f", first {(t_ns[lost][0] - t_ns[0]) / 1e9:.1f} s after the start"
     how_many = f"{lost.sum()} of {len(lost)} multiframes ({percentage(lost.mean())})"
     return [Finding(Level.BAD, f"Tracking was lost in {how_many}{where}.")]
+
+
+def _bridged(lost: Flags, held: Flags, t_ns: Times) -> list[Finding]:
+    """What became of multiframes without a pose by the 2-D laser."""
+    since_s = (t_ns[lost][0] - t_ns[0]) / 1e9
+    text = (
+        f"The 2-D laser gives no pose in {lost.sum()} of {len(lost)} multiframes "
+        f"({percentage(lost.mean())}), first {since_s:.1f} s after the start. "
+    )
+    if held.all():
+        text += "There the IMU and what the profiler saw again at other times hold the map."
+        return [Finding(Level.WARNING, text)]
+    text += f"In {(~held).sum()} of them the profiler saw too little again to hold the map."
+    return [Finding(Level.BAD, text)]
 
 
 def _pieces(results: Results) -> list[Finding]:
@@ -152,13 +173,26 @@ def _old_rig(facts: ReportFacts) -> list[Finding]:
 
 
 def _observability(results: Results) -> list[Finding]:
-    stretches = weak_stretches(results.steps)
+    stretches = weak_stretches(results.steps, results.support)
     if not stretches:
-        return []
+        return _observed_by_profiler(results)
     seconds = sum(stretch.seconds for stretch in stretches)
     positions = results.placement.gnss.georeferenced
     level = Level.BAD if seconds >= UNOBSERVED_SECONDS and not positions else Level.WARNING
     return [Finding(level, _describe_stretch(stretch)) for stretch in stretches[:_MAX_WARNINGS]]
+
+
+def _observed_by_profiler(results: Results) -> list[Finding]:
+    """Where the profiler observes what the 2-D laser does not."""
+    planar = weak_stretches(results.steps) if results.support is not None else []
+    if not planar:
+        return []
+    seconds = sum(stretch.seconds for stretch in planar)
+    text = (
+        f"For {seconds:.0f} s, first from {planar[0].start_s:.0f} to {planar[0].end_s:.0f} s, the "
+        "2-D laser hardly observes one direction; the profiler does."
+    )
+    return [Finding(Level.NOTE, text)]
 
 
 def _describe_stretch(stretch: WeakStretch) -> str:

@@ -14,11 +14,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.support import SurfaceSupport
 from recon4.model.usability import WEAK_SD_M, WEAK_SECONDS
 
 _WEAK_DEGENERACY = 0.005
 """Files of earlier versions do not state the standard deviation: there a direction counts as
 unobservable below this, as for pairs (`GraphSettings.min_degeneracy`)."""
+_HELD_RATIO = 0.7
+"""A multiframe matches the map if its match ratio reaches this part of the median of the others."""
 _BRIDGED_S = 1.0
 """Two weak stretches with less than this between them are one [s]."""
 
@@ -48,11 +51,33 @@ class WeakStretch:
         return not abs(float(self.direction_odom[2])) > np.sqrt(0.5)
 
 
-def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch]:
+def held_by_surfaces(
+    support: SurfaceSupport | None, lost: NDArray[np.bool_]
+) -> NDArray[np.bool_] | None:
+    """Of the multiframes that were lost, those that surfaces seen at other times hold.
+
+    Args:
+        support: Of the refinement.
+        lost: Multiframes without a pose by the odometry, (N,).
+
+    Returns:
+        For each lost one; None if none is lost, or it was not worked out.
+    """
+    if support is None or not lost.any() or lost.all():
+        return None
+    usual = _HELD_RATIO * float(np.median(support.match_ratio[~lost]))
+    held = (support.match_ratio >= usual) & (support.weak_sd_m <= WEAK_SD_M)
+    return np.asarray(held[lost], np.bool_)
+
+
+def weak_stretches(
+    steps: Mapping[str, NDArray[np.generic]], support: SurfaceSupport | None = None
+) -> list[WeakStretch]:
     """Find the stretches of `WEAK_SECONDS` or more, in order of time.
 
     Args:
         steps: Columns of ``steps.npz``. Files of earlier versions have no ``weak_direction``.
+        support: Of line scans: what the refinement observes where the 2-D laser does not.
     """
     if "degeneracy" not in steps or len(steps["degeneracy"]) < 2:
         return []
@@ -61,6 +86,8 @@ def weak_stretches(steps: Mapping[str, NDArray[np.generic]]) -> list[WeakStretch
     directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
     sd_m = np.asarray(steps.get("weak_sd_m", np.full(len(t_s), np.nan)), np.float64)
     weak = np.where(np.isnan(sd_m), degeneracy < _WEAK_DEGENERACY, sd_m > WEAK_SD_M)
+    if support is not None:
+        weak &= support.weak_sd_m > WEAK_SD_M
     weak[0] = False  # there is no map yet to observe anything against
     weak &= ~np.asarray(steps["lost"], bool)  # lost tracking is reported by itself
     weak &= ~np.asarray(steps.get("stationary", np.zeros(len(t_s))), bool)  # it cannot drift

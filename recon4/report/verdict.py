@@ -68,7 +68,9 @@ def map_verdict(
 
 def unobserved(results: Results) -> tuple[Unobserved, ...]:
     """The stretches along which one direction is hardly observed, with their places in the map."""
-    return tuple(_located(stretch, results) for stretch in weak_stretches(results.steps))
+    return tuple(
+        _located(stretch, results) for stretch in weak_stretches(results.steps, results.support)
+    )
 
 
 def _located(stretch: WeakStretch, results: Results) -> Unobserved:

@@ -23,6 +23,7 @@ from recon4.model.events import RoundRefined
 from recon4.model.figures import RefineFigures, RefineRound
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
+from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Times, Trajectory
 from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
@@ -30,7 +31,7 @@ from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.semi_rigid.knots import KnotSystem, apply_knots, solve_knots
 from recon4.settings import Settings
-from recon4.store.arrays import load_arrays, load_trajectory, save_trajectory
+from recon4.store.arrays import load_arrays, load_trajectory, save_record, save_trajectory
 from recon4.store.frames import FrameStore
 
 Result = TypeVar("Result")
@@ -49,10 +50,14 @@ class Refinement:
     trajectory: Trajectory
     """``T_map_body``, dense."""
     rounds: tuple[RefineRound, ...]
+    support: SurfaceSupport | None = None
+    """Of line scans; None = not worked out."""
 
     def save(self, out: Path) -> RefineFigures:
-        """Write ``trajectory.npz`` and ``refine.json``; the latter holds the figures."""
+        """Write ``trajectory.npz``, ``refine.json`` (the figures) and ``support.npz``."""
         save_trajectory(out / "trajectory.npz", self.trajectory)
+        if self.support is not None:
+            save_record(out / "support.npz", self.support)
         figures = RefineFigures(rounds=self.rounds)
         (out / "refine.json").write_text(json.dumps(to_plain(figures), indent=1))
         return figures

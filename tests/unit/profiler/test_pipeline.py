@@ -89,6 +89,9 @@ def test_refined_lines_lie_within_two_centimeters(frames, odometry, graph_folder
     assert error.position_m.rmse < 0.7 * position_rmse_m(before, truth)
     assert np.degrees(error.rotation_rad.rmse) < 0.5
     assert found.rounds[-1].mean_m < found.rounds[0].mean_m
+    assert len(found.support.match_ratio) == len(frames)
+    assert np.median(found.support.match_ratio) > 0.5
+    assert np.quantile(found.support.weak_sd_m, 0.9) < 0.05
 
 
 def test_points_of_the_carrier_are_left_out(frames):

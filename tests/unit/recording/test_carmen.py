@@ -247,7 +247,7 @@ def rear_log(scans, *, turned):
     """A log of a laser at the back, whose poses are those of the laser or of the robot."""
     lines = []
     for k, robot in enumerate(scans.odometry):
-        laser = robot + [0.0, 0.0, np.pi if turned else 0.0]
+        laser = robot + np.array([0.0, 0.0, np.pi * turned])
         ranges = np.nan_to_num(scans.range_m[k], nan=scans.range_max_m)
         lines.append("R" + flaser(ranges, scans.t_ns[k] / 1e9, laser, robot)[1:])
     return "".join(lines)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
+from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
@@ -64,6 +65,52 @@ def test_the_first_multiframe_and_lost_ones_are_no_weak_stretch():
 
     assert weak_stretches(steps([0.0] + [0.1] * 50)) == []
     assert weak_stretches(steps(corridor(5.0), lost=lost)) == []
+
+
+def surfaces(count, *, ratio=0.6, sd_m=0.005):
+    """What holds each multiframe of line scans."""
+    t_ns = np.arange(count) * 100_000_000
+    directions = np.tile([1.0, 0.0, 0.0], (count, 1))
+    return SurfaceSupport(t_ns, np.full(count, ratio), np.full(count, sd_m), directions)
+
+
+def silent(count, first, last):
+    lost = np.zeros(count, bool)
+    lost[first:last] = True
+    return lost
+
+
+def test_a_profiler_observes_what_a_2d_laser_does_not():
+    columns = steps(corridor(30.0))
+
+    assert weak_stretches(columns, surfaces(340)) == []
+    (stretch,) = weak_stretches(columns, surfaces(340, sd_m=3.0))
+    assert stretch.start_s == pytest.approx(2.0)
+    findings = find(facts(), Results(steps=columns, support=surfaces(340)), None)
+    assert "the profiler does" in " ".join(found.text for found in findings)
+
+
+@pytest.mark.parametrize(
+    ("there", "usability", "words"),
+    [
+        ({}, Usability.CHECK, "hold the map"),
+        ({"ratio": 0.2}, Usability.DO_NOT_USE, "In 20 of them the profiler saw too little"),
+        ({"sd_m": 0.5}, Usability.DO_NOT_USE, "In 20 of them the profiler saw too little"),
+    ],
+)
+def test_a_silent_2d_laser_spoils_a_map_only_if_the_profiler_does_not_hold_it(
+    there, usability, words
+):
+    lost, held = silent(200, 80, 100), surfaces(200)
+    seen = surfaces(200, **there)
+    held.match_ratio[lost], held.weak_sd_m[lost] = seen.match_ratio[lost], seen.weak_sd_m[lost]
+    results = Results(steps=steps([0.1] * 200, lost=lost), support=held)
+
+    verdict = map_verdict(find(facts(), results, None))
+
+    assert verdict.usability is usability
+    assert words in " ".join(verdict.reasons)
+    assert "20 of 200 multiframes" in " ".join(verdict.reasons)
 
 
 def test_files_of_earlier_versions_have_no_direction():
