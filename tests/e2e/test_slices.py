@@ -2,15 +2,21 @@
 
 import re
 
+import numpy as np
 import pytest
 from playwright.sync_api import expect
 
+from recon4.pipeline import process
+from recon4.recording.sources import Sources
 from tests.e2e.conftest import looks
 from tests.e2e.test_pages import fits
+from tests.planar_walks import furnished_room, scanned, write_carmen
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
+
+STRAIGHT = np.stack([np.linspace(-2.0, 2.0, 40), np.zeros(40), np.zeros(40)], axis=1)
 
 
 @pytest.fixture(scope="module")
@@ -18,6 +24,8 @@ def server(tmp_path_factory):
     root = tmp_path_factory.mktemp("sliced")
     build_project(root / "office", points=120_000)
     build_project(root / "earlier", points=60_000)
+    write_carmen(root / "walk.log", scanned(furnished_room(), STRAIGHT).scans)
+    process(Sources((root / "walk.log",), None), root / "plan")
     with server_thread(root) as running:
         yield running
 
@@ -41,6 +49,22 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     expect(page.get_by_label("Low end of the colors")).to_be_visible()
     fits(page)
     screenshot(page, "slices")
+
+
+@looks("desktop light", "phone dark")
+def test_a_2d_map_is_shown_as_the_one_slice_it_is(server, page, screenshot):
+    page.goto(f"{server.url}/projects/plan/slices/")
+
+    plan = page.get_by_role("img", name=re.compile("Floor plan"))
+    expect(plan).to_be_visible()
+    expect(page.locator("main")).to_contain_text("one slice at the height of the laser")
+    assert plan.evaluate("image => image.naturalWidth") > 50
+    expect(page.get_by_role("link", name="The page Map")).to_have_attribute(
+        "href", "/projects/plan/"
+    )
+    expect(page.locator("#message, .tools")).to_have_count(0)
+    fits(page)
+    screenshot(page, "slices-plan")
 
 
 @looks("desktop light", "phone dark")

@@ -16,6 +16,7 @@ import { controls } from "./controls.js";
 import { findings } from "./findings.js";
 import { legend } from "./legend.js";
 import { help } from "./help.js";
+import { isPlan, showPlan } from "./plan.js";
 import { COLORS, SURFACES, planeOf, format, moved, normalFrom, parse, unframed } from "./state.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
@@ -377,10 +378,12 @@ async function begin() {
   );
   dark.addEventListener("change", load);
   try {
-    const [project] = await Promise.all([readProject(id), reload()]);
+    const project = await readProject(id);
     document.querySelector("page-head").name = project.name;
     document.querySelector("map-verdict").facts = factsIn(project.summary);
     document.title = `Slices · ${project.name} · recon4`;
+    if (isPlan(project)) return showPlan(id, project);
+    await reload();
     if (!state.given) state = { ...state, ...start("horizontal"), given: true };
     if (state.u !== null && state.v !== null && state.m !== null)
       first.frame = { u: state.u, v: state.v, m: state.m };

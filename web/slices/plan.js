@@ -1,0 +1,34 @@
+// What the slices page shows of a 2-D map, which is itself one slice.
+
+import { fileUrl } from "../shared/api.js";
+import { byId, fill, make } from "../shared/dom.js";
+
+/** Whether the map of a project is a 2-D one. */
+export const isPlan = (project) => project.summary.map === "2d";
+
+/** Shows the plan in place of cuts and findings. */
+export function showPlan(id, project) {
+  const main = document.querySelector("main");
+  main.className = "plan";
+  const cell_cm = Math.round(project.summary.grid.cell_m * 1000) / 10;
+  const words = make("p", {
+    textContent:
+      "This is a 2-D map: one slice at the height of the laser, so no other can be cut. " +
+      `A pixel is ${cell_cm} cm. `,
+  });
+  words.append(
+    make("a", {
+      href: `/projects/${encodeURIComponent(id)}/`,
+      textContent: "The page Map shows places and distances.",
+    }),
+  );
+  fill(
+    main,
+    words,
+    make("img", {
+      src: fileUrl(id, "map.png"),
+      alt: "Floor plan: walls black, free white, not seen gray",
+    }),
+  );
+  byId("help").remove();
+}
