@@ -92,7 +92,7 @@ def process(
     progress = progress or Silent()
     settings = settings or settings_of(preset)
     is_new = not is_project(out)
-    run = process_2d if is_2d(sources.recordings) else _process
+    run = process_2d if is_2d(sources) else _process
     try:
         return run(sources, out, settings=settings, preset=preset, progress=progress)
     except (RecordingError, ConfigError):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -43,14 +42,17 @@ class Planar:
     """Verified."""
 
 
-def is_2d(recordings: Sequence[Path]) -> bool:
+def is_2d(sources: Sources) -> bool:
     """Whether recordings are of a 2-D laser alone.
 
     Raises:
         RecordingError: If it cannot be read.
     """
+    if sources.rig is not None and sources.rig.row_of("profiler") is not None:
+        return False  # only the rig file may know which topic is of the profiler
+    first, *others = sources.recordings
     # The tables of a walk with a profiler may come in any order.
-    return is_laser2d(recordings[0]) and not any(map(is_line_table, recordings[1:]))
+    return is_laser2d(first) and not any(map(is_line_table, others))
 
 
 def process_2d(

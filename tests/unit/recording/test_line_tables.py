@@ -84,8 +84,8 @@ def test_files_of_a_walk_come_in_any_order(tmp_path):
     walk = write_walk(tmp_path / "walk", scans=line_scans(290))
     paths = [walk / "laser2d.csv", walk / "lines.csv"]
 
-    assert not is_2d(paths)
-    assert is_2d(paths[:1])
+    assert not is_2d(Sources(tuple(paths)))
+    assert is_2d(Sources(tuple(paths[:1])))
     read(paths, tmp_path / "out")
 
     assert len(load_laser_scans(tmp_path / "out")) == 290
