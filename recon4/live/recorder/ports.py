@@ -71,9 +71,15 @@ def check_sources(rig: Rig) -> None:
     """Check that the datagrams of a rig can be received and assigned to its sensors.
 
     Raises:
-        ConfigError: If two LiDARs use one port without different addresses, an address is invalid,
-            or the serial line of the receiver is invalid or has no port.
+        ConfigError: If a sensor is no LiDAR, two LiDARs use one port without different addresses,
+            an address is invalid, or the serial line of the receiver is invalid or has no port.
     """
+    others = [f"{s.name} (kind {s.kind})" for s in rig.sensors if s.enabled and s.kind != "lidar"]
+    if others:
+        raise ConfigError(
+            f"rig {rig.name}: expected LiDARs, which send datagrams, got {', '.join(others)}: live "
+            "capture does not receive line scans; record their topics in a bag and process that"
+        )
     if rig.gnss_serial:
         parse_device(rig.gnss_serial)
         if not rig.gnss_port:

@@ -11,7 +11,7 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.live.recorder.ports import check_sources, open_ports
 from recon4.live.recorder.serial_line import parse_device
-from recon4.model.rig import parse_rig
+from recon4.model.rig import load_rig, parse_rig
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
 from tests.unit.live.recorder.recorder_process import recording
@@ -86,3 +86,8 @@ def test_a_serial_device_that_is_none_is_refused(text):
     with pytest.raises(ConfigError, match="DEVICE:BAUD"):
         parse_device(text)
     assert parse_device("/dev/ttyUSB0") == ("/dev/ttyUSB0", 9600)
+
+
+def test_a_rig_with_a_profiler_is_refused_with_what_to_do():
+    with pytest.raises(ConfigError, match=r"laser2d \(kind laser2d\), profiler.*in a bag"):
+        check_sources(load_rig("wuerzburg"))
