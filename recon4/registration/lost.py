@@ -66,7 +66,7 @@ class FreshChain:
             points_body: Points in the body [m], (N, 3).
             t_ns: Middle of the scan [ns].
         """
-        found = self._chain.locate(points_body)
+        found = self._chain.locate(points_body, t_ns)
         if found is not None and self._chain.is_sure:
             self._T_begin_now = self._T_begin_now @ found
         self._chain.keep(self._T_begin_now, t_ns)

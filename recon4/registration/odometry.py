@@ -244,7 +244,7 @@ class Odometry:
         """
         if self._chain is None:
             return True
-        found = self._chain.locate(body_points(frame, self._rig))
+        found = self._chain.locate(body_points(frame, self._rig), frame.t_mid_ns)
         if self._state is None:
             return True
         if found is None:

@@ -9,6 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
+from recon4.registration.carrier import CarrierPrior
 from recon4.registration.result import StopReason
 from recon4.registration.scans import Scan, make_scan, search_scans
 from recon4.settings import ScanSettings
@@ -33,6 +34,8 @@ class ScanChain:
         self.is_sure = False
         """Whether most of the newest scan lies on the last good one."""
         self._sure_scans = 0
+        self._velocity_m_s: Array = np.zeros(3)
+        """In axes of the last good scan."""
 
     @property
     def sure_scans(self) -> int:
@@ -49,12 +52,20 @@ class ScanChain:
         """Pose of the last good scan and its time [ns]."""
         return self._T_odom_body, self._t_ns
 
-    def locate(self, points: Array) -> SE3 | None:
-        """Pose of a new scan in the last good one, or None; points in the body [m], (N, 3)."""
+    def locate(self, points: Array, t_ns: int) -> SE3 | None:
+        """Pose of a new scan in the last good one, or None.
+
+        Args:
+            points: In the body [m], (N, 3).
+            t_ns: Middle of the scan [ns].
+        """
         self._now, self.is_sure = make_scan(points, self._settings), False
         if self._scan is None:
             return None
-        found = search_scans(self._scan, self._now, initial=self._motion, settings=self._settings)
+        prior = CarrierPrior.after(max((t_ns - self._t_ns) * 1e-9, 0.0), self._velocity_m_s)
+        found = search_scans(
+            self._scan, self._now, initial=self._motion, settings=self._settings, prior=prior
+        )
         self._located = found.T_target_source
         self.is_sure = found.match_ratio >= self._settings.confident_inlier_ratio
         # With two distorted scans the matches may oscillate: the inlier ratio decides.
@@ -65,6 +76,8 @@ class ScanChain:
         self._sure_scans = self._sure_scans + 1 if self.is_sure else 0
         if self._scan is not None:
             self._motion = self._T_odom_body.inverse() @ T_odom_body
+            seconds = max((t_ns - self._t_ns) * 1e-9, 1e-3)
+            self._velocity_m_s = self._motion.R.T @ self._motion.t / seconds
         self._scan, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
 
 

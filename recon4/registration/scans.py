@@ -17,8 +17,10 @@ from scipy import fft, ndimage
 from scipy.spatial import cKDTree
 
 from recon4.geometry.cubes import cube_keys, cubes_of
-from recon4.geometry.se3 import SE3, Array, tangent_size_m
+from recon4.geometry.se3 import SE3, TRANSLATION, Array, tangent_size_m
 from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
+from recon4.registration.carrier import CarrierPrior
+from recon4.registration.degeneracy import observable_pose
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import ScanSettings
 
@@ -32,6 +34,10 @@ _PLAN = 160
 """Cells of a ground plan along each side."""
 _PLAN_CELL_M = 0.5
 _PLAN_MOST = 4.0
+_NORMAL_NOISE_RAD = 0.1
+"""Standard deviation of a normal; what it seems to observe gives way to a prior [rad]."""
+_MIN_VARIANCE_M2 = 1e-4
+"""Smallest variance of a match [m²]."""
 _STEEP = 0.6
 """The ground plan has the points whose normal has a smaller z component than this."""
 
@@ -67,7 +73,12 @@ def make_scan(points: Array, settings: ScanSettings) -> Scan:
 
 
 def register_scans(
-    target: Scan, source: Scan, *, initial: SE3, settings: ScanSettings
+    target: Scan,
+    source: Scan,
+    *,
+    initial: SE3,
+    settings: ScanSettings,
+    prior: CarrierPrior | None = None,
 ) -> Registration:
     """Estimate ``T_target_source`` from an initial pose within a meter and some ten degrees.
 
@@ -79,40 +90,57 @@ def register_scans(
         source: Scan to be moved.
         initial: First ``T_target_source``.
         settings: Gate, kernel, bounds.
+        prior: Where the source is expected; decides where the scans do not.
     """
     some = _some(source, settings.source_points)
-    return _descend(target, some, initial=initial, rounds=settings.rounds, settings=settings)
+    return _descend(
+        target, some, initial=initial, rounds=settings.rounds, settings=settings, prior=prior
+    )
 
 
 def search_scans(
-    target: Scan, source: Scan, *, initial: SE3, settings: ScanSettings
+    target: Scan,
+    source: Scan,
+    *,
+    initial: SE3,
+    settings: ScanSettings,
+    prior: CarrierPrior | None = None,
 ) -> Registration:
     """Estimate ``T_target_source`` although the initial pose may be completely wrong.
 
     The initial pose is used if it leads to a good match. Otherwise it is compared with the best
     overlays of the ground plans (upright scans, any heading, shifts up to 40 m). Each one is
-    registered with some of the points; the one with the largest inlier ratio is refined.
+    registered with some of the points; the one with the largest inlier ratio is refined. With a
+    prior an inlier ratio counts less the farther the pose lies from it.
 
     Args:
         target: Scan to register to.
         source: Scan to be moved.
         initial: First ``T_target_source``.
         settings: Gate, kernel, bounds.
+        prior: Where the source is expected.
     """
-    first = register_scans(target, source, initial=initial, settings=settings)
+
+    def score(found: Registration) -> float:
+        t = found.T_target_source.t
+        return found.match_ratio * (prior.plausibility(t) if prior else 1.0)
+
+    first = register_scans(target, source, initial=initial, settings=settings, prior=prior)
     if first.converged and first.match_ratio >= settings.confident_inlier_ratio:
         return first
     some = _some(source, _COARSE_POINTS)
     starts = overlay_plans(target, source, count=settings.starts, height_m=float(initial.t[2]))
     tries = [
-        _descend(target, some, initial=start, rounds=_COARSE_ROUNDS, settings=settings)
+        _descend(target, some, initial=start, rounds=_COARSE_ROUNDS, settings=settings, prior=prior)
         for start in [first.T_target_source, *starts]
     ]
-    best = max(tries, key=lambda found: found.match_ratio)
+    best = max(tries, key=score)
     if best is tries[0]:
         return first
-    other = register_scans(target, source, initial=best.T_target_source, settings=settings)
-    return max(first, other, key=lambda found: found.match_ratio)
+    other = register_scans(
+        target, source, initial=best.T_target_source, settings=settings, prior=prior
+    )
+    return max(first, other, key=score)
 
 
 def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) -> list[SE3]:
@@ -152,6 +180,7 @@ def _descend(
     initial: SE3,
     rounds: int,
     settings: ScanSettings,
+    prior: CarrierPrior | None,
 ) -> Registration:
     """Match and solve until the steps are small; ``source`` are points and normals, (N, 3)."""
     p, n = source
@@ -169,6 +198,9 @@ def _descend(
         )  # fmt: skip
         if matches < _MIN_MATCHES:
             return _refused(T, done)
+        variance = max(squares / weight, _MIN_VARIANCE_M2)
+        if prior is not None:
+            H, g = _with_prior(H, g, T.t, variance=variance, prior=prior)
         step = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
         T = T.stepped(step)
         if done > 2 and tangent_size_m(step) < 1e-3:
@@ -177,9 +209,20 @@ def _descend(
     match_ratio = inliers / len(p)
     if match_ratio < settings.min_inlier_ratio:
         stop = StopReason.TOO_FEW
-    variance = max(squares / weight, 1e-4)
     degeneracy = float(np.linalg.eigvalsh(nn / weight)[0])
     return Registration(T, stop, done, total / weight, match_ratio, H / variance, degeneracy)
+
+
+def _with_prior(
+    H: Array, g: Array, t_m: Array, *, variance: float, prior: CarrierPrior
+) -> tuple[Array, Array]:
+    """Normal equations with those of the place ``t_m`` (3,), without what normals feign."""
+    H, full = observable_pose(H, _NORMAL_NOISE_RAD)
+    g = full.T @ g
+    weight = variance / prior.sd_m**2
+    H[TRANSLATION, TRANSLATION] += weight * np.eye(3)
+    g[TRANSLATION] += weight * (t_m - prior.t_m)
+    return H, g
 
 
 def _some(scan: Scan, limit: int) -> tuple[Array, Array]:

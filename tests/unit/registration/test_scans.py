@@ -155,10 +155,10 @@ def test_the_chain_keeps_the_last_good_scan_as_target():
     rng = np.random.default_rng(7)
     nowhere = rng.uniform(-30.0, 30.0, (4000, 3))
     T_true = SE3.from_rpy(0.0, 0.0, 0.1, t=[0.2, 0.0, 0.0])
-    assert chain.locate(room()) is None
+    assert chain.locate(room(), 0) is None
     chain.keep(SE3.identity(), 0)
 
-    lost, again = chain.locate(nowhere), chain.locate(T_true.inverse() @ room(2))
+    lost, again = chain.locate(nowhere, 1), chain.locate(T_true.inverse() @ room(2), 200_000_000)
 
     assert lost is None
     assert again is not None
