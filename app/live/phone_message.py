@@ -82,6 +82,7 @@ class PhoneMessage(msgspec.Struct, kw_only=True):
     plan: protocol.Plan | UnsetType = UNSET
     gaps: protocol.Gaps | UnsetType = UNSET
     loop: protocol.Loop | UnsetType = UNSET
+    motion: protocol.Motion | UnsetType = UNSET
     pose: protocol.Pose | UnsetType = UNSET
     path: PathPart | UnsetType = UNSET
     marks: MarksPart | UnsetType = UNSET

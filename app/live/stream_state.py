@@ -17,7 +17,7 @@ from recon4.live.so_far import WalkSoFar
 POINTS_AT_ONCE = 20_000
 """Points per message: 140 kB, so that the map grows steadily on a slow phone."""
 BYTES_A_POINT = 7
-_SENT = ("status", "notes", "fix", "plan", "gaps", "loop", "pose")
+_SENT = ("status", "notes", "fix", "plan", "gaps", "loop", "motion", "pose")
 """Kinds of messages of which phones get the newest."""
 _LOCATED_WITHIN_NS = 10_000_000_000
 """A mark appears without a position if the mapping does not reach its time within this."""

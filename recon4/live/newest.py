@@ -17,6 +17,7 @@ class Newest:
     plan: protocol.Plan | None = None
     gaps: protocol.Gaps | None = None
     loop: protocol.Loop | None = None
+    motion: protocol.Motion | None = None
     fix: protocol.Fix | None = None
     notes: protocol.Notes | None = None
     done: protocol.Done | None = None

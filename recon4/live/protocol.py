@@ -5,7 +5,7 @@ are base64. The server sends the newest messages on to the phones; ``docs/live.m
 fields.
 
     recorder -> clients     written, status, mark, stopped
-    mapper   -> clients     pose, path, points, plan, gaps, loop, fix, notes, done
+    mapper   -> clients     pose, path, points, plan, gaps, loop, motion, fix, notes, done
     clients  -> recorder    stop, pause, resume, mark
 """
 
@@ -232,6 +232,29 @@ class Loop(msgspec.Struct, tag_field="kind", tag="loop"):
     """Distance from the start."""
 
 
+class Axis(msgspec.Struct, frozen=True):
+    """What the walk shows of one parameter of the rig."""
+
+    quantity: Text
+    """``rotation``, ``position`` or ``clock``."""
+    axis: Text
+    """``x``, ``y`` or ``z`` of the body; empty for a clock."""
+    shown: float
+    """Part of the information that a calibration needs, 0 to 1."""
+
+
+class Motion(msgspec.Struct, tag_field="kind", tag="motion"):
+    """What the motion so far shows of the rig, for a calibration."""
+
+    still_s: float
+    """Longest time without motion [s]."""
+    tilt_deg: Annotated[list[float], msgspec.Meta(min_length=2, max_length=2)]
+    """Range of the tilt to the front and to the sides [°]."""
+    turned_deg: Annotated[list[float], msgspec.Meta(min_length=2, max_length=2)]
+    """Turned to the left and to the right, in all [°]."""
+    axes: Annotated[list[Axis], msgspec.Meta(max_length=100)]
+
+
 class Fix(msgspec.Struct, tag_field="kind", tag="fix"):
     """Newest fix of the GNSS receiver."""
 
@@ -266,7 +289,7 @@ class Done(msgspec.Struct, tag_field="kind", tag="done"):
 
 
 RecorderMessage = Written | Status | Mark | Stopped
-MapperMessage = Pose | Path | Points | Plan | Gaps | Loop | Fix | Notes | Done
+MapperMessage = Pose | Path | Points | Plan | Gaps | Loop | Motion | Fix | Notes | Done
 Message = RecorderMessage | MapperMessage
 
 

@@ -167,6 +167,7 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screensho
         if SCREENSHOTS:
             wait_for_points(page, 40_000)
         screenshot(page, "live")
+        axes_are_told(page, screenshot)
         mark(page, "crack in the wall")
         cut_and_restore(page, link)
     wait_for_points(page, early + 1000)
@@ -213,6 +214,21 @@ def sensors_are_shown(page):
     rows = page.locator("#lidars tr")
     for row, name in ((0, "horizontal"), (1, "vertical")):
         expect(rows.nth(row)).to_have_text(re.compile(rf"{name}\d+/s0\.\d %in step"))
+    page.get_by_role("button", name="Close").click()
+
+
+def axes_are_told(page, screenshot):
+    """The calibration dance: what to do next, and what the walk has shown of each axis."""
+    page.get_by_role("button", name="Help and more").click()
+    page.get_by_role("button", name="Calibration dance…").click()
+    expect(page.locator("#dance-next")).to_have_text(re.compile("Stand|Bend|Turn|Walk"))
+    steps = page.locator("#dance-steps li")
+    expect(steps).to_have_count(4)
+    expect(steps.nth(1)).to_have_text(re.compile(r"\d+° and \d+° of 25°"))
+    rotation = page.locator("#dance-axes tr").nth(0)
+    expect(rotation).to_have_text(re.compile(r"rotation(\d+ %|✓ observed){3}"))
+    fits(page, "#dance")
+    screenshot(page, "live-dance")
     page.get_by_role("button", name="Close").click()
 
 

@@ -5,6 +5,7 @@ import { CloudCanvas } from "../shared/cloud_canvas.js";
 import { attempt, byId, targetOf } from "../shared/dom.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
 import { Camera, moveByPointer } from "./camera.js";
+import { drawDance, showDance } from "./dance.js";
 import { drawHealth, showHealth } from "./health.js";
 import { drawOverlay, planImage } from "./overlay.js";
 import { LiveScene } from "./scene.js";
@@ -160,6 +161,7 @@ function drawTexts() {
   const walked = newest.loop?.walked_m ? ` · ${Math.round(newest.loop.walked_m)} m` : "";
   write("time", newest.status && state !== "none" ? clock(newest.status.seconds) + walked : "");
   drawHealth({ scene, linked, battery, drawsPoints: cloud.works });
+  drawDance(newest);
   drawCoverage();
   const mayCapture = me?.may.includes("capture") ?? null;
   drawActions({ state, project: scene.project, mayCapture, linked, loop: () => scene.newest.loop });
@@ -240,6 +242,7 @@ function help() {
   const points = `${scene.total.toLocaleString("en")} points on this phone.`;
   byId("about").textContent = me ? who + points : "";
   byId("name-it").hidden = !me?.may.includes("capture") || !isCapturing(scene.state);
+  byId("dance-it").hidden = !isCapturing(scene.state);
   byId("more", HTMLDialogElement).showModal();
 }
 
@@ -248,6 +251,7 @@ const sensors = () => isCapturing(scene.state) && showHealth({ scene, battery })
 byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);
 byId("name-it").addEventListener("click", nameThePlace);
+byId("dance-it").addEventListener("click", () => showDance(scene.newest));
 byId("ceiling").addEventListener("change", (event) => showAll(targetOf(event).checked));
 
 const KEYS = {

@@ -15,6 +15,7 @@ from recon4.kernels.imu import place_points
 from recon4.live.ipc.messages import Snapshot, gaps_message, plan_message, points_message
 from recon4.live.mapper.live_intensity import LiveIntensity
 from recon4.live.mapper.loops import LoopGate
+from recon4.live.mapper.motion_watch import MotionWatch
 from recon4.live.mapper.place_index import PlaceIndex
 from recon4.live.mapper.recovery import Recovery
 from recon4.live.mapper.tracker import Tracker
@@ -64,6 +65,7 @@ class LiveMap:
         self.tracker = Tracker(rig, settings)
         self._preview = PreviewCloud()
         self._intensity = LiveIntensity(len(rig.sensors))
+        self._motion = MotionWatch()
         self._thinned, self._relocated = 0, 0
         self._recent: deque[tuple[int, bool]] = deque()
         """Time of each recent multiframe and whether it was left out."""
@@ -101,7 +103,7 @@ class LiveMap:
 
         Returns:
             The pose, and further messages: ``path`` after a map reset, ``points`` when there are
-            new ones, about once a second ``plan``, ``gaps`` and ``loop``.
+            new ones, about once a second ``plan``, ``gaps``, ``loop`` and ``motion``.
         """
         self._recent.append((frame.t_ns, False))
         interrupted = self.tracker.interrupted(frame)
@@ -111,6 +113,7 @@ class LiveMap:
             self._reset()
             self._preview.reset()
             messages.append(PathMessage([]))
+        self._motion.push(step)
         step, lost = self._resume(step) if interrupted else self._follow(frame, step)
         T_map_body = self.tracker.T_map_odom @ step.T_odom_body
         pose = self._pose(frame, step, T_map_body, lost=lost)
@@ -127,7 +130,9 @@ class LiveMap:
         """The current state, for clients that connect late."""
         chunk = self._preview.since(0) if len(self._preview) else None
         plan = [] if self._plan is None else [self._plan]
-        return Snapshot(list(self._path), chunk, [*plan, self._gaps, self._loop])
+        return Snapshot(
+            list(self._path), chunk, [*plan, self._gaps, self._loop, self._motion.message()]
+        )
 
     def _extend_path(self, p_map: Array) -> None:
         self._here_m = p_map
@@ -232,7 +237,7 @@ class LiveMap:
         self._places.keep(self.tracker.T_map_odom @ step.T_odom_body, ends)
         self._coverage.refresh()
         self._gaps = gaps_message(self._coverage)
-        return [*self._new_plan(frame.t_ns), self._gaps, self._loop]
+        return [*self._new_plan(frame.t_ns), self._gaps, self._loop, self._motion.message()]
 
     def _new_plan(self, now_ns: int) -> list[Plan]:
         """The message ``plan``, unless the next one is not due because the last one was large."""
