@@ -23,7 +23,7 @@ from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
 from recon4.recording.formats.poses import write_kitti
 from recon4.report.artifacts import path_length_m
-from recon4.report.facts import ReportFacts, StageTiming
+from recon4.report.facts import ReportFacts
 from recon4.report.html import write_report
 from recon4.report.verdict import Assessment, assess
 from recon4.result_files import write_graph, write_pose_covariances, write_trajectory
@@ -38,6 +38,7 @@ from recon4.run_summary import (
     hashes_of,
     peak_bytes_of,
     seconds_of,
+    timings,
 )
 from recon4.settings import Settings, values_by_group
 from recon4.store.arrays import load_trajectory
@@ -287,10 +288,7 @@ def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: st
         preset=about.project.preset,
         settings=about.settings,
         artifacts={name: run.artifact.folder for name, run in runs.items()},
-        stages=tuple(
-            StageTiming(name, run.seconds, run.cpu_seconds, run.peak_bytes, run.reused)
-            for name, run in runs.items()
-        ),
+        stages=timings(runs),
         inputs=about.project.inputs,
         versions=versions(),
         rig=figures_of(runs, stages.FRAMES).rig,

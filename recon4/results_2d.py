@@ -21,7 +21,6 @@ from recon4.model.usability import MapVerdict
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
 from recon4.report.artifacts import path_length_m
-from recon4.report.facts import StageTiming
 from recon4.report.page_2d import GridImage, Page2d, write_page_2d
 from recon4.report.rows import imported_rows
 from recon4.result_files import write_graph, write_trajectory
@@ -33,6 +32,7 @@ from recon4.run_summary import (
     hashes_of,
     peak_bytes_of,
     seconds_of,
+    timings,
 )
 from recon4.settings import values_by_group
 from recon4.slam2d.map_files import read_map
@@ -207,10 +207,7 @@ def _page(made: _Made, about: About) -> Page2d:
                 folder["scans_2d"] / "report.json", _MAX_REPORT_BYTES, failure=StoreError
             )
         ),
-        stages=tuple(
-            StageTiming(name, run.seconds, run.cpu_seconds, run.peak_bytes, run.reused)
-            for name, run in made.runs.items()
-        ),
+        stages=timings(made.runs),
         versions=versions(),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,8 +11,10 @@ from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict
+from recon4.report.facts import StageTiming
 from recon4.settings import Settings
 from recon4.store.hashing import hash_file
+from recon4.store.ledger import FinishedStage
 from recon4.store.project import ProjectDescription
 from recon4.store.stage import StageRun
 
@@ -51,15 +53,15 @@ class StageSummary:
     @staticmethod
     def of(run: StageRun[Any]) -> StageSummary:
         """The summary of a stage that ran."""
-        done = run.done
+        done = spent(run)
         return StageSummary(
             key=done.key,
             stage=done.stage,
             version=done.version,
             finished=done.finished,
-            seconds=round(run.seconds, 3),
-            cpu_seconds=round(run.cpu_seconds, 3),
-            peak_bytes=run.peak_bytes,
+            seconds=round(done.seconds, 3),
+            cpu_seconds=round(done.cpu_seconds, 3),
+            peak_bytes=done.peak_bytes,
             reused=run.reused,
             figures=run.figures,
         )
@@ -108,14 +110,34 @@ def duration_s(trajectory: Trajectory) -> float:
     return round(int(trajectory.t_ns[-1] - trajectory.t_ns[0]) / 1e9, 3)
 
 
+def spent(run: StageRun[Any]) -> FinishedStage:
+    """The record of a stage with the time and memory of all its times in this run."""
+    times = (*run.before, run.done)
+    return replace(
+        run.done,
+        seconds=sum(done.seconds for done in times),
+        cpu_seconds=sum(done.cpu_seconds for done in times),
+        peak_bytes=max(done.peak_bytes for done in times),
+    )
+
+
+def timings(runs: Mapping[str, StageRun[Any]]) -> tuple[StageTiming, ...]:
+    """Time and memory of all stages, for the report."""
+    spents = ((name, run.reused, spent(run)) for name, run in runs.items())
+    return tuple(
+        StageTiming(name, done.seconds, done.cpu_seconds, done.peak_bytes, reused)
+        for name, reused, done in spents
+    )
+
+
 def seconds_of(runs: Mapping[str, StageRun[Any]]) -> float:
     """Wall clock of all stages, of the earlier run where reused [s]."""
-    return round(sum(run.seconds for run in runs.values()), 3)
+    return round(sum(spent(run).seconds for run in runs.values()), 3)
 
 
 def peak_bytes_of(runs: Mapping[str, StageRun[Any]]) -> int:
     """Largest resident memory of any stage [bytes]."""
-    return max(run.peak_bytes for run in runs.values())
+    return max(spent(run).peak_bytes for run in runs.values())
 
 
 def hashes_of(

@@ -11,6 +11,7 @@ import numpy as np
 
 from recon4.calibration.calibrate import Agreement
 from recon4.calibration.result import CalibrationResult
+from recon4.calibration.slices import LidarSlices
 from recon4.geometry.se3 import SE3
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig
@@ -60,6 +61,22 @@ def _parameters() -> tuple[ParameterFigures, ...]:
     return tuple(ParameterFigures(**dict(zip(names, row, strict=True))) for row in rows)
 
 
+def _beams() -> tuple[ParameterFigures, ...]:
+    """Two beams of the vertical LiDAR; the walk does not show the elevation of one."""
+    rows = [
+        ("beam range", "0", "m", 0.0035, 0.0002, "off"),
+        ("beam range", "1", "m", -0.0012, 0.0003, "consistent"),
+        ("beam elevation", "0", "rad", 0.0, None, "not observable"),
+        ("beam elevation", "1", "rad", 0.0004, 0.0001, "off"),
+        ("beam azimuth", "0", "rad", 0.0005, 0.00005, "off"),
+        ("beam azimuth", "1", "rad", -0.0005, 0.00005, "off"),
+    ]
+    names = ("quantity", "axis", "unit", "change", "sd", "status")
+    return tuple(
+        ParameterFigures(sensor="vertical", **dict(zip(names, row, strict=True))) for row in rows
+    )
+
+
 def _calibration(context: StageContext, *, found: Rig | None, **_: Any) -> None:
     outcome = (
         "calibrated: windows that were not used confirm it"
@@ -68,6 +85,7 @@ def _calibration(context: StageContext, *, found: Rig | None, **_: Any) -> None:
     )
     figures = CalibrationFigures(
         parameters=_parameters(),
+        beams=_beams() if found else (),
         windows=8,
         rms_m=0.006,
         applied=found is not None,
@@ -76,7 +94,12 @@ def _calibration(context: StageContext, *, found: Rig | None, **_: Any) -> None:
     before = Agreement(rms_m=0.0183, offset_m=0.0442, imu_rms=1.1)
     after = Agreement(rms_m=0.0061, offset_m=0.0012, imu_rms=float("nan"))
     pair = {"before": before, "after": after} if found else {}
-    CalibrationResult(figures=figures, rig=found, **pair).save(context.out)
+    line = [[0.1 * k - 3.0, 2.0] for k in range(60)]
+    slices = (
+        LidarSlices(name="horizontal", before=line, after=line),
+        LidarSlices(name="vertical", before=[[x, y + 0.3] for x, y in line], after=line),
+    )
+    CalibrationResult(figures=figures, rig=found, slices=slices, **pair).save(context.out)
 
 
 def calibrated_project(root: Path, *, rig: Rig, found: Rig | None) -> None:

@@ -5,21 +5,25 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
+from typing import TypeVar
 
 from pydantic import BaseModel, Field, ValidationError
 
 from app.errors import NotFound
 from app.projects.store import ProjectStore
-from app.rigs.model import AgreementView, CalibrationView, ParameterView
+from app.rigs.model import AgreementView, CalibrationSlices, CalibrationView, ParameterView
 from app.rigs.uses import RigUses
 from recon4.errors import StoreError
 from recon4.names import visible
-from recon4.store.frames import CALIBRATED_RIG
+from recon4.store.frames import CALIBRATED_RIG, CALIBRATION_SLICES
 from recon4.store.json_files import read_object
 
 MAX_CALIBRATION_BYTES = 4 << 20
 _SHOWN = {"rad": (math.degrees(1.0), "°", 3), "m": (100.0, " cm", 2), "s": (1e3, " ms", 2)}
 """Unit -> factor to the unit on screen, its name, decimals."""
+
+
+_Model = TypeVar("_Model", bound=BaseModel)
 
 
 class _Figures(BaseModel):
@@ -30,6 +34,7 @@ class _Figures(BaseModel):
     windows: int = 0
     rms_m: float | None = None
     parameters: list[ParameterView] = Field(default=[], max_length=1000)
+    beams: list[ParameterView] = Field(default=[], max_length=20_000)
 
 
 class _Stored(BaseModel):
@@ -56,7 +61,7 @@ class Calibrations:
         folder = self._projects.artifact(project_id, "calibration")
         if folder is None:
             return None
-        stored = _read(folder)
+        stored = _parsed(_Stored, folder / "calibration.json")
         calibrated = folder / CALIBRATED_RIG
         return CalibrationView(
             outcome=visible(stored.figures.outcome, most=400),
@@ -64,11 +69,26 @@ class Calibrations:
             windows=stored.figures.windows,
             rms_m=stored.figures.rms_m,
             parameters=[_visible(row) for row in stored.figures.parameters],
+            beams=[_visible(row) for row in stored.figures.beams],
             before=stored.before,
             after=stored.after,
             rig=self._uses.of_project(project_id),
             saved=self._uses.with_file(calibrated) if calibrated.is_file() else None,
         )
+
+    def slices(self, project_id: str) -> CalibrationSlices | None:
+        """Slices before and after the calibration of a project's rig; None = there are none.
+
+        Raises:
+            NotFound: If there is no such project.
+            StoreError: If the file of the stage is damaged.
+        """
+        folder = self._projects.artifact(project_id, "calibration")
+        if folder is None or not (folder / CALIBRATION_SLICES).is_file():
+            return None
+        found = _parsed(CalibrationSlices, folder / CALIBRATION_SLICES)
+        lidars = [one.model_copy(update={"name": visible(one.name)}) for one in found.lidars]
+        return found.model_copy(update={"lidars": lidars})
 
     def file(self, project_id: str) -> Path:
         """The calibrated rig of a project.
@@ -121,15 +141,15 @@ def _agreement_lines(before: AgreementView | None, after: AgreementView | None) 
     ]
 
 
-def _read(folder: Path) -> _Stored:
-    found = read_object(folder / "calibration.json", max_bytes=MAX_CALIBRATION_BYTES)
+def _parsed(kind: type[_Model], path: Path) -> _Model:
+    found = read_object(path, max_bytes=MAX_CALIBRATION_BYTES)
     try:
-        return _Stored.model_validate(found)
+        return kind.model_validate(found)
     except ValidationError as error:
         first = error.errors()[0]
         place = ".".join(map(str, first["loc"]))
         raise StoreError(
-            f"calibration.json of this project makes no sense: {place}: {first['msg']}"
+            f"{path.name} of this project makes no sense: {place}: {first['msg']}"
         ) from error
 
 

@@ -240,6 +240,23 @@ class SavedRig(BaseModel):
     version: int
 
 
+class LidarSlicesView(BaseModel):
+    """A horizontal slice as one LiDAR sees it, around the body."""
+
+    name: str
+    before: list[tuple[float, float]] = Field(max_length=20_000)
+    """Points by the rig file, x and y [m]."""
+    after: list[tuple[float, float]] = Field(max_length=20_000)
+    """The same by the calibrated rig."""
+
+
+class CalibrationSlices(BaseModel):
+    """What the LiDARs see before and after a calibration."""
+
+    thickness_m: float
+    lidars: list[LidarSlicesView] = Field(max_length=64)
+
+
 class CalibrationView(BaseModel):
     """Audit of the rig of a project, and its calibration."""
 
@@ -249,6 +266,8 @@ class CalibrationView(BaseModel):
     windows: int
     rms_m: float | None
     parameters: list[ParameterView]
+    beams: list[ParameterView]
+    """The same of single beams; ``axis`` is the ring. Empty = they were not estimated."""
     before: AgreementView | None
     after: AgreementView | None
     rig: SavedRig | None

@@ -23,6 +23,7 @@ from app.rigs.calibrations import evidence_of
 from app.rigs.content import content_of, problems_of, rig_of, warnings_of
 from app.rigs.model import (
     CalibratedVersion,
+    CalibrationSlices,
     CalibrationView,
     NewRig,
     NewVersion,
@@ -153,6 +154,12 @@ def download_version(rig_id: str, number: int, server: Server) -> Response:
 def read_calibration(project_id: str, server: Server) -> CalibrationView | None:
     """What the recording says of its rig; null if the latest run had no audit."""
     return server.calibrations.of(project_id)
+
+
+@router.get("/projects/{project_id}/calibration/slices", summary="Slices of a calibration")
+def read_calibration_slices(project_id: str, server: Server) -> CalibrationSlices | None:
+    """A slice through the walk by the rig file and by the calibrated rig; null if there is none."""
+    return server.calibrations.slices(project_id)
 
 
 @router.post(

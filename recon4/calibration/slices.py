@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,10 +12,26 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.place import place
 from recon4.model.rig import Rig
 
+THICKNESS_M = 0.2
+"""Of the slices that the stage keeps [m]."""
 _SECONDS = 6.0
 _MAX_POINTS = 12_000
 """Drawn of each LiDAR."""
+_MAX_KEPT = 3000
+"""Kept of each LiDAR for the page of the project."""
 _REACH_M = 6.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LidarSlices:
+    """A horizontal slice as one LiDAR sees it, around the body."""
+
+    name: str
+    """Of the LiDAR."""
+    before: list[list[float]]
+    """Points by the rig file, x and y [m], (N, 2)."""
+    after: list[list[float]]
+    """The same by the calibrated rig."""
 
 
 def slice_points(walk: RecordedWalk, rig: Rig, *, thickness_m: float) -> list[tuple[str, Array]]:
@@ -43,5 +61,17 @@ def slice_points(walk: RecordedWalk, rig: Rig, *, thickness_m: float) -> list[tu
     return [(sensor.name, _some(np.concatenate(parts))) for sensor, parts in named]
 
 
-def _some(p: NDArray[np.float64]) -> Array:
-    return p[:: max(1, -(-len(p) // _MAX_POINTS))]
+def lidar_slices(walk: RecordedWalk, calibrated: Rig) -> tuple[LidarSlices, ...]:
+    """The same slice by the rig of a walk and by a calibrated one, to the centimeter."""
+    before, after = (
+        {
+            name: np.round(_some(p, _MAX_KEPT), 2).tolist()
+            for name, p in slice_points(walk, rig, thickness_m=THICKNESS_M)
+        }
+        for rig in (walk.frames.rig, calibrated)
+    )
+    return tuple(LidarSlices(name=name, before=p, after=after[name]) for name, p in before.items())
+
+
+def _some(p: NDArray[np.float64], most: int = _MAX_POINTS) -> Array:
+    return p[:: max(1, -(-len(p) // most))]

@@ -24,6 +24,7 @@ from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.note import calibration_note
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.result import CalibrationResult
+from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.walk import RecordedWalk
 from recon4.model.events import Warned
@@ -69,6 +70,8 @@ def run_calibration(
         if calibrated:
             found = _calibrated(found, calibrated, recorded_ns=walk.start_ns)
     found = with_antenna(found, walk, settings=settings)
+    if found.rig is not None:
+        found = replace(found, slices=lidar_slices(walk, found.rig))
     for text in found.figures.warnings:
         progress.event(Warned(text=text))
     return found
@@ -137,6 +140,8 @@ def _exchanged(rig: Rig, found: JointEstimate) -> tuple[str, ...]:
 
 def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
     unknown = sum(row.status == "not observable" for row in rows)
+    if unknown == len(rows):
+        return f"the walk shows nothing of the rig: {unknown} parameters are not observable"
     text = "the rig file agrees with the recording"
     return f"{text}; {unknown} of {len(rows)} parameters are not observable" if unknown else text
 

@@ -162,7 +162,8 @@ def _calibration(results: Results) -> list[Finding]:
             for text in found.warnings
         ]
     text = f"Rig: {found.outcome}."
-    agrees = found.parameters and not any(row.status == "off" for row in found.parameters)
+    status = {row.status for row in found.parameters}
+    agrees = "consistent" in status and "off" not in status
     return [Finding(Level.GOOD if agrees else Level.NOTE, text)]
 
 

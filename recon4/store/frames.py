@@ -45,6 +45,8 @@ INDEX = np.dtype(
 
 CALIBRATED_RIG = "rig.toml"
 """In the folder of the stage ``calibration``: the calibrated rig, if it is used."""
+CALIBRATION_SLICES = "slices.json"
+"""There, too: what the LiDARs see with the rig file and with the calibrated rig."""
 _HEADER_BYTES = 128
 _MAX_REPORT_BYTES = 64 << 20
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)

@@ -136,21 +136,6 @@ class StageRun(Generic[OfStage]):
     """The same stage with other inputs earlier in this run: a rig that is calibrated repeats the
     odometry."""
 
-    @property
-    def seconds(self) -> float:
-        """Wall clock, with that of the times before [s]."""
-        return sum(done.seconds for done in (*self.before, self.done))
-
-    @property
-    def cpu_seconds(self) -> float:
-        """Processor time, with that of the times before [s]."""
-        return sum(done.cpu_seconds for done in (*self.before, self.done))
-
-    @property
-    def peak_bytes(self) -> int:
-        """Largest resident memory of all times [bytes]."""
-        return max(done.peak_bytes for done in (*self.before, self.done))
-
 
 class StageRunner:
     """Runs the stages of a project in the given order, each at most once for the same inputs."""

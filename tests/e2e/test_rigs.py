@@ -53,6 +53,21 @@ def colors_of(page):
     )
 
 
+def drawn(canvas):
+    """How many rows of pixels of a drawing have points."""
+    expect(canvas).to_be_visible()
+    return canvas.evaluate(
+        """(canvas) => {
+            const { width, height } = canvas;
+            const { data } = canvas.getContext("2d").getImageData(0, 0, width, height);
+            let rows = 0;
+            for (let y = 0; y < height; y++)
+                rows += data.subarray(4 * y * width, 4 * (y + 1) * width).some(Boolean);
+            return { rows };
+        }"""
+    )
+
+
 def test_a_rig_is_seen_as_drawing_and_numbers(server, page, look, screenshot):
     calibrated_project(server.root / "walk", rig=field_of(server), found=None)
     page.goto(server.url)
@@ -214,6 +229,18 @@ def test_a_calibrated_rig_is_saved_as_a_version(server, page, look, screenshot):
     section = page.locator("rig-section")
     expect(section.get_by_text("Calibrated rig used for this map")).to_be_visible()
     expect(section.get_by_role("row").filter(has_text="common planes")).to_contain_text("18.3 mm")
+    beams = section.get_by_text("Corrections of 2 single beams")
+    beams.click()
+    expect(
+        section.get_by_role("row").filter(has_text="vertical 0").last.get_by_role("cell")
+    ).to_have_text(["+3.50 ± 0.20 mm", "not observable", "+0.0286 ± 0.0029°"])
+    beams.click()
+    before, after = (
+        drawn(section.get_by_role("img", name=f"Slice 20 cm thick, {name}"))
+        for name in ("rig file", "calibrated")
+    )
+    assert before["rows"] > after["rows"] > 0
+    fits(page)
     screenshot(page, "project-calibrated")
 
     section.get_by_role("button", name="Save as a new rig version").click()

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { calibratingJob, outcomeOf, rowsOf } from "../../web/projects/rig_audit.js";
+import { beamRows, calibratingJob, outcomeOf, rowsOf } from "../../web/projects/rig_audit.js";
 import { slug } from "../../web/rigs/rig_dialogs.js";
 
 const parameter = (more = {}) => ({
@@ -69,4 +69,38 @@ test("the job is repeated with calibration, once", () => {
 test("an exported file is imported under the name of its rig", () => {
   assert.equal(slug("field-v12.toml"), "field");
   assert.equal(slug("Our backpack (2).toml"), "Our-backpack-2-");
+});
+
+test("a beam is a row, and what the walk does not show says so", () => {
+  const beam = (quantity, change, sd, status = "off") => ({
+    sensor: "vertical",
+    axis: "3",
+    quantity: `beam ${quantity}`,
+    change,
+    sd,
+    status,
+  });
+  const rows = beamRows([
+    beam("range", 0.0035, 0.0002),
+    beam("elevation", 0, null, "not observable"),
+    beam("azimuth", -0.0005, 0.00005),
+  ]);
+  assert.deepEqual(rows, [
+    ["vertical 3", "+3.50 ± 0.20 mm", "not observable", "−0.0286 ± 0.0029°"],
+  ]);
+});
+
+test("the receiver has a name", () => {
+  const [row] = rowsOf([
+    {
+      sensor: "gnss",
+      quantity: "clock",
+      axis: "",
+      unit: "s",
+      change: -0.05,
+      sd: 0.0001,
+      status: "off",
+    },
+  ]);
+  assert.equal(row.sensor, "GNSS antenna");
 });

@@ -10,12 +10,13 @@ const STATUS = {
   off: { mark: "✕", word: "differs", className: "bad" },
   "not observable": { mark: "–", word: "not observable", className: "quiet" },
 };
+const NAMES = { imu: "IMU", gnss: "GNSS antenna" };
 const MODE = "calibration.mode=";
 
 /** The rows of the table: texts, and the result as mark and word. */
 export const rowsOf = (parameters) =>
   parameters.map(({ sensor, quantity, axis, unit, change, sd, status }) => ({
-    sensor: sensor === "imu" ? "IMU" : sensor,
+    sensor: NAMES[sensor] ?? sensor,
     quantity: [quantity, axis].filter(Boolean).join(" "),
     change: status === "not observable" && sd === null ? "–" : amount(change, sd, UNITS[unit]),
     ...STATUS[status],
@@ -26,6 +27,25 @@ function amount(change, sd, { factor, unit, digits }) {
   const sign = value < 0 ? "−" : "+";
   const text = `${sign}${Math.abs(value).toFixed(digits)}`;
   return sd === null ? text + unit : `${text} ± ${(sd * factor).toFixed(digits)}${unit}`;
+}
+
+const BEAM = {
+  range: { factor: 1e3, unit: " mm", digits: 2 },
+  elevation: { factor: 180 / Math.PI, unit: "°", digits: 4 },
+  azimuth: { factor: 180 / Math.PI, unit: "°", digits: 4 },
+};
+
+/** A row for each beam: [LiDAR and ring, range, elevation, azimuth]. */
+export function beamRows(beams) {
+  const rows = new Map();
+  for (const { sensor, axis, quantity, change, sd, status } of beams) {
+    const name = `${sensor} ${axis}`;
+    if (!rows.has(name)) rows.set(name, {});
+    const kind = quantity.replace("beam ", "");
+    const known = sd !== null && status !== "not observable";
+    rows.get(name)[kind] = known ? amount(change, sd, BEAM[kind]) : "not observable";
+  }
+  return [...rows].map(([name, of]) => [name, ...Object.keys(BEAM).map((kind) => of[kind] ?? "–")]);
 }
 
 /** The outcome in a word. */

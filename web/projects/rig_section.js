@@ -6,13 +6,16 @@ import {
   listRigs,
   projectUrl,
   readCalibration,
+  readCalibrationSlices,
   readMe,
   rigUrl,
   saveCalibratedRig,
 } from "../shared/api.js";
 import { attempt, fields, fill, make } from "../shared/dom.js";
-import { calibratingJob, outcomeOf, rowsOf } from "./rig_audit.js";
+import { calibrationSlices } from "./calibration_slices.js";
+import { beamRows, calibratingJob, outcomeOf, rowsOf } from "./rig_audit.js";
 
+const BEAM_HEADS = ["LiDAR and ring", "Range", "Elevation", "Azimuth"];
 const HEADS = ["Sensor", "Quantity", "Change ± σ", "Result"];
 
 export class RigSection extends HTMLElement {
@@ -33,16 +36,17 @@ export class RigSection extends HTMLElement {
     const number = ++this.#read;
     const found = await attempt(this.#message, async () => ({
       audit: await readCalibration(this.#id),
+      slices: await readCalibrationSlices(this.#id),
       me: await readMe(),
     }));
     if (number !== this.#read) return;
     this.hidden = !found?.audit && !this.#message.textContent;
     if (!found?.audit) return;
     this.#mayProcess = found.me.may.includes("process");
-    this.#draw(found.audit);
+    this.#draw(found.audit, found.slices);
   }
 
-  #draw(audit) {
+  #draw(audit, slices) {
     const { mark, word, className } = outcomeOf(audit);
     fill(
       this.#body,
@@ -50,7 +54,9 @@ export class RigSection extends HTMLElement {
       make("p", {}, audit.outcome),
       this.#rigLine(audit),
       audit.parameters.length ? this.#table(audit) : null,
+      audit.beams.length ? this.#beams(audit) : null,
       audit.before && audit.after ? this.#agreement(audit) : null,
+      slices ? calibrationSlices(slices) : null,
       this.#mayProcess ? this.#buttons(audit) : null,
     );
   }
@@ -88,6 +94,33 @@ export class RigSection extends HTMLElement {
       { open: off },
       make("summary", {}, `${rows.length} parameters compared`),
       make("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Audit" }, table),
+    );
+  }
+
+  #beams({ beams }) {
+    const rows = beamRows(beams);
+    const cells = ([name, ...values]) =>
+      make(
+        "tr",
+        {},
+        make("th", { scope: "row" }, name),
+        ...values.map((text) => make("td", { className: "number" }, text)),
+      );
+    const table = make(
+      "table",
+      { className: "audit" },
+      make(
+        "thead",
+        {},
+        make("tr", {}, ...BEAM_HEADS.map((text) => make("th", { scope: "col" }, text))),
+      ),
+      make("tbody", {}, ...rows.map(cells)),
+    );
+    return make(
+      "details",
+      {},
+      make("summary", {}, `Corrections of ${rows.length} single beams`),
+      make("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Beams" }, table),
     );
   }
 

@@ -331,6 +331,8 @@ export const addRigVersion = (rig_id, version) =>
   request("POST /api/rigs/{rig_id}/versions", { path: { rig_id }, body: version });
 export const readCalibration = (project_id) =>
   request("GET /api/projects/{project_id}/calibration", { path: { project_id } });
+export const readCalibrationSlices = (project_id) =>
+  request("GET /api/projects/{project_id}/calibration/slices", { path: { project_id } });
 export const saveCalibratedRig = (project_id, version) =>
   request("POST /api/projects/{project_id}/calibration/rig", {
     path: { project_id },

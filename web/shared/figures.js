@@ -33,10 +33,9 @@ const ROWS = [
 
 /** [caption, value] rows; figures that are missing are left out. */
 export const figures = (summary) =>
-  ROWS.filter(([, key]) => summary[key] !== undefined && summary[key] !== null).map(([text, key, format]) => [
-    text,
-    format(summary[key]),
-  ]);
+  ROWS.filter(([, key]) => summary[key] !== undefined && summary[key] !== null).map(
+    ([text, key, format]) => [text, format(summary[key])],
+  );
 
 /** The caption below a project's name. */
 export function headline(summary) {

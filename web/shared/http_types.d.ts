@@ -84,12 +84,18 @@ export interface CalibratedVersion {
   note?: string;
 }
 
+export interface CalibrationSlices {
+  thickness_m: number;
+  lidars: Array<LidarSlicesView>;
+}
+
 export interface CalibrationView {
   outcome: string;
   applied: boolean;
   windows: number;
   rms_m: number | null;
   parameters: Array<ParameterView>;
+  beams: Array<ParameterView>;
   before: AgreementView | null;
   after: AgreementView | null;
   rig: SavedRig | null;
@@ -384,6 +390,12 @@ export interface JobView {
   run_progress: number;
   run_eta_s: number | null;
   resumable: boolean;
+}
+
+export interface LidarSlicesView {
+  name: string;
+  before: Array<[number, number]>;
+  after: Array<[number, number]>;
 }
 
 export interface ListedReference {
@@ -1102,6 +1114,10 @@ export interface Operations {
   "GET /api/projects/{project_id}/calibration": {
     path: { project_id: string };
     response: CalibrationView | null;
+  };
+  "GET /api/projects/{project_id}/calibration/slices": {
+    path: { project_id: string };
+    response: CalibrationSlices | null;
   };
   "GET /api/projects/{project_id}/files/{name}": {
     path: { project_id: string; name: string };

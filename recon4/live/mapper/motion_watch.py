@@ -18,8 +18,9 @@ _SD_RAD_S, _SD_M_S2, _SD_RAD_S2 = 0.008, 0.15, 0.004
 standard deviations of audits of a staircase, a field and a street tell."""
 _ENOUGH = np.array([np.deg2rad(0.05)] * 3 + [0.005] * 3 + [5e-4])
 """Expected standard deviations below which a calibration finds 0.2°, 1 cm and 5 ms [rad, m, s]."""
-_LONGEST_S = 0.3
-"""No rate is taken over a longer time between two multiframes [s]."""
+_LONGEST_S = 1.0
+"""No rate is taken over a longer time between two multiframes [s]; a computer that is too slow
+leaves some out, and shows less of fast motion."""
 _STILL_RAD_S, _STILL_M_S = 0.05, 0.05
 _NAMES = (*(("rotation", axis) for axis in "xyz"), *(("position", axis) for axis in "xyz"))
 

@@ -1,0 +1,91 @@
+"""Bad input of a calibration: a clear error or "not observable", and the old rig stays."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.calibration.stage import run_calibration
+from recon4.cli.main import main
+from recon4.geometry.se3 import SE3
+from recon4.model.rig import format_rig, load_rig
+from recon4.progress import Silent
+from recon4.store.frames import FrameStore, FrameWriter
+from tests.unit.calibration.conftest import AUTO, mounted, store, tracked
+
+WRONG = {"turn_deg": (0.9, -0.8, 0.9), "shift_m": (0.012, -0.010, 0.012)}
+
+
+def run(recorded, settings=AUTO):
+    return run_calibration(recorded.frames, recorded.odometry, settings=settings, progress=Silent())
+
+
+def test_a_sensor_that_the_recording_lacks_is_not_observable_and_stays(dance, tmp_path):
+    wrong = mounted(dance.rig, 1, **WRONG)
+    absent = replace(wrong.sensors[1], name="absent", T_body_sensor=SE3.identity())
+    rig = replace(wrong, sensors=(*wrong.sensors, absent))
+    with FrameWriter(tmp_path / "frames", rig) as writer:
+        for frame in dance:
+            writer.append(frame)
+        writer.add(imu=dance.imu)
+
+    found = run(tracked(tmp_path, FrameStore.open(tmp_path / "frames"), dance.rig))
+
+    of_absent = [row for row in found.figures.parameters if row.sensor == "absent"]
+    assert [row.status for row in of_absent] == ["not observable"] * 7
+    assert not any("absent" in text for text in found.figures.warnings)
+    if found.rig:
+        assert np.array_equal(found.rig.sensors[2].T_body_sensor.R, np.eye(3))
+        assert np.array_equal(found.rig.sensors[2].T_body_sensor.t, np.zeros(3))
+
+
+def test_a_walk_of_five_seconds_is_too_short_to_change_the_rig(dance, tmp_path):
+    short = replace(dance, frames=dance.frames[:50])
+
+    found = run(store(tmp_path, short, mounted(dance.rig, 1, **WRONG), dance.imu))
+
+    assert not found.figures.applied
+    assert found.rig is None
+    assert "too short" in found.figures.outcome
+
+
+def test_an_imu_of_numbers_that_are_none_is_not_used(dance, tmp_path):
+    nothing = np.full_like(dance.imu.gyro_rad_s, np.nan)
+    imu = replace(dance.imu, gyro_rad_s=nothing, accel_m_s2=nothing)
+    recorded = store(tmp_path, dance, dance.rig, None)
+    frames = replace(recorded.frames, imu=imu)
+
+    found = run(replace(recorded, frames=frames))
+
+    assert {row.sensor for row in found.figures.parameters} == {"s1"}
+    assert not found.figures.applied
+
+
+PAIR = "0 0 0 0 0 0 1 {sensor}\n"
+
+
+@pytest.mark.parametrize(
+    ("rows", "said"),
+    [
+        (["0 0 0 0 0 0 2"], "length 1"),
+        (["nan 0 0 0 0 0 1"], "finite"),
+        (["0 0 0 0 0 0 1", "5 0 0 1 0 0 0", "0 9 0 0 1 0 0"], "hand-eye|contradict"),
+    ],
+)
+def test_pairs_that_are_wrong_write_no_rig(tmp_path, capsys, rows, said):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(format_rig(load_rig("4recon")))
+    before = rig.read_bytes()
+    pairs = tmp_path / "pairs.csv"
+    pairs.write_text("".join(PAIR.format(sensor=row) for row in rows))
+    out = tmp_path / "new.toml"
+
+    code = main(
+        ["calibrate", str(pairs), "--rig", str(rig), "--out", str(out), "--method", "pairs"]
+    )
+
+    assert code != 0
+    assert not out.exists()
+    assert rig.read_bytes() == before
+    text = capsys.readouterr().err
+    assert any(word in text for word in said.split("|")), text
