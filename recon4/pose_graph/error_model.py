@@ -61,9 +61,9 @@ class ErrorModel:
     """The same as a ratio of what half a second of odometry usually states."""
     gnss_m: float = 0.02
     """Error of GNSS that all fixes of a walk share [m]."""
-    usual_rad: float = 9e-4
+    usual_rad: float = 1.15e-3
     """Median residual of registered edges where these factors hold: turn [rad] …"""
-    usual_m: float = 2.5e-3
+    usual_m: float = 3.2e-3
     """… and shift [m]. Where the edges agree better or worse, the errors are smaller or larger."""
     moved: float = 2.0
     """An odometry edge is wrong by this multiple of what the graph moves it by."""
