@@ -22,6 +22,7 @@ from recon4.report.facts import ReportFacts
 from recon4.report.observability import WeakStretch, held_by_surfaces, weak_stretches
 from recon4.report.places import ambiguous_places, separate_pieces
 from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
+from recon4.report.turn_scale import turn_scale
 
 Flags = NDArray[np.bool_]
 
@@ -73,7 +74,7 @@ def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> lis
     """All findings, worst first."""
     found = [*_tracking(results), *_converged(results), *_observability(results)]
     found += [*_calibration(results), *_old_rig(facts), *_uncertain(results)]
-    found += [*_pieces(results), *_look_alike(results.graph)]
+    found += [*_pieces(results), *_look_alike(results.graph), *_turns(results)]
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
     found += [*_imported(results), *_accuracy(facts)]
@@ -233,6 +234,14 @@ def _uncertain(results: Results) -> list[Finding]:
             f"would reduce this to ± {_cm(2.0 * found.point_sd_m)}."
         )
     return [Finding(Level.WARNING if known_m <= _UNKNOWN * limit_m else Level.BAD, text)]
+
+
+def _turns(results: Results) -> list[Finding]:
+    """Whether the odometry turns as far as registered pairs."""
+    if results.graph is None or results.odometry is None:
+        return []
+    found = turn_scale(results.graph, results.odometry)
+    return [Finding(Level.WARNING, found.text)] if found is not None and found.is_off else []
 
 
 def _plausibility(results: Results) -> list[Finding]:
