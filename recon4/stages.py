@@ -291,7 +291,7 @@ REFINE = Stage(
 )
 LEVEL = Stage("level", 9, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
-MAP = Stage("map", 4, ("map",), _map, MapFigures)
+MAP = Stage("map", 5, ("map",), _map, MapFigures)
 
 _PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(

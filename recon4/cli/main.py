@@ -164,7 +164,8 @@ def export(
         bool, typer.Option("--raw", help="Points where they were measured, not on surfaces.")
     ] = False,
     strays: Annotated[
-        bool, typer.Option("--strays", help="Also stray returns, as class 7 (low noise); .laz.")
+        bool,
+        typer.Option("--strays", help="Also stray returns, as classes 7 and 18 (noise); .laz."),
     ] = False,
 ) -> None:
     """Write the map of a project, in any CRS when it is georeferenced, or its poses."""

@@ -47,8 +47,8 @@ OPTIONAL = {
 }
 """Fields a map may have: type and description of the extra dimension."""
 COPIED = ("returns", "sigma_m", "planarity")
-LOW_NOISE = 7
-"""Class of stray returns."""
+LOW_NOISE, HIGH_NOISE = 7, 18
+"""Classes of stray returns: beside a surface, as where a beam hits two things; alone in the air."""
 
 
 @dataclass(slots=True)
@@ -93,7 +93,7 @@ def export_laz(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.laz``.
         output: CRS of the file.
-        strays: Also write the stray returns, as class 7 (low noise).
+        strays: Also write the stray returns, as class 7 beside a surface and 18 alone in the air.
         progress: Who watches.
 
     Returns:
@@ -112,7 +112,8 @@ def export_laz(
     fields = [name for name in [*FIELDS, *OPTIONAL] if name in tiles.fields]
     stream = blocks(tiles, fields, to_crs=transform, progress=progress or Silent())
     if strays:
-        noise = blocks(tiles.only_strays(), fields, to_crs=transform, progress=progress or Silent())
+        loose, more = tiles.only_strays(), [*fields, "normal"]
+        noise = blocks(loose, more, to_crs=transform, progress=progress or Silent())
         stream = chain(stream, (replace(block, noise=True) for block in noise))
     with atomic_file(path) as temporary, _Watched(io.FileIO(temporary, "wb")) as file:
         try:
@@ -206,7 +207,9 @@ def _points(block: Block, header: Any, *, absolute: bool) -> Any:
     points["ring"][:] = columns["ring"]
     points["frame_id"][:] = columns["frame_id"]
     if block.noise:
-        points.classification[:] = LOW_NOISE
+        # Too few others around it for a normal: nothing else was measured there.
+        alone = ~columns["normal"].any(axis=1)
+        points.classification[:] = np.where(alone, HIGH_NOISE, LOW_NOISE)
     for name in COPIED:
         if name in columns:
             points[name][:] = columns[name]

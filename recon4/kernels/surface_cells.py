@@ -111,17 +111,56 @@ def center_of(cell: int, side: int, halo: int, cell_m: float) -> tuple[float, fl
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def find_inner(cells: NDArray[np.int32], side: int, out: NDArray[np.bool_]) -> None:
-    """Mark the cells whose windows are complete: all but the outermost.
+def find_rings(
+    cells: NDArray[np.int32], side: int, low: int, high: int, out: NDArray[np.uint8]
+) -> None:
+    """How far each cell is from the border: 0 = outermost, its window is incomplete; 2 = inside.
 
     Args:
         cells: Of `find_cells`, (C,).
         side: Cells along tile and halo.
-        out: Receives the marks, (C,).
+        low: First layer of cells that there are.
+        high: First layer beyond.
+        out: Receives 0, 1 or 2, (C,).
     """
     for c in range(len(cells)):
         i, j, k = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
-        out[c] = min(i, j, k) > 0 and max(i, j, k) < side - 1
+        out[c] = min(i, j, k - low, side - 1 - i, side - 1 - j, high - 1 - k, 2)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def first_of_layers(
+    xyz: NDArray[np.float32],
+    voxel_m: float,
+    cell_voxels: int,
+    side: int,
+    halo: int,
+    out: NDArray[np.int64],
+) -> None:
+    """First point of each layer of cells; the points are in the order of their voxels.
+
+    Args:
+        xyz: Points from the tile's origin [m], (N, 3) or more columns.
+        voxel_m: Edge of a voxel [m].
+        cell_voxels: Voxels along a cell.
+        side: Cells along tile and halo.
+        halo: Cells of the halo.
+        out: Receives the rows, and N after the last, (side + 1,).
+    """
+    first: Any = 0
+    for layer in range(side):
+        out[layer] = first
+        low, high = first, len(xyz)
+        while low < high:
+            middle = (low + high) // 2
+            # As the voxels were numbered: each coordinate within tile and halo.
+            v: Any = np.int64(np.floor(xyz[middle, 2] / voxel_m)) + halo * cell_voxels
+            if min(max(v, 0), side * cell_voxels - 1) // cell_voxels <= layer:
+                low = middle + 1
+            else:
+                high = middle
+        first = low
+    out[side] = len(xyz)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -6,13 +6,83 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.surface_cells import SLOTS, distance_in_front
+from recon4.kernels.surface_cells import PLANE, SLOTS, center_of, distance_in_front
+from recon4.kernels.surface_slots import refit_plane
 
-SURFACE = 9
-"""Shift x y z onto the surface [m], unit normal, standard deviation across [m], returns, planarity;
-without a surface 0, the normal of the neighborhood, NaN, 0, 0."""
+SURFACE = 6
+"""Unit normal, standard deviation across [m], returns, planarity; without a surface the normal of
+the neighborhood, NaN, 0, 0."""
+_MOST_EDGES = 6
+"""Planes of a cell and of its neighbors that its points are compared with."""
+_MIN_AROUND = 12.0
+"""Returns around each stray return at least; fewer say nothing of it."""
+_ALIKE = 0.9
+"""A plane of a neighbor with a larger cosine makes no edge."""
 _ONE_SIDE_M = 0.012
 """A surface whose middle is nearer to a plane than this lies on both sides of it [m]."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def planes_at(
+    c: int,
+    cells: NDArray[np.int32],
+    grid: tuple[int, int, float],
+    neighbors: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]],
+    planes: NDArray[np.float64],
+    slots: NDArray[np.int32],
+    other: NDArray[np.int32],
+    moments: NDArray[np.float64],
+    sums: NDArray[np.float64],
+    limits: NDArray[np.float64],
+    out: NDArray[np.float64],
+) -> tuple[int, int]:
+    """Planes of a cell, fitted again, and after them those that only its neighbors have.
+
+    Args:
+        c: Row of the cell.
+        cells: Of `find_cells`, (C,).
+        grid: Cells along tile and halo, cells of the halo, edge of a cell [m].
+        neighbors: Of `list_neighbors`: begin, near, at.
+        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        slots: Of `choose_planes`, (C, SLOTS).
+        other: Of `only_plane`, (C,).
+        moments: As in `refit_plane`.
+        sums: As in `refit_plane`.
+        limits: As in `refit_plane`.
+        out: Receives the planes, (L, PLANE).
+
+    Returns:
+        How many there are of the cell, and of both.
+    """
+    if other[c] < 0:
+        # Fitted to the same points when the window was.
+        out[0] = planes[slots[c, 0]]
+        out[0, 3] = out[0, 10]
+        return 1, 1
+    begin, near, at = neighbors
+    count = 0
+    center = center_of(cells[c], *grid)
+    first, last = begin[c], begin[c + 1]
+    while count < SLOTS and slots[c, count] >= 0:
+        refit_plane(
+            planes[slots[c, count]], center, grid[2], near[first:last], at[first:last],
+            planes, slots, other, moments, sums, limits, out[count],
+        )  # fmt: skip
+        count += 1
+    every = count
+    for k in range(first, last):
+        for t in range(SLOTS):
+            row = slots[near[k], t]
+            if row < 0:
+                break
+            known = count == 0
+            for q in range(every):
+                a, b = out[q], planes[row]
+                known |= a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > _ALIKE
+            if not known and every < len(out):
+                out[every] = planes[row]
+                every += 1
+    return count, every
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -20,62 +90,111 @@ def onto_planes(
     xyz: NDArray[np.float32],
     to_sensor: NDArray[np.float32],
     starts: NDArray[np.int32],
+    rings: NDArray[np.uint8],
+    cells: NDArray[np.int32],
+    grid: tuple[int, int, float],
+    neighbors: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]],
     normals: NDArray[np.float64],
-    slots: NDArray[np.float64],
+    planes: NDArray[np.float64],
+    slots: NDArray[np.int32],
+    other: NDArray[np.int32],
+    moments: NDArray[np.float64],
+    sums: NDArray[np.float64],
+    limits: NDArray[np.float64],
     gate: float,
     slot_of: NDArray[np.uint8],
+    shift_m: NDArray[np.float32],
+    surface_of: NDArray[np.int32],
     out: NDArray[np.float32],
-) -> None:
+) -> int:
     """Move every point along the normal onto the nearest plane of its cell.
 
     Args:
         xyz: Points [m], (N, 3) or more columns.
         to_sensor: Vectors to the sensor [m], (N, 3).
         starts: Of `find_cells`, (C + 1,).
+        rings: Of `find_rings`; the points of the outermost cells stay, (C,).
+        cells: Of `find_cells`, (C,).
+        grid: As in `planes_at`.
+        neighbors: As in `planes_at`.
         normals: Of points without a plane [unit], (C, 3).
-        slots: Planes of each cell, (C, SLOTS, PLANE).
+        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        slots: Of `choose_planes`, (C, SLOTS).
+        other: Of `only_plane`, (C,).
+        moments: As in `refit_plane`.
+        sums: As in `refit_plane`.
+        limits: As in `refit_plane`.
         gate: Farther points keep their place [standard deviations].
         slot_of: Receives the plane of each point, SLOTS = none, (N,).
-        out: Receives a row of `SURFACE` for each point, (N, SURFACE).
+        shift_m: Receives the shift onto the surface [m], (N, 3).
+        surface_of: Receives the row of each point's surface, (N,).
+        out: Receives the surfaces, (at most (SLOTS + 1) C, SURFACE).
+
+    Returns:
+        How many surfaces there are.
     """
-    side_of, shift = np.zeros((SLOTS, SLOTS)), np.zeros(3)
-    for c in range(len(starts) - 1):
-        count = 0
-        while count < SLOTS and slots[c, count, 4] > 0.0:
-            count += 1
-        if count > 1:
-            edge_sides(slots[c], count, side_of)
+    mine_of, side_of = np.zeros((_MOST_EDGES, PLANE)), np.zeros((_MOST_EDGES, _MOST_EDGES))
+    rows, shift = np.empty(SLOTS + 1, np.int32), np.zeros(3)
+    made = 0
+    for c in range(len(cells)):
+        count = every = 0
+        rows[:] = -1
+        if rings[c] > 0 and (other[c] < 0 or slots[c, 0] >= 0):
+            count, every = planes_at(
+                c, cells, grid, neighbors, planes, slots, other, moments, sums, limits, mine_of
+            )
+        if every > 1:
+            edge_sides(mine_of, count, every, side_of)
         for p in range(starts[c], starts[c + 1]):
             mine = SLOTS
             best = gate
             off = 0.0
             for s in range(count):
-                away = distance_in_front(slots[c, s], xyz, to_sensor, p)
-                if abs(away) < best * slots[c, s, 4]:
-                    best = abs(away) / slots[c, s, 4]
+                away = distance_in_front(mine_of[s], xyz, to_sensor, p)
+                if abs(away) < best * mine_of[s, 4]:
+                    best = abs(away) / mine_of[s, 4]
                     mine = s
                     off = away
             slot_of[p] = mine
-            if mine == SLOTS:
+            if rows[mine] < 0:
+                rows[mine] = made
+                write_surface(out[made], mine_of, mine, normals[c])
+                made += 1
+            surface_of[p] = rows[mine]
+            shift[:] = 0.0
+            if mine < SLOTS:
                 for d in range(3):
-                    out[p, d] = 0.0
-                    out[p, 3 + d] = normals[c, d]
-                out[p, 6], out[p, 7], out[p, 8] = np.nan, 0.0, 0.0
-                continue
-            plane = slots[c, mine]
+                    shift[d] = -off * mine_of[mine, d]
+                if every > 1:
+                    keep_inside(xyz, p, mine_of, every, mine, side_of, shift)
             for d in range(3):
-                shift[d] = -off * plane[d]
-            if count > 1:
-                keep_inside(xyz, p, slots[c], count, mine, side_of, shift)
-            for d in range(3):
-                out[p, d] = shift[d]
-                out[p, 3 + d] = plane[d]
-                out[p, 6 + d] = plane[4 + d]
+                shift_m[p, d] = shift[d]
+    return made
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def write_surface(
+    out: NDArray[np.float32],
+    planes: NDArray[np.float64],
+    mine: int,
+    normal: NDArray[np.float64],
+) -> None:
+    """Write what points say of their surface; that of points without one is `SLOTS`."""
+    if mine == SLOTS:
+        for d in range(3):
+            out[d] = normal[d]
+        out[3], out[4], out[5] = np.nan, 0.0, 0.0
+        return
+    for d in range(3):
+        out[d] = planes[mine, d]
+        out[3 + d] = planes[mine, 4 + d]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def spread_surfaces(
     rows: NDArray[np.int64],
+    shift_m: NDArray[np.float32],
+    surface_of: NDArray[np.int32],
     surfaces: NDArray[np.float32],
     offset: NDArray[np.float32],
     normal: NDArray[np.float32],
@@ -85,21 +204,24 @@ def spread_surfaces(
     """Copy what is known of the surfaces of points to columns.
 
     Args:
-        rows: Row of each point in ``surfaces``, (M,).
-        surfaces: Of `onto_planes`, (N, SURFACE).
+        rows: Row of each point, (M,).
+        shift_m: Of `onto_planes`, (N, 3).
+        surface_of: Of `onto_planes`, (N,).
+        surfaces: Of `onto_planes`, (K, SURFACE).
         offset: Receives the offset from the surface to where each was measured [m], (M, 3).
         normal: Receives the normals, (M, 3).
         facts: Receives standard deviation across [m] and planarity, (2, M).
         returns: Receives the number of returns, 1 without a surface, (M,).
     """
     for m in range(len(rows)):
-        one = surfaces[rows[m]]
+        n = rows[m]
+        one = surfaces[surface_of[n]]
         for d in range(3):
-            offset[m, d] = -one[d]
-            normal[m, d] = one[3 + d]
-        facts[0, m] = one[6]
-        facts[1, m] = one[8]
-        returns[m] = min(max(one[7], 1.0), 65535.0)
+            offset[m, d] = -shift_m[n, d]
+            normal[m, d] = one[d]
+        facts[0, m] = one[3]
+        facts[1, m] = one[5]
+        returns[m] = min(max(one[4], 1.0), 65535.0)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -110,6 +232,7 @@ def find_strays(
     near: NDArray[np.int32],
     slot_of: NDArray[np.uint8],
     ratio: float,
+    alone: float,
     sums: NDArray[np.float64],
     stray: NDArray[np.bool_],
 ) -> None:
@@ -122,6 +245,7 @@ def find_strays(
         near: Of `list_neighbors`.
         slot_of: Plane of each point, SLOTS = none, (N,).
         ratio: Largest ratio of such returns in the 3 x 3 x 3 cells around.
+        alone: As many such returns are few in any case.
         sums: Receives the returns of each cell, and those on no surface, (C, 2).
         stray: Receives the marks, (N,).
     """
@@ -139,23 +263,26 @@ def find_strays(
             for k in range(begin[c], begin[c + 1]):
                 every += sums[near[k], 0]
                 loose += sums[near[k], 1]
-            few = loose <= ratio * every
+            few = loose <= max(ratio * every, alone) and every >= _MIN_AROUND * loose
         for p in range(starts[c], starts[c + 1]):
             stray[p] = few and slot_of[p] == SLOTS
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def edge_sides(planes: NDArray[np.float64], count: int, out: NDArray[np.float64]) -> None:
+def edge_sides(
+    planes: NDArray[np.float64], count: int, every: int, out: NDArray[np.float64]
+) -> None:
     """On which side of each plane of a cell the surfaces of the others lie: 1, -1, 0 = both.
 
     Args:
-        planes: Of the cell, (SLOTS, PLANE).
-        count: How many there are.
-        out: Receives the sides: ``out[a, b]`` = surface a, side of b, (SLOTS, SLOTS).
+        planes: Of `planes_at`, (L, PLANE).
+        count: How many there are of the cell.
+        every: How many there are.
+        out: Receives the sides: ``out[a, b]`` = surface a, side of b, (L, L).
     """
     for a in range(count):
         middle = planes[a, 7:10]
-        for b in range(count):
+        for b in range(every):
             q = planes[b]
             away = q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2] - q[3]
             out[a, b] = 0.0

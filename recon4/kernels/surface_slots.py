@@ -113,15 +113,13 @@ def only_plane(
     weight: NDArray[np.float32],
     starts: NDArray[np.int32],
     planes: NDArray[np.float64],
-    moments: NDArray[np.float64],
     calm: NDArray[np.bool_],
     gate: float,
     least: float,
-    slots: NDArray[np.float64],
+    slots: NDArray[np.int32],
     slot_of: NDArray[np.uint8],
-    sums: NDArray[np.float64],
-    simple: NDArray[np.bool_],
-) -> None:
+    other: NDArray[np.int32],
+) -> int:
     """Give cells of calm windows the only plane they have, if their returns support no other one.
 
     Args:
@@ -130,17 +128,21 @@ def only_plane(
         weight: Of each point, (N,).
         starts: Of `find_cells`, (C + 1,).
         planes: Of `window_planes`, (C, 2, PLANE).
-        moments: Of the sides of each cell, (C, 2, MOMENTS).
         calm: Of `window_planes`, (C,).
         gate: Returns within that many standard deviations support a plane.
         least: Least support of a second plane.
-        slots: Receives the planes, (C, SLOTS, PLANE).
+        slots: Receives the rows of the planes among all, -1 = none, (C, SLOTS).
         slot_of: Receives the slot each point supports, SLOTS = none, (N,).
-        sums: Receives the moments of each slot, (C, SLOTS, MOMENTS).
-        simple: Receives which cells these are, (C,); of the others nothing else is written.
+        other: Receives -1 for these cells; the others are counted, (C,).
+
+    Returns:
+        How many others there are.
     """
+    count = 0
     for c in range(len(planes)):
-        simple[c] = False
+        other[c] = count
+        count += 1
+        slots[c] = -1
         s = 0 if planes[c, 0, 4] > 0.0 else 1
         plane = planes[c, s]
         if not (calm[c] and plane[4] > 0.0) or (s == 0 and planes[c, 1, 4] > 0.0):
@@ -153,11 +155,10 @@ def only_plane(
                 loose += weight[p]
         if loose > least:
             continue
-        simple[c] = True
-        slots[c, 0] = plane
-        sums[c, 0] = moments[c, s]
-        for k in range(1, SLOTS):
-            slots[c, k, 4] = 0.0
+        slots[c, 0] = 2 * c + s
+        other[c] = -1
+        count -= 1
+    return count
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -175,8 +176,8 @@ def choose_planes(
     thickness: NDArray[np.float64],
     gate: float,
     least: float,
-    simple: NDArray[np.bool_],
-    slots: NDArray[np.float64],
+    other: NDArray[np.int32],
+    slots: NDArray[np.int32],
     slot_of: NDArray[np.uint8],
     sums: NDArray[np.float64],
 ) -> None:
@@ -198,10 +199,10 @@ def choose_planes(
         thickness: Of `thickness_of`, (2 C,).
         gate: Returns within that many standard deviations support a plane.
         least: Least support of a second plane; a tenth of it is enough for the first.
-        simple: Of `only_plane`, (C,).
-        slots: Receives the planes, (C, SLOTS, PLANE).
+        other: Of `only_plane`, (C,).
+        slots: Receives the rows of the planes, -1 = none, (C, SLOTS).
         slot_of: Receives the slot each point supports, SLOTS = none, (N,).
-        sums: Receives the moments of each slot, (C, SLOTS, MOMENTS).
+        sums: Receives the moments of each slot of the other cells, (K, SLOTS, MOMENTS).
     """
     listed = np.empty(_MOST_LISTED, np.int64)
     most = 0
@@ -209,10 +210,9 @@ def choose_planes(
         most = max(most, starts[c + 1] - starts[c])
     fits, fit = np.empty((len(listed), most)), np.empty(most)
     for c in range(len(cells)):
-        if simple[c]:
+        if other[c] < 0:
             continue
         first, points = starts[c], starts[c + 1] - starts[c]
-        slots[c, :, 4] = 0.0
         returns = 0.0
         for p in range(points):
             slot_of[first + p] = SLOTS
@@ -244,91 +244,78 @@ def choose_planes(
                         best, chosen = planes[listed[q], 5], q
             if chosen < 0:
                 break
-            slots[c, slot] = planes[listed[chosen]]
+            slots[c, slot] = listed[chosen]
             for p in range(points):
                 if fits[chosen, p] > fit[p]:
                     fit[p] = fits[chosen, p]
                     slot_of[first + p] = slot
-        sums[c] = 0.0
+        mine = sums[other[c]]
+        mine[:] = 0.0
         for p in range(first, first + points):
             if slot_of[p] < SLOTS:
                 x, y, z = np.float64(xyz[p, 0]), np.float64(xyz[p, 1]), np.float64(xyz[p, 2])
-                add_point(sums[c, slot_of[p]], np.float64(weight[p]), x, y, z)
+                add_point(mine[slot_of[p]], np.float64(weight[p]), x, y, z)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def refit_planes(
-    cells: NDArray[np.int32],
-    side: int,
-    halo: int,
+def refit_plane(
+    mine: NDArray[np.float64],
+    center: tuple[float, float, float],
     cell_m: float,
-    begin: NDArray[np.int32],
     near: NDArray[np.int32],
     at: NDArray[np.uint8],
-    simple: NDArray[np.bool_],
-    slots: NDArray[np.float64],
+    planes: NDArray[np.float64],
+    slots: NDArray[np.int32],
+    other: NDArray[np.int32],
     moments: NDArray[np.float64],
+    sums: NDArray[np.float64],
     limits: NDArray[np.float64],
-    out: NDArray[np.float64],
+    new: NDArray[np.float64],
 ) -> None:
-    """Fit the planes of every cell again, to their points in the 3 x 3 x 3 cells around.
-
-    The planes of `simple` cells were fitted to the same points when their windows were.
+    """Fit a plane of a cell again, to the points that support it in the 3 x 3 x 3 cells around.
 
     Args:
-        cells: Of `find_cells`, (C,).
-        side: Cells along tile and halo.
-        halo: Cells of the halo.
+        mine: The plane so far, (PLANE,).
+        center: Of the cell [m].
         cell_m: Edge of a cell [m].
-        begin: Of `list_neighbors`, (C + 1,).
-        near: Of `list_neighbors`.
-        at: Of `list_neighbors`.
-        simple: Of `only_plane`, (C,).
-        slots: Planes so far, (C, SLOTS, PLANE).
-        moments: Of their points about the tile's origin, (C, SLOTS, MOMENTS).
+        near: Its neighbors of `list_neighbors`, itself included.
+        at: Where they lie.
+        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        slots: Of `choose_planes`, (C, SLOTS).
+        other: Of `only_plane`, (C,).
+        moments: Of the sides of each cell, two rows for each, (2 C, MOMENTS).
+        sums: Of `choose_planes`, (K, SLOTS, MOMENTS).
         limits: Least weight, least standard deviation along [m], standard deviation of a cell's
             own offset [m], (3,).
-        out: Receives the planes, (C, SLOTS, PLANE).
+        new: Receives the plane, (PLANE,).
     """
-    total, column, found = np.zeros(MOMENTS), np.zeros(MOMENTS), np.zeros(7)
-    for c in range(len(cells)):
-        cx, cy, cz = center_of(cells[c], side, halo, cell_m)
-        for s in range(SLOTS):
-            mine, new = slots[c, s], out[c, s]
-            new[4] = mine[4]
-            if not mine[4] > 0.0:
-                continue
-            new[:] = mine
-            if simple[c]:
-                new[3] = mine[10]
-                continue
-            new[7] = np.nan
-            total[:] = 0.0
-            column[:] = 0.0
-            along = main_axis(mine)
-            for k in range(begin[c], begin[c + 1]):
-                o = near[k]
-                x = cx + 0.5 * cell_m * (at[k] % 3 - 1)
-                y = cy + 0.5 * cell_m * (at[k] // 3 % 3 - 1)
-                z = cz + 0.5 * cell_m * (at[k] // 9 - 1)
-                away = mine[0] * x + mine[1] * y + mine[2] * z - mine[3]
-                for t in range(SLOTS):
-                    q = slots[o, t]
-                    if not q[4] > 0.0:
-                        break
-                    if (
-                        mine[0] * q[0] + mine[1] * q[1] + mine[2] * q[2] > 0.96
-                        and abs(q[0] * x + q[1] * y + q[2] * z - q[3] - away) < 0.7 * mine[4]
-                    ):
-                        for d in range(MOMENTS):
-                            total[d] += moments[o, t, d]
-                        if column_of(at[k], along) == OWN_COLUMN:
-                            for d in range(4):
-                                column[d] += moments[o, t, d]
-            if total[0] < limits[0] or not plane_of(total, found):
-                continue
-            dot = found[0] * mine[0] + found[1] * mine[1] + found[2] * mine[2]
-            if found[5] < limits[1] ** 2 or abs(dot) < 0.94:
-                continue
-            write_plane(new, found, 1.0 if dot > 0.0 else -1.0, total)
-            new[3] = own_offset(new, column, limits[2])
+    total, column, found = np.zeros(MOMENTS), np.zeros(4), np.zeros(7)
+    new[:] = mine
+    along = main_axis(mine)
+    for k in range(len(near)):
+        o = near[k]
+        x = center[0] + 0.5 * cell_m * (at[k] % 3 - 1)
+        y = center[1] + 0.5 * cell_m * (at[k] // 3 % 3 - 1)
+        z = center[2] + 0.5 * cell_m * (at[k] // 9 - 1)
+        away = mine[0] * x + mine[1] * y + mine[2] * z - mine[3]
+        for t in range(SLOTS):
+            if slots[o, t] < 0:
+                break
+            q = planes[slots[o, t]]
+            if (
+                mine[0] * q[0] + mine[1] * q[1] + mine[2] * q[2] > 0.96
+                and abs(q[0] * x + q[1] * y + q[2] * z - q[3] - away) < 0.7 * mine[4]
+            ):
+                m = moments[slots[o, t]] if other[o] < 0 else sums[other[o], t]
+                for d in range(MOMENTS):
+                    total[d] += m[d]
+                if column_of(at[k], along) == OWN_COLUMN:
+                    for d in range(4):
+                        column[d] += m[d]
+    if total[0] < limits[0] or not plane_of(total, found):
+        return
+    dot = found[0] * mine[0] + found[1] * mine[1] + found[2] * mine[2]
+    if found[5] < limits[1] ** 2 or abs(dot) < 0.94:
+        return
+    write_plane(new, found, 1.0 if dot > 0.0 else -1.0, total)
+    new[3] = own_offset(new, column, limits[2])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
@@ -36,36 +36,46 @@ SPREAD = 1.15
 ONE_SHEET = 1.0
 """Below this standard deviation a surface is one sheet whatever its shape [noise]."""
 MIN_RETURNS = 12.0
-MIN_SUPPORT = 3.0
+MIN_SUPPORT = 0.5
+"""Least support of a second plane of a cell [returns]."""
+MIN_LOOSE = 3.0
+"""A cell with more returns off its only plane is looked at for others."""
 LOOSE, STRICT = (1.5, 1.0, 1.0), (SPREAD, 0.3, 0.05)
 """Rounds of fitting windows: largest deviation across [noise], largest bend [noise], and the part
 of the noise's variance that is the same in all directions: poses and voxels."""
 STRAY_RATIO = 0.015
 """Largest ratio of stray returns among those around them."""
+ALONE = 1.0
+"""As many returns of no surface are stray ones whatever their ratio."""
 BEND_M = 0.002
 """Standard deviation of a cell's surface from the plane of its window [m]."""
+
+
+SLAB = 300_000
+"""Records fitted at once: what is known of their cells is four times as large as themselves."""
+_MARGIN = 2
+"""Layers of cells beyond a slab that its surfaces depend on, as many as in the halo of a tile."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class FittedSurfaces:
     """What is known of the surface at each of N points."""
 
-    rows: NDArray[np.float32]
-    """Of `surface_points.SURFACE` numbers, (N, 9)."""
+    shift_m: NDArray[np.float32]
+    """From the point to the surface [m], (N, 3); zeros where there is none."""
+    surface_of: NDArray[np.int32]
+    """Row of its surface, (N,)."""
+    surfaces: NDArray[np.float32]
+    """Of `surface_points.SURFACE` numbers, (K, 6)."""
     stray: NDArray[np.bool_]
     """Returns of no surface, few beside those of the surfaces around them, (N,)."""
     support: NDArray[np.int32]
     """Points in the 3 x 3 x 3 cells around, the point itself included, (N,)."""
 
     @property
-    def shift_m(self) -> NDArray[np.float32]:
-        """From the point to the surface [m], (N, 3); zeros where there is none."""
-        return self.rows[:, :3]
-
-    @property
     def normal(self) -> NDArray[np.float32]:
         """Unit normal of the surface; that of the neighborhood where there is none, (N, 3)."""
-        return self.rows[:, 3:6]
+        return self.surfaces[self.surface_of, :3]
 
     @property
     def facts(self) -> NDArray[np.float32]:
@@ -73,7 +83,17 @@ class FittedSurfaces:
 
         NaN, 0, 0 where there is none, (3, N).
         """
-        return self.rows[:, 6:].T
+        return self.surfaces[self.surface_of, 3:].T
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """How far returns lie from the surface that they are of."""
+
+    range_m: float
+    """Standard deviation of a range [m]; what is thicker may be two sheets."""
+    all_m: float
+    """With that of poses, beams and bends, where these are known less well [m]."""
 
 
 Points = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
@@ -89,7 +109,7 @@ class _Cells:
     begin: NDArray[np.int32]
     near: NDArray[np.int32]
     at: NDArray[np.uint8]
-    inner: NDArray[np.bool_]
+    rings: NDArray[np.uint8]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,7 +126,7 @@ class _Windows:
 def fit_surfaces(
     records: Records, grid: Grid, *, noise_m: float, scratch: Scratch | None = None
 ) -> FittedSurfaces:
-    """Fit the surfaces of a tile.
+    """Fit the surfaces of a tile, some layers of cells at a time.
 
     Args:
         records: In the order of their voxels, with the halo, (N,).
@@ -114,29 +134,72 @@ def fit_surfaces(
         noise_m: Standard deviation of a range [m].
         scratch: Holds the result and what it is computed from; None = fresh memory.
     """
-    n, views, array = len(records), Views.of(records), (scratch or Scratch()).array
+    n, side, array = len(records), grid.side_cells, (scratch or Scratch()).array
+    shift_m, surface_of = array("shift_m", (n, 3), np.float32), array("surface_of", (n,), np.int32)
+    stray, support = array("stray", (n,), np.bool_), array("support", (n,), np.int32)
+    firsts = np.empty(side + 1, np.int64)
+    surface_cells.first_of_layers(
+        Views.of(records).f4, grid.voxel_m, grid.cell_voxels, side, grid.halo_cells, firsts
+    )
+    surfaces, count = [], 0
+    for low, high in _slabs(firsts):
+        layers = max(low - _MARGIN, 0), min(high + _MARGIN, side)
+        start = firsts[layers[0]]
+        noise = Noise(noise_m, noise_m)
+        part = fit_layers(
+            records[start : firsts[layers[1]]], grid, layers, noise=noise, array=array
+        )
+        own = slice(firsts[low], firsts[high])
+        mine = slice(firsts[low] - start, firsts[high] - start)
+        shift_m[own], stray[own] = part.shift_m[mine], part.stray[mine]
+        np.add(part.surface_of[mine], count, out=surface_of[own])
+        support[own] = part.support[mine]
+        surfaces.append(part.surfaces.copy())
+        count += len(part.surfaces)
+    known = np.concatenate(surfaces) if surfaces else np.empty((0, SURFACE), np.float32)
+    return FittedSurfaces(shift_m, surface_of, known, stray, support)
+
+
+def _slabs(firsts: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
+    """First and last layer (not included) of parts of about `SLAB` records."""
+    low = 0
+    for layer in range(1, len(firsts)):
+        full = firsts[layer] - firsts[low] >= SLAB and firsts[-1] - firsts[layer] >= SLAB // 2
+        if full or layer == len(firsts) - 1:
+            yield low, layer
+            low = layer
+
+
+def fit_layers(
+    records: Records, grid: Grid, layers: tuple[int, int], *, noise: Noise, array: ScratchArray
+) -> FittedSurfaces:
+    """Fit the surfaces of some layers of cells of a tile.
+
+    Args:
+        records: In the order of their cells, (N,).
+        grid: The grid.
+        layers: First layer that there is, and the first beyond; windows of the outermost cells are
+            incomplete, and these have no surfaces.
+        noise: Of the returns.
+        array: Memory for what is computed and for the result.
+    """
+    n, views = len(records), Views.of(records)
     means, to_sensor = (array(name, (n, 3), np.float32) for name in ("means", "to_sensor"))
     weight = array("weight", (n,), np.float32)
     surface_cells.unpack_returns(
         views.f4, views.i2, views.u1, grid.voxel_m, means, to_sensor, weight
     )
-    found = _cells(views.f4, grid, array)
-    fit = _Fit((means, to_sensor, weight, found.starts), found, grid, noise_m, array)
+    found = _cells(views.f4, grid, layers, array=array)
+    fit = _Fit((means, to_sensor, weight, found.starts), found, grid, noise, array)
     windows = fit.windows()
-    planes = fit.planes_of_cells(windows)
-    slot_of, rows = array("slot_of", (n,), np.uint8), array("rows", (n, SURFACE), np.float32)
-    surface_points.onto_planes(
-        views.f4, to_sensor, found.starts, windows.normals, planes, GATE, slot_of, rows
-    )
-    stray, sums = array("stray", (n,), np.bool_), array("stray_sums", (len(planes), 2), np.float64)
-    surface_points.find_strays(
-        weight, found.starts, found.begin, found.near, slot_of, STRAY_RATIO, sums, stray
-    )
+    made = fit.moved(views.f4, windows, fit.slots(windows))
     support = np.repeat(windows.support, np.diff(found.starts))
-    return FittedSurfaces(rows, stray, support)
+    return FittedSurfaces(made.shift_m, made.surface_of, made.surfaces, made.stray, support)
 
 
-def _cells(xyz: NDArray[np.float32], grid: Grid, array: ScratchArray) -> _Cells:
+def _cells(
+    xyz: NDArray[np.float32], grid: Grid, layers: tuple[int, int], *, array: ScratchArray
+) -> _Cells:
     n, side = len(xyz), grid.side_cells
     starts, cells = array("starts", (n + 1,), np.int32), array("cells", (n,), np.int32)
     where = array("where", (side**3,), np.int32)
@@ -146,9 +209,33 @@ def _cells(xyz: NDArray[np.float32], grid: Grid, array: ScratchArray) -> _Cells:
     begin, near = array("begin", (count + 1,), np.int32), array("near", (27 * count,), np.int32)
     at = array("at", (27 * count,), np.uint8)
     entries = surface_cells.list_neighbors(cells, where, side, begin, near, at)
-    inner = array("inner", (count,), np.bool_)
-    surface_cells.find_inner(cells, side, inner)
-    return _Cells(starts, cells, where, begin, near[:entries], at[:entries], inner)
+    rings = array("rings", (count,), np.uint8)
+    surface_cells.find_rings(cells, side, *layers, rings)
+    return _Cells(starts, cells, where, begin, near[:entries], at[:entries], rings)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Slots:
+    """Up to three planes for every cell."""
+
+    rows: NDArray[np.int32]
+    """Of the planes of the windows, -1 = none, (C, SLOTS)."""
+    other: NDArray[np.int32]
+    """Row in the sums of cells of several planes, -1 = only the plane of its window, (C,)."""
+    sums: NDArray[np.float64]
+    """Moments of what supports them, (K, SLOTS, MOMENTS)."""
+    slot_of: NDArray[np.uint8]
+    """Which plane each point supports, SLOTS = none, (N,)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Moved:
+    """Points on their surfaces."""
+
+    shift_m: NDArray[np.float32]
+    surface_of: NDArray[np.int32]
+    surfaces: NDArray[np.float32]
+    stray: NDArray[np.bool_]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -159,7 +246,7 @@ class _Fit:
     """Positions, vectors to the sensor, weights, starts of the cells."""
     found: _Cells
     grid: Grid
-    noise_m: float
+    noise: Noise
     array: ScratchArray
 
     @property
@@ -170,35 +257,34 @@ class _Fit:
     def windows(self) -> _Windows:
         """Planes of the windows around all cells."""
         array, found, count = self.array, self.found, len(self.found.cells)
-        means, to_sensor, weight, starts = self.points
+        _, to_sensor, weight, starts = self.points
         planes = array("planes", (count, 2, PLANE), np.float64)
         moments = array("moments", (count, 2, MOMENTS), np.float64)
         views = array("views", (count, 2, 4), np.float64)
-        calm, every, changed, again = array("marks", (4, count), np.bool_)
-        once = array("once", weight.shape, np.float32)
+        calm, every, changed, again, inner = array("marks", (5, count), np.bool_)
+        np.greater(found.rings, 0, out=inner)
         axes, normals = array("axes", (2, count, 3), np.float64)
-        support = array("support", (count,), np.int32)
+        support = array("window_support", (count,), np.int32)
         every.fill(True)
         planes.fill(0.0)
-        once.fill(1.0)
         axes.fill(0.0)
-        surface_windows.side_moments(means, to_sensor, once, starts, axes, every, moments, views)
+        surface_windows.side_moments(*self.points, axes, every, moments, views)
         surface_windows.window_normals(
             starts, found.begin, found.near, moments, views, MIN_POINTS, axes, support
         )
         normals[:] = axes
         surface_windows.seen_from_behind(to_sensor, starts, axes, changed)
-        surface_windows.side_moments(*self.points, axes, every, moments, views)
+        surface_windows.side_moments(*self.points, axes, changed, moments, views)
         made = _Windows(planes, moments, calm, normals, support)
         sides = (axes, moments, views)
-        self._fit_windows(made, sides, LOOSE, todo=found.inner)
+        self._fit_windows(made, sides, LOOSE, todo=inner)
         surface_windows.view_axes(to_sensor, weight, starts, planes, axes, changed)
         surface_windows.around(changed, found.begin, found.near, again)
-        again &= found.inner
+        again &= inner
         surface_windows.side_moments(*self.points, axes, changed, moments, views)
         self._fit_windows(made, sides, LOOSE, todo=again)
         surface_windows.near_moments(*self.points, axes, planes, ROUND_GATE, moments)
-        self._fit_windows(made, sides, STRICT, todo=found.inner)
+        self._fit_windows(made, sides, STRICT, todo=inner)
         self._drop_mixed(planes)
         return made
 
@@ -210,7 +296,7 @@ class _Fit:
         *,
         todo: NDArray[np.bool_],
     ) -> None:
-        (spread, bend, same), cell_m, noise_m = shape, self.grid.cell_m, self.noise_m
+        (spread, bend, same), cell_m, noise_m = shape, self.grid.cell_m, self.noise.all_m
         limits = (MIN_RETURNS, spread * noise_m, 0.3 * cell_m, bend * noise_m, same, BEND_M)
         found = self.found
         surface_windows.window_planes(
@@ -220,34 +306,58 @@ class _Fit:
 
     def _drop_mixed(self, planes: NDArray[np.float64]) -> None:
         count, found = len(planes), self.found
-        sums = self.array("shape_sums", (count, 2, 5), np.float64)
+        sums = self.array("sums", (count, 2, 5), np.float64)
         kept = self.array("kept", (count, 2), np.bool_)
-        surface_shapes.shape_sums(*self.points, planes, 4.0 * self.noise_m, sums)
+        surface_shapes.shape_sums(*self.points, planes, 4.0 * self.noise.all_m, sums)
         surface_shapes.drop_mixed(
-            *self.step, found.begin, found.near, sums, ONE_SHEET * self.noise_m, 0.35, planes, kept
+            *self.step,
+            found.begin,
+            found.near,
+            sums,
+            ONE_SHEET * self.noise.range_m,
+            0.35,
+            planes,
+            kept,
         )
         planes[:, :, 4] *= kept
 
-    def planes_of_cells(self, windows: _Windows) -> NDArray[np.float64]:
-        """Up to three planes for every cell, (C, SLOTS, PLANE)."""
-        array, found, grid, count = self.array, self.found, self.grid, len(self.found.cells)
-        slots, fitted = array("slots", (2, count, SLOTS, PLANE), np.float64)
-        sums = array("slot_sums", (count, SLOTS, MOMENTS), np.float64)
-        simple = array("simple", (count,), np.bool_)
-        slot_of = array("slot_of", (len(self.points[0]),), np.uint8)
-        surface_slots.only_plane(
-            *self.points, windows.planes, windows.moments, windows.calm, ROUND_GATE, MIN_SUPPORT,
-            slots, slot_of, sums, simple,
-        )  # fmt: skip
+    def slots(self, windows: _Windows) -> _Slots:
+        """The planes of every cell that its returns support."""
+        array, found, count = self.array, self.found, len(self.found.cells)
+        weight = self.points[2]
+        rows, other = array("slots", (count, SLOTS), np.int32), array("other", (count,), np.int32)
+        slot_of = array("slot_of", weight.shape, np.uint8)
+        others = surface_slots.only_plane(
+            *self.points, windows.planes, windows.calm, ROUND_GATE, MIN_LOOSE, rows, slot_of, other
+        )
+        sums = array("sums", (others, SLOTS, MOMENTS), np.float64)
         flat = windows.planes.reshape(2 * count, PLANE)
         thickness = array("thickness", (2 * count,), np.float64)
         surface_slots.thickness_of(flat, thickness)
         surface_slots.choose_planes(
             *self.points, found.where, *self.step, flat, thickness,
-            ROUND_GATE, MIN_SUPPORT, simple, slots, slot_of, sums,
+            ROUND_GATE, MIN_SUPPORT, other, rows, slot_of, sums,
         )  # fmt: skip
-        surface_slots.refit_planes(
-            *self.step, found.begin, found.near, found.at, simple,
-            slots, sums, np.array([MIN_RETURNS, 0.3 * grid.cell_m, BEND_M]), fitted,
+        return _Slots(rows, other, sums, slot_of)
+
+    def moved(self, xyz: NDArray[np.float32], windows: _Windows, slots: _Slots) -> _Moved:
+        """The points on the planes of their cells, and which of them are stray returns."""
+        array, found, grid, n = self.array, self.found, self.grid, len(xyz)
+        _, to_sensor, weight, starts = self.points
+        count = len(found.cells)
+        shift_m = array("slab_shift_m", (n, 3), np.float32)
+        surface_of = array("slab_surface_of", (n,), np.int32)
+        surfaces = array("surfaces", (min(n, (SLOTS + 1) * count), SURFACE), np.float32)
+        made = surface_points.onto_planes(
+            xyz, to_sensor, starts, found.rings, found.cells, self.step[1:],
+            (found.begin, found.near, found.at), windows.normals,
+            windows.planes.reshape(2 * count, PLANE), slots.rows, slots.other,
+            windows.moments.reshape(2 * count, MOMENTS), slots.sums,
+            np.array([MIN_RETURNS, 0.3 * grid.cell_m, BEND_M]), GATE,
+            slots.slot_of, shift_m, surface_of, surfaces,
         )  # fmt: skip
-        return fitted
+        stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 2), np.float64)
+        surface_points.find_strays(
+            weight, starts, found.begin, found.near, slots.slot_of, STRAY_RATIO, ALONE, sums, stray
+        )
+        return _Moved(shift_m, surface_of, surfaces[:made], stray)

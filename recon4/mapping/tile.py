@@ -17,7 +17,8 @@ from recon4.mapping.intensity import normalized_intensity
 from recon4.mapping.normals import local_normals
 from recon4.mapping.records import Records, Views, is_own, to_sensor_m
 from recon4.mapping.scratch import Scratch
-from recon4.mapping.surfaces import fit_surfaces
+from recon4.mapping.sparse_surfaces import with_sparse_places
+from recon4.mapping.surfaces import FittedSurfaces, fit_surfaces
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
@@ -48,6 +49,8 @@ SURFACE_FIELDS = ("raw_offset_m", "returns", "sigma_m", "planarity")
 
 STRATA = 64
 """Number of uniform samples of itself in which a tile is stored, one after the other."""
+BLOCK = 1 << 18
+"""Rows of fitted surfaces made at once, which bounds the memory for what is temporary."""
 FAR_CELL_M = 1.0
 """Size of the cubes of ``MapSettings.far_ratio`` [m]."""
 
@@ -103,21 +106,39 @@ def _fitted(
 ) -> MadeTile:
     """Columns with the points on their surfaces; ``raw_offset_m`` leads back."""
     settings, own = recipe.settings, is_own(records)
-    surfaces = fit_surfaces(records, recipe.grid, noise_m=settings.range_noise_m, scratch=scratch)
+    grid, noise_m = recipe.grid, settings.range_noise_m
+    surfaces = fit_surfaces(records, grid, noise_m=noise_m, scratch=scratch)
+    surfaces = with_sparse_places(records, surfaces, grid, noise_m=noise_m, scratch=scratch)
     stray = own & (surfaces.stray | (surfaces.support < settings.min_neighborhood))
     strays = progressive(np.flatnonzero(stray))
     rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
+    columns: Columns = {}
+    for first in range(0, max(1, len(rows)), BLOCK):
+        part = _fitted_columns(records, rows[first : first + BLOCK], surfaces, recipe=recipe)
+        for name, column in part.items():
+            if first == 0:
+                columns[name] = np.empty((len(rows), *column.shape[1:]), column.dtype)
+            columns[name][first : first + BLOCK] = column
+    return MadeTile(columns, removed, len(strays))
+
+
+def _fitted_columns(
+    records: Records, rows: NDArray[np.intp], surfaces: FittedSurfaces, *, recipe: Recipe
+) -> Columns:
     n = len(rows)
-    normal, offset = scratch.array("columns", (2, n, 3), np.float32)
-    facts, returns = scratch.array("facts", (2, n), np.float32), np.empty(n, np.uint16)
-    spread_surfaces(rows, surfaces.rows, offset, normal, facts, returns)
+    offset, normal = np.empty((2, n, 3), np.float32)
+    facts, returns = np.empty((2, n), np.float32), np.empty(n, np.uint16)
+    spread_surfaces(
+        rows, surfaces.shift_m, surfaces.surface_of, surfaces.surfaces,
+        offset, normal, facts, returns,
+    )  # fmt: skip
     columns = _columns(records, rows, normal, recipe=recipe)
     columns["xyz"] -= offset
     columns["raw_offset_m"] = as_half(offset)
     columns["sigma_m"] = as_half(facts[0])
     columns["planarity"] = as_half(facts[1])
     columns["returns"] = returns
-    return MadeTile(columns, removed, len(strays))
+    return columns
 
 
 def as_half(values: NDArray[np.float32]) -> NDArray[np.float16]:

@@ -29,7 +29,8 @@ from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import read_tum
 from recon4.settings import MapSettings
 from recon4.simulation.frames import simulate_frames
-from recon4.simulation.setup import prepare
+from recon4.simulation.lidar import LidarModel
+from recon4.simulation.setup import Models, prepare
 from recon4.slices.doubles import find_double_walls
 from recon4.store.frames import FrameStore
 from tests.benchmarks.surface_figures import (
@@ -100,19 +101,25 @@ def main() -> None:
         work = a.work or Path(folder)
         for scene in a.scenes:
             for seed in a.seeds:
-                run = double_walls if scene == "double" else against_truth
                 frames = recorded(scene, a.seconds, seed, work)
-                run(frames, work, times=1 if a.once else 2)
+                times = 1 if a.once else 2
+                if scene == "double":
+                    double_walls(frames, work, times=times)
+                    continue
+                perfect = recorded(scene, a.seconds, seed, work, perfect=True)
+                against_truth(frames, perfect, work, times=times)
 
 
-def recorded(scene: str, seconds: float, seed: int, work: Path) -> Path:
-    """Multiframes of a walk; kept in the folder for the next run."""
+def recorded(scene: str, seconds: float, seed: int, work: Path, *, perfect: bool = False) -> Path:
+    """Multiframes of a walk; kept in the folder for the next run. Perfect = of perfect LiDARs."""
     custom = scene in {"exhibition", "double"}
     name = "exhibition" if custom else scene
-    folder = work / f"{name}-{seconds:g}-{seed}"
+    folder = work / f"{name}-{seconds:g}-{seed}{'-perfect' if perfect else ''}"
     if not folder.exists():
         folder.mkdir(parents=True)
-        setup = prepare(build().world if custom else scene, seconds=seconds, seed=seed)
+        models = Models(lidar=LidarModel.perfect()) if perfect else None
+        world = build().world if custom else scene
+        setup = prepare(world, seconds=seconds, seed=seed, models=models)
         simulate_frames(setup, folder)
     return folder
 
@@ -137,14 +144,16 @@ def built(
     return BuiltMap(tiles, cpu_s, memory.peak - memory.before, same, out)
 
 
-def against_truth(frames: Path, work: Path, *, times: int) -> None:
-    """Print the figures of a scene."""
+def against_truth(frames: Path, perfect: Path, work: Path, *, times: int) -> None:
+    """Print the figures of a scene; a walk with perfect LiDARs says what could be seen."""
     scene = frames.name.partition("-")[0]
     truth = read_tum(frames / "truth.tum")
     world = prepare(build().world if scene == "exhibition" else scene, seconds=5.0, seed=0).world
     mesh = triangles_of(world.mesh)
     maps = {name: built(frames, truth, work, surface=name, times=times) for name in SURFACES}
-    covered = coverage([made.tiles for made in maps.values()], mesh)
+    (work / "perfect").mkdir(exist_ok=True)
+    seen = built(perfect, truth, work / "perfect", surface="raw", times=1).tiles
+    covered = coverage([made.tiles for made in maps.values()], seen, mesh)
     rows = []
     for (name, made), share in zip(maps.items(), covered, strict=True):
         error = error_to_truth((tile.xyz_m() for tile in made.tiles), mesh)
@@ -158,7 +167,8 @@ def against_truth(frames: Path, work: Path, *, times: int) -> None:
                 f"{100 * error.median_m:.3f}",
                 f"{100 * error.within_2cm:.2f}",
                 f"{100 * error.far:.3f}",
-                f"{100 * share:.2f}",
+                f"{100 * share.measured:.2f}",
+                f"{100 * share.seen:.2f}",
                 f"{100 * made.tiles.strays / max(1, len(made.tiles)):.2f}",
                 f"{made.cpu_s / maps['raw'].cpu_s:.2f}",
                 f"{made.peak_bytes / maps['raw'].peak_bytes:.2f}",
@@ -166,8 +176,8 @@ def against_truth(frames: Path, work: Path, *, times: int) -> None:
                 "yes" if made.same_bytes else "NO" if times > 1 else "",
             )
         )
-    head = ("", "points", "mean cm", "median", "< 2 cm %", "far %", "covered %", "strays %",
-            "CPU", "memory", "LAZ MB", "same bytes")  # fmt: skip
+    head = ("", "points", "mean cm", "median", "< 2 cm %", "far %", "covered %", "of seen %",
+            "strays %", "CPU", "memory", "LAZ MB", "same bytes")  # fmt: skip
     print(f"\n{frames.name}\n{text_table(head, rows)}", flush=True)
     if scene == "exhibition":
         _print_exhibition(build(), maps)

@@ -227,3 +227,19 @@ def test_gps_time_counts_the_leap_seconds():
     gps_s = adjusted_gps_s(t_ns) + 1e9
 
     np.testing.assert_allclose(gps_s, [1167264018, 1167264016, 0], rtol=0, atol=1e-6)
+
+
+def test_stray_returns_are_classes_of_their_own(tmp_path):
+    walk = room_walk(frames=30, points=20_000, noise_m=0.01)
+    walk.frames[3].xyz[7] = [1.0, 0.5, 0.3]  # in the middle of the room
+    tiles = make(tmp_path / "map", walk=walk, normalize=False)
+
+    count = export_laz(tiles, tmp_path / "map.laz", strays=True)
+
+    found = laspy.read(tmp_path / "map.laz")
+    kinds = np.asarray(found.classification)
+    assert count == len(tiles) + tiles.strays == len(found)
+    assert (kinds[: len(tiles)] == 0).all()
+    alone = ~column(tiles.only_strays(), "normal").any(axis=1)
+    np.testing.assert_array_equal(kinds[len(tiles) :], np.where(alone, 18, 7))
+    assert 0 < alone.sum() < len(alone)

@@ -3,8 +3,10 @@
 import numpy as np
 import pytest
 
+from recon4.mapping import surfaces as surfaces_module
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, in_voxel_order, to_sensor_m
+from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.settings import MapSettings
 
@@ -181,3 +183,46 @@ def test_the_same_points_give_the_same_bytes(rng):
 
     assert first.shift_m.tobytes() == second.shift_m.tobytes()
     assert first.facts.tobytes() == second.facts.tobytes()
+
+
+def test_a_wall_fitted_in_layers_is_that_fitted_at_once(rng, monkeypatch):
+    records = in_voxel_order(returns(rng, wall(rng, WALL_M)), GRID)
+    whole = fit_surfaces(records, GRID, noise_m=NOISE_M)
+    monkeypatch.setattr(surfaces_module, "SLAB", len(records) // 6)
+
+    parts = fit_surfaces(records, GRID, noise_m=NOISE_M)
+
+    apart = np.linalg.norm(parts.shift_m - whole.shift_m, axis=1)
+    assert (apart < 0.0005).mean() > 0.97
+    assert (parts.support == whole.support).all()
+    assert (parts.stray == whole.stray).mean() > 0.999
+    np.testing.assert_allclose(
+        (parts.normal * whole.normal).sum(axis=1)[inside(records["xyz"])], 1.0, atol=0.02
+    )
+
+
+def test_a_sparse_wall_becomes_flat_at_the_larger_scale(rng):
+    records = in_voxel_order(returns(rng, wall(rng, WALL_M, 120)), GRID)
+    before = fit_surfaces(records, GRID, noise_m=NOISE_M)
+    assert not before.shift_m.any()
+
+    after = with_sparse_places(records, before, GRID, noise_m=NOISE_M)
+
+    raw = records["xyz"].astype(float)
+    k = inside(raw)
+    measured, fitted_m = (np.abs(p[k, 1] - WALL_M) for p in (raw, raw + after.shift_m))
+    assert fitted_m.mean() < 0.5 * measured.mean()
+    assert np.median(after.facts[1, k]) > 12
+
+
+def test_two_sparse_sheets_stay_two(rng):
+    sheets = [returns(rng, wall(rng, y_m, 120)) for y_m in (WALL_M, WALL_M + 0.08)]
+    floor = rectangle(rng, [0.5, 0.2, 0.433], [4, 0, 0], [0, 1.6, 0], 120)
+    records = in_voxel_order(np.concatenate([*sheets, returns(rng, floor)]), GRID)
+
+    after = with_sparse_places(
+        records, fit_surfaces(records, GRID, noise_m=NOISE_M), GRID, noise_m=NOISE_M
+    )
+
+    y = (records["xyz"] + after.shift_m)[inside(records["xyz"].astype(float)), 1]
+    assert (np.abs(y - WALL_M - 0.04) < 0.015).mean() < 0.1
