@@ -329,3 +329,17 @@ def test_a_sheet_is_downloaded(server, page):
 
     assert download.value.suggested_filename == "office-slice.svg"
     assert download.value.path().stat().st_size > 5000
+
+
+@looks("desktop light")
+def test_a_slice_says_which_surface_it_shows(tmp_path, page):
+    build_project(tmp_path / "office", points=60_000, strays=5)
+    with server_thread(tmp_path) as running:
+        opened(page, running, "?kind=horizontal&z=1.5&thickness=0.2")
+        for said in ("on fitted surfaces", "as measured", "stray returns only"):
+            image = page.get_by_role("img", name=re.compile(f"points {said}"))
+            expect(image).to_be_visible()
+            page.keyboard.press("r")
+            rested(page)
+
+        expect(page.get_by_role("img", name=re.compile("on fitted surfaces"))).to_be_visible()

@@ -140,3 +140,28 @@ def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, vie
     expect(viewer.locator("[data-old]")).to_have_count(0)
     expect(legend).to_be_visible()
     np.testing.assert_allclose(viewer.evaluate(camera), before, atol=1e-3)
+
+
+@looks("desktop light")
+def test_a_key_shows_fitted_surfaces_then_points_as_measured_then_stray_returns(
+    tmp_path, page, screenshot
+):
+    build_project(tmp_path / "office", points=20_000, strays=5)
+    with server_thread(tmp_path) as running:
+        strays = running.get("/api/projects/office/slices").json()["strays"]
+        page.goto(f"{running.url}/projects/office/viewer/")
+        page.wait_for_function("window.__viserMutable?.canvas")
+        expect(page.get_by_text("20 000 of 20 000 points")).to_be_attached()
+        lie = page.get_by_role("combobox", name="Points lie (R)")
+
+        for caption, choice in (
+            (f"On fitted surfaces, {strays} stray returns left out", "on fitted surfaces"),
+            (f"As measured, {strays} stray returns left out", "as measured"),
+            (f"Only the {strays} stray returns", "stray returns only"),
+        ):
+            expect(page.get_by_text(caption, exact=True)).to_be_attached()
+            expect(lie).to_have_value(choice)
+            screenshot(page, f"viewer-{choice.replace(' ', '-')}")
+            page.keyboard.press("r")
+
+        expect(page.get_by_text(re.compile("On fitted surfaces"))).to_be_attached()
