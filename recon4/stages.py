@@ -305,7 +305,7 @@ TURN_GRAPH = Stage(
     _turn_graph,
     GraphFigures,
 )
-LINE_REFINE = Stage("refine", 102, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
+LINE_REFINE = Stage("refine", 103, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
 
 
 def reviewed(runner: StageRunner, graph: Artifact, decided: Decided) -> Artifact:

@@ -29,6 +29,7 @@ from recon4.profiler.imu_chain import (
     make_drive,
 )
 from recon4.profiler.mirrored import is_mirrored, upright
+from recon4.profiler.planar_hold import PlanarHold, observed_motion
 from recon4.profiler.published_refine import PublishedRefiner
 from recon4.profiler.samples import joined, laser_points, line_points
 from recon4.profiler.stage_odometry import span_of
@@ -37,7 +38,7 @@ from recon4.progress import Progress
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.semi_rigid.refine import Refinement, corrected_by_graph
 from recon4.settings import LineSettings, PlaneSettings, Settings
-from recon4.store.arrays import load_trajectory
+from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
 
@@ -47,27 +48,21 @@ _BLOCK = 5
 
 @dataclass(frozen=True, slots=True)
 class LineRound:
-    """What one round of matching uses; the first are wide, the last are narrow."""
+    """What one round of matching uses."""
 
     gate_m: float
     """Points farther from their plane do not match [m]."""
-    max_sd_m: float
+    max_sd_m: float = 0.03
     """Largest standard deviation of the points of a plane across it [m]."""
-    finest: int
-    """First size of cubes, 0 = the smallest."""
 
 
-ROUNDS = (
-    LineRound(0.5, 0.1, 2),
-    LineRound(0.3, 0.06, 1),
-    LineRound(0.2, 0.04, 0),
-    LineRound(0.15, 0.03, 0),
-    LineRound(0.1, 0.03, 0),
-    LineRound(0.1, 0.03, 0),
-    LineRound(0.1, 0.03, 0),
-    LineRound(0.1, 0.03, 0),
-)
-"""The last one repeats until the steps are small."""
+ROUNDS = (LineRound(0.06), LineRound(0.05))
+"""The last one repeats until the steps are small.
+
+The gate is less than half the thickness of a wall: where only the next room was seen at another
+time, the other side of the wall is the only plane there. The turns are registered before, so the
+first trajectory is near enough.
+"""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,6 +73,7 @@ class LineRefiner:
     scans: LaserScans | None
     settings: LineSettings
     planes: PlaneSettings
+    hold: PlanarHold
     progress: Progress
 
     def refine(self, chain: ImuChain) -> tuple[ImuChain, list[RefineRound], Matched | None]:
@@ -116,7 +112,8 @@ class LineRefiner:
         matched = sweep.match(chain)
         if matched.matches == 0:
             return chain, None, matched
-        step = linear.solve(matched.information, anchor=self._anchor())
+        measured = matched.information + self.hold.information(chain)
+        step = linear.solve(measured, anchor=self._anchor())
         largest_m = float(np.linalg.norm(step[:, POSITION], axis=1).max())
         done = RefineRound(
             mean_m=matched.total_m / matched.matches,
@@ -244,7 +241,7 @@ class _LineSweep:
                     np.ascontiguousarray(p_map[rows]),
                     fraction,
                     center=np.ascontiguousarray(chain.vector[k, 0:3]),
-                    finest=self._wide.finest,
+                    finest=0,
                     gate_m=self._wide.gate_m,
                 )
                 found.add(k, match, s.information_scale)
@@ -277,7 +274,10 @@ def refine_lines(
     )
     chain = initial_chain(drive).following(start)
     scans = _turned_over(load_laser_scans(frames.folder), frames, start)
-    refiner = LineRefiner(frames, scans, settings.lines, settings.planes, progress)
+    steps = load_arrays(odometry / "steps.npz", ["weak_sd_m", "lost"])
+    known = observed_motion(frames.t_mid_ns, drive.knot_ns, **steps)
+    hold = PlanarHold.of(start, drive.knot_ns, known)
+    refiner = LineRefiner(frames, scans, settings.lines, settings.planes, hold, progress)
     chain, rounds, matched = refiner.refine(chain)
     support = None
     if matched is not None:

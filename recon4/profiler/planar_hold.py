@@ -1,0 +1,75 @@
+"""What 2-D SLAM says of the motion between two knots while every line is refined.
+
+A place that the profiler sees only once has no surface from another time: there the IMU alone would
+drift by centimeters within seconds. The first trajectory knows the motion better, so its steps are
+measurements too, as a random walk: a slow error of it is corrected by the surfaces at no cost.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Times, Trajectory
+from recon4.model.usability import WEAK_SD_M
+from recon4.profiler.imu_chain import ImuChain, Information
+
+_WALK_M = np.array([0.02, 0.02, 0.05])
+"""Random walk of the error of x, y and z [m/sqrt(s)]; the height is by the IMU."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PlanarHold:
+    """Steps of the first trajectory from knot to knot, with their information."""
+
+    step_m: Array
+    """In the map [m], (K - 1, 3)."""
+    weight: Array
+    """Information of each step [1/m²], (K - 1, 3); 0 = not known."""
+
+    @staticmethod
+    def of(start: Trajectory, knot_ns: Times, known: NDArray[np.bool_]) -> PlanarHold:
+        """Take the steps of a trajectory.
+
+        Args:
+            start: ``T_map_body``.
+            knot_ns: Knots of the chain [ns], (K,).
+            known: Whether 2-D SLAM observed the motion after each knot, (K - 1,).
+        """
+        slack_ns = 2 * int(knot_ns[1] - knot_ns[0])
+        step_m = np.diff(start.at(knot_ns, slack_ns=slack_ns).t, axis=0)
+        seconds = 1e-9 * np.diff(knot_ns)[:, None]
+        return PlanarHold(step_m, known[:, None] / (_WALK_M**2 * seconds))
+
+    def information(self, chain: ImuChain) -> Information:
+        """Normal equations at the present states."""
+        residual = np.diff(chain.vector[:, 0:3], axis=0) - self.step_m
+        found = Information.none(len(chain) - 1)
+        rows = np.arange(3, 6)
+        found.H[:, rows, rows] = found.H[:, rows + 6, rows + 6] = self.weight
+        found.H[:, rows, rows + 6] = found.H[:, rows + 6, rows] = -self.weight
+        found.g[:, rows] = -self.weight * residual
+        found.g[:, rows + 6] = self.weight * residual
+        return found
+
+
+def observed_motion(
+    t_mid_ns: Times, knot_ns: Times, *, weak_sd_m: Array, lost: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Whether 2-D SLAM observed the motion after each knot, (K - 1,).
+
+    Args:
+        t_mid_ns: Middle of each multiframe [ns], (N,).
+        knot_ns: Knots [ns], (K,).
+        weak_sd_m: Standard deviation of the 2-D laser along its weakest direction [m], (N,); NaN =
+            there is no 2-D laser.
+        lost: Multiframes without a pose by it, (N,).
+    """
+    known = (weak_sd_m <= WEAK_SD_M) & ~lost  # NaN is not
+    middle = knot_ns[:-1] + np.diff(knot_ns) // 2
+    nearest = np.clip(np.searchsorted(t_mid_ns, middle), 1, len(t_mid_ns) - 1)
+    nearest -= middle - t_mid_ns[nearest - 1] < t_mid_ns[nearest] - middle
+    return np.asarray(known[nearest], np.bool_)
