@@ -50,10 +50,6 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Sta
     rig, imu = walk.frames.rig, walk.frames.imu
     if imu is None or len(imu) < 2:
         return Start(rig, False, ())
-    wrong = int((~np.isfinite(imu.gyro_rad_s).all(axis=1)).sum())
-    if wrong:
-        text = f"{wrong} of {len(imu)} of its turn rates are no finite numbers."
-        return Start(rig, False, (text,))
     found = align_gyro(walk.trajectory, walk.frames.t_mid_ns, imu)
     if found is not None and (found.mirrored or found.explained < _MIN_EXPLAINED):
         found = _align_alone(walk, imu, reference, settings=settings) or found

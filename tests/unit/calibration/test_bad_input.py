@@ -10,6 +10,8 @@ from recon4.cli.main import main
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import format_rig, load_rig
 from recon4.progress import Silent
+from recon4.recording.report import ImportReport
+from recon4.recording.samples.clean import clean_imu
 from recon4.store.frames import FrameStore, FrameWriter
 from tests.unit.calibration.conftest import AUTO, mounted, store, tracked
 
@@ -39,25 +41,39 @@ def test_a_sensor_that_the_recording_lacks_is_not_observable_and_stays(dance, tm
         assert np.array_equal(found.rig.sensors[2].T_body_sensor.t, np.zeros(3))
 
 
-def test_a_walk_of_five_seconds_is_too_short_to_change_the_rig(dance, tmp_path):
+def test_a_walk_of_five_seconds_shows_nothing_and_changes_nothing(dance, tmp_path):
     short = replace(dance, frames=dance.frames[:50])
 
     found = run(store(tmp_path, short, mounted(dance.rig, 1, **WRONG), dance.imu))
 
     assert not found.figures.applied
     assert found.rig is None
-    assert "too short" in found.figures.outcome
+    assert "nothing of the rig: 14 parameters are not observable" in found.figures.outcome
 
 
-def test_an_imu_of_numbers_that_are_none_is_not_used(dance, tmp_path):
-    nothing = np.full_like(dance.imu.gyro_rad_s, np.nan)
-    imu = replace(dance.imu, gyro_rad_s=nothing, accel_m_s2=nothing)
-    recorded = store(tmp_path, dance, dance.rig, None)
-    frames = replace(recorded.frames, imu=imu)
+def test_samples_that_are_no_numbers_are_left_out_and_counted(dance, tmp_path):
+    gyro = dance.imu.gyro_rad_s.copy()
+    gyro[::10] = np.nan
+    report = ImportReport()
+    imu = clean_imu(replace(dance.imu, gyro_rad_s=gyro), offset_s=0.0, jumps_ns=(), report=report)
 
-    found = run(replace(recorded, frames=frames))
+    found = run(store(tmp_path, dance, dance.rig, imu))
 
-    assert {row.sensor for row in found.figures.parameters} == {"s1"}
+    assert report.counts["imu_nan"] == len(gyro[::10])
+    assert found.figures.warnings == ()
+    assert not found.figures.applied
+    assert {row.sensor for row in found.figures.parameters} == {"s1", "imu"}
+
+
+def test_a_gyroscope_alone_shows_no_position_of_the_imu(dance, tmp_path):
+    imu = replace(dance.imu, accel_m_s2=np.full_like(dance.imu.accel_m_s2, np.nan))
+
+    found = run(store(tmp_path, dance, dance.rig, imu))
+
+    of_imu = {(row.quantity, row.axis): row.status for row in found.figures.parameters
+              if row.sensor == "imu"}  # fmt: skip
+    assert {of_imu["position", axis] for axis in "xyz"} == {"not observable"}
+    assert of_imu["rotation", "z"] == "consistent"
     assert not found.figures.applied
 
 

@@ -356,6 +356,28 @@ def test_the_rig_is_compared_parameter_by_parameter(facts: ReportFacts, tmp_path
     assert ("data-name", "rig-s") not in page.attributes  # without any standard deviation
 
 
+@pytest.mark.parametrize(
+    ("applied", "levels"), [(True, ["warning", "note"]), (False, ["bad", "warning"])]
+)
+def test_what_no_calibration_corrects_stays_a_warning(
+    facts: ReportFacts, tmp_path: Path, applied: bool, levels: list[str]
+) -> None:
+    off = {"sensor": "v", "quantity": "rotation", "axis": "x", "unit": "rad", "change": 0.02,
+           "sd": 0.001, "status": "off"}  # fmt: skip
+    unit, mount = "The unit of the gyroscope is wrong.", "The LiDAR is off."
+    figures = {"parameters": [off], "outcome": "o", "warnings": [unit, mount],
+               "uncorrected": [unit], "applied": applied}  # fmt: skip
+    (tmp_path / "calibration").mkdir()
+    (tmp_path / "calibration" / "calibration.json").write_text(json.dumps({"figures": figures}))
+    artifacts = {**facts.artifacts, "calibration": tmp_path / "calibration"}
+
+    found = assess(replace(facts, artifacts=artifacts)).findings
+
+    level = {one.text: one.level.name.lower() for one in found}
+    assert sorted([level[unit], level[mount]]) == sorted(levels)
+    assert level[unit] == "warning"
+
+
 def test_the_report_quotes_serial_numbers_and_calibration_of_the_rig(facts: ReportFacts) -> None:
     note = RigCalibration(
         date="2026-01-02", method="joint", sd_deg=0.02, sd_mm=1.1, sd_ms=0.1, sd_antenna_mm=3.7
