@@ -7,7 +7,7 @@ proves wrong, the ground plans of both scans are correlated over rotation and sh
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -93,9 +93,7 @@ def register_scans(
         prior: Where the source is expected; decides where the scans do not.
     """
     some = _some(source, settings.source_points)
-    return _descend(
-        target, some, initial=initial, rounds=settings.rounds, settings=settings, prior=prior
-    )
+    return _descend(target, some, initial=initial, settings=settings, prior=prior)
 
 
 def search_scans(
@@ -130,8 +128,9 @@ def search_scans(
         return first
     some = _some(source, _COARSE_POINTS)
     starts = overlay_plans(target, source, count=settings.starts, height_m=float(initial.t[2]))
+    coarse = replace(settings, rounds=_COARSE_ROUNDS)
     tries = [
-        _descend(target, some, initial=start, rounds=_COARSE_ROUNDS, settings=settings, prior=prior)
+        _descend(target, some, initial=start, settings=coarse, prior=prior)
         for start in [first.T_target_source, *starts]
     ]
     best = max(tries, key=score)
@@ -178,7 +177,6 @@ def _descend(
     source: tuple[Array, Array],
     *,
     initial: SE3,
-    rounds: int,
     settings: ScanSettings,
     prior: CarrierPrior | None,
 ) -> Registration:
@@ -187,7 +185,7 @@ def _descend(
     if len(target) < _MIN_MATCHES or len(p) < _MIN_MATCHES:
         return _refused(initial, 0)
     T, stop, done = initial, StopReason.LIMIT, 0
-    for done in range(1, rounds + 1):
+    for done in range(1, settings.rounds + 1):
         reach = settings.gate_m * (_WIDE if done <= 2 else 1.0)
         q = T @ p
         nearest = target.tree.query(q, distance_upper_bound=reach)[1]

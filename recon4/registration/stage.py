@@ -10,6 +10,8 @@ from recon4.geometry.se3 import SE3
 from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
 from recon4.model.figures import OdometryFigures
 from recon4.model.frames import RecordedFrames
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
@@ -60,13 +62,8 @@ def run_odometry(
     trajectory = dense_trajectory(steps)
     save_trajectory(out / "trajectory.npz", trajectory)
     _save_steps(out / "steps.npz", steps)
-    contradicted: tuple[str, ...] = ()
-    severe: tuple[str, ...] = ()
-    if imu is not None and settings.odometry.use_imu:
-        lost_ns = np.array([step.t_mid_ns for step in steps if step.lost], np.int64)
-        found = unseen_rides(trajectory, imu, frames.rig, lost_ns=lost_ns)
-        contradicted = (*(ride.text for ride in found), *wrong_gravity(trajectory, imu, frames.rig))
-        severe = tuple(ride.text for ride in found if ride.is_severe)
+    used = imu if settings.odometry.use_imu else None
+    contradicted, severe = _contradicted(trajectory, used, frames.rig, steps=steps)
     for text in contradicted:
         progress.event(Warned(text=text))
     lost = sum(step.lost for step in steps)
@@ -78,6 +75,18 @@ def run_odometry(
         severe=severe,
         gnss=aiding is not None,
     )
+
+
+def _contradicted(
+    trajectory: Trajectory, imu: ImuSamples | None, rig: Rig, *, steps: list[OdometryStep]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """What the IMU says against the trajectory, and what of it forbids the use of the map."""
+    if imu is None:
+        return (), ()
+    lost_ns = np.array([step.t_mid_ns for step in steps if step.lost], np.int64)
+    rides = unseen_rides(trajectory, imu, rig, lost_ns=lost_ns)
+    texts = (*(ride.text for ride in rides), *wrong_gravity(trajectory, imu, rig))
+    return texts, tuple(ride.text for ride in rides if ride.is_severe)
 
 
 def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
