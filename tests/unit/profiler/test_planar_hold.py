@@ -1,4 +1,4 @@
-"""The first trajectory holds what no surface holds, and the sides of a wall are told apart."""
+"""The first trajectory holds what no surface holds, and the sides of a wall are kept apart."""
 
 import numpy as np
 import pytest
