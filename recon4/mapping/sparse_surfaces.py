@@ -8,15 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter
 
+from recon4.kernels.surface_cells import number_cells
 from recon4.mapping.grid import Grid
-from recon4.mapping.records import Records
+from recon4.mapping.records import Records, Views
 from recon4.mapping.scratch import Scratch
 from recon4.mapping.surfaces import SPREAD, FittedSurfaces, Noise, fit_layers
 
 SCALE = 3
 """Cells of the larger scale are as many times as large."""
-FEW = 400
+FEW = 60
 """A neighborhood of fewer points is sparse."""
+SHARE = 0.02
+"""A tile with a smaller part of such points is dense; they are then things, not surfaces."""
 NOISE = 3.0
 """Sparse points are far from the sensor or few recordings: poses and beams are less exact."""
 THICKER = 1.4
@@ -46,17 +49,18 @@ def with_sparse_places(
         scratch: Memory to work in; None = fresh memory.
     """
     loose = np.isnan(found.surfaces[:, 3])[found.surface_of] & (found.support < FEW)
-    if not loose.any():
+    if loose.sum() <= SHARE * len(records):
         return found
     coarse = Grid(
         grid.voxel_m, SCALE * grid.cell_voxels, -(-grid.tile_cells // SCALE), grid.thin, 1
     )
-    cell = _cells_of(records, coarse)
-    marked = np.zeros((coarse.side_cells,) * 3, np.uint8)
-    marked.flat[cell[loose]] = 1
+    array = (scratch or Scratch()).array
+    cell, xyz = array("coarse_cells", (len(records),), np.int32), Views.of(records).f4
+    number_cells(xyz, coarse.cell_m, coarse.side_cells, coarse.halo_cells, cell)
+    marked = np.zeros((coarse.side_cells,) * 3, np.bool_)
+    marked.flat[cell[loose]] = True
     wanted = np.flatnonzero(maximum_filter(marked, _REACH).ravel()[cell])
     rows = wanted[np.argsort(cell[wanted], kind="stable")]
-    array = (scratch or Scratch()).array
     layers = 0, coarse.side_cells
     noise = Noise(noise_m, NOISE * noise_m)
     made = fit_layers(np.take(records, rows), coarse, layers, noise=noise, array=array)
@@ -78,10 +82,3 @@ def _thin_enough(
     sigma_m = made.surfaces[made.surface_of, 3]
     usual_m = float(np.median(sigma_m[moved])) if moved.any() else 0.0
     return np.asarray(sigma_m < max(SPREAD * noise_m, THICKER * usual_m))
-
-
-def _cells_of(records: Records, grid: Grid) -> NDArray[np.intp]:
-    """Index of the cell of each record, as the kernels number them, (N,)."""
-    at = np.floor(records["xyz"] / np.float32(grid.cell_m)).astype(np.intp) + grid.halo_cells
-    i, j, k = np.clip(at, 0, grid.side_cells - 1).T
-    return np.asarray((k * grid.side_cells + j) * grid.side_cells + i)
