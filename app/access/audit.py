@@ -20,9 +20,8 @@ import sqlalchemy as sa
 from starlette.requests import HTTPConnection
 
 from app.access.database import AUDIT, writing
+from recon4.store.hashing import CHAIN_START
 
-BEGINNING = "0" * 64
-"""Hash before the first row."""
 LONGEST = 300
 """Longer texts are cut [characters]."""
 REFUSALS_A_MINUTE = 60
@@ -78,7 +77,7 @@ class AuditLog:
         texts = {name: printable(text) for name, text in texts.items()}
         newest = sa.select(AUDIT.c.number, AUDIT.c.hash).order_by(AUDIT.c.number.desc()).limit(1)
         with writing(self._engine) as connection:
-            number, before = connection.execute(newest).one_or_none() or (0, BEGINNING)
+            number, before = connection.execute(newest).one_or_none() or (0, CHAIN_START)
             entry = Entry(number=number + 1, time=timestamp, **texts, hash="")
             entry = replace(entry, hash=link(before, entry))
             connection.execute(AUDIT.insert().values(**asdict(entry)))
@@ -139,7 +138,7 @@ def link(before: str, entry: Entry) -> str:
 
 def follow(rows: Iterable[Entry]) -> Chain:
     """Verify the chain from its beginning."""
-    before, number, broken = BEGINNING, 0, None
+    before, number, broken = CHAIN_START, 0, None
     for row in rows:
         whole = row.number == number + 1 and row.hash == link(before, row)
         if broken is None and not whole:

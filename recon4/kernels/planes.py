@@ -2,6 +2,7 @@
 
 The ten sums of a cube (count, first and second moments) can be added and subtracted with
 sufficient accuracy, so a multiframe can be removed from a map, for good or for a while.
+Cubes of a level are twice as large as those of the one before: two of them make one along an axis.
 The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 12), ``fits`` (C, 9), ``state`` (C,).
 """
 
@@ -25,11 +26,16 @@ _MASK = np.int64((1 << 20) - 1)
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _key(level: int, x: float, y: float, z: float, size: float) -> np.int64:
-    ix = (np.int64(np.floor(x / size)) + _OFFSET) & _MASK
-    iy = (np.int64(np.floor(y / size)) + _OFFSET) & _MASK
-    iz = (np.int64(np.floor(z / size)) + _OFFSET) & _MASK
-    return (np.int64(level) << 60) | (ix << 40) | (iy << 20) | iz
+def _cell(x: float, size: float) -> np.int64:
+    """Number of the cube of a size along one axis."""
+    return np.int64(np.floor(x / size))
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _key(level: int, ix: np.int64, iy: np.int64, iz: np.int64) -> np.int64:
+    """Key of a cube of a level, by its numbers along the axes."""
+    x, y, z = (ix + _OFFSET) & _MASK, (iy + _OFFSET) & _MASK, (iz + _OFFSET) & _MASK
+    return (np.int64(level) << 60) | (x << 40) | (y << 20) | z
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -63,27 +69,31 @@ def add_points(
     cubes used.
     """
     levels = len(sizes)
+    # Neighboring points mostly lie in one cube: its row is searched once.
+    last_key, last_row = np.full(levels, EMPTY), np.zeros(levels, np.int64)
     for k in range(first, len(p)):
         if 2 * (used + levels) > len(keys):
             return k, used
+        ix, iy, iz = _cell(p[k, 0], sizes[0]), _cell(p[k, 1], sizes[0]), _cell(p[k, 2], sizes[0])
         for level in range(levels):
-            size = sizes[level]
-            x, y, z = p[k, 0], p[k, 1], p[k, 2]
-            key = _key(level, x, y, z, size)
-            row = _slot(keys, key)
-            if keys[row] == EMPTY:
-                keys[row] = key
-                used += 1
+            jx, jy, jz = ix >> level, iy >> level, iz >> level
+            key = _key(level, jx, jy, jz)
+            row = last_row[level]
+            if key != last_key[level]:
+                row = _slot(keys, key)
+                if keys[row] == EMPTY:
+                    keys[row] = key
+                    used += 1
+                last_key[level], last_row[level] = key, row
+                if sums[row, _NEWEST] != batch:
+                    sums[row, _NEWEST] = batch
+                    sums[row, BATCHES] += 1.0
+                state[row] = DIRTY
             # Moments about the cube's center are small numbers: removal stays accurate.
-            x -= (np.floor(x / size) + 0.5) * size
-            y -= (np.floor(y / size) + 0.5) * size
-            z -= (np.floor(z / size) + 0.5) * size
-            s = sums[row]
-            add_point(s, sign, x, y, z)
-            if s[_NEWEST] != batch:
-                s[_NEWEST] = batch
-                s[BATCHES] += 1.0
-            state[row] = DIRTY
+            x = p[k, 0] - (jx + 0.5) * sizes[level]
+            y = p[k, 1] - (jy + 0.5) * sizes[level]
+            z = p[k, 2] - (jz + 0.5) * sizes[level]
+            add_point(sums[row], sign, x, y, z)
     return len(p), used
 
 
@@ -245,8 +255,9 @@ def _finest_planes(
     work = np.empty((7, 3))
     rows = np.full(len(q), EMPTY, np.int64)
     for k in range(len(q)):
+        ix, iy, iz = _cell(q[k, 0], sizes[0]), _cell(q[k, 1], sizes[0]), _cell(q[k, 2], sizes[0])
         for level in range(finest, len(sizes)):
-            key = _key(level, q[k, 0], q[k, 1], q[k, 2], sizes[level])
+            key = _key(level, ix >> level, iy >> level, iz >> level)
             row = _slot(keys, key)
             if keys[row] == EMPTY:
                 continue

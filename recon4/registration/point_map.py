@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, TRANSLATION, Array
 from recon4.kernels.imu import place_points
+from recon4.kernels.selection import thin_near
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.motion import Prediction
@@ -75,12 +76,10 @@ def frame_points(frame: Multiframe, rig: Rig) -> FramePoints:
     """Points of all enabled sensors; of the near ones, every fourth."""
     body, s = [np.empty((0, 3))], [np.empty(0)]
     for number, sensor in enumerate(rig.sensors):
-        rows = np.flatnonzero(frame.sensor == number) if sensor.enabled else np.empty(0, np.intp)
-        xyz = frame.xyz[rows]
-        near = np.einsum("ij,ij->i", xyz, xyz) < _NEAR_M**2
-        kept = ~near | (np.arange(len(rows)) % _NEAR_STRIDE == 0)
-        body.append(sensor.T_body_sensor @ xyz[kept].astype(np.float64))
-        s.append(frame.dt_ns[rows[kept]] * 1e-9)
+        if sensor.enabled:
+            rows = thin_near(frame.xyz, frame.sensor, number, _NEAR_M, _NEAR_STRIDE)
+            body.append(sensor.T_body_sensor @ frame.xyz[rows].astype(np.float64))
+            s.append(frame.dt_ns[rows].astype(np.float64) * 1e-9)
     return FramePoints(np.concatenate(body), np.concatenate(s))
 
 

@@ -60,10 +60,14 @@ def _of_sensor(
     )  # fmt: skip
     first, second = pairs[:, 0], pairs[:, 1]
     a, b = xyz[first].astype(np.float64), xyz[second].astype(np.float64)
-    nearer = np.sqrt(np.minimum(np.sum(a * a, axis=1), np.sum(b * b, axis=1)))
-    dt_s = frame.dt_ns[rows].astype(np.float64) * 1e-9
-    a_s, b_s = dt_s[first], dt_s[second]
+    nearer = np.sqrt(np.minimum(_squares(a), _squares(b)))
+    a_s, b_s = (frame.dt_ns[rows[ends]].astype(np.float64) * 1e-9 for ends in (first, second))
     return sensor.T_body_sensor @ a, sensor.T_body_sensor @ b, a_s, b_s, nearer
+
+
+def _squares(p: Array) -> Array:
+    """Squared length of each vector, (N, 3) -> (N,)."""
+    return np.einsum("ij,ij->i", p, p)
 
 
 def _seed(seed: int, frame: Multiframe, row: int) -> int:

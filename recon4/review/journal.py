@@ -6,7 +6,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import sqlite3
 from collections.abc import Iterator, Sequence
@@ -18,12 +17,11 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.store.atomic import raise_if_full
+from recon4.store.hashing import CHAIN_START, hash_json
 from recon4.store.seal import changing
 from recon4.store.sqlite_files import connect, make_durable, merge_log, sync_commits
 
 NAME = "decisions.sqlite"
-START = "0" * 64
-"""``prev_hash`` of the first row."""
 
 _SCHEMA = """
 CREATE TABLE IF NOT EXISTS journal (
@@ -74,9 +72,8 @@ class JournalRow:
 
     def sealed(self) -> str:
         """The hash this row must have."""
-        problems = [self.seq, self.time, self.who, self.kind, self.frame_i, self.frame_j, self.body]
-        text = json.dumps([*problems, self.why, self.prev_hash], separators=(",", ":"))
-        return hashlib.sha256(text.encode()).hexdigest()
+        fields = [self.seq, self.time, self.who, self.kind, self.frame_i, self.frame_j, self.body]
+        return hash_json([*fields, self.why, self.prev_hash])
 
     def decision(self) -> Decision:
         """The decision of this row.
@@ -145,7 +142,7 @@ def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> J
 
 def broken(rows: Sequence[JournalRow]) -> list[str]:
     """Problems of the hash chain; empty = intact."""
-    problems, before = [], START
+    problems, before = [], CHAIN_START
     for place, row in enumerate(rows, start=1):
         if row.seq != place:
             problems.append(f"row {place} is missing")
@@ -160,7 +157,7 @@ def broken(rows: Sequence[JournalRow]) -> list[str]:
 
 def head(rows: Sequence[JournalRow]) -> str:
     """Hash of the last row."""
-    return rows[-1].hash if rows else START
+    return rows[-1].hash if rows else CHAIN_START
 
 
 def _check(rows: Sequence[JournalRow], decision: Decision, after_seq: int | None) -> None:

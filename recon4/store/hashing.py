@@ -13,6 +13,8 @@ from typing import NotRequired, TypedDict
 
 BLOCK_BYTES = 1 << 20
 """Files are hashed as a whole and in blocks of this size, so that parts can be checked [bytes]."""
+CHAIN_START = "0" * 64
+"""What the first row of a hash chain has in place of the hash of the row before it."""
 _DIGEST_BYTES = 32
 
 
