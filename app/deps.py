@@ -9,7 +9,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from app.access.login.login_service import Access
-from app.compute_pool import ComputePool
+from app.compute_pool.pool import ComputePool
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.live.store import Captures

@@ -14,7 +14,7 @@ from fastapi.responses import HTMLResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 
-from app import errors, metrics_routes, server_routes
+from app import error_responses, metrics_routes, server_routes
 from app.access import admin_routes
 from app.access.login import routes as login_routes
 from app.access.login.login_service import Access, open_access
@@ -23,7 +23,7 @@ from app.access.pairing import routes as pairing_routes
 from app.access.people import Permission, allow_anonymous, needs
 from app.access.routes_check import check_declared
 from app.access.startup_notice import startup_notice
-from app.compute_pool import ComputePool
+from app.compute_pool.pool import ComputePool
 from app.deps import Server, ServerParts
 from app.description import description
 from app.jobs import choices
@@ -109,7 +109,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
     )
     metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
     app.add_middleware(MetricsMiddleware, metrics=metrics.http)
-    errors.install(app)
+    error_responses.install(app)
     for part in (login_routes, admin_routes, pairing_routes, project_routes, job_routes):
         app.include_router(part.router)
     for part in (choices, server_routes, metrics_routes):

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
+from app.compute_pool.pool import ComputePool
 from app.network.request_caller import Caller
 from recon4.model.rig import load_rig
 

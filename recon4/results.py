@@ -14,7 +14,7 @@ from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
-from recon4.georeference.stage import read_crs
+from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import UncertaintyFigures
 from recon4.model.rig_origin import RigOrigin

@@ -199,7 +199,7 @@ def _map(
     from recon4.evaluation.thickness import plane_thickness
     from recon4.export.laz import export_laz
     from recon4.export.points import CRS_OF_MAP, OutputCrs
-    from recon4.georeference.stage import read_crs
+    from recon4.georeference.crs_file import read_crs
     from recon4.mapping.build import MapInputs, build_map
     from recon4.result_files import covariances_of
     from recon4.store.arrays import load_intensity_table, load_trajectory

@@ -13,7 +13,7 @@ from app.access.login.accounts import Account
 from app.access.login.routes import SessionView, Text, Wire, views
 from app.access.people import Permission, Role, needs, recent_login
 from app.deps import Server
-from app.errors import ProblemDetail
+from app.error_responses import ProblemDetail
 
 router = APIRouter(
     prefix="/api",

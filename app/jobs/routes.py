@@ -18,7 +18,8 @@ from starlette.concurrency import run_in_threadpool
 from app.access.audit import audit
 from app.access.people import Permission, needs
 from app.deps import Server, ServerParts
-from app.errors import NoRoom, NotFound, ProblemDetail, TooMany
+from app.error_responses import ProblemDetail
+from app.errors import NoRoom, NotFound, TooMany
 from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
 from app.jobs.status import JobStatus

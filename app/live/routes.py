@@ -13,9 +13,10 @@ from starlette.requests import Request
 
 from app.access.audit import audit
 from app.access.people import Permission, Who, needs
-from app.compute_pool import FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
 from app.deps import Server, parts
-from app.errors import Conflict, ProblemDetail, TooMany
+from app.error_responses import ProblemDetail
+from app.errors import Conflict, TooMany
 from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
 from app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs

@@ -9,9 +9,10 @@ from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
 from app.access.people import Permission, needs
-from app.compute_pool import FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
 from app.deps import Server, ServerParts
-from app.errors import Conflict, ProblemDetail
+from app.error_responses import ProblemDetail
+from app.errors import Conflict
 from app.jobs.model import JobState
 from app.names import Name
 from app.network.request_caller import CalledBy

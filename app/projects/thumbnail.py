@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 from pathlib import Path
 
-from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
+from app.compute_pool.pool import ComputePool
 from app.errors import ComputeFailed, NotFound
 from recon4.errors import Recon4Error
 

@@ -15,9 +15,10 @@ from starlette.requests import Request
 
 from app.access.audit import audit
 from app.access.people import Permission, Person, Who, needs, recent_login
-from app.compute_pool import FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
 from app.deps import Server, ServerParts
-from app.errors import Conflict, ProblemDetail
+from app.error_responses import ProblemDetail
+from app.errors import Conflict
 from app.jobs.model import JobState
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response

@@ -7,7 +7,8 @@ import secrets
 from collections import OrderedDict
 from pathlib import Path
 
-from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
+from app.compute_pool.pool import ComputePool
 from app.errors import Conflict
 from recon4.review.decisions import Decided, Measurement, Pair
 from recon4.review.pairs import Alignment

@@ -12,9 +12,10 @@ from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
 from app.access.people import Permission, Who, needs
-from app.compute_pool import FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
 from app.deps import Server, ServerParts
-from app.errors import BadRequest, ProblemDetail
+from app.error_responses import ProblemDetail
+from app.errors import BadRequest
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
 from app.rig_files import LIMIT_S

@@ -14,7 +14,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
-from app.compute_pool import ComputePool, Lane, Terms
+from app.compute_pool.model import Lane, Terms
+from app.compute_pool.pool import ComputePool
 from app.errors import NoRoom
 from app.slices import export_work
 from app.slices.model import ExportContext, SliceExportRequest

@@ -13,9 +13,10 @@ from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.access.people import Permission, needs
-from app.compute_pool import FileAccess, Terms
+from app.compute_pool.model import FileAccess, Terms
 from app.deps import Server
-from app.errors import BadRequest, ProblemDetail
+from app.error_responses import ProblemDetail
+from app.errors import BadRequest
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
 from app.projects.routes import REPORT_POLICY

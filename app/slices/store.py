@@ -15,7 +15,8 @@ from typing import Any, TypeVar
 
 from starlette.concurrency import run_in_threadpool
 
-from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
+from app.compute_pool.pool import ComputePool
 from app.errors import Conflict, NotFound
 from app.projects.store import PROJECT_ID, ProjectStore
 from app.review.checks import ApprovalChecks

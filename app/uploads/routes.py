@@ -19,7 +19,8 @@ from starlette.types import Message, Receive, Scope, Send
 from app.access.audit import audit
 from app.access.people import Permission, Who, needs
 from app.deps import Server, ServerParts
-from app.errors import AppError, BadRequest, Conflict, ProblemDetail
+from app.error_responses import ProblemDetail
+from app.errors import AppError, BadRequest, Conflict
 from app.names import Name
 from app.uploads import tus
 from app.uploads.model import Upload, UploadedFile

@@ -7,8 +7,6 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.bounded import read_json_object
-from recon4.errors import GeoreferenceError, StoreError
 from recon4.geometry.se3 import Array
 from recon4.georeference.antenna_audit import antenna_contradictions, audit_antenna
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
@@ -38,7 +36,6 @@ _SAMPLE_FRAMES = 200
 _SAMPLE_POINTS = 2000
 """Numbers of multiframes, and of points of each, that are sampled to find floor and mirrors."""
 
-_MAX_JSON_BYTES = 16 << 20
 _WALK_M_S = 1.3
 """Speed by which an error of the receiver's clock becomes one of the position [m/s]."""
 
@@ -205,35 +202,6 @@ def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Le
     if source == "floor" or (source == "auto" and found.source == "none"):
         found = level_by_floor(*_sample_points(frames, trajectory))
     return found
-
-
-def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
-    """Read the CRS from the artifact of the stage ``level``; None if not georeferenced.
-
-    Args:
-        artifact: Folder of the stage.
-        crs: Code of another CRS; empty = the one chosen by the settings.
-
-    Raises:
-        GeoreferenceError: If another CRS is requested and the map is not georeferenced.
-        StoreError: If ``georeference.json`` is missing or damaged.
-    """
-    path = artifact / "georeference.json"
-    try:
-        record = read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
-        if not record["crs"]:
-            if crs:
-                raise GeoreferenceError(
-                    f"the map cannot be put into {crs}: {record['georeference']['reason']}"
-                )
-            return None
-        origin = record["georeference"]["origin"]
-        lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
-        return CrsTransform(
-            GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or record["crs"]["name"]
-        )
-    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
-        raise StoreError(f"{path} cannot be read: {error!r}") from error
 
 
 def _describe_crs(origin: GeodeticOrigin, name: str) -> CrsRecord:

@@ -11,7 +11,6 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 from scipy.special import gammaincinv
 
 from recon4.geometry.se3 import SE3, Array
@@ -161,6 +160,8 @@ def _groups(of: Relations, loops: Flags) -> list[Flags]:
     if len(rows) == 0:
         return []
     ends = np.stack([of.i[rows], of.j[rows]], 1)
+    from scipy.spatial import cKDTree
+
     near = cKDTree(ends).query_pairs(_GROUP_NODES, p=np.inf, output_type="ndarray")
     links = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(rows), len(rows)))
     _, label = connected_components(links, directed=False)

@@ -9,15 +9,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from recon4.geometry.lines import Lines, closest_points
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points
 from recon4.registration.result import Registration, StopReason
 from recon4.settings import RegistrationSettings
+
+if TYPE_CHECKING:
+    from scipy.spatial import cKDTree
 
 _MIN_MATCHES = 20
 
@@ -31,6 +34,8 @@ class LineTarget:
     @cached_property
     def tree(self) -> cKDTree:
         """KD-tree of the midpoints. Unbalanced: three times faster to build, as fast to query."""
+        from scipy.spatial import cKDTree
+
         return cKDTree(self.lines.mid, balanced_tree=False, compact_nodes=False)
 
 

@@ -8,7 +8,6 @@ from recon4.geometry.se2 import from_se3
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge
 from recon4.review.source import Source
-from recon4.slam2d.loops import SubmapRegistrar
 
 
 def keyframe_points(source: Source, node: int, reach: int) -> Array:
@@ -25,6 +24,8 @@ def align_keyframes(source: Source, nodes: tuple[int, int], predicted: SE3) -> E
         nodes: Rows of the graph.
         predicted: Initial ``T_i_j``; its height, roll and pitch are left out.
     """
+    from recon4.slam2d.loops import SubmapRegistrar
+
     settings = source.settings
     registrar = SubmapRegistrar(source.keyframes, settings=settings.slam2d, loops=settings.loops2d)
     return registrar.register_at(nodes, from_se3(predicted))

@@ -5,20 +5,21 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from recon4.errors import StoreError
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
-from recon4.profiler.turns import TurnNodes, find_turns
 from recon4.settings import Settings
-from recon4.slam2d.keyframes import Keyframes
-from recon4.slam2d.stage import read_keyframes
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore, open_frames
-from recon4.store.line_store import load_lines
 from recon4.store.project import read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
+
+if TYPE_CHECKING:  # other kinds of recordings; each is imported where it is read
+    from recon4.profiler.turns import TurnNodes
+    from recon4.slam2d.keyframes import Keyframes
 
 _MADE_WITH = ("graph", "graph_2d", "verification")
 """Stages whose settings a review uses."""
@@ -73,6 +74,8 @@ class Source:
     @cached_property
     def keyframes(self) -> Keyframes:
         """The nodes of a 2-D map with their returns."""
+        from recon4.slam2d.stage import read_keyframes
+
         scans, odometry = self._folder("scans_2d"), self._folder("odometry_2d")
         return read_keyframes(scans, odometry, settings=self.settings.slam2d)
 
@@ -84,6 +87,9 @@ class Source:
     @cached_property
     def turns(self) -> TurnNodes:
         """Turns of the profiler's head: the nodes of the graph of such a rig."""
+        from recon4.profiler.turns import find_turns
+        from recon4.store.line_store import load_lines
+
         return find_turns(self.frames, load_lines(self.frames.folder))
 
     def _folder(self, stage: str) -> Path:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, Reason
-from recon4.profiler.turn_graph import Link, register_pair
-from recon4.profiler.turns import unwind_turn
 from recon4.review.source import Source
 
 
@@ -30,6 +28,9 @@ def align_turns(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
     Returns:
         The edge with the reason for which the search would reject it, if there is one.
     """
+    from recon4.profiler.turn_graph import Link, register_pair
+    from recon4.profiler.turns import unwind_turn
+
     settings, turns = source.settings, source.turns
     first, second = (
         unwind_turn(source.frames, turns, node, trajectory=source.odometry, settings=settings.lines)

@@ -10,7 +10,7 @@ import numpy as np
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.export.points import ToCrs
 from recon4.geometry.se3 import Array
-from recon4.georeference.stage import read_crs
+from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 
 _STEP_M = 10.0

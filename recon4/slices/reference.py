@@ -10,7 +10,6 @@ from typing import Literal
 
 import msgspec
 import numpy as np
-from scipy.spatial import cKDTree
 
 from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
@@ -112,6 +111,8 @@ class Reference:
         q, normal = points_between(self.tiles, low, high)
         if not len(q):
             return np.full(len(p), np.inf)
+        from scipy.spatial import cKDTree
+
         tree = cKDTree(q, balanced_tree=False, compact_nodes=False)
         distance, row = tree.query(p, distance_upper_bound=FAR_M)
         near = np.isfinite(distance)

@@ -12,7 +12,7 @@ import numpy as np
 from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.geometry.se3 import Array, so3_log
 from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
-from recon4.georeference.stage import read_crs
+from recon4.georeference.crs_file import read_crs
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty_files import load_uncertainty
 from recon4.simulation.world import BRNO

@@ -8,7 +8,7 @@ from urllib.parse import urlsplit
 
 import pytest
 
-from app.compute_pool import Lane
+from app.compute_pool.model import Lane
 from tests.project_builder import build_project
 from tests.security.test_cross_site import EXPORT
 from tests.service.running import server_thread

@@ -17,9 +17,9 @@ from pathlib import Path
 
 import pytest
 
-from app.compute_pool import ComputePool, FileAccess, Lane, Terms
 from app.compute_pool.fair_queue import MAX_PASSED, FairQueue
-from app.compute_pool.model import QUOTAS, Quota
+from app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
+from app.compute_pool.pool import ComputePool
 from app.compute_pool.process import ChildFailed
 from app.errors import AppError, ComputeFailed, TooMany
 from recon4.errors import Recon4Error
@@ -154,7 +154,8 @@ def test_children_end_with_a_server_that_is_killed(root):
     program = (
         "import asyncio, sys\n"
         "from pathlib import Path\n"
-        "from app.compute_pool import ComputePool, FileAccess, Lane, Terms\n"
+        "from app.compute_pool.model import FileAccess, Lane, Terms\n"
+        "from app.compute_pool.pool import ComputePool\n"
         "from recon4.processes import ChildRegister\n"
         "from tests import pool_functions as work\n"
         "root = Path(sys.argv[1])\n"

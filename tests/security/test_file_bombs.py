@@ -20,7 +20,7 @@ import pytest
 from recon4.evaluation.markers import read_markers
 from recon4.evaluation.reference_mesh import read_mesh
 from recon4.evaluation.trajectories import find_trajectory
-from recon4.georeference.stage import read_crs
+from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig, parse_rig
 from recon4.recording.formats.cloud_files import read_cloud

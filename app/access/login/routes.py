@@ -24,7 +24,8 @@ from app.access.people import (
     needs,
 )
 from app.deps import Server
-from app.errors import AppError, Conflict, ProblemDetail, TooMany
+from app.error_responses import ProblemDetail
+from app.errors import AppError, Conflict, TooMany
 
 router = APIRouter(
     prefix="/api",

@@ -24,7 +24,8 @@ from app.access.people import (
     needs,
 )
 from app.deps import Server
-from app.errors import AppError, Conflict, ProblemDetail, Refused
+from app.error_responses import ProblemDetail
+from app.errors import AppError, Conflict, Refused
 from app.names import Name
 from app.network.hosts import LOOPBACK, own_addresses
 from app.network.listen import presented_fingerprint

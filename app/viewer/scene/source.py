@@ -96,7 +96,7 @@ class ProjectSource:
         """Name of the CRS and coordinates of points (N, 3) in it; None = not georeferenced."""
         if not self.content.crs:
             return None
-        from recon4.georeference.stage import read_crs  # brings pyproj and much of scipy
+        from recon4.georeference.crs_file import read_crs  # brings pyproj and much of scipy
 
         transform = self._of_stage("level", lambda path: read_crs(path), name="crs")
         return None if transform is None else (transform.crs, transform.to_crs(p_map))

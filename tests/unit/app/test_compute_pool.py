@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from app.compute_pool import ComputePool, FileAccess, Lane, Terms
+from app.compute_pool.model import FileAccess, Lane, Terms
+from app.compute_pool.pool import ComputePool
 from app.errors import ComputeFailed
 from recon4.errors import ConfigError, GraphError, WrongSettings
 from recon4.processes import ChildRegister

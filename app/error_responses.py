@@ -1,0 +1,127 @@
+"""The one place where errors become HTTP.
+
+An `AppError` has a status of its own. A `Recon4Error` of the library means wrong input: 422. Errors
+of the framework (fields of the wrong type, unknown paths) get a response of the same form.
+"""
+
+from __future__ import annotations
+
+import html
+import logging
+import secrets
+from collections.abc import Mapping, Sequence
+from http import HTTPStatus
+from typing import Any
+
+from fastapi import FastAPI, Request
+from fastapi.exceptions import RequestValidationError
+from fastapi.responses import HTMLResponse, JSONResponse, Response
+from pydantic import BaseModel
+from starlette.exceptions import HTTPException
+
+from app.errors import AppError
+from app.pages import html_of
+from recon4.errors import Recon4Error, WrongSettings
+
+log = logging.getLogger(__name__)
+
+LOST = "shared/lost.html"
+"""The error page of browsers; ``{title}`` and ``{detail}`` are filled in."""
+TITLES = {403: "Not allowed", 404: "Page not found"}
+FRAMEWORK_MESSAGES: Mapping[int, str] = {
+    404: "there is no such address on this server",
+    405: "this address does not take that method",
+}
+HEADERS_OF_FAILURES = {
+    "Content-Security-Policy": "default-src 'self'; frame-ancestors 'self'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
+"""Headers of the response to an internal error, which the framework sends past the middleware."""
+
+
+class ProblemDetail(BaseModel):
+    """The response body of every error."""
+
+    error: str
+    """Name of the error."""
+    detail: str
+    """What is wrong and what to do, as text for users."""
+    problems: dict[str, str] = {}
+    """Field -> its problem, where several fields have one."""
+
+
+def install(app: FastAPI) -> None:
+    """Answer every error with a `ProblemDetail`, or with a page where a browser requests one."""
+
+    @app.exception_handler(AppError)
+    async def known(request: Request, error: AppError) -> Response:
+        if _wants_page(request):
+            return _page(error.status, str(error), error.headers)
+        return _problem(error.status, type(error).__name__, str(error), headers=error.headers)
+
+    @app.exception_handler(WrongSettings)
+    async def wrong_settings(_: Request, error: WrongSettings) -> JSONResponse:
+        return _problem(422, type(error).__name__, str(error), problems=error.problems)
+
+    @app.exception_handler(Recon4Error)
+    async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
+        return _problem(422, type(error).__name__, str(error))
+
+    @app.exception_handler(RequestValidationError)
+    async def wrong_form(_: Request, error: RequestValidationError) -> JSONResponse:
+        return _problem(422, "Invalid", "; ".join(_field_message(one) for one in error.errors()))
+
+    @app.exception_handler(HTTPException)
+    async def refused(request: Request, error: HTTPException) -> Response:
+        status = HTTPStatus(error.status_code)
+        message = FRAMEWORK_MESSAGES.get(status, str(error.detail))
+        if _wants_page(request):
+            return _page(status, message, error.headers)
+        return _problem(
+            status, status.phrase.title().replace(" ", ""), message, headers=error.headers
+        )
+
+    @app.exception_handler(Exception)
+    async def our_own(request: Request, error: Exception) -> Response:
+        number = secrets.token_hex(4)
+        log.error("error %s in %r", number, request.scope["path"], exc_info=error)
+        message = f"internal error {number}: the server log has the cause under this number"
+        if _wants_page(request):
+            return _page(500, message, HEADERS_OF_FAILURES)
+        return _problem(500, "InternalError", message, headers=HEADERS_OF_FAILURES)
+
+
+def _field_message(problem: Mapping[str, Any]) -> str:
+    """Message about one field: ``recordings: List should have at least 1 item``."""
+    place: Sequence[Any] = problem["loc"]
+    named = ".".join(map(str, place[1:])) or str(place[0])
+    return f"{named}: {problem['msg']}"
+
+
+def _wants_page(request: Request) -> bool:
+    """Whether a browser requests a page."""
+    accepts = "text/html" in request.headers.get("accept", "")
+    return request.method == "GET" and accepts and not request.scope["path"].startswith("/api/")
+
+
+def _page(status: int, detail: str, headers: Mapping[str, str] | None) -> HTMLResponse:
+    title = TITLES.get(status, "The request failed")
+    page = html_of(LOST).replace("{title}", title)
+    filled = page.replace("{detail}", html.escape(detail))
+    return HTMLResponse(filled, status_code=status, headers=dict(headers or {}))
+
+
+def _problem(
+    status: int,
+    error: str,
+    detail: str,
+    *,
+    headers: Mapping[str, str] | None = None,
+    problems: Mapping[str, str] | None = None,
+) -> JSONResponse:
+    problem = ProblemDetail(error=error, detail=detail, problems=dict(problems or {}))
+    return JSONResponse(
+        problem.model_dump(exclude_defaults=True), status_code=status, headers=headers
+    )

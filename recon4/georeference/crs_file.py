@@ -1,0 +1,42 @@
+"""The CRS of a finished map, read from its files; imports little, for those who only read it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.bounded import read_json_object
+from recon4.errors import GeoreferenceError, StoreError
+from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+
+_MAX_JSON_BYTES = 16 << 20
+
+
+def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
+    """Read the CRS from the artifact of the stage ``level``; None if not georeferenced.
+
+    Args:
+        artifact: Folder of the stage.
+        crs: Code of another CRS; empty = the one chosen by the settings.
+
+    Raises:
+        GeoreferenceError: If another CRS is requested and the map is not georeferenced.
+        StoreError: If ``georeference.json`` is missing or damaged.
+    """
+    path = artifact / "georeference.json"
+    try:
+        record = read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
+        if not record["crs"]:
+            if crs:
+                raise GeoreferenceError(
+                    f"the map cannot be put into {crs}: {record['georeference']['reason']}"
+                )
+            return None
+        origin = record["georeference"]["origin"]
+        lat_rad, lon_rad = np.deg2rad([origin["lat_deg"], origin["lon_deg"]]).tolist()
+        return CrsTransform(
+            GeodeticOrigin(lat_rad, lon_rad, origin["height_m"]), crs or record["crs"]["name"]
+        )
+    except (ValueError, KeyError, TypeError, AttributeError, OverflowError) as error:
+        raise StoreError(f"{path} cannot be read: {error!r}") from error
