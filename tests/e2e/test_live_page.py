@@ -167,7 +167,7 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screensho
         if SCREENSHOTS:
             wait_for_points(page, 40_000)
         screenshot(page, "live")
-        axes_are_told(page, screenshot)
+        axes_are_shown(page, screenshot)
         mark(page, "crack in the wall")
         cut_and_restore(page, link)
     wait_for_points(page, early + 1000)
@@ -217,7 +217,7 @@ def sensors_are_shown(page):
     page.get_by_role("button", name="Close").click()
 
 
-def axes_are_told(page, screenshot):
+def axes_are_shown(page, screenshot):
     """The calibration dance: what to do next, and what the walk has shown of each axis."""
     page.get_by_role("button", name="Help and more").click()
     page.get_by_role("button", name="Calibration dance…").click()

@@ -18,7 +18,7 @@ def origin(note=NOTE, *, recorded_ns=NOON_2026_11_22_NS, most=30):
     return RigOrigin.of(rig, recorded_ns=recorded_ns, max_age_days=most)
 
 
-def test_serial_numbers_and_age_are_told():
+def test_serial_numbers_and_age_are_reported():
     found = origin()
 
     assert [(one.name, one.serial) for one in found.sensors] == [
