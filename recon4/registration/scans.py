@@ -34,7 +34,7 @@ _PLAN = 160
 """Cells of a ground plan along each side."""
 _PLAN_CELL_M = 0.5
 _PLAN_MOST = 4.0
-_NORMAL_NOISE_RAD = 0.04
+_NORMAL_NOISE_RAD = 0.05
 """Standard deviation of a normal; what it seems to observe gives way to a prior [rad]. With 0.07 a
 corridor with recessed doors, which is observed along its axis, counts as a tunnel."""
 _MIN_VARIANCE_M2 = 1e-4
