@@ -23,7 +23,7 @@ SHARE = 0.02
 NOISE = 3.0
 """Sparse points are far from the sensor or few recordings: poses and beams are less exact."""
 THICKER = 1.4
-"""Sparse surfaces this many times as thick as most of a tile are not believed."""
+"""Sparse surfaces this many times as thick as most of a tile are not trusted."""
 _REACH = 5
 """Cells along a window of windows: what the planes of a cell depend on."""
 
