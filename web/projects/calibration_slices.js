@@ -12,8 +12,8 @@ export function calibrationSlices({ lidars, thickness_m: thickness }) {
     1,
     ...lidars.flatMap(({ before, after }) => [...before, ...after].flat().map(Math.abs)),
   );
-  const name = (text) =>
-    `Slice ${Math.round(100 * thickness)} cm thick, ${text}, ${lidars.map((one) => one.name).join(" and ")}`;
+  const names = lidars.map((one) => one.name).join(" and ");
+  const name = (text) => `Slice ${Math.round(100 * thickness)} cm thick, ${text}, ${names}`;
   return make(
     "div",
     { className: "calibration-slices" },
