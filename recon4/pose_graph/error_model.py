@@ -42,6 +42,9 @@ class ErrorModel:
     """Stated deviation of half a second of odometry at which a direction is weak [m] …"""
     weak_rad: float = 0.01
     """… and of its turn [rad]."""
+    surely_weak_m: float = 0.5
+    """A direction with a larger deviation is weak on every walk: in a tunnel without an IMU all
+    steps are, and nothing of that is usual [m]."""
     weak_ratio: float = 10.0
     """The same as a multiple of what is usual on the walk: without an IMU odometry states
     centimeters also where it is right to millimeters."""

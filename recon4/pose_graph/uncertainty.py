@@ -199,15 +199,16 @@ def _steps(
             stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
     half_s = 0.5 / _step_seconds(graph.t_ns)[:, None]
     cov, rate, usual = np.zeros_like(stated), np.zeros_like(stated), np.zeros(2)
-    for row, (part, weak_at, most, observed_s) in enumerate(
+    for row, (part, weak_at, surely, most, observed_s) in enumerate(
         (
-            (ROTATION, model.weak_rad, model.observed_rad, model.turn_s),
-            (TRANSLATION, model.weak_m, model.observed_m, model.shift_s),
+            (ROTATION, model.weak_rad, np.inf, model.observed_rad, model.turn_s),
+            (TRANSLATION, model.weak_m, model.surely_weak_m, model.observed_m, model.shift_s),
         )
     ):
         values, V = np.linalg.eigh(stated[:, part, part])
         usual[row] = np.median(half_s[:, 0] * np.sqrt(values[:, 0]))
-        ratio = half_s * np.sqrt(values) / max(weak_at, model.weak_ratio * usual[row])
+        limit = min(max(weak_at, model.weak_ratio * usual[row]), surely)
+        ratio = half_s * np.sqrt(values) / limit
         weak = ratio**4 / (1.0 + ratio**4)
         observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
         observed *= agrees.ratio[row] ** 2

@@ -17,7 +17,7 @@ from scipy import fft, ndimage
 from scipy.spatial import cKDTree
 
 from recon4.geometry.cubes import cube_keys, cubes_of
-from recon4.geometry.se3 import SE3, TRANSLATION, Array, tangent_size_m
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, so3_log, tangent_size_m
 from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbor_normals
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.degeneracy import observable_pose
@@ -121,8 +121,8 @@ def search_scans(
     """
 
     def score(found: Registration) -> float:
-        t = found.T_target_source.t
-        return found.match_ratio * (prior.plausibility(t) if prior else 1.0)
+        likely = prior.plausibility(found.T_target_source) if prior else 1.0
+        return found.match_ratio * likely
 
     first = register_scans(target, source, initial=initial, settings=settings, prior=prior)
     if first.converged and first.match_ratio >= settings.confident_inlier_ratio:
@@ -199,7 +199,7 @@ def _descend(
             return _refused(T, done)
         variance = max(squares / weight, _MIN_VARIANCE_M2)
         if prior is not None:
-            H, g = _with_prior(H, g, T.t, variance=variance, prior=prior)
+            H, g = _with_prior(H, g, T, variance=variance, prior=prior)
         step = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
         T = T.stepped(step)
         if done > 2 and tangent_size_m(step) < 1e-3:
@@ -213,14 +213,17 @@ def _descend(
 
 
 def _with_prior(
-    H: Array, g: Array, t_m: Array, *, variance: float, prior: CarrierPrior
+    H: Array, g: Array, T: SE3, *, variance: float, prior: CarrierPrior
 ) -> tuple[Array, Array]:
-    """Normal equations with those of the place ``t_m`` (3,), without what normals feign."""
+    """Normal equations with those of the prior at a pose, without what normals feign."""
     H, full = observable_pose(H, _NORMAL_NOISE_RAD)
     g = full.T @ g
     weight = variance / prior.sd_m**2
     H[TRANSLATION, TRANSLATION] += weight * np.eye(3)
-    g[TRANSLATION] += weight * (t_m - prior.t_m)
+    g[TRANSLATION] += weight * (T.t - prior.t_m)
+    weight = variance / prior.sd_rad**2
+    H[ROTATION, ROTATION] += weight * np.eye(3)
+    g[ROTATION] += weight * so3_log(T.R)
     return H, g
 
 

@@ -20,6 +20,8 @@ from recon4.model.usability import WEAK_SD_M, WEAK_SECONDS
 _WEAK_DEGENERACY = 0.005
 """Files of earlier versions do not state the standard deviation: there a direction counts as
 unobservable below this, as for pairs (`GraphSettings.min_degeneracy`)."""
+_UNSURE_SD_M = 0.03
+"""As `WEAK_SD_M`, of a registration that did not converge: what it states is too small [m]."""
 _HELD_RATIO = 0.7
 """A multiframe matches the map if its match ratio reaches this part of the median of the others."""
 _BRIDGED_S = 1.0
@@ -85,7 +87,8 @@ def weak_stretches(
     degeneracy = np.asarray(steps["degeneracy"], np.float64)
     directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
     sd_m = np.asarray(steps.get("weak_sd_m", np.full(len(t_s), np.nan)), np.float64)
-    weak = np.where(np.isnan(sd_m), degeneracy < _WEAK_DEGENERACY, sd_m > WEAK_SD_M)
+    limit_m = np.where(steps.get("converged", True), WEAK_SD_M, _UNSURE_SD_M)
+    weak = np.where(np.isnan(sd_m), degeneracy < _WEAK_DEGENERACY, sd_m > limit_m)
     if support is not None:
         weak &= support.weak_sd_m > WEAK_SD_M
     weak[0] = False  # there is no map yet to observe anything against

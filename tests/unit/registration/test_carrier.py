@@ -41,9 +41,36 @@ def test_a_speed_is_kept_for_seconds_and_then_forgotten() -> None:
 def test_no_motion_is_impossible() -> None:
     prior = CarrierPrior.after(0.1, np.zeros(3))
 
-    assert prior.plausibility(prior.t_m) == 1.0
-    assert 0.0 < prior.plausibility(np.array([14.0, 0.0, 0.0])) < 0.01
-    assert CarrierPrior.after(20.0, np.zeros(3)).plausibility(np.array([14.0, 0.0, 0.0])) > 0.8
+    far = SE3(np.eye(3), np.array([14.0, 0.0, 0.0]))
+    over = SE3.from_rpy(0.0, 0.0, np.pi, t=[0.0, 0.0, 0.0])
+    assert prior.plausibility(SE3(np.eye(3), prior.t_m)) == 1.0
+    assert 0.0 < prior.plausibility(far) < 0.01
+    assert prior.plausibility(over) < 0.2
+    later = CarrierPrior.after(20.0, np.zeros(3))
+    assert later.plausibility(far) > 0.8
+    assert later.plausibility(over) > 0.99
+
+
+def test_a_tube_cannot_turn_the_body_over() -> None:
+    """A tube without any end observes neither the turn about its axis nor the motion along it."""
+    rng = np.random.default_rng(1)
+
+    def tube() -> Array:
+        x, angle = rng.uniform(-15.0, 15.0, 12_000), rng.uniform(-np.pi, np.pi, 12_000)
+        side = 2.0 * np.stack([np.cos(angle), np.sin(angle)], 1)
+        return np.column_stack([x, side]) + 0.02 * rng.standard_normal((12_000, 3))
+
+    prior = CarrierPrior.after(0.1, np.array([1.2, 0.0, 0.0]))
+    turned = SE3.from_rpy(0.5, 0.0, 0.0, t=[0.0, 0.0, 0.0])
+    found = register_scans(
+        make_scan(tube(), SCANS),
+        make_scan(tube(), SCANS),
+        initial=turned,
+        settings=SCANS,
+        prior=prior,
+    )
+
+    assert found.T_target_source.angle() < 0.1
 
 
 def test_along_a_tunnel_the_prior_says_where_the_body_is() -> None:

@@ -67,6 +67,14 @@ def test_the_first_multiframe_and_lost_ones_are_no_weak_stretch():
     assert weak_stretches(steps(corridor(5.0), lost=lost)) == []
 
 
+@pytest.mark.parametrize(("converged", "stretches"), [(True, 0), (False, 1)])
+def test_what_did_not_converge_states_too_small_a_deviation(converged, stretches):
+    columns = steps([0.1] * 60, converged=np.full(60, converged))
+    columns["weak_sd_m"] = np.full(60, 0.04)
+
+    assert len(weak_stretches(columns)) == stretches
+
+
 def surfaces(count, *, ratio=0.6, sd_m=0.005):
     """What holds each multiframe of line scans."""
     t_ns = np.arange(count) * 100_000_000
