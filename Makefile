@@ -27,6 +27,8 @@ export PYTHON
 SYNC := $(if $(filter output-sync,$(.FEATURES)),--output-sync=target)
 # Else each of the hundreds of interpreters that tests start compiles recon4 again.
 unexport PYTHONDONTWRITEBYTECODE
+# Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
+export OPENBLAS_NUM_THREADS := 1
 
 .PHONY: demo test format lint types web kernels unit e2e bench docs constraints lock audit sbom clean
 .DELETE_ON_ERROR:
