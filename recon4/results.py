@@ -75,8 +75,8 @@ class Summary(RunSummary):
     """Multiframes the odometry could not place."""
     points: int
     """In the map."""
-    rig_origin: RigOrigin
-    """Serial numbers, date and accuracy of the rig's calibration."""
+    rig_origin: RigOrigin | None
+    """Serial numbers, date and accuracy of the rig's calibration; null = not known."""
     uncertainty: UncertaintyFigures | None
     """How well the poses are known; null = not stated."""
     approval: Stamp | None
@@ -117,7 +117,7 @@ def _publish(
         created=created,
         preset=about.project.preset,
         rig=frames.rig,
-        rig_origin=_rig_origin(runs, about.settings),
+        rig_origin=assessed.facts.rig_origin,
         crs=level.crs,
         duration_s=duration_s(trajectory),
         path_length_m=round(float(path_length_m(trajectory)[-1]), 3),

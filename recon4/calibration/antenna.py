@@ -10,7 +10,9 @@ from recon4.calibration.judgment import contradictions
 from recon4.calibration.note import with_antenna_note
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.walk import RecordedWalk
-from recon4.georeference.antenna_calibration import GNSS, AntennaCalibration, calibrate_antenna
+from recon4.georeference.antenna_calibration import AntennaCalibration, calibrate_antenna
+from recon4.model.figures import GNSS
+from recon4.progress import Progress
 from recon4.settings import Settings
 
 _VAGUE_M = 0.01
@@ -20,7 +22,7 @@ _AIDED_SD_FACTOR = 3.0
 
 
 def with_antenna(
-    found: CalibrationResult, walk: RecordedWalk, *, settings: Settings
+    found: CalibrationResult, walk: RecordedWalk, *, settings: Settings, progress: Progress
 ) -> CalibrationResult:
     """Add what the fixes say of lever arm and clock of the receiver; correct them on request.
 
@@ -32,8 +34,9 @@ def with_antenna(
         found: What was found of LiDARs and IMU.
         walk: The recording with its odometry.
         settings: Uses calibration, gnss and those of the odometry.
+        progress: Counts multiframes that are tracked again.
     """
-    wanted = [name.strip() for name in settings.calibration.sensors.split(",") if name.strip()]
+    wanted = settings.calibration.wanted
     if wanted and GNSS not in wanted:
         return found
     moved = walk.with_rig(found.rig) if found.rig else walk
@@ -43,7 +46,7 @@ def with_antenna(
     may = settings.calibration.mode == "auto" and (found.rig or not found.figures.warnings)
     if not (may and antenna.is_off):
         return _with_rows(found, _doubted(antenna))
-    moved = replace(moved, trajectory=moved.tracked_freely(settings))
+    moved = replace(moved, trajectory=moved.tracked_freely(settings, progress))
     free = _estimate(moved, settings)
     if free is None or not free.is_off:
         return _with_rows(

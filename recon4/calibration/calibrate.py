@@ -17,14 +17,11 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-from recon4.georeference.antenna_calibration import GNSS
-from recon4.model.figures import ParameterFigures
+from recon4.model.figures import GNSS, IMU, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.settings import CalibrationSettings, Settings
 
-IMU = "imu"
-"""Name of the IMU among the sensors of a calibration."""
 _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
 _KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
@@ -102,7 +99,7 @@ def calibrated_parameters(
         ConfigError: If the settings name a sensor that is not in the rig.
     """
     names = _enabled(rig)
-    wanted = [name.strip() for name in settings.sensors.split(",") if name.strip()]
+    wanted = settings.wanted
     unknown = [name for name in wanted if name not in names and name not in (IMU, GNSS)]
     if unknown:
         raise ConfigError(
@@ -118,7 +115,7 @@ def calibrated_parameters(
 
 def chosen_lidars(rig: Rig, settings: CalibrationSettings) -> tuple[int, ...]:
     """Rows of the enabled LiDARs that the settings name, all of them if they name none."""
-    wanted = {name.strip() for name in settings.sensors.split(",") if name.strip()}
+    wanted = settings.wanted
     return tuple(row for name, row in _enabled(rig).items() if not wanted or name in wanted)
 
 

@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import Array
+from recon4.model.figures import IMU
 from recon4.model.rig import Rig
 from recon4.settings.calibration import EntropySettings
 
@@ -55,7 +56,7 @@ def calibrate_by_entropy(
         progress: Called after each evaluation.
     """
     thinned = [_thinned(window, settings.points) for window in windows]
-    movable = np.array([parameter.sensor != "imu" for parameter in parameters.listed])
+    movable = np.array([parameter.sensor != IMU for parameter in parameters.listed])
     unit = np.array([_UNIT[parameter.unit] for parameter in parameters.listed])[movable]
     lowest: list[float] = []
 

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.calibration.joint import JointEstimate
 from recon4.calibration.parameters import Parameter, Unit
-from recon4.model.figures import ParameterFigures, ParameterStatus
+from recon4.model.figures import GNSS, IMU, ParameterFigures, ParameterStatus
 from recon4.model.plain import finite_or_none
 
 _SIGMAS = 3.0
@@ -35,7 +35,7 @@ _BEAM_LIMITS: dict[Unit, ParameterLimits] = {
     "rad": ParameterLimits(float(np.deg2rad(0.01)), float(np.deg2rad(0.01))),
     "m": ParameterLimits(0.002, 0.0015),
 }
-_NAMES = {"imu": "IMU", "gnss": "GNSS antenna"}
+_NAMES = {IMU: "IMU", GNSS: "GNSS antenna"}
 _SHOWN: dict[Unit, tuple[float, str]] = {
     "rad": (float(np.rad2deg(1.0)), "°"),
     "m": (100.0, " cm"),

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.figures import GNSS, CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig, RigCalibration
 from recon4.model.rig_origin import recording_day
 
@@ -52,7 +52,7 @@ def with_antenna_note(rig: Rig, rows: tuple[ParameterFigures, ...], *, recorded_
     if rig.calibration is None and not date:
         return rig
     note = rig.calibration or RigCalibration(
-        date=date, method="gnss", sd_deg=0.0, sd_mm=0.0, sd_ms=0.0
+        date=date, method=GNSS, sd_deg=0.0, sd_mm=0.0, sd_ms=0.0
     )
     antenna = replace(
         note,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
 from recon4.model.beams import BeamCorrections
+from recon4.model.figures import IMU
 from recon4.model.rig import Rig, Sensor
 
 Unit = Literal["rad", "m", "s"]
@@ -78,7 +79,7 @@ class Parameters:
     @staticmethod
     def of(rig: Rig, *, reference: int, lidars: tuple[int, ...], imu: bool) -> Parameters:
         """All parameters of some LiDARs and the IMU of a rig."""
-        names = [rig.sensors[row].name for row in lidars] + (["imu"] if imu else [])
+        names = [rig.sensors[row].name for row in lidars] + ([IMU] if imu else [])
         listed = tuple(parameter for name in names for parameter in _seven(name))
         prior_sd = np.array([_PRIOR_SD[parameter.unit] for parameter in listed])
         return Parameters(reference, lidars, imu, listed, prior_sd)

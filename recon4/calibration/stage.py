@@ -69,7 +69,7 @@ def run_calibration(
         )
         if calibrated:
             found = _calibrated(found, calibrated, recorded_ns=walk.start_ns)
-    found = with_antenna(found, walk, settings=settings)
+    found = with_antenna(found, walk, settings=settings, progress=progress)
     if found.rig is not None:
         found = replace(found, slices=lidar_slices(walk, found.rig))
     for text in found.figures.warnings:

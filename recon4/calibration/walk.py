@@ -17,6 +17,7 @@ from recon4.calibration.window import (
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
 from recon4.registration.stage import dense_trajectory
 from recon4.settings import Settings
@@ -62,10 +63,11 @@ class RecordedWalk:
         rows = self.rows(count, seconds)
         return [cut_window(self.frames, self.trajectory, part) for part in rows]
 
-    def tracked_freely(self, settings: Settings) -> Trajectory:
+    def tracked_freely(self, settings: Settings, progress: Progress) -> Trajectory:
         """``T_odom_body``, dense, of an odometry that no fixes pull."""
         odometry = Odometry(self.frames.rig, settings, self.frames.imu)
-        return dense_trajectory([odometry.push(frame) for frame in self.frames])
+        frames = track(self.frames, progress, what="odometry without GNSS", unit="multiframe")
+        return dense_trajectory([odometry.push(frame) for frame in frames])
 
     def tracked_windows(
         self, rows: list[range], rig: Rig, settings: Settings, *, imu: ImuSamples | None

@@ -15,6 +15,7 @@ from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_log
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.drift_fit import DriftFit, DriftRows, fit_drift
 from recon4.georeference.gnss_aiding import attitudes
+from recon4.georeference.gnss_priors import positioned
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
@@ -159,7 +160,7 @@ def _used(trajectory: Trajectory, gnss: GnssSamples, t_ns: Times) -> NDArray[np.
     """Fixes with decimeters or better during the walk, (N,)."""
     sd_m = np.nan_to_num(gnss.sd_enu_m, nan=_MIN_SD_M)
     good = (gnss.quality == GnssQuality.RTK_FIXED) & (sd_m.max(axis=1) <= _MAX_SD_M)
-    good &= np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
+    good &= positioned(gnss)
     good &= t_ns - _SPEED_NS >= trajectory.t_ns[0]
     return np.asarray(good & (t_ns + _SPEED_NS <= trajectory.t_ns[-1]))
 

@@ -11,16 +11,14 @@ from recon4.geometry.se3 import Array
 from recon4.georeference.antenna_audit import audit_antenna, unexplained
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.gnss import align_heading
-from recon4.georeference.gnss_priors import GnssPriors
+from recon4.georeference.gnss_priors import GnssPriors, positioned
 from recon4.georeference.level import level
-from recon4.model.figures import AntennaFigures, ParameterFigures, ParameterStatus
+from recon4.model.figures import GNSS, AntennaFigures, ParameterFigures, ParameterStatus
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.settings import GnssSettings
 
-GNSS = "gnss"
-"""Name of the receiver among the sensors of a calibration."""
 _BLOCK_NS = 8_000_000_000
 """Every second stretch of this length is not used by the first estimate, but checks it [ns]."""
 _TOLERANCE = np.array([0.02, 0.02, 0.02, 0.002])
@@ -136,7 +134,7 @@ def _refusal(placed: _Placed, gnss: GnssSamples, rig: Rig, *, off: NDArray[np.bo
     if not off.any():
         return ""
     odd = (gnss.t_ns - gnss.t_ns[0]) // _BLOCK_NS % 2 == 1
-    used, others = _taken(gnss, ~odd), _taken(gnss, odd)
+    used, others = gnss.take(~odd), gnss.take(odd)
     first = placed.audit(used, rig)
     second = placed.audit(_later(others, _KNOWN_ERROR[3]), _corrected(rig, _KNOWN_ERROR))
     if first is None or second is None:
@@ -181,8 +179,7 @@ def _place(
     settings: GnssSettings,
 ) -> _Placed | None:
     """Level a walk and turn it to the fixes; None if that is not possible."""
-    good = (gnss.quality == GnssQuality.RTK_FIXED) & np.isfinite(gnss.lat_rad)
-    good &= np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
+    good = (gnss.quality == GnssQuality.RTK_FIXED) & positioned(gnss)
     good &= (gnss.t_ns >= trajectory.t_ns[0]) & (gnss.t_ns <= trajectory.t_ns[-1])
     rows = np.flatnonzero(good)
     leveling = level(trajectory, imu, rig, gnss=gnss)
@@ -209,10 +206,6 @@ def _place(
     if extent_m < settings.min_extent_m:
         return None
     return _Placed(Trajectory(leveled.t_ns, T_enu_level @ leveled.T_a_b), origin)
-
-
-def _taken(gnss: GnssSamples, rows: NDArray[np.bool_]) -> GnssSamples:
-    return GnssSamples(*(getattr(gnss, name)[rows] for name in GnssSamples.__slots__))
 
 
 def _later(gnss: GnssSamples, clock_s: float) -> GnssSamples:

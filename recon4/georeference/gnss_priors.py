@@ -74,7 +74,7 @@ def usable_gnss_priors(
     """
     t_ns = gnss.t_ns
     rank = np.array([_RANKS.get(int(quality), 0) for quality in gnss.quality], dtype=np.intp)
-    good = (rank >= _ASKED[settings.min_quality]) & _positioned(gnss)
+    good = (rank >= _ASKED[settings.min_quality]) & positioned(gnss)
     good &= (t_ns >= trajectory.t_ns[0]) & (t_ns <= trajectory.t_ns[-1])
     rows = np.flatnonzero(good)
     p_antenna = trajectory.at(t_ns[rows]) @ np.broadcast_to(rig.p_body_antenna, (len(rows), 3))
@@ -125,7 +125,8 @@ def correlated_sd(gnss_priors: GnssPriors, *, correlation_s: float) -> Array:
     return gnss_priors.sd_m * np.sqrt(np.maximum(right - left, 1))[:, None]
 
 
-def _positioned(gnss: GnssSamples) -> NDArray[np.bool_]:
+def positioned(gnss: GnssSamples) -> NDArray[np.bool_]:
+    """Whether each fix has a possible position and a height, (N,)."""
     finite = np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad) & np.isfinite(gnss.height_m)
     possible = (np.abs(gnss.lat_rad) <= np.pi / 2) & (np.abs(gnss.lon_rad) <= 2 * np.pi)
     # Receivers without a fix write 0, 0.

@@ -58,6 +58,16 @@ def unpack_returns(
         weight[n] = u1[n, 31]
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _cell_at(xyz: NDArray[np.float32], p: int, cell_m: float, side: int, halo: int) -> int:
+    """Index of the cell of a point."""
+    cell = 0
+    for d in range(2, -1, -1):
+        c: Any = np.int64(np.floor(xyz[p, d] / cell_m)) + halo
+        cell = cell * side + min(max(c, 0), side - 1)
+    return cell
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def find_cells(
     xyz: NDArray[np.float32],
@@ -85,10 +95,7 @@ def find_cells(
     count = 0
     last = -1
     for p in range(len(xyz)):
-        cell = 0
-        for d in range(2, -1, -1):
-            c: Any = np.int64(np.floor(xyz[p, d] / cell_m)) + halo
-            cell = cell * side + min(max(c, 0), side - 1)
+        cell = _cell_at(xyz, p, cell_m, side, halo)
         # Rounding can put a point on a border into the next cell; it stays in its run.
         if cell != last and where[cell] < 0:
             where[cell] = count
@@ -106,11 +113,7 @@ def number_cells(
 ) -> None:
     """Index of the cell of each point, as in `find_cells`, int32 (N,)."""
     for p in range(len(xyz)):
-        cell = 0
-        for d in range(2, -1, -1):
-            c: Any = np.int64(np.floor(xyz[p, d] / cell_m)) + halo
-            cell = cell * side + min(max(c, 0), side - 1)
-        out[p] = cell
+        out[p] = _cell_at(xyz, p, cell_m, side, halo)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

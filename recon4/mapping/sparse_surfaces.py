@@ -48,7 +48,7 @@ def with_sparse_places(
         noise_m: Standard deviation of a range [m].
         scratch: Memory to work in; None = fresh memory.
     """
-    loose = np.isnan(found.surfaces[:, 3])[found.surface_of] & (found.support < FEW)
+    loose = ~found.on_surface & (found.support < FEW)
     if loose.sum() <= SHARE * len(records):
         return found
     coarse = Grid(
@@ -64,10 +64,10 @@ def with_sparse_places(
     layers = 0, coarse.side_cells
     noise = Noise(noise_m, NOISE * noise_m)
     made = fit_layers(np.take(records, rows), coarse, layers, noise=noise, array=array)
-    on_surface = ~np.isnan(made.surfaces[:, 3])[made.surface_of]
-    on_surface &= _thin_enough(made, loose[rows] & on_surface, noise_m)
-    moved = np.flatnonzero(loose[rows] & on_surface)
-    stray = np.flatnonzero(loose[rows] & made.stray)
+    mine = loose[rows]
+    able = mine & made.on_surface
+    moved = np.flatnonzero(able & _thin_enough(made, able, noise_m))
+    stray = np.flatnonzero(mine & made.stray)
     found.shift_m[rows[moved]] = made.shift_m[moved]
     found.surface_of[rows[moved]] = made.surface_of[moved] + len(found.surfaces)
     found.stray[rows[moved]] = False

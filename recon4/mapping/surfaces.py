@@ -49,8 +49,6 @@ ALONE = 1.0
 """As many returns of no surface are stray ones whatever their ratio."""
 BEND_M = 0.002
 """Standard deviation of a cell's surface from the plane of its window [m]."""
-
-
 SLAB = 300_000
 """Records fitted at once: what is known of their cells is four times as large as themselves."""
 _MARGIN = 2
@@ -71,6 +69,11 @@ class FittedSurfaces:
     """Returns of no surface, few beside those of the surfaces around them, (N,)."""
     support: NDArray[np.int32]
     """Points in the 3 x 3 x 3 cells around, the point itself included, (N,)."""
+
+    @property
+    def on_surface(self) -> NDArray[np.bool_]:
+        """Which points have a surface, (N,)."""
+        return ~np.isnan(self.surfaces[:, 3])[self.surface_of]
 
     @property
     def normal(self) -> NDArray[np.float32]:

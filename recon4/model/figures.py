@@ -48,6 +48,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Whether fixes were used."""
 
 
+IMU, GNSS = "imu", "gnss"
+"""Names of the IMU and of the receiver among the sensors of a calibration."""
 ParameterStatus = Literal["consistent", "off", "not observable"]
 """Of a parameter of the rig against the recording."""
 
@@ -56,7 +58,7 @@ class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
     """What a recording says of one parameter of its rig."""
 
     sensor: str
-    """Name of the LiDAR, ``imu`` or ``gnss``."""
+    """Name of the LiDAR, `IMU` or `GNSS`."""
     quantity: str
     """``rotation``, ``position``, ``clock``; of a beam ``beam range``, ``beam elevation`` or
     ``beam azimuth``."""
@@ -100,7 +102,7 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
         A lever arm or the clock of the GNSS receiver moves a map and bends it, but no wall doubles.
         """
         return any(
-            row.status == "off" and row.sensor != "gnss" and abs(row.change) > _SEVERE[row.unit]
+            row.status == "off" and row.sensor != GNSS and abs(row.change) > _SEVERE[row.unit]
             for row in self.parameters
         )
 

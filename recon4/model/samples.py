@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,3 +62,7 @@ class GnssSamples:
 
     def __len__(self) -> int:
         return len(self.t_ns)
+
+    def take(self, rows: Any) -> GnssSamples:
+        """The samples of some rows."""
+        return GnssSamples(*(getattr(self, name)[rows] for name in GnssSamples.__slots__))

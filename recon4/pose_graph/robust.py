@@ -156,12 +156,12 @@ def _is_plain(of: Relations, weights: Array) -> bool:
 
 def _groups(of: Relations, loops: Flags) -> list[Flags]:
     """The largest groups of loops that join the same two stretches of the walk."""
+    from scipy.spatial import cKDTree
+
     rows = np.flatnonzero(loops)
     if len(rows) == 0:
         return []
     ends = np.stack([of.i[rows], of.j[rows]], 1)
-    from scipy.spatial import cKDTree
-
     near = cKDTree(ends).query_pairs(_GROUP_NODES, p=np.inf, output_type="ndarray")
     links = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(rows), len(rows)))
     _, label = connected_components(links, directed=False)

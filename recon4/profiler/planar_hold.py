@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.trajectory import Times, Trajectory
 from recon4.model.usability import WEAK_SD_M
 from recon4.profiler.imu_chain import ImuChain, Information
+from recon4.registration.state import END_POSE, START, VECTOR
 
 _WALK_M = np.array([0.02, 0.02, 0.05])
 """Random walk of the error of x, y and z [m/sqrt(s)]; the height is by the IMU."""
@@ -46,13 +47,13 @@ class PlanarHold:
 
     def information(self, chain: ImuChain) -> Information:
         """Normal equations at the present states."""
-        residual = np.diff(chain.vector[:, 0:3], axis=0) - self.step_m
+        residual = np.diff(chain.vector[:, VECTOR.position], axis=0) - self.step_m
         found = Information.none(len(chain) - 1)
-        rows = np.arange(3, 6)
-        found.H[:, rows, rows] = found.H[:, rows + 6, rows + 6] = self.weight
-        found.H[:, rows, rows + 6] = found.H[:, rows + 6, rows] = -self.weight
-        found.g[:, rows] = -self.weight * residual
-        found.g[:, rows + 6] = self.weight * residual
+        start, end = (np.arange(12)[pose][TRANSLATION] for pose in (START, END_POSE))
+        found.H[:, start, start] = found.H[:, end, end] = self.weight
+        found.H[:, start, end] = found.H[:, end, start] = -self.weight
+        found.g[:, start] = -self.weight * residual
+        found.g[:, end] = self.weight * residual
         return found
 
 

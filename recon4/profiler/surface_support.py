@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Times
-from recon4.registration.degeneracy import observable_pose
+from recon4.registration.degeneracy import observable_pose, of_rigid_pose
 
 _AROUND_NS = 1_000_000_000
 """A line scan sees one plane of the surroundings: the lines of this time before and after it count
@@ -35,9 +35,7 @@ def surface_support(
         normal_noise_rad: Standard deviation of a plane's normal [rad]: what it alone creates is no
             information.
     """
-    start, end = slice(0, 6), slice(6, 12)
-    of_pose = H[:, start, start] + H[:, start, end] + H[:, end, start] + H[:, end, end]
-    summed = np.concatenate([np.zeros((1, 6, 6)), np.cumsum(of_pose, axis=0)])
+    summed = np.concatenate([np.zeros((1, 6, 6)), np.cumsum(of_rigid_pose(H), axis=0)])
     counted = np.concatenate([np.zeros((1, 2), np.int64), np.cumsum(counts, axis=0)])
     last = len(knot_ns) - 1
     first, stop = (

@@ -24,11 +24,19 @@ def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array,
     Returns:
         ``H`` (12, 12) and ``g`` (12,) in the form of `Match`.
     """
-    H = match.H
-    H6 = H[START, START] + H[START, END_POSE] + H[END_POSE, START] + H[END_POSE, END_POSE]
-    root, full = _reductions(H6, normal_noise_rad)
+    root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad)
     both = np.kron(np.eye(2), root)
     return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
+
+
+def of_rigid_pose(H: Array) -> Array:
+    """Information on a correction that is the same at start and end, (…, 12, 12) -> (…, 6, 6)."""
+    return np.asarray(
+        H[..., START, START]
+        + H[..., START, END_POSE]
+        + H[..., END_POSE, START]
+        + H[..., END_POSE, END_POSE]
+    )
 
 
 def observable_pose(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:

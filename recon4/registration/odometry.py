@@ -15,6 +15,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
+from recon4.registration.degeneracy import of_rigid_pose
 from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
@@ -352,8 +353,7 @@ def _step(
 
 def _weak_sd_m(fit: FrameFit) -> float:
     """Standard deviation along the weak direction by the points alone [m], at most 100 m."""
-    H = fit.H_lidar
-    H6 = H[START, START] + H[START, END_POSE] + H[END_POSE, START] + H[END_POSE, END_POSE]
+    H6 = of_rigid_pose(fit.H_lidar)
     direction = np.zeros(6)
     direction[STATE.position] = fit.match.weak_direction
     return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))

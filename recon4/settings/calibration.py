@@ -38,6 +38,11 @@ class CalibrationSettings:
             seconds = getattr(self, name)
             require(1.0 <= seconds <= 20.0, f"{name} must be 1 to 20", seconds)
 
+    @property
+    def wanted(self) -> tuple[str, ...]:
+        """The names in ``sensors``; empty = all."""
+        return tuple(name.strip() for name in self.sensors.split(",") if name.strip())
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RigSettings:

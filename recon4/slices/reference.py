@@ -108,11 +108,11 @@ class Reference:
         return out
 
     def _near(self, p: Array, low: Array, high: Array) -> Array:
+        from scipy.spatial import cKDTree
+
         q, normal = points_between(self.tiles, low, high)
         if not len(q):
             return np.full(len(p), np.inf)
-        from scipy.spatial import cKDTree
-
         tree = cKDTree(q, balanced_tree=False, compact_nodes=False)
         distance, row = tree.query(p, distance_upper_bound=FAR_M)
         near = np.isfinite(distance)

@@ -72,56 +72,21 @@ export class RigSection extends HTMLElement {
   }
 
   #table(audit) {
-    const row = ({ sensor, quantity, change, mark, word, className }) =>
-      make(
-        "tr",
-        {},
-        make("th", { scope: "row" }, sensor),
-        make("td", {}, quantity),
-        make("td", { className: "number" }, change),
-        make("td", { className }, `${mark} ${word}`),
-      );
     const rows = rowsOf(audit.parameters);
-    const table = make(
-      "table",
-      { className: "audit" },
-      make("thead", {}, make("tr", {}, ...HEADS.map((text) => make("th", { scope: "col" }, text)))),
-      make("tbody", {}, ...rows.map(row)),
-    );
     const off = audit.parameters.some((one) => one.status === "off");
-    return make(
-      "details",
-      { open: off },
-      make("summary", {}, `${rows.length} parameters compared`),
-      make("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Audit" }, table),
-    );
+    const cells = rows.map(({ sensor, quantity, change, mark, word, className }) => [
+      make("th", { scope: "row" }, sensor),
+      make("td", {}, quantity),
+      make("td", { className: "number" }, change),
+      make("td", { className }, `${mark} ${word}`),
+    ]);
+    return folded(`${rows.length} parameters compared`, "Audit", table(HEADS, cells), off);
   }
 
   #beams({ beams }) {
     const rows = beamRows(beams);
-    const cells = ([name, ...values]) =>
-      make(
-        "tr",
-        {},
-        make("th", { scope: "row" }, name),
-        ...values.map((text) => make("td", { className: "number" }, text)),
-      );
-    const table = make(
-      "table",
-      { className: "audit" },
-      make(
-        "thead",
-        {},
-        make("tr", {}, ...BEAM_HEADS.map((text) => make("th", { scope: "col" }, text))),
-      ),
-      make("tbody", {}, ...rows.map(cells)),
-    );
-    return make(
-      "details",
-      {},
-      make("summary", {}, `Corrections of ${rows.length} single beams`),
-      make("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: "Beams" }, table),
-    );
+    const summary = `Corrections of ${rows.length} single beams`;
+    return folded(summary, "Beams", table(BEAM_HEADS, rows.map(numbers)));
   }
 
   #agreement({ before, after }) {
@@ -130,32 +95,10 @@ export class RigSection extends HTMLElement {
       ["Distance of points from common planes", before.rms_m, after.rms_m],
       ["One surface seen by two LiDARs", before.offset_m, after.offset_m],
     ].filter(([, first, last]) => first !== null || last !== null);
-    return make(
-      "table",
-      { className: "audit" },
-      make("caption", {}, "Windows of the walk that were not used"),
-      make(
-        "thead",
-        {},
-        make(
-          "tr",
-          {},
-          ...["", "Before", "After"].map((head) => make("th", { scope: "col" }, head)),
-        ),
-      ),
-      make(
-        "tbody",
-        {},
-        ...rows.map(([name, first, last]) =>
-          make(
-            "tr",
-            {},
-            make("th", { scope: "row" }, name),
-            make("td", { className: "number" }, text(first)),
-            make("td", { className: "number" }, text(last)),
-          ),
-        ),
-      ),
+    return table(
+      ["", "Before", "After"],
+      rows.map(([name, ...values]) => numbers([name, ...values.map(text)])),
+      "Windows of the walk that were not used",
     );
   }
 
@@ -249,3 +192,30 @@ export class RigSection extends HTMLElement {
 }
 
 customElements.define("rig-section", RigSection);
+
+/** A table of rows of cells. */
+function table(heads, rows, caption = "") {
+  return make(
+    "table",
+    { className: "audit" },
+    caption ? make("caption", {}, caption) : null,
+    make("thead", {}, make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)))),
+    make("tbody", {}, ...rows.map((cells) => make("tr", {}, ...cells))),
+  );
+}
+
+/** Cells of a row: its name, then numbers. */
+const numbers = ([name, ...texts]) => [
+  make("th", { scope: "row" }, name),
+  ...texts.map((text) => make("td", { className: "number" }, text)),
+];
+
+/** What can be opened, and scrolled by the keyboard. */
+function folded(summary, label, content, open = false) {
+  return make(
+    "details",
+    { open },
+    make("summary", {}, summary),
+    make("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: label }, content),
+  );
+}

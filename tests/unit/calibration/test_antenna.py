@@ -63,7 +63,7 @@ def agreed():
 
 
 def test_an_audit_compares_the_receiver_and_changes_nothing(walk, agreed):
-    found = with_antenna(agreed, walk, settings=settings("audit"))
+    found = with_antenna(agreed, walk, settings=settings("audit"), progress=Silent())
 
     assert [row.sensor for row in found.figures.parameters] == ["gnss"] * 4
     assert found.figures.outcome == "the rig file agrees; GNSS fixes contradict it"
@@ -75,7 +75,7 @@ def test_an_audit_compares_the_receiver_and_changes_nothing(walk, agreed):
 def test_on_request_the_receiver_is_corrected_and_its_fixes_are_shifted(
     outdoors, walk, agreed, tmp_path
 ):
-    found = with_antenna(agreed, walk, settings=settings("auto"))
+    found = with_antenna(agreed, walk, settings=settings("auto"), progress=Silent())
     found.save(tmp_path)
 
     assert found.figures.applied, found.figures.outcome
@@ -91,7 +91,7 @@ def test_on_request_the_receiver_is_corrected_and_its_fixes_are_shifted(
 
 
 def test_a_sensor_that_is_not_named_stays(walk, agreed):
-    found = with_antenna(agreed, walk, settings=settings("auto", sensors="imu"))
+    found = with_antenna(agreed, walk, settings=settings("auto", sensors="imu"), progress=Silent())
 
     assert found is agreed
 
@@ -99,7 +99,7 @@ def test_a_sensor_that_is_not_named_stays(walk, agreed):
 def test_with_mounts_that_are_wrong_nothing_is_corrected(walk):
     wrong = CalibrationResult(figures=CalibrationFigures(warnings=("a LiDAR is off",)))
 
-    found = with_antenna(wrong, walk, settings=settings("auto"))
+    found = with_antenna(wrong, walk, settings=settings("auto"), progress=Silent())
 
     assert len(found.figures.parameters) == 4
     assert found.rig is None
@@ -114,7 +114,7 @@ def test_the_note_of_the_mounts_stays_beside_that_of_the_receiver(walk, agreed):
     rig = replace(walk.frames.rig, calibration=note)
     noted = replace(walk, frames=replace(walk.frames, rig=rig, recorded=rig))
 
-    found = with_antenna(agreed, noted, settings=settings("auto"))
+    found = with_antenna(agreed, noted, settings=settings("auto"), progress=Silent())
 
     assert found.rig.calibration.method == "joint"
     assert found.rig.calibration.date == "2026-01-02"

@@ -85,10 +85,6 @@ def receiver(true: Trajectory, rng: np.random.Generator, *, sd_m: float = 0.02) 
     )
 
 
-def rows_of(gnss: GnssSamples, rows: np.ndarray) -> GnssSamples:
-    return GnssSamples(*(getattr(gnss, name)[rows] for name in GnssSamples.__slots__))
-
-
 def worst_m(result: GeoreferenceResult, true: Trajectory) -> float:
     """Largest error of a node on earth."""
     assert result.origin is not None
@@ -143,7 +139,7 @@ def test_the_lever_arm_matters(true: Trajectory, gnss: GnssSamples) -> None:
 
 def test_outliers_of_every_kind_are_excluded(true: Trajectory, gnss: GnssSamples) -> None:
     rng = np.random.default_rng(4)
-    bad = rows_of(gnss, np.arange(len(gnss)))
+    bad = gnss.take(np.arange(len(gnss)))
     single = rng.choice(len(gnss), 60, replace=False)
     bad.lat_rad[single] += rng.normal(0, 50, 60) / 6.4e6
     bad.lon_rad[400:450] += 8.0 / 4.2e6  # ten seconds of multipath
@@ -165,7 +161,7 @@ def test_a_gap_of_a_minute_costs_little(true: Trajectory, gnss: GnssSamples) -> 
     s = (gnss.t_ns - gnss.t_ns[0]) / 1e9
     whole = run(true, gnss)
 
-    result = run(true, rows_of(gnss, np.flatnonzero((s < 90) | (s > 150))))
+    result = run(true, gnss.take(np.flatnonzero((s < 90) | (s > 150))))
 
     assert worst_m(result, true) < max(1.5 * worst_m(whole, true), 0.08)
 
@@ -174,7 +170,7 @@ def test_float_and_single_fixes_weigh_less_than_fixed_ones(true: Trajectory) -> 
     good, poor = (
         receiver(true, np.random.default_rng(k), sd_m=sd) for k, sd in ((5, 0.02), (6, 1.5))
     )
-    mixed = rows_of(good, np.arange(len(good)))
+    mixed = good.take(np.arange(len(good)))
     rows = np.arange(400, 700)
     for name in ("lat_rad", "lon_rad", "height_m"):
         getattr(mixed, name)[rows] = getattr(poor, name)[rows]
@@ -267,7 +263,7 @@ def test_with_too_few_fixes_the_map_is_not_georeferenced(
     graph, dense = slam(true, np.random.default_rng(1))
 
     result = georeference(
-        graph, dense, rows_of(gnss, np.arange(kept)), rig=RIG, settings=GnssSettings()
+        graph, dense, gnss.take(np.arange(kept)), rig=RIG, settings=GnssSettings()
     )
 
     assert result.origin is None
@@ -279,7 +275,7 @@ def test_with_too_few_fixes_the_map_is_not_georeferenced(
 def test_a_stationary_receiver_gives_no_heading_and_a_reason(
     true: Trajectory, gnss: GnssSamples
 ) -> None:
-    result = run(true, rows_of(gnss, np.arange(8)))
+    result = run(true, gnss.take(np.arange(8)))
 
     assert result.origin is None
     assert "agreeing fixes" in result.reason
