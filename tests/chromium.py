@@ -14,3 +14,28 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
 ]
+
+DRAW_LESS = """{
+  const contextOf = HTMLCanvasElement.prototype.getContext;
+  HTMLCanvasElement.prototype.getContext = function (kind, options) {
+    const chosen = kind.startsWith("webgl") ? { ...options, antialias: false } : options;
+    return contextOf.call(this, kind, chosen);
+  };
+  const request = window.requestAnimationFrame.bind(window);
+  const timers = new Map();
+  let last = 0;
+  window.requestAnimationFrame = (draw) => {
+    const id = ++last;
+    const drawUnlessCancelled = (time) => timers.delete(id) && draw(time);
+    timers.set(id, setTimeout(() => request(drawUnlessCancelled), 100));
+    return id;
+  };
+  window.cancelAnimationFrame = (id) => {
+    clearTimeout(timers.get(id));
+    timers.delete(id);
+  };
+}"""
+"""Script for every page: at most 10 frames per second, no antialiasing in WebGL.
+
+Without a graphics card each frame takes processor time that the other tests need.
+"""

@@ -5,17 +5,20 @@ from __future__ import annotations
 import io
 import os
 from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import cache
 from pathlib import Path
 
 import pytest
 from PIL import Image
-from playwright.sync_api import BrowserContext, Page, expect
+from playwright.sync_api import Browser, BrowserContext, Page, expect
 
+from tests.chromium import DRAW_LESS
 from tests.service.running import ROOT
 
 expect.set_options(timeout=45_000)  # two busy cores draw WebGL in software
 
+SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
 SCREENS = {"desktop": (1440, 900), "phone": (390, 844)}
 EXPECTED_NOISE = (
     "status of 4",
@@ -71,19 +74,41 @@ def _asked_for(item: pytest.Item) -> bool:
     return mark is None or call is None or call.params["look"] in mark.args
 
 
-@pytest.fixture
-def context(browser, look) -> Iterator[BrowserContext]:
+@contextmanager
+def browser_context(
+    browser: Browser, look: tuple[str, str], *, ignore_https_errors: bool = False
+) -> Iterator[BrowserContext]:
+    """A fresh profile of the browser with a screen and a color scheme."""
     screen, scheme = look
     width, height = SCREENS[screen]
     context = browser.new_context(
         viewport={"width": width, "height": height},
-        color_scheme=scheme,
+        color_scheme="dark" if scheme == "dark" else "light",
         has_touch=screen == "phone",
         is_mobile=screen == "phone",
+        ignore_https_errors=ignore_https_errors,
     )
     context.set_default_timeout(60_000)
+    if not SCREENSHOTS:
+        context.add_init_script(DRAW_LESS)
     yield context
     context.close()
+
+
+@pytest.fixture
+def context(browser, look) -> Iterator[BrowserContext]:
+    with browser_context(browser, look) as context:
+        yield context
+
+
+def leave_out_viewer(page: Page) -> None:
+    """Show an empty page in place of the viewer, where a test is about the page around it.
+
+    Without a graphics card the viewer takes most of the processor time of a page.
+    """
+    if not SCREENSHOTS:
+        empty = "<!doctype html><title>Viewer</title>"
+        page.route("**/viewer/", lambda route: route.fulfill(body=empty, content_type="text/html"))
 
 
 @pytest.fixture
@@ -149,7 +174,7 @@ def screenshot(look):
     """
 
     def keep(page: Page, name: str) -> None:
-        if os.environ.get("RECON4_SCREENSHOTS") == "1":
+        if SCREENSHOTS:
             screen, scheme = look
             file = f"{name}-{screen}-{scheme}.png"
             folder = ROOT / ("docs/images" if file in pages() else "out/screenshots")

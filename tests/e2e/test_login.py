@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import pytest
 from playwright.sync_api import Page, expect
 
-from tests.e2e.conftest import EXPECTED_NOISE, SCREENS, looks
+from tests.e2e.conftest import EXPECTED_NOISE, browser_context, leave_out_viewer, looks
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, Secure, secure_server
@@ -24,22 +24,14 @@ def server(tmp_path_factory):
 @pytest.fixture
 def page(browser, look) -> Iterator[Page]:
     """A browser that accepts the self-signed certificate, as after comparing the fingerprint."""
-    screen, scheme = look
-    width, height = SCREENS[screen]
-    context = browser.new_context(
-        viewport={"width": width, "height": height},
-        color_scheme=scheme,
-        has_touch=screen == "phone",
-        is_mobile=screen == "phone",
-        ignore_https_errors=True,
-    )
-    context.set_default_timeout(60_000)
-    page = context.new_page()
-    complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    page.on("console", lambda message: message.type == "error" and complaints.append(message.text))
-    yield page
-    context.close()
+    with browser_context(browser, look, ignore_https_errors=True) as context:
+        page = context.new_page()
+        complaints: list[str] = []
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        page.on(
+            "console", lambda message: message.type == "error" and complaints.append(message.text)
+        )
+        yield page
     noise = (*EXPECTED_NOISE, "status of 422")
     assert [text for text in complaints if not any(one in text for one in noise)] == []
 
@@ -64,6 +56,7 @@ def fits(page):
 
 
 def test_a_page_redirects_to_the_login_and_back(server, page, screenshot):
+    leave_out_viewer(page)
     page.goto(f"{server.url}/projects/office/")
     expect(page.get_by_role("heading", name="Sign in")).to_be_visible()
     expect(page.get_by_label("Name")).to_be_focused()

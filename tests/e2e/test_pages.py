@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import leave_out_viewer, looks
 from tests.project_builder import build_project
 from tests.service.cuttable import cuttable
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
@@ -115,6 +115,7 @@ def test_layers_and_colors_follow_the_panel(finished, page):
 
 @looks("desktop light")
 def test_a_download_and_the_report_open(finished, page):
+    leave_out_viewer(page)
     page.goto(f"{finished.url}/projects/office/")
 
     with page.expect_download() as download:
@@ -127,6 +128,7 @@ def test_a_download_and_the_report_open(finished, page):
 
 
 def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, look, screenshot):
+    leave_out_viewer(page)
     recording = recording_with_gate(tmp_path / "morning walk")
     page.goto(server.url)
 
@@ -164,6 +166,7 @@ def test_a_job_is_started_watched_cancelled_and_resumed(server, page, tmp_path, 
 @looks("desktop light")
 def test_a_page_without_link_shows_the_outcome_of_its_job_later(server, context, tmp_path):
     page = context.new_page()  # its browser complains of the cut
+    leave_out_viewer(page)
     recording = recording_with_gate(tmp_path / "walk")
     job = server.start("office", recording)
     server.wait_at_gate(job)
@@ -198,6 +201,7 @@ def test_a_rejected_request_shows_its_message(server, page, look):
 
 @looks("desktop light")
 def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
+    leave_out_viewer(page)
     (tmp_path / "empty.pcap").write_bytes(b"")
     recording_with_gate(tmp_path / "data" / "walk")
     build_project(server.root / "empty", with_map=False)

@@ -5,7 +5,7 @@ from urllib.parse import urlsplit
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import SCREENS
+from tests.e2e.conftest import browser_context
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, secure_server
 
@@ -34,16 +34,8 @@ def laptop(browser):
 
 
 def opened(browser, screen):
-    width, height = SCREENS[screen]
-    context = browser.new_context(
-        viewport={"width": width, "height": height},
-        ignore_https_errors=True,
-        is_mobile=screen == "phone",
-        has_touch=screen == "phone",
-        color_scheme="light",
-    )
-    yield context.new_page()
-    context.close()
+    with browser_context(browser, (screen, "light"), ignore_https_errors=True) as context:
+        yield context.new_page()
 
 
 def sign_in(page, server, path):

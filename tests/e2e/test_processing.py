@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import expect
 
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 
@@ -144,6 +144,7 @@ def test_a_dropped_file_is_uploaded(server, page):
 
 @looks("desktop light")
 def test_a_project_is_cloned_renamed_deleted_and_restored(server, page):
+    leave_out_viewer(page)
     recording = recording_with_gate(server.root / "walk")
     job = server.start("office", recording)
     gate = open_gate(recording)

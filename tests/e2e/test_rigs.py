@@ -6,7 +6,7 @@ import pytest
 from playwright.sync_api import expect
 
 from recon4.model.rig import load_rig
-from tests.e2e.conftest import looks
+from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
 from tests.rig_projects import TOML, calibrated_project, tilted
 from tests.service.running import SLOW, recording_with_gate, server_thread
@@ -188,6 +188,7 @@ def test_a_file_that_is_no_rig_is_refused_with_its_mistake(server, page, tmp_pat
 
 def test_a_project_shows_what_its_recording_says_of_the_rig(server, page, look, screenshot):
     calibrated_project(server.root / "walk", rig=field_of(server), found=None)
+    leave_out_viewer(page)
     page.goto(f"{server.url}/projects/walk/")
 
     section = page.locator("rig-section")
@@ -209,6 +210,7 @@ def test_a_project_is_mapped_again_with_calibration(server, page, tmp_path):
     job = server.post("/api/jobs", json=body).json()["job"]["id"]
     server.post(f"/api/jobs/{job}/cancel")
     server.wait_state(job, "cancelled")
+    leave_out_viewer(page)
     page.goto(f"{server.url}/projects/walk/")
 
     page.get_by_role("button", name="Calibrate and map again").click()
@@ -225,6 +227,7 @@ def test_a_project_is_mapped_again_with_calibration(server, page, tmp_path):
 def test_a_calibrated_rig_is_saved_as_a_version(server, page, look, screenshot):
     rig = field_of(server)
     calibrated_project(server.root / "walk", rig=rig, found=tilted(rig))
+    leave_out_viewer(page)
     page.goto(f"{server.url}/projects/walk/")
     section = page.locator("rig-section")
     expect(section.get_by_text("Calibrated rig used for this map")).to_be_visible()

@@ -17,6 +17,7 @@ from recon4.review.journal import broken, read_rows
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.hashing import hash_file
+from tests.e2e.conftest import browser_context
 from tests.e2e.test_pages import drawn
 from tests.service.running import server_thread, wait_for
 
@@ -26,7 +27,6 @@ VOXEL_M = 0.03
 """Coarser than the preset: this map is drawn without a graphics card."""
 WORK_MS = 240_000
 """Limit for a map on a busy computer [ms]."""
-PHONE = {"width": 390, "height": 844}
 
 
 @pytest.fixture(scope="module")
@@ -261,18 +261,15 @@ PAGES = {
 
 def on_a_phone(browser, server):
     """Every page fits, can be touched, and reports no error."""
-    context = browser.new_context(
-        viewport=PHONE, color_scheme="dark", has_touch=True, is_mobile=True
-    )
-    page = context.new_page()
     complaints: list[str] = []
-    page.on("pageerror", lambda error: complaints.append(str(error)))
-    for path, shows in PAGES.items():
-        page.goto(f"{server.url}/{path}")
-        expect(page.locator(shows).first).to_be_visible()
-        assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), path
-        assert low(page) == [], path
-    context.close()
+    with browser_context(browser, ("phone", "dark")) as context:
+        page = context.new_page()
+        page.on("pageerror", lambda error: complaints.append(str(error)))
+        for path, shows in PAGES.items():
+            page.goto(f"{server.url}/{path}")
+            expect(page.locator(shows).first).to_be_visible()
+            assert page.evaluate("document.documentElement.scrollWidth <= innerWidth"), path
+            assert low(page) == [], path
     assert complaints == []
 
 
