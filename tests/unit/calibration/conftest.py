@@ -16,6 +16,8 @@ from recon4.store.frames import FrameStore, FrameWriter
 from tests import scanned_room
 
 SECONDS = 12.0
+COLUMNS = 300
+"""Half as dense as a VLP-16 at 10 Hz; nothing here needs more."""
 CALIBRATION = CalibrationSettings(
     audit_windows=3, audit_window_s=2.0, windows=3, window_s=2.0, mode="audit"
 )
@@ -103,4 +105,10 @@ def tracked(folder: Path, frames: FrameStore, true: Rig) -> Recorded:
 @pytest.fixture(scope="package")
 def dance():
     """12 s with turns about all axes; the sensors are where the rig says."""
-    return scanned_room.walk(dancing, round(SECONDS * 10), noise_m=0.01)
+    return scanned_room.walk(dancing, round(SECONDS * 10), noise_m=0.01, columns=COLUMNS)
+
+
+@pytest.fixture(scope="package")
+def right(dance, tmp_path_factory):
+    """That walk with a rig file that is right."""
+    return store(tmp_path_factory.mktemp("right"), dance, dance.rig, dance.imu)

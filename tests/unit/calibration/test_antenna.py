@@ -16,7 +16,7 @@ from recon4.model.samples import GnssSamples
 from recon4.progress import Silent
 from recon4.settings import GnssSettings, Settings
 from recon4.store.arrays import load_trajectory
-from tests.unit.calibration.conftest import CALIBRATION, store
+from tests.unit.calibration.conftest import CALIBRATION
 
 ARM = np.array([-0.2, 0.1, 0.6])
 ERROR = np.array([0.1, -0.07, 0.0])
@@ -30,7 +30,7 @@ def settings(mode, sensors="gnss"):
 
 
 @pytest.fixture(scope="module")
-def outdoors(dance, tmp_path_factory):
+def outdoors(dance, right):
     """The lever arm is 12 cm off, and the clock of the receiver 40 ms ahead."""
     t_ns = np.arange(dance.truth.t_ns[0] + 10**8, dance.truth.t_ns[-1] - 10**8, 2 * 10**7)
     T = dance.truth.at(t_ns)
@@ -44,10 +44,8 @@ def outdoors(dance, tmp_path_factory):
         np.full(len(t_ns), 4, np.uint8),
         np.stack([roll, -pitch, 0.5 * np.pi - yaw], axis=1),
     )
-    recorded = store(tmp_path_factory.mktemp("outdoors"), dance, dance.rig, dance.imu)
-    rig = replace(recorded.frames.rig, p_body_antenna=ARM + ERROR)
-    frames = replace(recorded.frames, gnss=gnss, rig=rig, recorded=rig)
-    return replace(recorded, frames=frames)
+    rig = replace(right.frames.rig, p_body_antenna=ARM + ERROR)
+    return replace(right, frames=replace(right.frames, gnss=gnss, rig=rig, recorded=rig))
 
 
 @pytest.fixture(scope="module")

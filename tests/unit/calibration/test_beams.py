@@ -15,7 +15,7 @@ from recon4.store.frames import CALIBRATED_RIG, FrameStore, open_frames
 from tests.unit.calibration.conftest import AUTO, store
 
 BEAMS = replace(AUTO, calibration=replace(AUTO.calibration, beams=True))
-DRAWN = [0.006, np.deg2rad(0.03), np.deg2rad(0.03)]
+DRAWN = [0.006, np.deg2rad(0.03), np.deg2rad(0.04)]
 
 
 def corrections(seed):
@@ -53,7 +53,7 @@ def test_the_beams_are_corrected_and_other_windows_confirm_it(calibrated):
     for sensor, beams in zip(found.rig.sensors, true, strict=True):
         error = sensor.beams.rows - beams.rows
         assert np.sqrt(np.mean(error[0] ** 2)) < 0.001
-        assert np.sqrt(np.mean(error[2] ** 2)) < np.deg2rad(0.015)
+        assert np.sqrt(np.mean(error[2] ** 2)) < np.deg2rad(0.02)
 
 
 def test_what_the_walk_shows_is_within_its_standard_deviation(calibrated):
@@ -86,10 +86,8 @@ def test_the_calibrated_rig_corrects_the_points_of_the_recording(calibrated, dan
         assert after_m < 0.5 * before_m
 
 
-def test_good_beams_are_left_alone(dance, tmp_path):
-    recorded = store(tmp_path, dance, dance.rig, dance.imu)
-
-    found = run_calibration(recorded.frames, recorded.odometry, settings=BEAMS, progress=Silent())
+def test_good_beams_are_left_alone(right):
+    found = run_calibration(right.frames, right.odometry, settings=BEAMS, progress=Silent())
 
     assert not found.figures.applied and found.rig is None
     assert "agree with the rig file" in found.figures.outcome
@@ -120,10 +118,9 @@ def test_means_that_nothing_observes_stay(dance):
         assert direction @ parameters.prior @ direction > 1e5
 
 
-def test_rings_that_are_bands_of_elevation_are_no_beams(dance, tmp_path):
-    recorded = store(tmp_path, dance, dance.rig, None)
+def test_rings_that_are_bands_of_elevation_are_no_beams(dance, right):
     generic = [replace(sensor, model="generic") for sensor in dance.rig.sensors]
-    frames = FrameStore.open(recorded.frames.folder, replace(dance.rig, sensors=tuple(generic)))
+    frames = FrameStore.open(right.frames.folder, replace(dance.rig, sensors=tuple(generic)))
     assert beam_counts(frames, (0, 1)) == {0: 16, 1: 16}
 
     bands = [replace(frame, ring=(frame.ring // 4).astype(np.uint8)) for frame in dance]

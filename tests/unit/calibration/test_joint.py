@@ -16,6 +16,7 @@ from tests import scanned_room
 from tests.unit.calibration.conftest import (
     AUTO,
     CALIBRATION,
+    COLUMNS,
     SETTINGS,
     imu_mounted,
     mounted,
@@ -50,11 +51,6 @@ def audited(wrong):
 @pytest.fixture(scope="module")
 def calibrated(wrong):
     return run(wrong, AUTO)
-
-
-@pytest.fixture(scope="module")
-def right(dance, tmp_path_factory):
-    return store(tmp_path_factory.mktemp("right"), dance, dance.rig, dance.imu)
 
 
 def test_a_rig_file_that_is_right_is_confirmed(right):
@@ -155,7 +151,7 @@ def test_one_lidar_without_an_imu_leaves_nothing_to_compare(dance, tmp_path):
 
 
 def test_who_stands_still_learns_nothing_wrong(tmp_path):
-    still = scanned_room.walk(scanned_room.standing, 60, noise_m=0.01)
+    still = scanned_room.walk(scanned_room.standing, 60, noise_m=0.01, columns=COLUMNS)
     found = run(store(tmp_path, still, imu_mounted(still.rig, turn_deg=(0, 0, 1.5)), still.imu))
 
     status = {(row.quantity, row.axis): row.status for row in rows_of(found, "imu")}
@@ -164,7 +160,7 @@ def test_who_stands_still_learns_nothing_wrong(tmp_path):
 
 
 def test_turns_about_the_vertical_leave_axes_unobservable(tmp_path):
-    flat = scanned_room.walk(planar, 70, noise_m=0.01)
+    flat = scanned_room.walk(planar, 70, noise_m=0.01, columns=COLUMNS)
     found = run(store(tmp_path, flat, flat.rig, flat.imu), AUTO)
 
     unknown = {(row.sensor, row.quantity, row.axis) for row in found.figures.parameters
