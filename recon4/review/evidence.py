@@ -5,10 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from recon4.mapping.tiles import TileSet
 from recon4.review.stamp import Stamp
 from recon4.store.checked import Altered, CheckedArtifact
+
+if TYPE_CHECKING:
+    from recon4.mapping.tiles import TileSet
 
 FRAME_FILE = "georeference.json"
 """Georeference of the map, in the artifact of the stage ``level``."""
@@ -45,6 +48,9 @@ class Evidence:
             Altered: If it was changed.
             StoreError: If it cannot be read.
         """
+        # Here: it takes most of a second, and commands like `recon4 users` open no map.
+        from recon4.mapping.tiles import TileSet
+
         return TileSet.open(folder, self.artifact("map", folder))
 
     def check_frame(self, artifacts: Mapping[str, Path]) -> None:
