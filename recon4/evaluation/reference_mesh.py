@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
 from recon4.errors import CorruptFile, RecordingError
 from recon4.geometry.se3 import SE3, Array
@@ -161,6 +160,8 @@ def fit_planes(
         max_distance_m: Farther points are not matched [m]. Fewer than 100 points that match are
             not used: then nothing moves any more.
     """
+    from scipy.spatial import cKDTree  # slow to import, and readers of meshes need none
+
     tree = cKDTree(surface.p)
     residual, length = np.empty(0), np.inf
     for _ in range(rounds):

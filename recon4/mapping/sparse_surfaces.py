@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.ndimage import maximum_filter
 
 from recon4.kernels.surface_cells import number_cells
 from recon4.mapping.grid import Grid
@@ -48,6 +47,8 @@ def with_sparse_places(
         noise_m: Standard deviation of a range [m].
         scratch: Memory to work in; None = fresh memory.
     """
+    from scipy.ndimage import maximum_filter  # slow to import, and readers of maps need none
+
     loose = ~found.on_surface & (found.support < FEW)
     if loose.sum() <= SHARE * len(records):
         return found

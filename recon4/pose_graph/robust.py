@@ -9,9 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
-from scipy.special import gammaincinv
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Flags, PoseGraph, Relations
@@ -90,6 +87,8 @@ def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
 
 def _chi2_quantile(probability: float) -> float:
     """With six degrees of freedom; as scipy.stats, which takes a second to import, computes it."""
+    from scipy.special import gammaincinv
+
     return float(2.0 * gammaincinv(3.0, probability))
 
 
@@ -156,6 +155,8 @@ def _is_plain(of: Relations, weights: Array) -> bool:
 
 def _groups(of: Relations, loops: Flags) -> list[Flags]:
     """The largest groups of loops that join the same two stretches of the walk."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
     rows = np.flatnonzero(loops)

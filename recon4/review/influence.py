@@ -17,8 +17,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import csc_array
-from scipy.sparse.linalg import splu
 
 from recon4.geometry.se3 import ARM_M, Array
 from recon4.kernels.selected_inverse import entries, selected_inverse
@@ -75,6 +73,8 @@ def _size(change: Array) -> Array:
 
 def _relative_covariance(of: Relations, A: Array, rows: NDArray[np.intp], *, nodes: int) -> Array:
     """``S`` of some edges, (M, 6, 6), from the entries of ``H^-1`` at their nodes."""
+    from scipy.sparse.linalg import splu  # slow to import, and most of the review needs none
+
     factor = splu(
         _hessian(of, A, rows, nodes=nodes),
         permc_spec="MMD_AT_PLUS_A",
@@ -105,6 +105,8 @@ def _hessian(of: Relations, A: Array, asked: NDArray[np.intp], *, nodes: int) ->
     The sparse factor has entries only where ``H`` is not zero, so the blocks of all evaluated edges
     and of all nodes get at least the tiny weight `_NOTHING`.
     """
+    from scipy.sparse import csc_array
+
     used = np.flatnonzero(of.in_graph)
     i, j, W, A = of.i[used], of.j[used], of.information[used], A[used]
     left = np.swapaxes(A, 1, 2) @ W

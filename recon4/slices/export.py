@@ -13,7 +13,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, GeoreferenceError
-from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.points import OutputCrs
 from recon4.geometry.se3 import Array
@@ -64,6 +63,8 @@ def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
         ConfigError: If the slices are empty.
         StoreError: If the file cannot be written or does not read back.
     """
+    from recon4.export.laz import export_laz  # its libraries are slow to import
+
     tiles = chosen.tiles
     with scratch_folder(0) as folder:
         out = folder / "tiles"
