@@ -95,6 +95,7 @@ def test_a_laz_holds_the_points_of_the_slice_in_the_crs(tiles, tmp_path):
 KILLED = """
 import os, signal, sys
 from pathlib import Path
+from recon4.export import laz
 from recon4.mapping.tiles import TileSet
 from recon4.slices import export
 from recon4.slices.slice_plane import horizontal
@@ -103,7 +104,7 @@ from recon4.slices.frames import MapFrame
 def killed(*_, **__):
     os.kill(os.getpid(), signal.SIGKILL)
 
-export.export_laz = killed
+laz.export_laz = killed
 cut = horizontal(0.5, thickness_m=0.2)
 chosen = export.SliceSelection(TileSet.open(Path(sys.argv[1])), [cut])
 export.write_laz(chosen, Path(sys.argv[2]), frame=MapFrame("", "", None))
