@@ -7,10 +7,14 @@ from numba import njit
 from numpy.typing import NDArray
 
 ROTATION, POSITION, VELOCITY, GYRO_BIAS, ACCEL_BIAS, GRAVITY = 0, 3, 6, 9, 12, 15
-"""First row of each quantity in the error state (18,); `recon4.registration.state` has slices."""
+"""First row of each quantity in the error state; `recon4.registration.state` has slices."""
+GYRO_GAIN, CLOCK, SIZE = 18, 27, 28
+"""Error of the gyroscope's scale and axes, a (3, 3) matrix row by row, and of the clock of the IMU.
+A state of 18 rows has neither."""
 _ROTATION_ROWS = 3
 """The vector of a state (15,) has no rotation: its rows are those of the error state minus 3."""
 _GYRO_NOISE, _ACCEL_NOISE, _GYRO_BIAS_WALK, _ACCEL_BIAS_WALK = 0, 1, 2, 3
+_GAIN_WALK, _CLOCK_WALK = 4, 5
 """Rows of the noise densities."""
 
 
@@ -44,19 +48,20 @@ def _quantity(state: NDArray[np.float64], first: int) -> NDArray[np.float64]:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _step_transition(
-    half: NDArray[np.float64], f: NDArray[np.float64], dt: float
+    half: NDArray[np.float64], f: NDArray[np.float64], dt: float, size: int
 ) -> NDArray[np.float64]:
-    """Transition of the error state over one sample.
+    """Transition of the error state over one sample, without scale and clock of the IMU.
 
     Args:
         half: ``R_odom_body`` in the middle of the step, (3, 3).
         f: Specific force in the odometry frame [m/s²], (3,).
         dt: Length of the step [s].
+        size: Rows of the error state N.
 
     Returns:
-        (18, 18).
+        (N, N).
     """
-    F = np.eye(18)
+    F = np.eye(size)
     F[VELOCITY, ROTATION + 1], F[VELOCITY, ROTATION + 2] = f[2] * dt, -f[1] * dt
     F[VELOCITY + 1, ROTATION], F[VELOCITY + 1, ROTATION + 2] = -f[2] * dt, f[0] * dt
     F[VELOCITY + 2, ROTATION], F[VELOCITY + 2, ROTATION + 1] = f[1] * dt, -f[0] * dt
@@ -73,8 +78,34 @@ def _step_transition(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _add_calibration(
+    F: NDArray[np.float64],
+    half: NDArray[np.float64],
+    gyro: NDArray[np.float64],
+    more: NDArray[np.float64],
+    dt: float,
+) -> None:
+    """Add what scale and clock of the IMU do over one sample to the transition, in place.
+
+    Args:
+        F: Transition of the error state, (28, 28).
+        half: ``R_odom_body`` in the middle of the step, (3, 3).
+        gyro: Mean angular rate over the step as measured [rad/s], (3,).
+        more: What angular rate and specific force gain over the step, (6,).
+        dt: Length of the step [s].
+    """
+    for i in range(3):
+        for j in range(3):
+            F[ROTATION + i, CLOCK] += half[i, j] * more[j]
+            F[VELOCITY + i, CLOCK] += half[i, j] * more[3 + j]
+            for k in range(3):
+                F[ROTATION + i, GYRO_GAIN + 3 * j + k] = half[i, j] * gyro[k] * dt
+        F[POSITION + i, CLOCK] = 0.5 * dt * F[VELOCITY + i, CLOCK]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def _add_noise(P: NDArray[np.float64], noise: NDArray[np.float64], dt: float) -> None:
-    """Add the noise of one step to the covariance of the error state (18, 18), in place."""
+    """Add the noise of one step to the covariance of the error state (N, N), in place."""
     for i in range(3):
         P[ROTATION + i, ROTATION + i] += noise[_GYRO_NOISE] ** 2 * dt
         P[POSITION + i, POSITION + i] += noise[_ACCEL_NOISE] ** 2 * dt**3 / 3.0
@@ -83,6 +114,10 @@ def _add_noise(P: NDArray[np.float64], noise: NDArray[np.float64], dt: float) ->
         P[VELOCITY + i, VELOCITY + i] += noise[_ACCEL_NOISE] ** 2 * dt
         P[GYRO_BIAS + i, GYRO_BIAS + i] += noise[_GYRO_BIAS_WALK] ** 2 * dt
         P[ACCEL_BIAS + i, ACCEL_BIAS + i] += noise[_ACCEL_BIAS_WALK] ** 2 * dt
+    if len(P) == SIZE:
+        for i in range(GYRO_GAIN, CLOCK):
+            P[i, i] += noise[_GAIN_WALK] ** 2 * dt
+        P[CLOCK, CLOCK] += noise[_CLOCK_WALK] ** 2 * dt
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -102,13 +137,16 @@ def propagate(
         gyro: Angular rate in the body [rad/s], (K, 3).
         accel: Specific force in the body [m/s²], (K, 3).
         R0: Rotation ``R_odom_body`` at the start, (3, 3).
-        state0: Position, velocity, gyro bias, accel bias, gravity, (15,).
-        P0: Covariance of the error (rotation about odom axes, then as ``state0``), (18, 18).
-        noise: Densities per sqrt(s): gyro, accel, gyro bias walk, accel bias walk, (4,).
+        state0: Position, velocity, gyro bias, accel bias, gravity, then gain of the gyroscope and
+            clock or nothing, (N - 3,). The samples are those of the clock already.
+        P0: Covariance of the error (rotation about odom axes, then as ``state0``), (N, N) with N
+            of 18 or `SIZE`.
+        noise: Densities per sqrt(s): gyro, accel, gyro bias walk, accel bias walk, with `SIZE`
+            rows also walks of gain and clock, (4,) or (6,).
 
     Returns:
-        Rotations (K, 3, 3), positions (K, 3), velocity at the end (3,), transition Phi (18, 18)
-        and covariance at the end (18, 18).
+        Rotations (K, 3, 3), positions (K, 3), velocity at the end (3,), transition Phi (N, N)
+        and covariance at the end (N, N).
     """
     count = len(t_s)
     R_all, p_all = np.empty((count, 3, 3)), np.empty((count, 3))
@@ -117,16 +155,27 @@ def propagate(
     v = _quantity(state0, VELOCITY).copy()
     bg, ba = _quantity(state0, GYRO_BIAS), _quantity(state0, ACCEL_BIAS)
     gravity = _quantity(state0, GRAVITY)
-    Phi = np.eye(18)
+    size = len(P0)
+    gain = np.eye(3)
+    more = np.zeros(6)
+    if size == SIZE:
+        for i in range(9):
+            gain[i // 3, i % 3] += state0[GYRO_GAIN - _ROTATION_ROWS + i]
+    Phi = np.eye(size)
     P = P0.copy()
     R_all[0], p_all[0] = R, p
     for k in range(count - 1):
         dt = t_s[k + 1] - t_s[k]
-        omega = 0.5 * (gyro[k] + gyro[k + 1]) - bg
+        rate = 0.5 * (gyro[k] + gyro[k + 1])
+        omega = gain @ rate - bg
         force = 0.5 * (accel[k] + accel[k + 1]) - ba
         half = R @ rotation(omega * (0.5 * dt))
         a = half @ force + gravity
-        F = _step_transition(half, half @ force, dt)
+        F = _step_transition(half, half @ force, dt, size)
+        if size == SIZE:
+            more[:3] = gain @ (gyro[k + 1] - gyro[k])
+            more[3:] = accel[k + 1] - accel[k]
+            _add_calibration(F, half, rate, more, dt)
         Phi = F @ Phi
         P = F @ P @ F.T
         _add_noise(P, noise, dt)

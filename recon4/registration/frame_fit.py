@@ -14,7 +14,7 @@ from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
-from recon4.registration.state import END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
+from recon4.registration.state import END, END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
 from recon4.settings import OdometrySettings
 
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
@@ -30,9 +30,9 @@ class FrameFit:
 
     T_dense: SE3
     delta: Array
-    """Correction of the pose at the start (6) and of the state at the end (18)."""
+    """Correction of the pose at the start (6) and of the state at the end (28)."""
     P: Array
-    """Covariance of that correction, (24, 24)."""
+    """Covariance of that correction, (34, 34)."""
     H_lidar: Array
     """Information of the points alone about the poses at start and end, (12, 12)."""
     match: Match
@@ -74,7 +74,7 @@ class FrameFitter:
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
         frame_fraction = p_s / prediction.t_s[-1]
-        delta: Array = np.zeros(24)
+        delta: Array = np.zeros(END.stop)
         T_dense = _correct(prediction, delta, center)
         converged, rounds = False, 0
         for rounds in range(1, self.settings.rounds + 1):
@@ -117,9 +117,9 @@ class FrameFitter:
 
 
 def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
-    """Information (24, 24) of the prediction and gradient (24,) where nothing is corrected."""
-    information = np.asarray(np.linalg.inv(prediction.prior + 1e-12 * np.eye(24)), np.float64)
-    g = np.zeros(24)
+    """Information (34, 34) of the prediction and gradient (34,) where nothing is corrected."""
+    information = np.asarray(np.linalg.inv(prediction.prior + 1e-12 * np.eye(END.stop)), np.float64)
+    g = np.zeros(END.stop)
     if stationary:
         information[END_VELOCITY, END_VELOCITY] += np.eye(3) / _STATIONARY_SD_M_S**2
         g[END_VELOCITY] += prediction.end.vector[VECTOR.velocity] / _STATIONARY_SD_M_S**2

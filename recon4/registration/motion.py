@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log
-from recon4.kernels.imu import propagate
+from recon4.kernels.imu import SIZE, propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times
@@ -23,6 +24,12 @@ _MIN_REST_SAMPLES = 10
 _REST_RAD_S, _REST_M_S2, _REST_M_S = 0.12, 0.3, 0.1
 """Largest turn rate [rad/s], shaking [m/s²] and speed [m/s] of a person who stands; who walks turns
 by 0.5 rad/s and shakes by 1 m/s² and more."""
+_GAIN_WALK, _CLOCK_WALK_S = 1e-5, 1e-4
+"""Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
+estimated: a clock that drifts by 300 ppm is followed."""
+_MOST_CLOCK_S = 0.1
+"""A larger error of the clock is not corrected [s]."""
+_VECTOR_SIZE = SIZE - 3
 _KEPT_NS = 60_000_000_000
 """During live capture IMU samples are kept for this time [ns]."""
 _SLOT_S = 0.02
@@ -37,9 +44,10 @@ class MotionState:
     R: Array
     """``R_odom_body``, (3, 3)."""
     vector: Array
-    """Position, velocity, gyro bias, accelerometer bias, gravity, all in SI, (15,)."""
+    """Position, velocity, gyro bias, accelerometer bias, gravity, gain of the gyroscope, clock of
+    the IMU, all in SI, (25,)."""
     P: Array
-    """Covariance of (rotation about odom axes, then as ``vector``), (18, 18)."""
+    """Covariance of (rotation about odom axes, then as ``vector``), (28, 28)."""
 
     @property
     def T_odom_body(self) -> SE3:
@@ -56,7 +64,7 @@ class MotionState:
         return replace(self, R=T_odom_body.R, vector=vector, P=P)
 
     def with_biases(self, vector: Array, cov: Array) -> MotionState:
-        """The same motion with other biases and gravity, (9,), and their covariance, (9, 9)."""
+        """The same motion with another `StateIndex.calibration` (19,) and its covariance."""
         P = self.P.copy()
         P[STATE.calibration, :] = P[:, STATE.calibration] = 0.0
         P[STATE.calibration, STATE.calibration] = cov
@@ -65,7 +73,7 @@ class MotionState:
         return replace(self, vector=whole, P=P)
 
     def corrected(self, delta: Array, P: Array) -> MotionState:
-        """The state moved by an error (18,), with a new covariance."""
+        """The state moved by an error (28,), with a new covariance."""
         R = proper(so3_exp(delta[STATE.rotation]) @ self.R)
         return replace(self, R=R, vector=self.vector + delta[STATE.position.start :], P=P)
 
@@ -80,7 +88,7 @@ class Prediction:
     """Poses at these times, a batch of K."""
     end: MotionState
     prior: Array
-    """Covariance of the pose error at the start (6) and the state's error at the end (18)."""
+    """Covariance of the pose error at the start (6) and the state's error at the end (28)."""
 
 
 class ImuMotion:
@@ -92,9 +100,13 @@ class ImuMotion:
         self._gyro, self._accel = imu_in_body(imu, rig)
         self._has_accel = bool(np.isfinite(self._accel).all())
         s = settings
-        self._noise = np.array([s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk])
+        walks = (_GAIN_WALK if s.gyro_gain_sd else 0.0, _CLOCK_WALK_S if s.imu_clock_sd_s else 0.0)
+        self._noise = np.array(
+            [s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk, *walks]
+        )
         if not self._has_accel:
             self._noise[1] = s.free_accel
+        self._gain_sd, self._clock_sd_s = s.gyro_gain_sd, s.imu_clock_sd_s
 
     def extend(self, imu: ImuSamples) -> None:
         """Append newer samples of a live capture; drop samples older than a minute."""
@@ -135,24 +147,27 @@ class ImuMotion:
         away_ns = np.abs(self._t_ns - t_ns)
         near = away_ns <= max(_REST_NS, int(away_ns.min()))
         up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
-        sd = np.repeat([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3], 3)
+        sd = _start_sd([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3])
+        sd[STATE.gyro_gain], sd[STATE.clock] = self._gain_sd, self._clock_sd_s
         if not self._has_accel:
             sd[STATE.accel_bias] = sd[STATE.gravity] = 1e-9
-        vector = np.zeros(15)
+        vector = np.zeros(_VECTOR_SIZE)
         if self._has_accel:
             vector[VECTOR.gravity] = [0.0, 0.0, -STANDARD_GRAVITY_M_S2]
         return MotionState(t_ns, level_rotation(up_body), vector, np.diag(sd**2))
 
     def turn(self, start_ns: int, end_ns: int) -> Array:
         """Rotation from the body at one time to the body at another by the gyroscope, (3, 3)."""
-        state = MotionState(start_ns, np.eye(3), np.zeros(15), np.zeros((18, 18)))
+        state = MotionState(start_ns, np.eye(3), np.zeros(_VECTOR_SIZE), np.zeros((SIZE, SIZE)))
         return self.predict(state, end_ns).end.R
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
         """Integrate the IMU samples from the state's time to ``end_ns``."""
         first, last = np.searchsorted(self._t_ns, [state.t_ns + 1, end_ns])
         times = np.concatenate([[state.t_ns], self._t_ns[first:last], [end_ns]])
-        gyro, accel = (imu_at(times, self._t_ns, v) for v in (self._gyro, self._accel))
+        ahead_s = np.clip(state.vector[VECTOR.clock][0], -_MOST_CLOCK_S, _MOST_CLOCK_S)
+        stamps = times + round(1e9 * float(ahead_s))
+        gyro, accel = (imu_at(stamps, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
             accel = np.zeros_like(gyro)
         return _predict(state, times, gyro, accel=accel, noise=self._noise)
@@ -165,7 +180,7 @@ class FreeMotion:
     """
 
     def __init__(self, settings: OdometrySettings) -> None:
-        self._noise = np.array([1e-3, settings.free_accel, settings.free_turn_walk, 1e-9])
+        self._noise = np.array([1e-3, settings.free_accel, settings.free_turn_walk, 1e-9, 0, 0])
 
     def covers(self, start_ns: int, end_ns: int) -> bool:
         """Whether the span is not empty: this model needs no samples."""
@@ -173,8 +188,8 @@ class FreeMotion:
 
     def initial(self, t_ns: int) -> MotionState:
         """State at rest at the origin, with a large covariance."""
-        sd = np.repeat([1e-4, 1e-4, 1.0, 0.5, 1e-9, 1e-9], 3)
-        return MotionState(t_ns, np.eye(3), np.zeros(15), np.diag(sd**2))
+        sd = _start_sd([1e-4, 1e-4, 1.0, 0.5, 1e-9, 1e-9])
+        return MotionState(t_ns, np.eye(3), np.zeros(_VECTOR_SIZE), np.diag(sd**2))
 
     def between(self, T_odom_body: SE3, t_ns: tuple[int, int], start_ns: int) -> MotionState:
         """State at ``start_ns`` of a motion of constant velocity through two poses (batch of 2)."""
@@ -182,17 +197,17 @@ class FreeMotion:
         velocity = (T_odom_body.t[1] - T_odom_body.t[0]) / span_s
         turn_rate = so3_log(T_odom_body.R[0].T @ T_odom_body.R[1]) / span_s
         back_s = (t_ns[1] - start_ns) * 1e-9
-        vector = np.zeros(15)
+        vector = np.zeros(_VECTOR_SIZE)
         vector[VECTOR.position] = T_odom_body.t[1] - back_s * velocity
         vector[VECTOR.velocity], vector[VECTOR.gyro_bias] = velocity, -turn_rate
-        sd = np.repeat([*_FREE_SD, 1e-9, 1e-9], 3)
+        sd = _start_sd([*_FREE_SD, 1e-9, 1e-9])
         R = T_odom_body.R[1] @ so3_exp(-back_s * turn_rate)
         return MotionState(start_ns, R, vector, np.diag(sd**2))
 
     def coasting(self, state: MotionState) -> MotionState:
         """State without IMU after a gap began: no gravity, no biases, the turn rate unknown."""
-        sd = np.repeat([_FREE_SD[-1], 1e-9, 1e-9], 3)
-        return state.with_biases(np.zeros(9), np.diag(sd**2))
+        sd = _start_sd([*_FREE_SD, 1e-9, 1e-9])[STATE.calibration]
+        return state.with_biases(np.zeros(len(sd)), np.diag(sd**2))
 
     def is_stationary(self, state: MotionState) -> bool:
         """Nothing is known of it without an IMU: registration decides (`zero_velocity`)."""
@@ -200,7 +215,7 @@ class FreeMotion:
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """Stationary state at ``t_ns`` at the last position, because the motion is unknown."""
-        vector = np.zeros(15)
+        vector = np.zeros(_VECTOR_SIZE)
         vector[VECTOR.position] = state.vector[VECTOR.position]
         return replace(self.initial(t_ns), R=state.R, vector=vector)
 
@@ -226,6 +241,13 @@ def _predict(
     cross = state.P[STATE.pose] @ Phi.T
     prior = np.block([[state.P[STATE.pose, STATE.pose], cross], [cross.T, P]])
     return Prediction(t_s, SE3(R, p), MotionState(int(t_ns[-1]), R[-1], vector, P), prior)
+
+
+def _start_sd(first: Sequence[float]) -> Array:
+    """Standard deviations of a state without gain and clock, (28,), from those of the others."""
+    sd = np.full(SIZE, 1e-9)
+    sd[: 3 * len(first)] = np.repeat(first, 3)
+    return sd
 
 
 def imu_in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:

@@ -17,6 +17,7 @@ from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import of_rigid_pose
 from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
 from recon4.registration.plane_map import PlaneMap
@@ -30,6 +31,8 @@ from recon4.settings import Settings
 
 _TRUSTED_FRAMES = 30
 """If a new map is lost before this many frames, the state it began with was wrong."""
+_AS_PREDICTED_M = 0.03
+"""LiDARs that move what the IMU predicts by less are sure of the pose, however few match [m]."""
 _INTERRUPTED_NS = 2_000_000_000
 """Longest gap between two frames that is bridged without an IMU [ns]."""
 
@@ -121,6 +124,13 @@ class Odometry:
         if isinstance(self._motion, ImuMotion):
             self._motion.extend(imu)
 
+    @property
+    def imu_estimate(self) -> ImuEstimate | None:
+        """What is known of the IMU so far; None without one, or before the first multiframe."""
+        if self._state is None or self._chain is not None:
+            return None
+        return ImuEstimate.of(self._before_hole or self._state)
+
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
@@ -138,7 +148,7 @@ class Odometry:
         )
         stationary = self._motion.is_stationary(prediction.end)
         fit = self._fitter.fit(self._map, segments, prediction, weak=weak, stationary=stationary)
-        lost = not first and (not found or self._is_lost(fit))
+        lost = not first and (not found or self._is_lost(fit, prediction))
         if not lost and not first:
             self._limits.learn(fit.match.match_ratio)
         if self._chain and not lost and is_stationary(self._chain.located):
@@ -290,8 +300,12 @@ class Odometry:
             sd_m=self._settings.odometry.gnss_sd_m,
         )
 
-    def _is_lost(self, fit: FrameFit) -> bool:
-        sure = self._chain is not None and self._chain.is_sure
+    def _is_lost(self, fit: FrameFit, prediction: Prediction) -> bool:
+        if self._chain is not None:
+            sure = self._chain.is_sure
+        else:
+            offset_m = np.linalg.norm(fit.T_dense.t[-1] - prediction.T_odom_body.t[-1])
+            sure = fit.converged and bool(offset_m < _AS_PREDICTED_M)
         return not np.isfinite(fit.delta).all() or self._limits.is_lost(fit.match, sure=sure)
 
     def _is_keyframe(self, T_odom_body: SE3) -> bool:

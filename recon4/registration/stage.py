@@ -18,7 +18,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.make import make_odometry
-from recon4.registration.odometry import OdometryStep
+from recon4.registration.odometry import Odometry, OdometryStep
 from recon4.registration.unseen_rides import unseen_rides
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
@@ -64,6 +64,8 @@ def run_odometry(
     _save_steps(out / "steps.npz", steps)
     used = imu if settings.odometry.use_imu else None
     contradicted, severe = _contradicted(trajectory, used, frames.rig, steps=steps)
+    if isinstance(odometry, Odometry) and odometry.imu_estimate:
+        contradicted = (*contradicted, *odometry.imu_estimate.texts)
     for text in contradicted:
         progress.event(Warned(text=text))
     lost = sum(step.lost for step in steps)

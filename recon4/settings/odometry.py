@@ -46,6 +46,12 @@ class OdometrySettings:
     """Random walk of the gyroscope's bias [rad/s/sqrt(s)]."""
     accel_bias_walk: float = 1e-3
     """Random walk of the accelerometer's bias [m/s²/sqrt(s)]."""
+    gyro_gain_sd: float = 0.01
+    """Standard deviation of the gyroscope's scale and of the angles of its axes [1]; the odometry
+    estimates them. 0 = they are as the rig file says."""
+    imu_clock_sd_s: float = 0.005
+    """Standard deviation of the clock of the IMU against that of the LiDARs [s]; the odometry
+    estimates it. 0 = it is as the rig file says."""
     free_turn_walk: float = 3.0
     """Without an IMU: random walk of the turn rate [rad/s/sqrt(s)]."""
     free_accel: float = 2.0
@@ -65,8 +71,8 @@ class OdometrySettings:
     lost_after_frames: int = 10
     """… which is known after this many frames."""
     lost_least_ratio: float = 0.1
-    """The least match ratio, whatever is usual; without an IMU it is enough if the scan also fits
-    the scan before."""
+    """The least match ratio, whatever is usual; it is enough if the scan also lies where the IMU
+    predicts it, or without an IMU fits the scan before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -130,6 +130,31 @@ def test_the_transition_is_the_derivative():
     assert np.abs(Phi - np.eye(18)).max() > 0.1
 
 
+def test_the_transition_by_scale_axes_and_clock_is_the_derivative():
+    t_s = np.linspace(0.0, 0.1, 101)
+    gain = 0.01 * np.arange(-4.0, 5.0)
+    start = np.concatenate([state(v=(1, 0, 0)), gain, [0.002]])
+    noise = np.append(NOISE, [1e-5, 1e-4])
+
+    def end(delta):
+        whole = start + delta
+        phase = np.outer(t_s + whole[24], [9.0, 7.0, 5.0]) + np.arange(3.0)
+        samples = np.sin(phase), 2.0 * np.cos(phase) - GRAVITY
+        return propagate(t_s, *samples, np.eye(3), whole, np.zeros((28, 28)), noise)
+
+    R_end, p_end, v_end, Phi, P = end(np.zeros(25))
+    h = 1e-6
+    for k in range(15, 25):
+        R, p, v, _, _ = end(h * np.eye(25)[k])
+        numeric = np.concatenate([so3_log(R[-1] @ R_end[-1].T), p[-1] - p_end[-1], v - v_end]) / h
+        # The first part of a row of the gain turns the force within a step: of second order.
+        np.testing.assert_allclose(Phi[:9, k + 3], numeric, atol=5e-3)
+        np.testing.assert_array_equal(Phi[9:, k + 3], np.eye(28)[9:, k + 3])
+        assert np.abs(numeric[:3]).max() > 0.02
+    walked = np.sqrt(0.1) * np.repeat([1e-5, 1e-4], [9, 1])
+    np.testing.assert_allclose(np.sqrt(np.diag(P)[18:]), walked)
+
+
 def test_uncertainty_grows_as_the_densities_say():
     still = np.zeros((201, 3))
 

@@ -18,11 +18,17 @@ def imu_motion(pose=strolling, seconds=2.0, rig=RIG):
     return ImuMotion(imu_of(pose, seconds), rig, SETTINGS)
 
 
+def swaying(t_s):
+    """Turns that change from sample to sample, at one place."""
+    turns = 0.3 * np.sin(np.outer(t_s, [9.0, 7.0, 5.0]) + np.arange(3.0))
+    return SE3(so3_exp(turns), np.zeros((len(t_s), 3)))
+
+
 def start_of(pose, t_ns, velocity):
-    vector = np.zeros(15)
+    vector = np.zeros(25)
     T = pose(np.array([(t_ns - T0_NS) * 1e-9]))
     vector[:3], vector[3:6], vector[14] = T.t[0], velocity, -9.80665
-    return MotionState(t_ns, T.R[0], vector, 1e-6 * np.eye(18))
+    return MotionState(t_ns, T.R[0], vector, np.diag(np.repeat([1e-6, 0.0], [18, 10])))
 
 
 def test_a_perfect_imu_predicts_the_walk():
@@ -52,7 +58,7 @@ def test_the_joint_prior_is_a_covariance_of_start_and_end():
     prediction = imu_motion().predict(start_of(strolling, T0_NS, [0.5, 0, 0]), T0_NS + S_NS // 10)
 
     prior = prediction.prior
-    assert prior.shape == (24, 24)
+    assert prior.shape == (34, 34)
     np.testing.assert_allclose(prior, prior.T, atol=1e-15)
     np.testing.assert_array_equal(prior[:6, :6], 1e-6 * np.eye(6))
     np.testing.assert_array_equal(prior[6:, 6:], prediction.end.P)
@@ -70,7 +76,7 @@ def test_gravity_is_level_at_the_start():
     state = imu_motion(tilted).initial(T0_NS)
 
     np.testing.assert_allclose(state.R.T @ [0, 0, 1], tilt.T @ [0, 0, 1], atol=1e-6)
-    np.testing.assert_allclose(state.vector[12:], [0, 0, -9.80665])
+    np.testing.assert_allclose(state.vector[12:15], [0, 0, -9.80665])
     # The heading is left as it is: the turn is about a horizontal axis of the body.
     assert abs((state.R - state.R.T)[1, 0]) < 0.03
 
@@ -115,6 +121,44 @@ def test_what_the_imu_covers():
     assert not motion.covers(T0_NS + 10 * S_NS, T0_NS + 11 * S_NS)
     assert holed.covers(T0_NS, T0_NS + S_NS // 2)
     assert not holed.covers(T0_NS + S_NS // 2, T0_NS + 3 * S_NS // 2)
+
+
+def test_scale_axes_and_clock_of_the_imu_are_applied():
+    gain = np.array([[0.97, 0.01, 0.0], [-0.01, 1.02, 0.02], [0.0, -0.02, 1.03]])
+    imu, late_ns = imu_of(swaying, 2.0), 20_000_000
+    wrong = ImuSamples(imu.t_ns + late_ns, imu.gyro_rad_s @ np.linalg.inv(gain).T, imu.accel_m_s2)
+    state = start_of(swaying, T0_NS + S_NS // 2, [0.0, 0.0, 0.0])
+    known = state.vector.copy()
+    known[15:24], known[24] = (gain - np.eye(3)).ravel(), 0.02
+
+    right = ImuMotion(imu, RIG, SETTINGS).predict(state, T0_NS + S_NS).end
+    corrected = ImuMotion(wrong, RIG, SETTINGS).predict(replace(state, vector=known), T0_NS + S_NS)
+
+    np.testing.assert_allclose(corrected.end.R, right.R, atol=1e-5)
+    np.testing.assert_allclose(corrected.end.vector[:6], right.vector[:6], atol=1e-4)
+    as_measured = ImuMotion(wrong, RIG, SETTINGS).predict(state, T0_NS + S_NS).end
+    assert np.abs(as_measured.R - right.R).max() > 5e-3
+
+
+def test_a_clock_that_is_far_off_is_not_followed_without_bound():
+    state = start_of(strolling, T0_NS + S_NS, [0.5, 0.1, 0.0])
+    vector = state.vector.copy()
+    vector[24] = 1e6
+
+    end = imu_motion().predict(replace(state, vector=vector), T0_NS + S_NS + S_NS // 10).end
+
+    assert np.isfinite(end.vector).all()
+
+
+def test_settings_say_how_well_scale_and_clock_are_known():
+    sure = replace(SETTINGS, gyro_gain_sd=0.0, imu_clock_sd_s=0.0)
+    free, fixed = (ImuMotion(imu_of(strolling, 2.0), RIG, s) for s in (SETTINGS, sure))
+
+    ends = [motion.predict(motion.initial(T0_NS), T0_NS + S_NS).end for motion in (free, fixed)]
+
+    sd = [np.sqrt(np.diag(end.P))[18:] for end in ends]
+    np.testing.assert_allclose(sd[0], np.repeat([0.01, 0.005], [9, 1]), rtol=1e-3)
+    np.testing.assert_array_equal(sd[1], 0.0)
 
 
 def test_a_gyroscope_alone_still_turns():

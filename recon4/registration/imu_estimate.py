@@ -1,0 +1,100 @@
+"""What the odometry found out about an IMU: gain and axes of its gyroscope, and its clock.
+
+Both are states of the filter (`recon4.registration.motion`): a scan that is registered to the map
+shows how far the body turned, and when. The motion is corrected by them; what is far from what the
+rig file and the unit should be is a warning.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.registration.motion import MotionState
+from recon4.registration.state import STATE, VECTOR
+
+_MOST_GAIN = 0.015
+"""A larger error of the scale about an axis of the body is a fault …"""
+_MOST_ANGLE_RAD = 0.012
+"""… and a larger angle between the axes of IMU and body …"""
+_MOST_CLOCK_S = 0.004
+"""… and a larger error of the clock [s] …"""
+_SIGMAS = 5.0
+"""… if it exceeds this multiple of its standard deviation."""
+_TURN = 0.5 * np.array(
+    [
+        [0, 0, 0, 0, 0, -1, 0, 1, 0],
+        [0, 0, 1, 0, 0, 0, -1, 0, 0],
+        [0, -1, 0, 1, 0, 0, 0, 0, 0],
+    ]
+)
+"""Maps a gain to its rotation vector, (3, 9)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ImuEstimate:
+    """Gain of the gyroscope and clock of the IMU, as a walk shows them."""
+
+    gain: Array
+    """See `StateIndex.gyro_gain`, (9,)."""
+    gain_cov: Array
+    """(9, 9)."""
+    clock_s: float
+    """How far the clock of the IMU is ahead of that of the LiDARs [s]."""
+    clock_sd_s: float
+
+    @staticmethod
+    def of(state: MotionState) -> ImuEstimate:
+        """From the last state of an odometry with an IMU."""
+        gain, clock = STATE.gyro_gain, STATE.clock
+        return ImuEstimate(
+            state.vector[VECTOR.gyro_gain],
+            state.P[gain, gain],
+            float(state.vector[VECTOR.clock][0]),
+            float(np.sqrt(state.P[clock, clock][0, 0])),
+        )
+
+    @property
+    def texts(self) -> tuple[str, ...]:
+        """Sentences for the operator on what is far from right; none if all is in order."""
+        return (*self._scale(), *self._axes(), *self._clock())
+
+    def _scale(self) -> tuple[str, ...]:
+        scale, sd = self.gain[::4], np.sqrt(np.diag(self.gain_cov)[::4])
+        far = (np.abs(scale) > _MOST_GAIN) & (np.abs(scale) > _SIGMAS * sd)
+        if not far.any():
+            return ()
+        axis = int(np.argmax(np.where(far, np.abs(scale) / sd, 0.0)))
+        percent = 100.0 * (1.0 / (1.0 + scale[axis]) - 1.0)
+        return (
+            f"The gyroscope measures turns about {'xyz'[axis]} {abs(percent):.1f} % ± "
+            f"{100.0 * sd[axis]:.1f} % too {'large' if percent > 0.0 else 'small'}: check its "
+            "scale. The odometry corrected it.",
+        )
+
+    def _axes(self) -> tuple[str, ...]:
+        turn = _TURN @ self.gain
+        angle = float(np.linalg.norm(turn))
+        if not angle > _MOST_ANGLE_RAD:
+            return ()
+        along = turn / angle @ _TURN
+        sd = float(np.sqrt(along @ self.gain_cov @ along))
+        if angle < _SIGMAS * sd:
+            return ()
+        return (
+            f"The gyroscope is rotated by {np.rad2deg(angle):.1f}° ± {np.rad2deg(sd):.1f}° "
+            "against the rig file, as turns of the LiDARs show: check the mount of the IMU. The "
+            "odometry corrected it.",
+        )
+
+    def _clock(self) -> tuple[str, ...]:
+        far = max(_MOST_CLOCK_S, _SIGMAS * self.clock_sd_s)
+        if not abs(self.clock_s) > far:
+            return ()
+        return (
+            f"The clock of the IMU is {1e3 * abs(self.clock_s):.1f} ms ± "
+            f"{1e3 * self.clock_sd_s:.1f} ms {'ahead of' if self.clock_s > 0.0 else 'behind'} that "
+            "of the LiDARs: check the time offset of the rig file. The odometry corrected it.",
+        )
