@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
+from recon4.geometry.se3 import Array, so3_log
 from recon4.model.frames import RecordedFrames
 from recon4.model.samples import ImuSamples
+from recon4.registration.motion import ImuMotion
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings
 
@@ -23,6 +27,9 @@ _CLEARLY_M = 0.002
 """… and smaller by at least this [m]."""
 _TYPICAL = 0.8
 """Quantile of the errors that is compared: a single bad frame has no influence."""
+_EXPLAINED = 0.3
+"""The gyroscope explains the turns that the LiDARs see without it if this ratio of them is left. A
+clock 20 ms off leaves 0.07, a rotated LiDAR 0.12, a clock 300 ms off 0.7, swapped axes 2."""
 _NEVER_M = 1.0
 """The error of a trial that found no match [m]."""
 
@@ -34,6 +41,8 @@ class Trial:
     lost: int
     error_m: float
     """Distance of the matched segments from the local map that most frames stay below [m]."""
+    turns: Sequence[tuple[int, int, Array]]
+    """Times [ns] of two multiframes in a row that were tracked, and the turn between, (3, 3)."""
 
     def clearly_better(self, other: Trial) -> bool:
         """Whether no more frames are lost and the error is much smaller."""
@@ -44,6 +53,14 @@ class Trial:
             (1.0 - _CLEARLY) * other.error_m, _CLEARLY_M
         )
 
+    def unexplained(self, motion: ImuMotion) -> float:
+        """Part of the turns that a gyroscope does not measure, 0..; infinite without turns."""
+        seen = np.array([so3_log(R) for _, _, R in self.turns]).reshape(-1, 3)
+        measured = [so3_log(motion.turn(first, last)) for first, last, _ in self.turns]
+        total = float((seen**2).sum())
+        left = float(((seen - np.array(measured).reshape(-1, 3)) ** 2).sum())
+        return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
+
 
 def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSamples | None, str]:
     """The IMU samples as recorded, with the gyroscope bias removed, or None.
@@ -51,7 +68,7 @@ def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSampl
     The first multiframes and those of the fastest turn are registered with each variant. A variant
     other than the recorded samples is used if it fits the LiDAR clearly better. A gyroscope may
     have a bias of tens of degrees a second (HDL-32E), its axes may be swapped, its clock may be
-    offset.
+    offset. A gyroscope that measures the turns which the LiDARs see without it is not at fault.
 
     Args:
         frames: The multiframes with their rig and IMU.
@@ -75,28 +92,42 @@ def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSampl
             best = found
             chosen = zeroed, f"gyroscope bias at the start ({text} deg/s) was subtracted"
     found = _try(frames, None, settings)
-    if found.clearly_better(best):
-        chosen = (
-            None,
-            (
-                "the IMU contradicts the LiDARs and is not used for the motion: "
-                f"the mean residual of the segments is {100 * best.error_m:.1f} cm with it, "
-                f"{100 * found.error_m:.1f} cm without it; "
-                "check its axes, units and clock"
-            ),
-        )
-    return chosen
+    used = chosen[0]
+    if used is None or not found.clearly_better(best):
+        return chosen
+    if found.unexplained(ImuMotion(used, frames.rig, settings.odometry)) < _EXPLAINED:
+        # A rotated LiDAR raises the error too, and no IMU is at fault then.
+        turns_only = ImuSamples(used.t_ns, used.gyro_rad_s, np.full_like(used.accel_m_s2, np.nan))
+        found = _try(frames, turns_only, settings)
+        if not found.clearly_better(best):
+            return chosen
+        return turns_only, _contradicts("accelerometer", best, found)
+    return None, _contradicts("IMU", best, found)
+
+
+def _contradicts(what: str, with_it: Trial, without: Trial) -> str:
+    return (
+        f"the {what} contradicts the LiDARs and is not used for the motion: "
+        f"the mean residual of the segments is {100 * with_it.error_m:.1f} cm with it, "
+        f"{100 * without.error_m:.1f} cm without it; check its axes, units and clock"
+    )
 
 
 def _try(frames: RecordedFrames, imu: ImuSamples | None, settings: Settings) -> Trial:
     lost, errors = 0, []
+    turns: list[tuple[int, int, Array]] = []
     for first in _starts(frames):
         odometry = Odometry(frames.rig, settings, imu)
         steps = [odometry.push(frames[k]) for k in range(first, min(first + _FRAMES, len(frames)))]
         lost += sum(step.lost for step in steps)
         errors += [step.error_m for step in steps[1:]]
+        turns += [
+            (a.t_mid_ns, b.t_mid_ns, a.T_odom_body.R.T @ b.T_odom_body.R)
+            for a, b in pairwise(steps)
+            if not (a.lost or b.lost)
+        ]
     known = np.nan_to_num(np.array(errors), nan=_NEVER_M)
-    return Trial(lost, float(np.quantile(known, _TYPICAL)) if len(known) else 0.0)
+    return Trial(lost, float(np.quantile(known, _TYPICAL)) if len(known) else 0.0, turns)
 
 
 def _starts(frames: RecordedFrames) -> list[int]:
