@@ -44,8 +44,8 @@ class LostLimits:
 
         Args:
             match: Of the last round.
-            sure: The scan was also located surely in the scan before it, so that only the least
-                match ratio is demanded.
+            sure: The scan was also located surely in the scan before it, or lies where the IMU
+                predicts it, so that only the least match ratio is demanded.
         """
         least = min(self._settings.lost_least_ratio, self.match_ratio) if sure else self.match_ratio
         return match.match_ratio < least or not match.mean_m < self._settings.lost_error_m

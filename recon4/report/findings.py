@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from recon4.evaluation.table import number, percentage
 from recon4.model.import_notes import import_notes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
-from recon4.model.trajectory import Times
+from recon4.model.trajectory import Times, Trajectory
 from recon4.model.usability import UNOBSERVED_SECONDS
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
 from recon4.report.artifacts import Results, path_length_m
@@ -32,6 +32,9 @@ _KNOWN_M, _KNOWN_PER_METER = 0.05, 0.001
 """Positions are known well with a 2σ of 5 cm and 0.1 % of the path length [m] …"""
 _UNKNOWN = 10.0
 """… and unknown above this multiple."""
+_FEW_LOST, _SHORT_GAP_S = 0.1, 2.0
+"""Tracking that is lost in no more than this part of the multiframes, and for no longer than this,
+may leave a usable map: if its positions are known in spite of it."""
 _ANYWHERE_M = 100.0
 _HELPS = 0.8
 """A control point is proposed if it leaves less than this ratio of the largest deviation."""
@@ -98,8 +101,31 @@ def _tracking(results: Results) -> list[Finding]:
     where = ""
     if t_ns is not None:
         where = f", first {(t_ns[lost][0] - t_ns[0]) / 1e9:.1f} s after the start"
-    how_many = f"{lost.sum()} of {len(lost)} multiframes ({percentage(lost.mean())})"
-    return [Finding(Level.BAD, f"Tracking was lost in {how_many}{where}.")]
+    text = f"Tracking was lost in {lost.sum()} of {len(lost)} multiframes "
+    text += f"({percentage(lost.mean())}){where}."
+    if t_ns is not None and _short_gaps(lost, t_ns) and _is_known(results):
+        return [Finding(Level.WARNING, f"{text} What was registered around them holds the map.")]
+    return [Finding(Level.BAD, text)]
+
+
+def _short_gaps(lost: Flags, t_ns: Times) -> bool:
+    """Whether few multiframes are lost, and never many in a row."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(np.int8)))
+    begin, end = edges[::2], np.minimum(edges[1::2], len(t_ns) - 1)
+    longest_s = float((t_ns[end] - t_ns[begin]).max()) / 1e9
+    return float(lost.mean()) <= _FEW_LOST and longest_s <= _SHORT_GAP_S
+
+
+def _is_known(results: Results) -> bool:
+    """Whether all positions are stated to be known well: lost multiframes count as unknown."""
+    if results.uncertainty is None or results.final is None or len(results.final) < 2:
+        return False
+    found = uncertainty_figures(results.uncertainty, results.final)
+    return 2.0 * found.largest_sd_m <= _known_limit_m(results.final)
+
+
+def _known_limit_m(walk: Trajectory) -> float:
+    return _KNOWN_M + _KNOWN_PER_METER * float(path_length_m(walk)[-1])
 
 
 def _bridged(lost: Flags, held: Flags, t_ns: Times) -> list[Finding]:
@@ -221,7 +247,7 @@ def _uncertain(results: Results) -> list[Finding]:
         return []
     found = uncertainty_figures(results.uncertainty, results.final)
     known_m = 2.0 * found.largest_sd_m
-    limit_m = _KNOWN_M + _KNOWN_PER_METER * float(path_length_m(results.final)[-1])
+    limit_m = _known_limit_m(results.final)
     place = "on the earth" if found.on_earth else "relative to the start"
     known = _cm(known_m) if known_m < _ANYWHERE_M else "more than 100 m"
     text = f"The positions are known to ± {known} (2σ) {place}"

@@ -88,6 +88,25 @@ def silent(count, first, last):
     return lost
 
 
+@pytest.mark.parametrize(
+    ("gaps", "largest_sd_m", "usability"),
+    [
+        ([(1, 16)], 0.03, Usability.CHECK),
+        ([(1, 16)], 0.06, Usability.DO_NOT_USE),  # the positions there are not known
+        ([(50, 71)], 0.03, Usability.DO_NOT_USE),  # for more than two seconds
+        ([(10, 20), (40, 50), (90, 105)], 0.03, Usability.DO_NOT_USE),  # too often
+    ],
+)
+def test_tracking_lost_for_a_moment_leaves_a_map_to_check(gaps, largest_sd_m, usability):
+    lost = np.logical_or.reduce([silent(200, first, last) for first, last in gaps])
+    results = replace(uncertain(largest_sd_m), steps=steps([0.1] * 200, lost=lost))
+
+    verdict = map_verdict(find(facts(), results, None))
+
+    assert verdict.usability is usability
+    assert f"Tracking was lost in {lost.sum()} of 200 multiframes" in verdict.reasons[0]
+
+
 def test_a_profiler_observes_what_a_2d_laser_does_not():
     columns = steps(corridor(30.0))
 
