@@ -31,10 +31,15 @@ class LostLimits:
         self._ratios.append(match_ratio)
 
     @property
+    def is_usual_known(self) -> bool:
+        """Whether enough frames were tracked to know what usually matches."""
+        return len(self._ratios) >= self._settings.lost_after_frames
+
+    @property
     def match_ratio(self) -> float:
         """With a smaller match ratio tracking is lost."""
         s = self._settings
-        if len(self._ratios) < s.lost_after_frames:
+        if not self.is_usual_known:
             return s.lost_match_ratio
         usual = s.lost_usual_ratio * float(np.median(self._ratios))
         return float(np.clip(usual, s.lost_least_ratio, s.lost_match_ratio))
@@ -44,8 +49,8 @@ class LostLimits:
 
         Args:
             match: Of the last round.
-            sure: The scan was also located surely in the scan before it, or lies where the IMU
-                predicts it, so that only the least match ratio is demanded.
+            sure: The scan was also located surely in the scan before it, or at the start of a walk
+                lies where the IMU predicts it, so that only the least match ratio is demanded.
         """
         least = min(self._settings.lost_least_ratio, self.match_ratio) if sure else self.match_ratio
         return match.match_ratio < least or not match.mean_m < self._settings.lost_error_m

@@ -27,6 +27,9 @@ by 0.5 rad/s and shakes by 1 m/s² and more."""
 _GAIN_WALK, _CLOCK_WALK_S = 1e-5, 1e-4
 """Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
 estimated: a clock that drifts by 300 ppm is followed."""
+_LESS_SURE_GAIN, _LESS_SURE_CLOCK_S = 1e-3, 5e-4
+"""Standard deviations that are added to both when a new map is begun: what was found before may
+have come from the map that was lost."""
 _MOST_CLOCK_S = 0.1
 """A larger error of the clock is not corrected [s]."""
 _VECTOR_SIZE = SIZE - 3
@@ -106,7 +109,15 @@ class ImuMotion:
         )
         if not self._has_accel:
             self._noise[1] = s.free_accel
-        self._gain_sd, self._clock_sd_s = s.gyro_gain_sd, s.imu_clock_sd_s
+        self._unit = np.zeros(10)
+        self._unit_cov = np.diag(np.repeat([s.gyro_gain_sd, s.imu_clock_sd_s], [9, 1]) ** 2)
+        self._is_estimated = np.diag(self._unit_cov) > 0.0
+
+    def remember(self, state: MotionState) -> None:
+        """Begin later initial states with what this one knows of gain and clock."""
+        self._unit = state.vector[VECTOR.unit]
+        less = np.repeat([_LESS_SURE_GAIN, _LESS_SURE_CLOCK_S], [9, 1])
+        self._unit_cov = state.P[STATE.unit, STATE.unit] + np.diag(self._is_estimated * less**2)
 
     def extend(self, imu: ImuSamples) -> None:
         """Append newer samples of a live capture; drop samples older than a minute."""
@@ -148,13 +159,15 @@ class ImuMotion:
         near = away_ns <= max(_REST_NS, int(away_ns.min()))
         up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
         sd = _start_sd([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3])
-        sd[STATE.gyro_gain], sd[STATE.clock] = self._gain_sd, self._clock_sd_s
         if not self._has_accel:
             sd[STATE.accel_bias] = sd[STATE.gravity] = 1e-9
         vector = np.zeros(_VECTOR_SIZE)
+        vector[VECTOR.unit] = self._unit
         if self._has_accel:
             vector[VECTOR.gravity] = [0.0, 0.0, -STANDARD_GRAVITY_M_S2]
-        return MotionState(t_ns, level_rotation(up_body), vector, np.diag(sd**2))
+        P = np.diag(sd**2)
+        P[STATE.unit, STATE.unit] = self._unit_cov
+        return MotionState(t_ns, level_rotation(up_body), vector, P)
 
     def turn(self, start_ns: int, end_ns: int) -> Array:
         """Rotation from the body at one time to the body at another by the gyroscope, (3, 3)."""

@@ -32,7 +32,8 @@ from recon4.settings import Settings
 _TRUSTED_FRAMES = 30
 """If a new map is lost before this many frames, the state it began with was wrong."""
 _AS_PREDICTED_M = 0.03
-"""LiDARs that move what the IMU predicts by less are sure of the pose, however few match [m]."""
+"""While it is not known how much usually matches, a frame is sure of its pose if the LiDARs move
+what the IMU predicts by less, and what matches lies as near [m]."""
 _INTERRUPTED_NS = 2_000_000_000
 """Longest gap between two frames that is bridged without an IMU [ns]."""
 
@@ -118,6 +119,11 @@ class Odometry:
         """Without an IMU: the scans since tracking was lost."""
         self._end_ns: int | None = None
         self._piece = self._resets = self._tracked_frames = 0
+
+    def remember_imu(self, before: Odometry) -> None:
+        """Begin with what another odometry found out about the same IMU."""
+        if isinstance(self._motion, ImuMotion) and before._good and before._chain is None:
+            self._motion.remember(before._good)
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Append newer IMU samples of a live capture. Without an IMU at first this does nothing."""
@@ -208,6 +214,7 @@ class Odometry:
         """The last position and heading, with what the IMU says of the attitude now."""
         if self._chain is not None:
             return self._free.at_rest(state, t_ns)
+        self.remember_imu(self)
         leveled = self._motion.initial(t_ns)
         vector = leveled.vector.copy()
         vector[VECTOR.position] = state.vector[VECTOR.position]
@@ -304,8 +311,9 @@ class Odometry:
         if self._chain is not None:
             sure = self._chain.is_sure
         else:
-            offset_m = np.linalg.norm(fit.T_dense.t[-1] - prediction.T_odom_body.t[-1])
-            sure = fit.converged and bool(offset_m < _AS_PREDICTED_M)
+            offset_m = float(np.linalg.norm(fit.T_dense.t[-1] - prediction.T_odom_body.t[-1]))
+            fits = fit.converged and max(fit.match.mean_m, offset_m) < _AS_PREDICTED_M
+            sure = fits and not self._limits.is_usual_known
         return not np.isfinite(fit.delta).all() or self._limits.is_lost(fit.match, sure=sure)
 
     def _is_keyframe(self, T_odom_body: SE3) -> bool:

@@ -38,6 +38,8 @@ class StateIndex:
     identity measured turn rates are multiplied."""
     clock: slice
     """How far the clock of the IMU is ahead of that of the LiDARs [s]."""
+    unit: slice
+    """Gain and clock: what belongs to the unit, wherever it is."""
     pose: slice
     """Rotation and position."""
     calibration: slice
@@ -57,6 +59,7 @@ STATE = StateIndex(
     gravity=_rows(GRAVITY),
     gyro_gain=slice(GYRO_GAIN, CLOCK),
     clock=slice(CLOCK, SIZE),
+    unit=slice(GYRO_GAIN, SIZE),
     pose=slice(ROTATION, VELOCITY),
     calibration=slice(GYRO_BIAS, SIZE),
 )
@@ -71,6 +74,7 @@ VECTOR = StateIndex(
     gravity=_rows(GRAVITY - 3),
     gyro_gain=slice(GYRO_GAIN - 3, CLOCK - 3),
     clock=slice(CLOCK - 3, SIZE - 3),
+    unit=slice(GYRO_GAIN - 3, SIZE - 3),
     pose=_rows(POSITION - 3),
     calibration=slice(GYRO_BIAS - 3, SIZE - 3),
 )

@@ -71,8 +71,8 @@ class OdometrySettings:
     lost_after_frames: int = 10
     """… which is known after this many frames."""
     lost_least_ratio: float = 0.1
-    """The least match ratio, whatever is usual; it is enough if the scan also lies where the IMU
-    predicts it, or without an IMU fits the scan before."""
+    """The least match ratio, whatever is usual; it is enough at the start of a walk for a scan that
+    lies where the IMU predicts it, and without an IMU for one that fits the scan before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -104,7 +104,9 @@ class Tracker:
         self._note(frame)
         last = self._tracked
         imu = join(list(self._imu)) if self.with_imu else None
-        self._odometry = Odometry(self._rig, self._settings, imu)
+        before, self._odometry = self._odometry, Odometry(self._rig, self._settings, imu)
+        if before is not None:
+            self._odometry.remember_imu(before)
         step = self._odometry.push(frame)
         self.move(last, step)
         return step

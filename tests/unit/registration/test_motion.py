@@ -241,3 +241,19 @@ def test_only_samples_near_the_start_determine_the_vertical():
     state = ImuMotion(ImuSamples(t_ns, np.zeros((400, 3)), accel), RIG, SETTINGS).initial(T0_NS)
 
     np.testing.assert_allclose(state.R, np.eye(3), atol=1e-9)
+
+
+def test_what_is_known_of_the_unit_outlives_a_new_start():
+    motion = imu_motion()
+    learned = motion.initial(T0_NS)
+    vector, P = learned.vector.copy(), learned.P.copy()
+    vector[15:24], vector[24] = 0.02, 0.015
+    P[18:, 18:] = np.diag(np.repeat([2e-4, 3e-4], [9, 1]) ** 2)
+
+    motion.remember(replace(learned, vector=vector, P=P))
+    begun = motion.initial(T0_NS + S_NS)
+
+    np.testing.assert_array_equal(begun.vector[15:], vector[15:])
+    sd = np.sqrt(np.diag(begun.P))[18:]
+    np.testing.assert_allclose(sd, np.repeat([1.02e-3, 5.83e-4], [9, 1]), rtol=1e-2)
+    np.testing.assert_array_equal(begun.vector[:12], learned.vector[:12])
