@@ -61,7 +61,8 @@ def process_2d(
     """Make a 2-D map of recordings, or continue where an earlier call stopped.
 
     Args:
-        sources: A CARMEN log, or bags of one walk; without a rig and without CSV files.
+        sources: A CARMEN log, bags or captures of one walk; without CSV files, and without a rig
+            except one of a 2-D laser alone.
         out: Project folder; made when missing.
         settings: All settings.
         preset: Name of the preset they started from.
@@ -127,7 +128,10 @@ def run_from_review_2d(runner: StageRunner, made: Planar, decided: Decided) -> N
 
 
 def _check_sources(sources: Sources) -> None:
-    given = {"a rig": sources.rig, "IMU samples": sources.imu, "GNSS samples": sources.gnss}
+    rig = sources.rig
+    if rig is not None and all(sensor.kind == "laser2d" for sensor in rig.sensors):
+        rig = None  # as of a live capture: it names the port of the laser
+    given = {"a rig": rig, "IMU samples": sources.imu, "GNSS samples": sources.gnss}
     unused = [name for name, value in given.items() if value is not None]
     if unused:
         raise ConfigError(

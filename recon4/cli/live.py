@@ -26,7 +26,12 @@ SpeedOption = Annotated[
 
 @live.command()
 def replay(
-    recording: Annotated[Path, typer.Argument(help="pcap file, or folder of `recon4 simulate`.")],
+    recording: Annotated[
+        Path,
+        typer.Argument(
+            help="pcap file, folder of `recon4 simulate`, or scans: bag, CARMEN log, table."
+        ),
+    ],
     *,
     to: Annotated[str, typer.Option(help="Address the recorder listens on.")] = "127.0.0.1",
     speed: SpeedOption = 1.0,
@@ -34,13 +39,25 @@ def replay(
         int,
         typer.Option(min=1, help="Number of rounds, for walks that end where they began."),
     ] = 1,
+    rig: Annotated[
+        str | None,
+        typer.Option(help="Scans of a bag or log: rig preset or .toml with its topics and ports."),
+    ] = None,
 ) -> None:
     """Replay a recording to the ports of a recorder as its sensors sent it."""
     from recon4.live.replay import replay as run
+    from recon4.model.rig import load_rig
     from recon4.terminal import watcher
 
     with watcher() as progress:
-        sent = run(recording, progress=progress, target=to, speed=speed, times=times)
+        sent = run(
+            recording,
+            progress=progress,
+            target=to,
+            speed=speed,
+            times=times,
+            rig=load_rig(rig) if rig else None,
+        )
     _write(f"{sent} datagrams sent")
 
 

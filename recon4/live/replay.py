@@ -1,7 +1,7 @@
 """Replays a recording to the ports of a recorder as its sensors sent it; needs no hardware.
 
-Timestamps are shifted to the present. Samples of ``imu.csv`` and
-``gnss.csv`` beside the capture go out as JSON datagrams.
+Timestamps are shifted to the present. Samples of ``imu.csv`` and ``gnss.csv`` beside the capture go
+out as JSON datagrams; scans of a bag or log do too.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import csv
 import heapq
 import json
+import re
 import socket
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -21,15 +22,18 @@ import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import stretched
-from recon4.model.rig import GNSS_PORT, IMU_PORT
+from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
 from recon4.recording.formats.pcap import address_text, read_pcap
 from recon4.recording.open import pcap_files
 from recon4.recording.report import ImportReport
+from recon4.recording.scan_replay import datagrams_of_scans, has_scans
 from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE
 
 _STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
 """Packet size -> offset of its microseconds past the hour."""
+_STAMP = re.compile(rb'("t_ns"\s*:\s*)(\d{1,19})(?=[\s,}])')
+"""The time of a JSON object."""
 _SAMPLE_DELAY_NS = {"imu.csv": 2_000_000, "gnss.csv": 50_000_000}
 """Delay between the timestamp of a sample and its sending [ns]."""
 _BETWEEN_NS = 1_000_000
@@ -63,18 +67,21 @@ def replay(
     speed: float = 1.0,
     times: int = 1,
     alter: Alter = lambda shipment: (shipment,),
+    rig: Rig | None = None,
 ) -> int:
-    """Send a capture file and the CSV files beside it at the recorded speed.
+    """Send a recording at the recorded speed, as the datagrams of its sensors.
 
     Args:
         recording: A pcap file, or a folder with pcap files (``recon4 simulate``, a live project's
-            ``recordings``).
+            ``recordings``), with the CSV files beside it; or scans of a 2-D laser or profiler in a
+            bag, CARMEN log or table.
         progress: Receives the seconds of the recording.
         target: Address to send to.
         speed: Speed factor; the recorder must be started with the same one.
         times: Number of rounds, one after the other with increasing time; for walks that end
             where they began.
         alter: May drop, change or multiply datagrams.
+        rig: Topics and ports of scans; None = the shipped rig and default ports.
 
     Returns:
         Number of datagrams sent.
@@ -83,7 +90,7 @@ def replay(
         RecordingError: If there is nothing to send.
         ConfigError: If the address is invalid or cannot be reached.
     """
-    rounds = _rounds(recording, times)
+    rounds = _rounds(recording, times, rig)
     first = next(rounds, None)
     if first is None:
         raise EmptyRecording(f"{recording.name}: no UDP datagram found")
@@ -105,8 +112,22 @@ def replay(
     return sent
 
 
-def shipments_of(recording: Path) -> Iterator[Shipment]:
-    """All datagrams of a recording in order of time."""
+def shipments_of(recording: Path, rig: Rig | None = None) -> Iterator[Shipment]:
+    """All datagrams of a recording in order of time.
+
+    Args:
+        recording: As for `replay`.
+        rig: As for `replay`.
+    """
+    if has_scans(recording, rig):
+        for sent in datagrams_of_scans(recording, rig):
+            yield Shipment(sent.t_ns, "127.0.0.1", sent.port, sent.payload, stamped=True)
+        return
+    yield from _captured(recording)
+
+
+def _captured(recording: Path) -> Iterator[Shipment]:
+    """Datagrams of capture files, and samples of the CSV files beside them."""
     files = pcap_files(recording)
     folder = recording if recording.is_dir() else recording.parent
     parts = [_datagrams(file) for file in files]
@@ -116,12 +137,12 @@ def shipments_of(recording: Path) -> Iterator[Shipment]:
     return heapq.merge(*parts, key=lambda shipment: shipment.t_ns)
 
 
-def _rounds(recording: Path, times: int) -> Iterator[tuple[Shipment, int]]:
+def _rounds(recording: Path, times: int, rig: Rig | None) -> Iterator[tuple[Shipment, int]]:
     """Every datagram of every round, with the time offset of the round [ns]."""
     later_ns = 0
     for _ in range(times):
         first_ns = last_ns = None
-        for shipment in shipments_of(recording):
+        for shipment in shipments_of(recording, rig):
             first_ns = shipment.t_ns if first_ns is None else first_ns
             last_ns = shipment.t_ns
             yield shipment, later_ns
@@ -145,11 +166,8 @@ def moved(shipment: Shipment, shift_ns: int) -> Shipment:
 
 
 def _later(line: bytes, shift_ns: int) -> bytes:
-    try:
-        message = json.loads(line)
-        return json.dumps(message | {"t_ns": message["t_ns"] + shift_ns}).encode()
-    except (ValueError, TypeError, KeyError):
-        return line
+    """A JSON object with its ``t_ns`` shifted; the rest is left as it is, also what is no JSON."""
+    return _STAMP.sub(lambda found: found[1] + b"%d" % (int(found[2]) + shift_ns), line, count=1)
 
 
 def _datagrams(file: Path) -> Iterator[Shipment]:

@@ -19,6 +19,8 @@ from recon4.model.toml_tables import TomlTable, parse_toml
 
 IMU_PORT, GNSS_PORT = 8309, 8310
 """Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""
+LASER2D_PORT, PROFILER_PORT = 8311, 8312
+"""Default UDP ports of scans and of line scans (``docs/live.md``)."""
 MAX_RIG_BYTES = 128 * 1024
 """A rig file has some hundred bytes per sensor."""
 MAX_SENSORS = 64
@@ -27,6 +29,12 @@ SensorKind = Literal["lidar", "profiler", "laser2d"]
 """``lidar``: many beams that spin. ``profiler``: one beam that measures line scans, on a head that
 turns slowly. ``laser2d``: one beam that spins in a plane."""
 _KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
+DEFAULT_PORTS: dict[SensorKind, int] = {
+    "lidar": 2368,
+    "profiler": PROFILER_PORT,
+    "laser2d": LASER2D_PORT,
+}
+"""UDP port of the data of each kind of sensor, where a rig file says none."""
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "kind", "head_topic",
@@ -293,7 +301,7 @@ def _sensor(row: TomlTable) -> Sensor:
         head_rate_rad_s=_head_rate(row),
         time_offset_s=row.number("time_offset_s"),
         address=row.text("address"),
-        port=row.port(2368),
+        port=row.port(DEFAULT_PORTS[kind]),
         topic=row.text("topic"),
         enabled=row.flag("enabled", default=True),
         serial=row.text("serial"),

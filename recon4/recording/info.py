@@ -66,7 +66,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     kind = recognize(path)
     info = RecordingInfo(path=path.name, kind=str(kind), bytes=_size(path))
     planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
-    if kind in planar or (kind in _BAGS and is_laser2d(path)):
+    if kind in planar or (kind in (*_BAGS, RecordingKind.PCAP) and is_laser2d(path)):
         return _describe_laser2d(info, path)
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)

@@ -1,4 +1,4 @@
-"""Recordings of a 2-D laser alone: CARMEN logs and bags with LaserScan messages."""
+"""Recordings of a 2-D laser alone: CARMEN logs, bags and captures of its datagrams."""
 
 from __future__ import annotations
 
@@ -24,9 +24,10 @@ from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
 from recon4.recording.line_tables import is_laser_table, read_laser_table
-from recon4.recording.open import RecordingKind, bag_paths, recognize
+from recon4.recording.open import RecordingKind, bag_paths, pcap_files, recognize
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
+from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
 from recon4.recording.scan_messages import ScanCollector
 
 Rows = NDArray[np.intp]
@@ -47,7 +48,10 @@ def is_laser2d(path: Path) -> bool:
     """
     if path.is_file() and (is_carmen(path) or is_laser_table(path)):
         return True
-    if recognize(path) not in (RecordingKind.BAG1, RecordingKind.BAG2):
+    kind = recognize(path)
+    if kind is RecordingKind.PCAP:
+        return is_scan_capture(pcap_files(path))
+    if kind not in (RecordingKind.BAG1, RecordingKind.BAG2):
         return False
     report = ImportReport()
     with Bag(bag_paths(path), report) as bag:
@@ -60,7 +64,7 @@ def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
     """Read the scans of a recording; repairs are counted.
 
     Args:
-        paths: A CARMEN log, or bags that belong together.
+        paths: A CARMEN log, or bags or capture files that belong together.
         report: Receives counts, repairs and warnings.
 
     Raises:
@@ -74,6 +78,9 @@ def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
         if len(paths) > 1:
             raise UnknownFormat(f"one table of a 2-D laser expected, got {len(paths)} files")
         return in_meters(read_laser_table(paths[0], report), report)
+    if recognize(paths[0]) is RecordingKind.PCAP:
+        files = [file for path in paths for file in pcap_files(path)]
+        return in_meters(read_scan_captures(files, report), report)
     return in_meters(_of_bags(paths, report), report)
 
 

@@ -91,6 +91,21 @@ class LineRecording:
         sensors = [replace(s, topic=found.get(k, s.topic)) for k, s in enumerate(rig.sensors)]
         self.rig = replace(rig, sensors=tuple(sensors))
 
+    @property
+    def lines_topic(self) -> str:
+        """Topic of the line scans."""
+        return self._lines
+
+    @property
+    def head_topic(self) -> str:
+        """Topic of the head's angles; empty = it turns at a constant rate."""
+        return self._head
+
+    @property
+    def scans_topic(self) -> str:
+        """Topic of the 2-D laser; empty = there is none."""
+        return self._scans
+
     def read(self) -> Iterator[LineItem]:
         """Stream the bag once; points and lines are in order of time."""
         with Bag(self._paths, ImportReport()) as bag:
@@ -210,12 +225,12 @@ class LineAssembly:
         self._waiting.append(shots)
         self._turn(int(shots.t_ns[-1]))
         if len(self._done) >= _LINES_AT_ONCE:
-            yield from self._deliver()
+            yield from self.deliver()
 
     def flush(self) -> Iterator[LineItem]:
         """The remaining lines."""
         self._turn(self._last_ns, final=True)
-        yield from self._deliver()
+        yield from self.deliver()
         self._count_missing()
         lost = self._report.counts["lines_without_angle"]
         if lost:
@@ -266,7 +281,8 @@ class LineAssembly:
             xyz = np.stack([c * x - s * y, s * x + c * y, z], axis=1).astype(np.float32)
             self._done.append((replace(shots, xyz=xyz), float(angle[0])))
 
-    def _deliver(self) -> Iterator[LineItem]:
+    def deliver(self) -> Iterator[LineItem]:
+        """The lines whose head angle is known by now."""
         if not self._done:
             return
         parts = [shots for shots, _ in self._done]

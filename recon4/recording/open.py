@@ -12,7 +12,7 @@ from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFo
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.assembler import LONGEST_WAIT_S, TimeGap
@@ -26,7 +26,7 @@ from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
 from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import OpenFile, is_pcap, open_plain
 from recon4.recording.formats.poses import pose_format
-from recon4.recording.line_recording import LineRecording, profiler_rig
+from recon4.recording.line_recording import WUERZBURG, LineRecording, profiler_rig
 from recon4.recording.line_tables import (
     LASER_COLUMNS,
     LINE_COLUMNS,
@@ -38,6 +38,7 @@ from recon4.recording.line_tables import (
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
+from recon4.recording.scan_capture import ScanCapture, scan_streams
 from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
 from recon4.recording.velodyne.position_packets import PositionSamples
 from recon4.recording.velodyne.streams import PacketStream
@@ -147,6 +148,10 @@ def open_recording(
     kind = _one_kind(paths, rig)
     if kind is RecordingKind.PCAP:
         files = [f for path in paths for f in pcap_files(path)]
+        scanning = _scan_rig(files, rig, report)
+        if scanning is not None:
+            scans = ScanCapture(files, scanning, report=report, open_file=open_file)
+            return Recording(kind, scanning, scans.read)
         if rig is None:
             rig = choose_rig(lidars_of_packets(files, settings, report), report)
         pcap = VelodynePcap(files, rig, settings=settings, report=report, open_file=open_file)
@@ -185,8 +190,11 @@ def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
         )
     if kind not in RECORDINGS:
         raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
-    if rig is not None and rig.row_of("profiler") is not None and kind not in _BAGS:
-        raise UnknownFormat(f"{paths[0].name}: line scans are read from bags or tables, got {kind}")
+    with_lines = (*_BAGS, RecordingKind.PCAP)
+    if rig is not None and rig.row_of("profiler") is not None and kind not in with_lines:
+        raise UnknownFormat(
+            f"{paths[0].name}: line scans are read from bags, tables or captures, got {kind}"
+        )
     if any(other is not kind for other in kinds):
         names = ", ".join(f"{path.name} ({k})" for path, k in zip(paths, kinds, strict=True))
         raise UnknownFormat(f"recordings of one kind expected, got {names}")
@@ -199,6 +207,17 @@ def _profiler_rig(files: Sequence[Path], rig: Rig | None, report: ImportReport) 
         return profiler_rig((), rig, report)
     with Bag(files, ImportReport()) as bag:
         return profiler_rig(bag.topics, None, report)
+
+
+def _scan_rig(files: Sequence[Path], rig: Rig | None, report: ImportReport) -> Rig | None:
+    """The rig of captured datagrams of scans; None = they are packets of LiDARs."""
+    if rig is not None:
+        kinds = {sensor.kind for sensor in rig.sensors if sensor.enabled}
+        return rig if kinds <= {"laser2d", "profiler"} else None
+    if not scan_streams(files).heads:
+        return None
+    report.derive(f"no rig given: line scans, the mounting of the preset {WUERZBURG} is used")
+    return load_rig(WUERZBURG)
 
 
 def bag_paths(path: Path) -> list[Path]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -62,21 +62,36 @@ class ScanCollector:
         """Largest range [m] and time between two beams [s]."""
         self._ranges: list[NDArray[np.float32]] = []
         self._t_ns: list[int] = []
+        self._odometry: list[Sequence[float] | None] = []
         self._last_ns = -1
 
     def push(self, message: BagMessage, scan: Any) -> Iterator[LaserScans]:
         """Add a message; returns scans in batches."""
         stamp = scan.header.stamp
         t_ns = int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
-        t_ns = (t_ns if t_ns > 0 else message.t_ns) + self._offset_ns
+        yield from self.add(scan, t_ns if t_ns > 0 else message.t_ns, where=message.topic)
+
+    def add(
+        self, scan: Any, t_ns: int, *, where: str, odometry: Sequence[float] | None = None
+    ) -> Iterator[LaserScans]:
+        """Add a scan with the fields of a ``LaserScan``; returns scans in batches.
+
+        Args:
+            scan: Ranges and angles.
+            t_ns: Time of its first beam [ns].
+            where: What remarks name.
+            odometry: Pose of the laser by the recording: x [m], y [m], yaw [rad].
+        """
+        t_ns += self._offset_ns
         try:
             ranges, step_rad, step_s = _checked(scan)
         except CorruptFile as error:
             self._report.count("messages_corrupt")
-            self._report.warn(f"{message.topic}: left out: {error}")
+            self._report.warn(f"{where}: left out: {error}")
             return
         if t_ns <= self._last_ns:
-            self._report.count("scans_out_of_order")
+            again = t_ns == self._last_ns
+            self._report.count("scans_duplicate" if again else "scans_out_of_order")
             return
         layout = (len(ranges), round(float(scan.angle_min), 6), round(step_rad, 9))
         if self._layout is None:
@@ -85,12 +100,13 @@ class ScanCollector:
         elif layout != self._layout:
             self._report.count("scans_of_another_layout")
             self._report.warn(
-                f"{message.topic}: scans of another layout are left out: expected beams, first "
+                f"{where}: scans of another layout are left out: expected beams, first "
                 f"angle and step {self._layout}, got {layout}"
             )
             return
         self._last_ns = t_ns
         self._t_ns.append(t_ns)
+        self._odometry.append(odometry)
         self._ranges.append(np.where(_returns(scan, ranges), ranges, np.float32(np.nan)))
         self._report.count("scans")
         if len(self._t_ns) >= _SCANS_AT_ONCE:
@@ -101,7 +117,9 @@ class ScanCollector:
         if self._layout is None or not self._t_ns:
             return
         t_ns, ranges = np.array(self._t_ns, np.int64), np.stack(self._ranges)
-        self._t_ns, self._ranges = [], []
+        known = [pose for pose in self._odometry if pose is not None]
+        odometry = np.array(known, np.float64) if len(known) == len(t_ns) else None
+        self._t_ns, self._ranges, self._odometry = [], [], []
         yield LaserScans(
             t_ns=t_ns,
             range_m=ranges,
@@ -109,6 +127,7 @@ class ScanCollector:
             angle_step_rad=self._layout[2],
             range_max_m=self._rest[0],
             time_step_s=self._rest[1],
+            odometry=odometry,
         )
 
 

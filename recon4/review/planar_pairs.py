@@ -24,7 +24,7 @@ def align_keyframes(source: Source, nodes: tuple[int, int], predicted: SE3) -> E
         nodes: Rows of the graph.
         predicted: Initial ``T_i_j``; its height, roll and pitch are left out.
     """
-    from recon4.slam2d.loops import SubmapRegistrar
+    from recon4.slam2d.submaps import SubmapRegistrar
 
     settings = source.settings
     registrar = SubmapRegistrar(source.keyframes, settings=settings.slam2d, loops=settings.loops2d)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import fields
 
 import numpy as np
 
@@ -54,20 +55,38 @@ class Odometry2d:
             attitude: Attitude of the laser at all scans, as of an IMU; None = the laser is level.
             settings: None = the defaults.
         """
-        self._scans = scans
         self._settings = settings or Slam2dSettings()
-        self._predictor = MotionPredictor(scans, attitude, settings=self._settings)
-        self._leveling: Array | None = None
-        if attitude is not None:
-            self._leveling = leveling(attitude.at(scans.t_ns, slack_ns=1_000_000_000))
+        self._take(scans, attitude)
         extent_m = 2.0 * self._settings.max_range_m + _WINDOW_PATH_M
         self._map = LineMap(cell_m=self._settings.cell_m, extent_m=extent_m)
         self._window: deque[tuple[Array, Array]] = deque()
         self._field: LikelihoodField | None = None
-        self._key = 0
+        self._key_pose = np.zeros(3)
+        """Pose of the last keyframe."""
         self._growth = VarianceGrowth()
         self._lost_in_a_row = 0
         self.steps = empty_steps(scans.t_ns)
+
+    def advance(self, scans: LaserScans, *, known: int, attitude: Trajectory | None = None) -> None:
+        """Continue with more scans, as they come in: rows that are no longer needed are dropped.
+
+        Args:
+            scans: The last ``known`` scans that were pushed, and new ones. The scans of the last
+                quarter of a second give the velocity.
+            known: How many were pushed.
+            attitude: As at the start, for these scans.
+        """
+        self._take(scans, attitude)
+        before, self.steps = self.steps, empty_steps(scans.t_ns)
+        for name in (field.name for field in fields(Steps2d) if known):
+            getattr(self.steps, name)[:known] = getattr(before, name)[-known:]
+
+    def _take(self, scans: LaserScans, attitude: Trajectory | None) -> None:
+        self._scans = scans
+        self._predictor = MotionPredictor(scans, attitude, settings=self._settings)
+        self._leveling: Array | None = None
+        if attitude is not None:
+            self._leveling = leveling(attitude.at(scans.t_ns, slack_ns=1_000_000_000))
 
     def push(self, k: int) -> None:
         """Register scan ``k``; the scans before it were pushed already."""
@@ -175,7 +194,7 @@ class Odometry2d:
     def _is_keyframe(self, k: int) -> bool:
         if len(self._window) < _FIRST_KEYFRAMES or self._growth.sd_m > _LOOSE_SD_M:
             return True
-        moved = between(self.steps.pose[self._key], self.steps.pose[k])
+        moved = between(self._key_pose, self.steps.pose[k])
         far = float(np.hypot(moved[0], moved[1])) > self._settings.keyframe_m
         return far or abs(float(wrap(moved[2]))) > self._settings.keyframe_rad
 
@@ -191,7 +210,7 @@ class Odometry2d:
 
     def _mark_keyframe(self, k: int) -> None:
         self.steps.keyframe[k] = True
-        self._key = k
+        self._key_pose = self.steps.pose[k].copy()
         self._growth.restart()
 
     def _is_too_large(self) -> bool:

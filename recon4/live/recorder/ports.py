@@ -19,7 +19,8 @@ _BUFFER_BYTES = 16 << 20
 """Requested receive buffer; six seconds of two VLP-16."""
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
 _SO_RXQ_OVFL = 40
-_LONGEST = 9000
+_LONGEST = 65_535
+"""Bytes of a datagram: a scan as JSON has some ten thousand."""
 _HINTS = {
     errno.EADDRINUSE: "; is another recorder or VeloView running?",
     errno.EACCES: "; ports below 1024 need administrator rights: send to other ports",
@@ -71,15 +72,11 @@ def check_sources(rig: Rig) -> None:
     """Check that the datagrams of a rig can be received and assigned to its sensors.
 
     Raises:
-        ConfigError: If a sensor is no LiDAR, two LiDARs use one port without different addresses,
-            an address is invalid, or the serial line of the receiver is invalid or has no port.
+        ConfigError: If the kinds of sensors cannot be mapped together, two sensors use one port
+            without different addresses, an address is invalid, or the serial line of the receiver
+            is invalid or has no port.
     """
-    others = [f"{s.name} (kind {s.kind})" for s in rig.sensors if s.enabled and s.kind != "lidar"]
-    if others:
-        raise ConfigError(
-            f"rig {rig.name}: expected LiDARs, which send datagrams, got {', '.join(others)}: live "
-            "capture does not receive line scans; record their topics in a bag and process that"
-        )
+    _check_kinds(rig)
     if rig.gnss_serial:
         parse_device(rig.gnss_serial)
         if not rig.gnss_port:
@@ -97,6 +94,21 @@ def check_sources(rig: Rig) -> None:
                 f"rig {rig.name}: {names} all send to port {port}: give each its address = "
                 '"…" in the rig file, or a port of its own'
             )
+
+
+def _check_kinds(rig: Rig) -> None:
+    """LiDARs alone, or a 2-D laser with or without a profiler."""
+    kinds = [sensor.kind for sensor in rig.sensors if sensor.enabled]
+    if set(kinds) <= {"lidar"}:
+        return
+    if set(kinds) <= {"laser2d", "profiler"} and kinds.count("laser2d") == 1:
+        if kinds.count("profiler") <= 1:
+            return
+    names = ", ".join(f"{s.name} (kind {s.kind})" for s in rig.sensors if s.enabled)
+    raise ConfigError(
+        f"rig {rig.name}: live capture maps LiDARs, or one 2-D laser with or without one profiler; "
+        f"got {names}: record their topics in a bag and process that"
+    )
 
 
 def _check_address(sensor: Sensor) -> None:
