@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from recon4 import stages
+from recon4 import stages, stages_2d
 from recon4.errors import StoreError
 from recon4.live.recorder.ports import check_sources
 from recon4.live.session import CaptureSession
@@ -100,3 +100,31 @@ def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
         )
         shutil.rmtree(frames, ignore_errors=True)
         return figures_of(runner.runs, stages.FRAMES).multiframes
+
+
+def finish_scans(session: CaptureSession, settings: Settings) -> int:
+    """Store the scans of a 2-D laser alone as the project's stage ``scans_2d``.
+
+    Args:
+        session: Of a capture that has ended.
+        settings: Settings of the project.
+
+    Returns:
+        Number of scans.
+
+    Raises:
+        RecordingError: If the capture has no scan.
+        StoreError: If the project is in use or cannot be written.
+    """
+    progress = Silent()
+    with Project.open(session.project) as project:
+        recordings = input_files([session.capture], project.ledger, progress)
+        about = {
+            "name": session.capture.name,
+            "bytes": size_of(session.capture),
+            "sha256": recordings.key,
+        }
+        project.describe(preset=session.preset, rig="", inputs=[about])
+        runner = StageRunner(project, settings, progress)
+        runner.run(stages_2d.SCANS_2D, recordings=recordings)
+        return figures_of(runner.runs, stages_2d.SCANS_2D).scans

@@ -163,7 +163,10 @@ class Pose(msgspec.Struct, tag_field="kind", tag="pose", kw_only=True):
     imu: bool
     """Whether the odometry uses the IMU."""
     remark: str
-    """Warning about the IMU; empty = none."""
+    """Warning about the IMU or the map; empty = none."""
+    unobserved: str = ""
+    """Direction that a 2-D laser does not observe now: ``along`` or ``across`` the heading; empty =
+    it observes all, or there are LiDARs."""
     age_s: float = 0.0
     """Latency of the mapping [s]."""
 

@@ -54,6 +54,7 @@ _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
 _BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 _HEAD_NS = 1_000_000_000
+_SCAN_CAPTURE = "capture of a 2-D laser (pcap)"
 
 
 def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
@@ -67,6 +68,8 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     info = RecordingInfo(path=path.name, kind=str(kind), bytes=_size(path))
     planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
     if kind in planar or (kind in (*_BAGS, RecordingKind.PCAP) and is_laser2d(path)):
+        if kind is RecordingKind.PCAP:
+            info = replace(info, kind=_SCAN_CAPTURE)
         return _describe_laser2d(info, path)
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)

@@ -36,6 +36,8 @@ from recon4.store.line_store import LineStoreWriter
 Span = tuple[int, int]
 """Start of the first and end of the last multiframe [ns]."""
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
+Watch = Callable[[Multiframe | ImuSamples | GnssSamples | LaserScans], None]
+"""Receives contents of a recording as they come in."""
 
 _GAPS_LISTED = 1000
 
@@ -109,8 +111,8 @@ class _Receivers:
     """Multiframes."""
     samples: _Samples
     """Everything else."""
-    watch: Callable[[Multiframe | ImuSamples | GnssSamples], None]
-    """Samples as read, besides."""
+    watch: Watch
+    """Samples and scans as read, besides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,9 +121,9 @@ class LiveSource:
 
     open_file: OpenFile = open_plain
     """Opens the capture file; reads wait for bytes not written yet."""
-    watch: Callable[[Multiframe | ImuSamples | GnssSamples], None] = lambda item: None
-    """Called with each multiframe as soon as it is cut, before it is written, and with samples as
-    read, before they are cleaned."""
+    watch: Watch = lambda item: None
+    """Called with each multiframe as soon as it is cut, before it is written, and with samples and
+    scans of a 2-D laser as read, before they are cleaned."""
     report: ImportReport = field(default_factory=ImportReport)
     """Receives repairs and warnings as they happen."""
 
@@ -204,7 +206,7 @@ def _write_frames(
     for item in _items(recording, assembler):
         if not isinstance(item, Multiframe):
             receivers.samples.keep(item)
-            if isinstance(item, ImuSamples | GnssSamples):
+            if isinstance(item, ImuSamples | GnssSamples | LaserScans):
                 receivers.watch(item)
             continue
         if not written.duration_ns:

@@ -66,6 +66,8 @@ class Odometry2d:
         self._growth = VarianceGrowth()
         self._lost_in_a_row = 0
         self.steps = empty_steps(scans.t_ns)
+        self.seen = ScanPoints(np.zeros((0, 2)), np.zeros(0))
+        """Returns of the last scan that was pushed, level and undistorted."""
 
     def advance(self, scans: LaserScans, *, known: int, attitude: Trajectory | None = None) -> None:
         """Continue with more scans, as they come in: rows that are no longer needed are dropped.
@@ -92,7 +94,7 @@ class Odometry2d:
         """Register scan ``k``; the scans before it were pushed already."""
         steps = self.steps
         predicted = self._predict(k)
-        scan = self._points(k)
+        self.seen = scan = self._points(k)
         start = compose(steps.pose[k - 1], predicted.motion) if k else np.zeros(3)
         if not self._window:
             steps.pose[k] = start

@@ -11,6 +11,8 @@ from recon4.live.protocol import Gap, Gaps, MapperMessage, Path, Plan, Points
 from recon4.model.plain import finite_or_none
 
 _MAX_GAPS = 50
+_PLAN_BYTES_PER_S = 20_000
+"""Data rate of plans; a large plan is sent less often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,6 +51,29 @@ def plan_message(coverage: Coverage) -> Plan:
         shape=list(seen.shape),
         seen=zlib.compress(seen.tobytes(), 1),
     )
+
+
+class PlanSchedule:
+    """Decides when the plan is sent: a large one less often."""
+
+    def __init__(self) -> None:
+        self.newest: list[Plan] = []
+        """The last plan that was sent."""
+        self._due_ns = self._floor = 0
+
+    def due(self, coverage: Coverage, now_ns: int) -> list[Plan]:
+        """The message ``plan``, unless the next one is not due because the last one was large."""
+        if now_ns < self._due_ns and coverage.floor == self._floor:
+            return []
+        plan, self._floor = plan_message(coverage), coverage.floor
+        lasts_s = 4 * -(-len(plan.seen) // 3) / _PLAN_BYTES_PER_S  # in base64
+        self._due_ns = now_ns + round(1e9 * lasts_s)
+        self.newest = [plan]
+        return self.newest
+
+    def reset(self) -> None:
+        """The next plan is due at once."""
+        self.newest, self._due_ns = [], 0
 
 
 def gaps_message(coverage: Coverage) -> Gaps:

@@ -12,7 +12,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
-from recon4.live.ipc.messages import Snapshot, gaps_message, plan_message, points_message
+from recon4.live.ipc.messages import PlanSchedule, Snapshot, gaps_message, points_message
 from recon4.live.mapper.live_intensity import LiveIntensity
 from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.motion_watch import MotionWatch
@@ -21,7 +21,7 @@ from recon4.live.mapper.recovery import Recovery
 from recon4.live.mapper.tracker import Tracker
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import Coverage
-from recon4.live.protocol import Gaps, Loop, MapperMessage, Plan, Points, Pose, RecentFrames
+from recon4.live.protocol import Gaps, Loop, MapperMessage, Points, Pose, RecentFrames
 from recon4.live.protocol import Path as PathMessage
 from recon4.model.multiframe import Multiframe
 from recon4.model.plain import finite_or_none
@@ -45,8 +45,6 @@ _PATH_STEP_M = 0.25
 _OFFSET_SHOWN_NS = 3_000_000_000
 _RECENT_NS = 10_000_000_000
 """Period over which multiframes left out are counted."""
-_PLAN_BYTES_PER_S = 20_000
-"""Data rate of plans; a large plan is sent less often."""
 
 
 class LiveMap:
@@ -83,10 +81,9 @@ class LiveMap:
         """Last position before tracking was lost [m]."""
         self._lost = self._lost_steps = 0
         self._recovery: Recovery | None = None
-        self._plan_due_ns = self._plan_floor = 0
         self._gate = LoopGate()
         self._loop = Loop(near=False, closed=False)
-        self._plan: Plan | None = None
+        self._plan = PlanSchedule()
         self._gaps = Gaps([], well=None, elsewhere=0)
 
     def extend_imu(self, imu: ImuSamples) -> None:
@@ -129,10 +126,9 @@ class LiveMap:
     def snapshot(self) -> Snapshot:
         """The current state, for clients that connect late."""
         chunk = self._preview.since(0) if len(self._preview) else None
-        plan = [] if self._plan is None else [self._plan]
-        return Snapshot(
-            list(self._path), chunk, [*plan, self._gaps, self._loop, self._motion.message()]
-        )
+        others: list[MapperMessage] = [*self._plan.newest, self._gaps, self._loop]
+        others.append(self._motion.message())
+        return Snapshot(list(self._path), chunk, others)
 
     def _extend_path(self, p_map: Array) -> None:
         self._here_m = p_map
@@ -237,16 +233,8 @@ class LiveMap:
         self._places.keep(self.tracker.T_map_odom @ step.T_odom_body, ends)
         self._coverage.refresh()
         self._gaps = gaps_message(self._coverage)
-        return [*self._new_plan(frame.t_ns), self._gaps, self._loop, self._motion.message()]
-
-    def _new_plan(self, now_ns: int) -> list[Plan]:
-        """The message ``plan``, unless the next one is not due because the last one was large."""
-        if now_ns < self._plan_due_ns and self._coverage.floor == self._plan_floor:
-            return []
-        self._plan, self._plan_floor = plan_message(self._coverage), self._coverage.floor
-        lasts_s = 4 * -(-len(self._plan.seen) // 3) / _PLAN_BYTES_PER_S  # in base64
-        self._plan_due_ns = now_ns + round(1e9 * lasts_s)
-        return [self._plan]
+        plan = self._plan.due(self._coverage, frame.t_ns)
+        return [*plan, self._gaps, self._loop, self._motion.message()]
 
     def _close_loop(self, source: Array, T_map_body: SE3, step: OdometryStep) -> None:
         """Recognize a place visited before and correct the drift of the map."""

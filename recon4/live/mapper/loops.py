@@ -46,10 +46,17 @@ class LoopGate:
         """
         r = self._rules
         if found is None or found.match_ratio < r.match_ratio or found.degeneracy < r.degeneracy:
+            return self.judge_pose(None, T_map_body)
+        return self.judge_pose(found.T_target_source, T_map_body)
+
+    def judge_pose(self, T_map_found: SE3 | None, T_map_body: SE3) -> bool:
+        """The same for the pose by a registration that is accepted; None = there is none."""
+        r = self._rules
+        if T_map_found is None:
             self._pending = None
             return False
-        drift = found.T_target_source @ T_map_body.inverse()
-        apart = T_map_body.inverse() @ found.T_target_source
+        drift = T_map_found @ T_map_body.inverse()
+        apart = T_map_body.inverse() @ T_map_found
         self.closed, self.drift_m = True, float(np.linalg.norm(apart.t))
         if self.drift_m < r.drift_m and float(apart.angle()) < r.drift_rad:
             self._pending = None
@@ -58,7 +65,7 @@ class LoopGate:
         if before is None:
             return False
         # Compared at the body: far from the origin a small rotation is a large offset.
-        between = (before @ T_map_body).inverse() @ found.T_target_source
+        between = (before @ T_map_body).inverse() @ T_map_found
         agree = float(np.linalg.norm(between.t)) < r.agree_m and between.angle() < r.agree_rad
         if agree:
             self._pending = None

@@ -15,31 +15,33 @@ import signal
 import sys
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
-
-import numpy as np
 
 from recon4.errors import Recon4Error
 from recon4.live.confinement import confine_mapper, scratch_of
 from recon4.live.ipc.line_client import linked
 from recon4.live.ipc.line_server import LineServer
+from recon4.live.mapper.follower import Follower, LidarFollower, ScanFollower
 from recon4.live.mapper.gnss_watch import GnssWatch
-from recon4.live.mapper.imu_synchronization import ImuSynchronization
 from recon4.live.mapper.latency import Latency
 from recon4.live.mapper.live_map import LiveMap
 from recon4.live.mapper.notes import NotesWatch
+from recon4.live.mapper.scan_map import ScanMap
 from recon4.live.mapper.tail_file import TailFile, WriteProgress
-from recon4.live.project_files import finish
-from recon4.live.protocol import Done, Message, Pose, Stopped, Written
+from recon4.live.mapper.warm_up import warm_up
+from recon4.live.project_files import finish, finish_scans
+from recon4.live.protocol import Done, MapperMessage, Message, Pose, Stopped, Written
 from recon4.live.session import CaptureSession, load_session, stretched
+from recon4.model.laser_scans import LaserScans
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, load_rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import LiveSource, ingest
+from recon4.recording.scan_capture import ScanCapture
 from recon4.recording.sources import Sources
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_json
@@ -54,7 +56,6 @@ class Mapper:
         self._session = session
         self._rig: Rig = load_rig(session.rig)
         self._settings: Settings = preset(session.preset)
-        self._map = LiveMap(self._rig, self._settings, scratch=session.folder)
         self._mapping = threading.Lock()
         self._growth = WriteProgress()
         self._live = LiveSource(self._open, self._watch)
@@ -66,9 +67,15 @@ class Mapper:
         self._newest_notes = self._notes.message(time.monotonic())
         self._newest_pose: list[Pose] = []
         self._notes_s = 0.0
-        self._synchronization = ImuSynchronization()
-        self._latency = Latency(self._live.report, self._now_ns)
+        self._follower = self._make_follower()
         self._aborted = False
+
+    def _make_follower(self) -> Follower:
+        rig, settings = self._rig, self._settings
+        latency = Latency(self._live.report, self._now_ns)
+        if rig.row_of("laser2d") is not None:
+            return ScanFollower(ScanMap(rig, settings), rig, latency)
+        return LidarFollower(LiveMap(rig, settings, scratch=self._session.folder), rig, latency)
 
     async def run(self, on_ready: Callable[[], None]) -> int:
         """Map until the recorder has ended; returns the exit code."""
@@ -123,52 +130,62 @@ class Mapper:
         out = self._session.folder / "frames"
         shutil.rmtree(out, ignore_errors=True)
         out.mkdir(parents=True)
-        ingest(
-            Sources((self._session.capture,), self._rig),
-            out,
-            settings=self._settings.ingest,
-            progress=Silent(),
-            live=self._live,
-        )
-        for frame in self._synchronization.flush():
-            self._map_frame(frame)
+        if self._has_frames:
+            ingest(
+                Sources((self._session.capture,), self._rig),
+                out,
+                settings=self._settings.ingest,
+                progress=Silent(),
+                live=self._live,
+            )
+        else:
+            self._read_scans()
+        self._publish(self._follower.flush())
         if self._aborted:
             return Done(frames=0, problem="the mapper was stopped by a signal")
         began_s = time.monotonic()
-        frames = finish(self._session, out, self._settings)
+        if self._has_frames:
+            frames = finish(self._session, out, self._settings)
+        else:
+            frames = finish_scans(self._session, self._settings)
         if not self._session.outcome.exists():
             write_json(self._session.outcome, {"why": "the recorder died"})
         seconds = round(time.monotonic() - began_s, 2)
         return Done(frames=frames, problem="", seconds=seconds)
 
+    @property
+    def _has_frames(self) -> bool:
+        """Whether the sensors make multiframes; a 2-D laser alone makes scans."""
+        return any(sensor.kind != "laser2d" for sensor in self._rig.sensors if sensor.enabled)
+
+    def _read_scans(self) -> None:
+        """Follow the capture of a 2-D laser alone."""
+        report = self._live.report
+        files = (self._session.capture,)
+        for item in ScanCapture(files, self._rig, report=report, open_file=self._open).read():
+            if isinstance(item, LaserScans | ImuSamples | GnssSamples):
+                self._watch(item)
+
     def _open(self, path: Path) -> Any:
         return TailFile(path, self._growth)
 
-    def _watch(self, item: Multiframe | ImuSamples | GnssSamples) -> None:
+    def _watch(self, item: Multiframe | ImuSamples | GnssSamples | LaserScans) -> None:
         if isinstance(item, GnssSamples):
             self._send(self._gnss.push(item))
-            return
-        if isinstance(item, ImuSamples):
-            self._map.extend_imu(item)
-            offset_ns = round(self._rig.imu_time_offset_s * 1e9)
-            ready = self._synchronization.imu_until(int(item.t_ns[-1]) + offset_ns)
         else:
-            ready = self._synchronization.push(item)
-        for frame in ready:
-            self._map_frame(frame)
+            self._publish(self._follower.take(item))
 
-    def _map_frame(self, frame: Multiframe) -> None:
-        if self._latency.leave_out(frame.t_ns + frame.duration_ns):
-            self._map.thin(frame)
-            return
-        with self._mapping:
-            pose, others = self._map.push(frame)
-        pose.t_ns = self._latency.on_recorder_clock(pose.t_ns)
-        pose.age_s = self._latency.age_s(pose.t_ns)
-        self._newest_pose = [pose]
-        for message in (pose, *others):
+    def _publish(self, messages: Iterator[MapperMessage]) -> None:
+        """Map what comes next, and send each message as soon as it is known."""
+        while True:
+            with self._mapping:
+                message = next(messages, None)
+            if message is None:
+                return
+            if isinstance(message, Pose):
+                self._newest_pose = [message]
+                self._report_notes()
             self._send(message)
-        self._report_notes()
 
     def _now_ns(self) -> int:
         return stretched(time.time_ns(), self._session.speed)
@@ -185,36 +202,8 @@ class Mapper:
 
     def _initial_messages(self) -> list[Message]:
         with self._mapping:
-            snapshot = self._map.snapshot()
+            snapshot = self._follower.snapshot()
         return [*snapshot.messages(), *self._newest_pose, self._newest_notes]
-
-
-def warm_up(rig: Rig, settings: Settings) -> None:
-    """Load the compiled kernels with synthetic multiframes, so that real ones are not delayed."""
-    live_map = LiveMap(rig, settings)
-    rng = np.random.default_rng(0)
-    ring, step = np.meshgrid(np.arange(16), np.arange(900))
-    azimuth, elevation = step.ravel() * 2 * np.pi / 900, np.deg2rad(2.0 * ring.ravel() - 15)
-    ray = np.stack([np.cos(azimuth), np.sin(azimuth), np.tan(elevation)], axis=1)
-    reach_m = 3.0 / np.abs(ray).max(axis=1, keepdims=True) + rng.normal(0, 0.01, (len(ray), 1))
-    count = len(ray)
-    for k in range(3):
-        t_ns = (20 + k) * 100_000_000  # late enough for a summary
-        imu_ns = t_ns + 10_000_000 * np.arange(11, dtype=np.int64)
-        accel = np.tile([0.0, 0.0, STANDARD_GRAVITY_M_S2], (11, 1))
-        live_map.extend_imu(ImuSamples(imu_ns, np.zeros((11, 3)), accel))
-        frame = Multiframe(
-            frame_id=k,
-            t_ns=t_ns,
-            duration_ns=100_000_000,
-            xyz=(ray * reach_m).astype(np.float32),
-            intensity=np.full(count, 30, np.uint8),
-            ring=ring.ravel().astype(np.uint8),
-            sensor=np.zeros(count, np.uint8),
-            echo=np.zeros(count, np.uint8),
-            dt_ns=np.sort(rng.integers(0, 100_000_000, count)).astype(np.int32),
-        )
-        live_map.push(frame)
 
 
 def main(project: Path) -> int:

@@ -104,12 +104,13 @@ class Coverage:
         """Number of the current floor, in the order of first visits."""
         return self._heights.now
 
-    def add(self, body_m: Array, p_map: Array) -> None:
-        """Add the rays of a multiframe.
+    def add(self, body_m: Array, p_map: Array, *, solid: bool = True) -> None:
+        """Add the rays of a multiframe or scan.
 
         Args:
             body_m: Position of the body [m], (3,).
             p_map: End points of sampled rays [m], (N, 3).
+            solid: Whether the rays end at surfaces; otherwise they only say what is free.
         """
         floor = self._heights.at(float(body_m[2]))
         if floor not in self._floors:
@@ -119,7 +120,7 @@ class Coverage:
         if not plan.tiles.contains(here):
             self._count(plan)
             plan.tiles.move_to(here)
-        self._trace(plan.tiles, body_m, p_map)
+        self._trace(plan.tiles, body_m, p_map, solid=solid)
         key = (int(here[0]), int(here[1]))
         if key != plan.last_cell:
             plan.last_cell = key
@@ -172,7 +173,7 @@ class Coverage:
             found.append(CoverageGap((x, y), width_m, float(away_m[rows[middle]])))
         return sorted(found, key=lambda gap: (-gap.width_m, gap.p_map))
 
-    def _trace(self, tiles: Tiles, body_m: Array, p_map: Array) -> None:
+    def _trace(self, tiles: Tiles, body_m: Array, p_map: Array, *, solid: bool) -> None:
         up_m = p_map[:, 2] - body_m[2]
         below = up_m < self._rules.ceiling_m
         ray_m, up_m = p_map[below] - body_m, up_m[below]
@@ -180,9 +181,9 @@ class Coverage:
         cut = np.minimum(1.0, RAY_M / np.maximum(plan_m, 1e-9))
         start = body_m[:2] / CELL_M - tiles.first_cell
         ends = start + ray_m[:, :2] * (cut / CELL_M)[:, None]
-        solid = (up_m > -self._rules.floor_m) & (plan_m <= RAY_M)
+        walls = (up_m > -self._rules.floor_m) & (plan_m <= RAY_M) & solid
         layers = (tiles.window[name] for name in ("free", "hits", "nearest_m"))
-        trace(start, ends, np.linalg.norm(ray_m, axis=1), solid, *layers)
+        trace(start, ends, np.linalg.norm(ray_m, axis=1), walls, *layers)
 
     def _walk(self, tiles: Tiles, here: NDArray[np.int64]) -> None:
         """Update the distances of the cells around a cell of the path."""

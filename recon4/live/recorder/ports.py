@@ -101,9 +101,9 @@ def _check_kinds(rig: Rig) -> None:
     kinds = [sensor.kind for sensor in rig.sensors if sensor.enabled]
     if set(kinds) <= {"lidar"}:
         return
-    if set(kinds) <= {"laser2d", "profiler"} and kinds.count("laser2d") == 1:
-        if kinds.count("profiler") <= 1:
-            return
+    with_laser = set(kinds) <= {"laser2d", "profiler"} and kinds.count("laser2d") == 1
+    if with_laser and kinds.count("profiler") <= 1:
+        return
     names = ", ".join(f"{s.name} (kind {s.kind})" for s in rig.sensors if s.enabled)
     raise ConfigError(
         f"rig {rig.name}: live capture maps LiDARs, or one 2-D laser with or without one profiler; "
