@@ -11,7 +11,7 @@ from stat import S_ISREG
 from app.rigs.store import RIGS, newest_files
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile
-from recon4.model.rig import Rig, load_rig, rig_presets
+from recon4.model.rig import load_rig, rig_presets
 
 MAX_FILES = 100
 LARGEST_BYTES = 1 << 17
@@ -26,7 +26,7 @@ class RigChoice:
     name: str
     """Display name."""
     sensors: list[str]
-    """Names of its LiDARs."""
+    """Names of its LiDARs, 2-D laser and profiler."""
     problem: str
     """Why it cannot be used; empty = it can."""
 
@@ -52,12 +52,8 @@ def rigs_in(files: tuple[Path, ...]) -> list[RigChoice]:
 
 
 def shipped_rigs() -> list[RigChoice]:
-    """The rigs that come with recon4 and can be captured live: those with a LiDAR."""
-    return [_shipped(name) for name in rig_presets() if _has_lidar(load_rig(name))]
-
-
-def _has_lidar(rig: Rig) -> bool:
-    return any(sensor.kind == "lidar" for sensor in rig.sensors)
+    """The rigs that come with recon4."""
+    return [_shipped(name) for name in rig_presets()]
 
 
 def _files(folder: Path) -> Iterator[Path]:

@@ -103,7 +103,7 @@ def record(
         return await Headless(session, send=send).run(seconds)
 
     ended = asyncio.run(run())
-    _write(_outcome(ended))
+    _write(_outcome(ended, of_scans=all(one.kind == "laser2d" for one in loaded.sensors)))
     if ended.stopped is not None and ended.stopped.why != "stopped":
         _write(f"recording ended by itself: {ended.stopped.why}")
     recordings = session.capture.parent
@@ -112,12 +112,12 @@ def record(
         raise typer.Exit(1)
 
 
-def _outcome(ended: Newest) -> str:
+def _outcome(ended: Newest, *, of_scans: bool) -> str:
     done, stopped = ended.done, ended.stopped
     recorded = stopped.file.datagrams if stopped is not None else 0
     lost = stopped.kernel_drops + stopped.file.dropped if stopped is not None else 0
     frames, problem = (done.frames, done.problem) if done is not None else (0, "")
-    mapped = problem or f"{frames} multiframes are ready"
+    mapped = problem or f"{frames} {'scans' if of_scans else 'multiframes'} are ready"
     return f"{recorded} datagrams recorded, {lost} lost; {mapped}"
 
 

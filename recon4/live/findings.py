@@ -7,6 +7,7 @@ from typing import Literal
 
 from recon4.live.newest import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
+from recon4.live.scan_findings import scan_remarks, unobserved_text
 from recon4.model.rig import Rig, Sensor
 from recon4.model.usability import WEAK_SD_M
 
@@ -54,9 +55,9 @@ def findings(rig: Rig, newest: Newest, problem: str) -> list[CaptureFinding]:
 
 
 def rates(rig: Rig, status: Status) -> dict[str, float]:
-    """Datagrams per second of each LiDAR of a rig, of its IMU and its GNSS receiver."""
+    """Datagrams per second of each sensor of a rig, of its IMU and its GNSS receiver."""
     senders = status.senders
-    found = {s.name: sum(one.data_per_s for one in _mine(s, senders)) for s in rig.sensors}
+    found = {s.name: sum(_rate(s, one) for one in _mine(s, senders)) for s in rig.sensors}
     for name, port in (("IMU", rig.imu_port), ("GNSS", rig.gnss_port)):
         found[name] = sum(one.per_s for one in senders if port and one.port == port)
     return found
@@ -69,8 +70,13 @@ def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:
         for one in senders
         if one.port == sensor.port
         and sensor.address in {"", one.source}
-        and (one.data_per_s > 0 or one.silent_s > 0.5)
+        and (_rate(sensor, one) > 0 or one.silent_s > 0.5)
     ]
+
+
+def _rate(sensor: Sensor, sender: Sender) -> float:
+    """Datagrams per second that can be measurements: LiDARs send packets of one size."""
+    return sender.data_per_s if sensor.kind == "lidar" else sender.per_s
 
 
 def _disk(status: Status) -> list[CaptureFinding]:
@@ -93,20 +99,37 @@ def _sensors(rig: Rig, status: Status) -> list[CaptureFinding]:
     if silent and len(silent) == len(silent_s):
         shortest = min(silent.values())
         arrives = _arriving(rig, status)
+        what = "LiDAR" if all(sensor.kind == "lidar" for sensor in rig.sensors) else "scanner"
         if arrives:
-            return [CaptureFinding("error", f"No LiDAR of the rig sends: {arrives}")]
-        text = f"No LiDAR sends anything for {_seconds(shortest)}: check power and cables"
+            return [CaptureFinding("error", f"No {what} of the rig sends: {arrives}")]
+        text = f"No {what} sends anything for {_seconds(shortest)}: check power and cables"
         return [CaptureFinding("error", text)]
     return [
-        CaptureFinding("error", f"{name} LiDAR silent for {_seconds(s)}")
-        for name, s in silent.items()
+        CaptureFinding("error", f"{_title(sensor)} silent for {_seconds(silent[sensor.name])}")
+        for sensor in rig.sensors
+        if sensor.name in silent
     ]
+
+
+def _title(sensor: Sensor) -> str:
+    """A sensor on the screen; there is only one of the kinds without a name."""
+    titles = {"laser2d": "2-D laser", "profiler": "Profiler"}
+    return titles.get(sensor.kind, f"{sensor.name} LiDAR")
 
 
 def _arriving(rig: Rig, status: Status) -> str:
     """Datagrams on the LiDARs' ports although no LiDAR of the rig sends; empty = none."""
     for sensor in rig.sensors:
         there = [one for one in status.senders if one.port == sensor.port]
+        if sensor.kind != "lidar":
+            other = [one for one in there if one.per_s > 0 and one.source != sensor.address]
+            if sensor.address and other:
+                return (
+                    f"{sensor.name} is expected from {sensor.address}, but datagrams for port "
+                    f"{sensor.port} come from {_sources(other)}: correct the address in the rig or "
+                    "in the sender"
+                )
+            continue
         data = [one for one in there if one.data_per_s > 0 and one.source != sensor.address]
         if sensor.address and data:
             return (
@@ -142,7 +165,7 @@ def _samples(rig: Rig, status: Status) -> list[CaptureFinding]:
     silent_s = _silent_s(imu, status)
     if rig.imu_port and imu and silent_s >= _SILENT_S:
         found.append(CaptureFinding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
-    elif silent_s >= _SILENT_S:
+    elif silent_s >= _SILENT_S and any(sensor.kind != "laser2d" for sensor in rig.sensors):
         found.append(CaptureFinding("warning", "No IMU: walk and turn slowly"))
     if status.serial:
         found.append(CaptureFinding("warning", f"GNSS receiver: {status.serial}"))
@@ -157,7 +180,7 @@ def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
     found = []
     for port, sensors in ports.items():
         there = [one for one in status.senders if one.port == port and one.per_s > 0]
-        there.sort(key=lambda one: -one.data_per_s)
+        there.sort(key=lambda one: -_rate(sensors[0], one))
         known = {s.address for s in sensors if s.address} or {
             one.source for one in there[: len(sensors)]
         }
@@ -166,7 +189,7 @@ def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
         if strangers:
             some = ", ".join(strangers[:3]) + (" …" if len(strangers) > 3 else "")
             found.append(CaptureFinding("info", f"Foreign traffic on port {port} from {some}"))
-        elif mixed:
+        elif mixed and sensors[0].kind == "lidar":
             source = mixed[0].source
             text = f"Packets on port {port} that are not LiDAR data packets, from {source}"
             found.append(CaptureFinding("info", text))
@@ -193,6 +216,8 @@ def _tracking(pose: Pose) -> list[CaptureFinding]:
         found.append(CaptureFinding("error", "Tracking lost: stop, then go back a few steps"))
     elif (pose.turn_rad_s or 0.0) > _TURN_RAD_S:
         found.append(CaptureFinding("warning", "Turn slower"))
+    elif unobserved_text(pose):
+        found.append(CaptureFinding("warning", unobserved_text(pose)))
     elif _degraded(pose):
         found.append(
             CaptureFinding("warning", "Tracking is degraded: walk slower, look at more walls")
@@ -231,6 +256,7 @@ def _degraded(pose: Pose) -> bool:
 
 def _reader(notes: Notes) -> list[CaptureFinding]:
     found = [CaptureFinding("warning", text) for text in notes.warnings[-3:]]
+    found += [CaptureFinding("warning", text) for text in scan_remarks(notes)]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
     if packets > 1000 and missing > _MAX_LOST * packets:

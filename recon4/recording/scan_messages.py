@@ -107,7 +107,9 @@ class ScanCollector:
         self._last_ns = t_ns
         self._t_ns.append(t_ns)
         self._odometry.append(odometry)
-        self._ranges.append(np.where(_returns(scan, ranges), ranges, np.float32(np.nan)))
+        seen = _returns(scan, ranges)
+        self._report.count("scans_without_returns", int(not seen.any()))
+        self._ranges.append(np.where(seen, ranges, np.float32(np.nan)))
         self._report.count("scans")
         if len(self._t_ns) >= _SCANS_AT_ONCE:
             yield from self.flush()

@@ -40,9 +40,11 @@ MAY_IMPORT = {
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.runtime_folder"}
     | {f"recon4.recording.{name}" for name in ("ingest", "open", "report", "sources")}
+    | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
     | {"recon4.recording.formats.pcap", "recon4.recording.samples.clean"}
-    | {"recon4.recording.velodyne.models"},
-    "recon4/live/project_files.py": STAGE | {"recon4.live", "recon4.stages"},
+    | {"recon4.recording.velodyne.models"}
+    | {"recon4.slam2d"},
+    "recon4/live/project_files.py": STAGE | {"recon4.live", "recon4.stages", "recon4.stages_2d"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL | {"recon4.registration", "recon4.store.arrays"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},

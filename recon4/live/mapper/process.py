@@ -129,8 +129,8 @@ class Mapper:
     def _read(self) -> Done:
         out = self._session.folder / "frames"
         shutil.rmtree(out, ignore_errors=True)
-        out.mkdir(parents=True)
         if self._has_frames:
+            out.mkdir(parents=True)
             ingest(
                 Sources((self._session.capture,), self._rig),
                 out,

@@ -33,6 +33,9 @@ from recon4.settings import Settings
 SUMMARY_EVERY_NS = 1_000_000_000
 SHOWN_EVERY_NS = 100_000_000
 """Scans are added to plan and preview at this interval [ns]: a fast laser sees nothing new."""
+REDRAW_EVERY_NS = 10_000_000_000
+"""Plan and preview are made again from corrected keyframes at most this often [ns]; it takes 0.3 ms
+a keyframe."""
 RAYS = 400
 """Returns of a scan that are added."""
 _LASER_VALUE = 128
@@ -72,7 +75,9 @@ class ScanMap:
         self._tracked_ns = 0
         self._restarted = False
         """Whether the part of the map since a restart is not yet joined to the rest."""
-        self._shown_ns = self._summary_ns = self._tried = 0
+        self._shown_ns = self._summary_ns = self._redrawn_ns = self._tried = 0
+        self._stale = False
+        """Whether keyframes moved since plan and preview were made."""
         self._loop = Loop(near=False, closed=False)
         self._gaps = Gaps([], well=None, elsewhere=0)
         self._plan = PlanSchedule()
@@ -230,18 +235,21 @@ class ScanMap:
         return [] if chunk is None else [points_message(chunk)]
 
     def _summary(self, step: ScanStep, T_map_laser: Array) -> list[MapperMessage]:
-        messages = self._close_loop(step, T_map_laser)
+        self._close_loop(T_map_laser)
+        messages: list[MapperMessage] = []
+        if self._stale and step.t_ns - self._redrawn_ns >= REDRAW_EVERY_NS:
+            self._stale, self._redrawn_ns = False, step.t_ns
+            messages = self._redraw()
         self._coverage.refresh()
         self._gaps = gaps_message(self._coverage)
         return [*messages, *self._plan.due(self._coverage, step.t_ns), self._gaps, self._loop]
 
-    def _close_loop(self, step: ScanStep, T_map_laser: Array) -> list[MapperMessage]:
+    def _close_loop(self, T_map_laser: Array) -> None:
         """Recognize a place visited before and correct the drift of the map."""
-        messages: list[MapperMessage] = []
         place = self._places.revisited()
         if len(self._places) > self._tried:  # standing still says nothing new
             self._tried = len(self._places)
-            messages = self._recognize(place)
+            self._recognize(place)
         start_m = np.array(self._path[0][:2])
         self._loop = Loop(
             near=place is not None,
@@ -250,9 +258,8 @@ class ScanMap:
             walked_m=round(self._places.walked_m, 1),
             start_m=round(float(np.linalg.norm(T_map_laser[:2] - start_m)), 1),
         )
-        return messages
 
-    def _recognize(self, place: int | None) -> list[MapperMessage]:
+    def _recognize(self, place: int | None) -> None:
         found = None if place is None else self._places.locate(place)
         last = self._places.newest
         accepted = found is not None and found.accepted
@@ -261,12 +268,12 @@ class ScanMap:
         if accepted and (drifted or not self._restarted):
             self._places.recognized()
         if place is None or found is None or not drifted:
-            return []
+            return
         correction = compose(found.pose, inverse(last))
         self._T_map_odom = compose(correction, self._T_map_odom)
         self._places.correct(place, found.pose)
         self._restarted = False
-        return self._redraw() if self._lines is None else []
+        self._stale = self._lines is None
 
     def _redraw(self) -> list[MapperMessage]:
         """Make plan, preview and path again from the corrected keyframes."""

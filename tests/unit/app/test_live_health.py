@@ -134,7 +134,7 @@ def test_own_rig_files_come_first_and_a_broken_one_has_its_problem(tmp_path):
     assert "VLP-99" in broken.problem
     assert (ours.rig, ours.problem) == (str(tmp_path / "rigs" / "ours.toml"), "")
     assert ours.sensors == ["horizontal", "vertical"]
-    assert [one.rig for one in shipped] == ["4recon", "single-hdl32e", "single-vlp16"]
+    assert [one.rig for one in shipped] == ["4recon", "single-hdl32e", "single-vlp16", "wuerzburg"]
 
 
 def test_marks_are_read_up_to_the_line_that_was_being_written(tmp_path):

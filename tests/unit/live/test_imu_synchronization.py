@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from recon4.live.mapper.follower import frame_end_ns
 from recon4.live.mapper.imu_synchronization import ImuSynchronization
 from recon4.model.multiframe import COLUMNS, Multiframe
 
@@ -21,13 +22,13 @@ def ids(frames):
 
 
 def test_without_an_imu_nothing_waits():
-    synchronization = ImuSynchronization()
+    synchronization = ImuSynchronization(frame_end_ns)
 
     assert [ids(synchronization.push(frame(k))) for k in range(3)] == [[0], [1], [2]]
 
 
 def test_a_frame_waits_for_the_samples_of_its_end():
-    synchronization = ImuSynchronization()
+    synchronization = ImuSynchronization(frame_end_ns)
     synchronization.imu_until(0)
 
     early = ids(synchronization.push(frame(0))), ids(synchronization.imu_until(TENTH_NS // 2))
@@ -37,14 +38,14 @@ def test_a_frame_waits_for_the_samples_of_its_end():
 
 
 def test_samples_that_are_there_already_delay_nothing():
-    synchronization = ImuSynchronization()
+    synchronization = ImuSynchronization(frame_end_ns)
     synchronization.imu_until(3 * TENTH_NS)
 
     assert [ids(synchronization.push(frame(k))) for k in range(4)] == [[0], [1], [2], []]
 
 
 def test_an_imu_that_falls_silent_is_waited_for_three_frames():
-    synchronization = ImuSynchronization()
+    synchronization = ImuSynchronization(frame_end_ns)
     synchronization.imu_until(0)
 
     ready = [ids(synchronization.push(frame(k))) for k in range(6)]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
-from recon4.live.recorder.ports import check_sources, open_ports
+from recon4.live.recorder.ports import check_sources, open_ports, wanted_ports
 from recon4.live.recorder.serial_line import parse_device
 from recon4.model.rig import load_rig, parse_rig
 from recon4.recording.formats.pcap import read_pcap
@@ -88,6 +88,26 @@ def test_a_serial_device_that_is_none_is_refused(text):
     assert parse_device("/dev/ttyUSB0") == ("/dev/ttyUSB0", 9600)
 
 
-def test_a_rig_with_a_profiler_is_refused_with_what_to_do():
-    with pytest.raises(ConfigError, match=r"laser2d \(kind laser2d\), profiler.*in a bag"):
-        check_sources(load_rig("wuerzburg"))
+LASER, PROFILER, LIDAR = (
+    f"""
+    [[sensor]]
+    name = "{kind}"
+    kind = "{kind}"
+    """
+    for kind in ("laser2d", "profiler", "lidar")
+)
+
+
+@pytest.mark.parametrize("text", [LASER, LASER + PROFILER])
+def test_rigs_with_a_2d_laser_are_accepted(text):
+    check_sources(parse_rig(text, where="test"))
+
+
+@pytest.mark.parametrize("text", [PROFILER, LASER + LIDAR, PROFILER + LIDAR])
+def test_other_mixtures_are_refused_with_what_to_do(text):
+    with pytest.raises(ConfigError, match=r"got .* \(kind .*in a bag"):
+        check_sources(parse_rig(text, where="test"))
+
+
+def test_scans_have_ports_of_their_own_by_default():
+    assert set(wanted_ports(load_rig("wuerzburg"))) == {8308, 8309, 8310, 8311, 8312}

@@ -1,0 +1,49 @@
+"""Warnings about the scans of a 2-D laser and the lines of a profiler. No I/O."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from recon4.live.protocol import Notes, Pose
+
+_LEAST = 20
+"""Scans of the last seconds from which parts of them are told."""
+_PART = 0.02
+_BAD_SCANS = (
+    ("scans_duplicate", "arrived twice: the copies are left out"),
+    ("scans_out_of_order", "arrived out of order: left out"),
+    ("scans_of_another_layout", "have other angles than the first ones: left out"),
+)
+_UNOBSERVED = {
+    "along": "Nothing holds the map along this corridor: look at a corner or an open door",
+    "across": "Nothing holds the map across your way: keep near a wall",
+}
+
+
+def unobserved_text(pose: Pose) -> str:
+    """The direction that the 2-D laser does not observe, in words; empty = it observes all."""
+    return _UNOBSERVED.get(pose.unobserved, "")
+
+
+def scan_remarks(notes: Notes) -> Iterator[str]:
+    """What was wrong with the scans of the last seconds."""
+    recent = notes.recent
+    for name, where in (("scans", "scans"), ("lines", "line scans")):
+        damaged, whole = recent.get("scans_damaged", 0), recent.get(name, 0)
+        if damaged and not whole and name == "scans":
+            yield f"Nothing of what the 2-D laser sends can be read: {damaged} datagrams"
+        elif damaged > _PART * whole >= _PART * _LEAST:
+            yield f"{damaged} datagrams with {where} cannot be read"
+            break
+    total = recent.get("scans", 0) + sum(recent.get(name, 0) for name, _ in _BAD_SCANS)
+    for name, what in _BAD_SCANS:
+        count = recent.get(name, 0)
+        if total >= _LEAST and count > _PART * total:
+            yield f"{100 * count / total:.0f} % of the scans {what}"
+    blind = recent.get("scans_without_returns", 0)
+    if blind >= _LEAST and 2 * blind > recent.get("scans", 0):
+        yield "The 2-D laser sees nothing: is it covered, or is everything beyond its range?"
+    if recent.get("lines_without_angle", 0) >= _LEAST:
+        yield "The angles of the profiler's head are missing: its lines cannot be placed"
+    if recent.get("clock_jumps", 0):
+        yield "A clock of the scanners jumped: its scans are timed by their arrival"

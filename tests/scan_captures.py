@@ -1,0 +1,34 @@
+"""Capture files with datagrams of scans, for tests."""
+
+from pathlib import Path
+
+from recon4.live.recorder.capture_file import _FILE_HEADER, Datagram, pcap_record
+from recon4.model.rig import LASER2D_PORT
+from recon4.recording.scan_datagrams import encode_scans_row
+from recon4.recording.scan_replay import datagrams_of_scans
+
+DELAY_NS = 3_000_000
+"""Time from the stamp of a scan to its arrival."""
+
+
+def write_capture(path, datagrams):
+    """Write datagrams: (arrival [ns], port, payload) of each."""
+    with Path(path).open("wb") as file:
+        file.write(_FILE_HEADER)
+        for t_ns, port, payload in datagrams:
+            file.write(pcap_record(Datagram(t_ns, ("10.0.0.9", 5000), port, payload)))
+
+
+def scan_datagrams(scans, port=LASER2D_PORT):
+    """Scans as they arrive."""
+    return [
+        (int(t_ns) + DELAY_NS, port, encode_scans_row(scans, k))
+        for k, t_ns in enumerate(scans.t_ns)
+    ]
+
+
+def captured(recording, path, rig=None):
+    """Write a recording of scans as the capture that its replay gives."""
+    sent = datagrams_of_scans(recording, rig)
+    write_capture(path, ((one.t_ns + DELAY_NS, one.port, one.payload) for one in sent))
+    return path
