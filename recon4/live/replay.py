@@ -72,9 +72,8 @@ def replay(
     """Send a recording at the recorded speed, as the datagrams of its sensors.
 
     Args:
-        recording: A pcap file, or a folder with pcap files (``recon4 simulate``, a live project's
-            ``recordings``), with the CSV files beside it; or scans of a 2-D laser or profiler in a
-            bag, CARMEN log or table.
+        recording: A pcap file or a folder with pcap files, and the CSV files beside it; or scans of
+            a 2-D laser or profiler in a bag, CARMEN log or table.
         progress: Receives the seconds of the recording.
         target: Address to send to.
         speed: Speed factor; the recorder must be started with the same one.

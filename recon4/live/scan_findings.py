@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from recon4.live.protocol import Notes, Pose
 
 _LEAST = 20
-"""Scans of the last seconds from which parts of them are told."""
+"""Scans of the last seconds from which parts of them are reported."""
 _PART = 0.02
 _BAD_SCANS = (
     ("scans_duplicate", "arrived twice: the copies are left out"),

@@ -232,3 +232,87 @@ def test_the_most_urgent_comes_first():
     found = found_in(paused, problem="gone", pose=pose(remark="x"))
 
     assert [level for level, _ in found] == ["error", "error", "warning", "info"]
+
+
+# -- a 2-D laser and a profiler
+
+BACKPACK = load_rig("wuerzburg")
+SCANS, LINES = sender(8311, 25.0, data_per_s=0.0), sender(8312, 300.0, data_per_s=0.0)
+
+
+def test_scans_are_no_data_packets_and_still_counted():
+    healthy = status(SCANS, LINES, IMU)
+
+    assert found_in(healthy, rig=BACKPACK, pose=pose()) == []
+    assert rates(BACKPACK, healthy)["laser2d"] == 25.0
+    assert rates(BACKPACK, healthy)["profiler"] == 300.0
+
+
+@pytest.mark.parametrize(
+    ("senders", "text"),
+    [
+        ((sender(8311, 0.0, silent_s=5.0), LINES, IMU), "2-D laser silent for 5 s"),
+        ((SCANS, sender(8312, 0.0, silent_s=7.0), IMU), "Profiler silent for 7 s"),
+        ((IMU,), "No scanner sends anything for 60 s: check power and cables"),
+    ],
+)
+def test_a_silent_scanner_is_named_by_its_kind(senders, text):
+    assert ("error", text) in found_in(status(*senders), rig=BACKPACK)
+
+
+def test_a_scanner_at_another_address_is_said():
+    rig = parse_rig(
+        '[[sensor]]\nname = "laser2d"\nkind = "laser2d"\naddress = "10.0.0.9"', where="test"
+    )
+
+    ((level, text), *_) = found_in(status(SCANS), rig=rig)
+
+    assert level == "error"
+    assert "laser2d is expected from 10.0.0.9, but datagrams for port 8311 come from 10.0" in text
+
+
+def test_a_2d_laser_alone_needs_no_imu():
+    rig = parse_rig('[[sensor]]\nname = "laser2d"\nkind = "laser2d"', where="test")
+
+    assert found_in(status(SCANS), rig=rig) == []
+
+
+@pytest.mark.parametrize(
+    ("unobserved", "text"),
+    [
+        ("along", "Nothing holds the map along this corridor: look at a corner or an open door"),
+        ("across", "Nothing holds the map across your way: keep near a wall"),
+    ],
+)
+def test_a_direction_that_is_not_observed_is_said_in_words(unobserved, text):
+    seen = pose(unobserved=unobserved, weak_sd_m=4.0)
+
+    assert found_in(status(SCANS, LINES, IMU), rig=BACKPACK, pose=seen) == [("warning", text)]
+
+
+@pytest.mark.parametrize(
+    ("recent", "text"),
+    [
+        ({"scans": 200, "scans_duplicate": 50}, "20 % of the scans arrived twice: the copies are"),
+        ({"scans": 100, "scans_out_of_order": 100}, "50 % of the scans arrived out of order"),
+        ({"scans": 50, "scans_of_another_layout": 50}, "50 % of the scans have other angles"),
+        ({"scans": 200, "scans_damaged": 30}, "30 datagrams with scans cannot be read"),
+        ({"scans_damaged": 30}, "Nothing of what the 2-D laser sends can be read: 30 datagrams"),
+        ({"scans": 100, "scans_without_returns": 100}, "The 2-D laser sees nothing: is it covered"),
+        ({"lines_without_angle": 300}, "The angles of the profiler's head are missing"),
+        ({"scans": 100, "clock_jumps": 1}, "A clock of the scanners jumped"),
+    ],
+)
+def test_what_is_wrong_with_scans_is_said(recent, text):
+    ((level, found),) = found_in(
+        status(SCANS, LINES, IMU), rig=BACKPACK, notes=notes(recent=recent)
+    )
+
+    assert level == "warning"
+    assert found.startswith(text)
+
+
+def test_single_bad_scans_are_not_worth_a_warning():
+    recent = {"scans": 250, "scans_duplicate": 1, "scans_without_returns": 3, "scans_damaged": 1}
+
+    assert found_in(status(SCANS, LINES, IMU), rig=BACKPACK, notes=notes(recent=recent)) == []
