@@ -1,4 +1,4 @@
-"""Health of each LiDAR: packet rate, packet loss and clock. No I/O."""
+"""Health of each LiDAR and scanner: rate, packet loss and clock. No I/O."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from recon4.live.findings import rates
 from recon4.live.mapper.notes import RECENT_S
 from recon4.live.newest import Newest
 from recon4.live.protocol import Notes
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, Sensor
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
 
 
 @dataclass(frozen=True, slots=True)
 class LidarHealth:
-    """Health of one LiDAR."""
+    """Health of one LiDAR, 2-D laser or profiler."""
 
     name: str
     per_s: float
-    """Data packets per second."""
+    """Data packets or datagrams per second."""
     lost: float | None
     """Packet loss ratio of the last `RECENT_S`, 0 to 1; None = unknown."""
     clock: str
@@ -28,23 +28,26 @@ class LidarHealth:
 
 
 def lidars(rig: Rig, newest: Newest) -> list[LidarHealth]:
-    """Health of each LiDAR of a rig.
+    """Health of each sensor of a rig.
 
     Args:
-        rig: The LiDARs that should send.
+        rig: The sensors that should send.
         newest: Newest messages of recorder and mapper.
     """
     if newest.status is None:
         return []
     per_s = rates(rig, newest.status)
-    return [_health(sensor.name, per_s[sensor.name], newest.notes) for sensor in rig.sensors]
+    return [_health(sensor, per_s[sensor.name], newest.notes) for sensor in rig.sensors]
 
 
-def _health(name: str, per_s: float, notes: Notes | None) -> LidarHealth:
+def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
+    name = sensor.name
     if notes is None or per_s <= 0.0:
         return LidarHealth(name, per_s, None, "")
-    missing = notes.recent.get(f"packets_missing_{name}", 0)
     mine = [text for text in notes.warnings if text.startswith(f"{name}: ")]
+    if sensor.kind != "lidar":  # its datagrams have no numbers
+        return LidarHealth(name, per_s, None, _clock(mine))
+    missing = notes.recent.get(f"packets_missing_{name}", 0)
     return LidarHealth(name, per_s, round(missing / (missing + RECENT_S * per_s), 3), _clock(mine))
 
 

@@ -59,6 +59,8 @@ def rates(rig: Rig, status: Status) -> dict[str, float]:
     senders = status.senders
     found = {s.name: sum(_rate(s, one) for one in _mine(s, senders)) for s in rig.sensors}
     for name, port in (("IMU", rig.imu_port), ("GNSS", rig.gnss_port)):
+        if name == "IMU" and not (_needs_imu(rig) or any(one.port == port for one in senders)):
+            continue
         found[name] = sum(one.per_s for one in senders if port and one.port == port)
     return found
 
@@ -165,11 +167,16 @@ def _samples(rig: Rig, status: Status) -> list[CaptureFinding]:
     silent_s = _silent_s(imu, status)
     if rig.imu_port and imu and silent_s >= _SILENT_S:
         found.append(CaptureFinding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
-    elif silent_s >= _SILENT_S and any(sensor.kind != "laser2d" for sensor in rig.sensors):
+    elif silent_s >= _SILENT_S and _needs_imu(rig):
         found.append(CaptureFinding("warning", "No IMU: walk and turn slowly"))
     if status.serial:
         found.append(CaptureFinding("warning", f"GNSS receiver: {status.serial}"))
     return found
+
+
+def _needs_imu(rig: Rig) -> bool:
+    """A 2-D laser alone may stand on a robot."""
+    return any(sensor.kind != "laser2d" for sensor in rig.sensors)
 
 
 def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:

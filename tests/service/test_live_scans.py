@@ -95,17 +95,17 @@ def test_a_2d_laser_is_mapped_on_the_phone_and_processed_as_its_log(server, log,
 
 
 def test_bad_scans_are_said_on_the_phone_and_recorded(server, log, tmp_path):
-    """Every fifth scan comes twice, every seventh is no JSON, later the clock is set back."""
+    """Every fifth scan comes twice, every seventh is no JSON, later the clock is set."""
     start(server, str(tmp_path / "projects" / "rigs" / "robot.toml"))
     sent, seen = [], set()
 
     def alter(shipment):
         sent.append(shipment)
         k = len(sent)
-        if k > 50:  # an hour back
-            t_ns = int(shipment.payload[9:28])
-            earlier = b'{"t_ns": %d' % (t_ns - 3_600_000_000_000) + shipment.payload[28:]
-            shipment = replace(shipment, payload=earlier)
+        if k > 50:  # an hour ahead
+            stamp, rest = shipment.payload.split(b",", 1)
+            t_ns = int(stamp.removeprefix(b'{"t_ns": ')) + 3_600_000_000_000
+            shipment = replace(shipment, payload=b'{"t_ns": %d,' % t_ns + rest)
         yield shipment
         if k % 5 == 0:
             yield shipment

@@ -242,7 +242,7 @@ function help() {
   const points = `${scene.total.toLocaleString("en")} points on this phone.`;
   byId("about").textContent = me ? who + points : "";
   byId("name-it").hidden = !me?.may.includes("capture") || !isCapturing(scene.state);
-  byId("dance-it").hidden = !isCapturing(scene.state);
+  byId("dance-it").hidden = !isCapturing(scene.state) || !scene.newest.motion;
   byId("more", HTMLDialogElement).showModal();
 }
 
