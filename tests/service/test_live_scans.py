@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import threading
 from contextlib import contextmanager
 from dataclasses import replace
@@ -121,9 +122,9 @@ def test_bad_scans_are_said_on_the_phone_and_recorded(server, log, tmp_path):
         asyncio.run(phone.follow(server, heard))
         asyncio.run(phone.follow(server, lambda p, m: any("cannot be read" in t for t in texts(m))))
     stopped(server, phone)
-    status = phone.newest["status"]
+    outcome = json.loads((tmp_path / "projects/walk/live/outcome.json").read_text())
 
-    assert status["file"]["datagrams"] == len(sent) + len(sent) // 5 + len(sent) // 7
+    assert outcome["file"]["datagrams"] == len(sent) + len(sent) // 5 + len(sent) // 7
     assert phone.newest["notes"]["counts"]["clock_jumps"] == 1
     assert phone.newest["notes"]["counts"]["scans"] == len(sent)
     assert phone.newest["pose"]["lost"] is False

@@ -141,6 +141,7 @@ class Mapper:
         else:
             self._read_scans()
         self._publish(self._follower.flush())
+        self._report_notes(every_s=0.0)
         if self._aborted:
             return Done(frames=0, problem="the mapper was stopped by a signal")
         began_s = time.monotonic()
@@ -190,8 +191,8 @@ class Mapper:
     def _now_ns(self) -> int:
         return stretched(time.time_ns(), self._session.speed)
 
-    def _report_notes(self) -> None:
-        if time.monotonic() - self._notes_s < 1.0:
+    def _report_notes(self, every_s: float = 1.0) -> None:
+        if time.monotonic() - self._notes_s < every_s:
             return
         self._notes_s = time.monotonic()
         self._newest_notes = self._notes.message(self._notes_s)
