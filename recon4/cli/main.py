@@ -122,12 +122,16 @@ def process(  # noqa: PLR0913 - an argument for each option
     if compiled:  # else this run compiles them, for every later process
         confine_command(write=[folder])
 
+    from recon4.model.events import Warned
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
+    from recon4.recording.nearby_samples import unread_samples
     from recon4.terminal import describe_summary, watcher
 
     with watcher() as progress:
         sources = Sources(tuple(recordings), load_rig(rig) if rig else None, imu, gnss)
+        for text in unread_samples(sources):
+            progress.event(Warned(text=text))
         summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
     if not compiled:
         mark_compiled()

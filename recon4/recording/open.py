@@ -282,21 +282,42 @@ def _folder_kind(path: Path) -> RecordingKind:
     names = sorted(child.name for child in path.iterdir())
     if not names:
         raise EmptyRecording(f"{path.name}: the folder is empty")
-    suffixes = {Path(name).suffix.lower() for name in names}
-    if "metadata.yaml" in names or suffixes & set(STORAGE_SUFFIXES):
-        return RecordingKind.BAG2
-    if suffixes & set(CLOUD_SUFFIXES):
-        return RecordingKind.FRAMES
-    if ".bag" in suffixes:
-        return RecordingKind.BAG1
-    if (lines := table_in(path, "lines")) and is_line_table(lines):
-        return RecordingKind.LINE_TABLES
-    if any(is_pcap(child) for child in path.iterdir() if child.is_file()):
-        return RecordingKind.PCAP
+    kinds = _kinds_in(path, names)
+    if len(kinds) > 1:
+        held = ", ".join(f"{name} ({kind})" for kind, name in kinds.items())
+        raise UnknownFormat(
+            f"{path.name}: holds recordings of {len(kinds)} kinds: {held}; give one"
+        )
+    if kinds:
+        return next(iter(kinds))
     raise UnknownFormat(
         f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
         f"{' …' if len(names) > 8 else ''}; {_known()}"
     )
+
+
+def _kinds_in(path: Path, names: Sequence[str]) -> dict[RecordingKind, str]:
+    """The kinds of recordings in a folder, each with the first file that is of it."""
+    suffix_of = {name: Path(name).suffix.lower() for name in names}
+    wanted = {
+        RecordingKind.BAG2: set(STORAGE_SUFFIXES),
+        RecordingKind.FRAMES: set(CLOUD_SUFFIXES),
+        RecordingKind.BAG1: {".bag"},
+    }
+    kinds = {
+        kind: next(name for name in names if suffix_of[name] in suffixes)
+        for kind, suffixes in wanted.items()
+        if suffixes & set(suffix_of.values())
+    }
+    if "metadata.yaml" in names:
+        kinds.setdefault(RecordingKind.BAG2, "metadata.yaml")
+    if (lines := table_in(path, "lines")) and is_line_table(lines):
+        kinds[RecordingKind.LINE_TABLES] = lines.name
+    known = set().union(*wanted.values())
+    others = (path / name for name in names if suffix_of[name] not in known)
+    if capture := next((file for file in others if file.is_file() and is_pcap(file)), None):
+        kinds[RecordingKind.PCAP] = capture.name
+    return kinds
 
 
 def _known() -> str:

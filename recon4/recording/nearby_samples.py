@@ -1,0 +1,51 @@
+"""Finds samples that lie beside a recording but are not read."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import islice
+from pathlib import Path
+
+from recon4.errors import RecordingError
+from recon4.recording.open import RecordingKind, recognize
+from recon4.recording.sources import Sources
+
+_MOST_FILES = 50
+"""CSV files that are looked at; a folder with more is no folder of a recording."""
+
+
+def unread_samples(sources: Sources) -> list[str]:
+    """A sentence for IMU and for GNSS samples beside the recordings that are not among the sources.
+
+    Nobody named these files: what cannot be read is none of them.
+    """
+    wanted = {RecordingKind.IMU_CSV: ("--imu", sources.imu)}
+    wanted |= {RecordingKind.GNSS_CSV: ("--gnss", sources.gnss)}
+    files = {
+        kind: _nearby(sources.recordings, kind) for kind, (_, given) in wanted.items() if not given
+    }
+    return [
+        f"{file} lies beside the recording and is not read: give it with {wanted[kind][0]} {file}"
+        for kind, file in files.items()
+        if file and file not in sources.recordings
+    ]
+
+
+def _nearby(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:
+    """The first CSV file of a kind in the folders of the recordings."""
+    folders = {path if path.is_dir() else path.parent for path in recordings}
+    for folder in sorted(folders):
+        try:
+            for file in islice(sorted(folder.glob("*.csv")), _MOST_FILES):
+                if _is_of(file, kind):
+                    return file
+        except OSError:
+            continue
+    return None
+
+
+def _is_of(file: Path, kind: RecordingKind) -> bool:
+    try:
+        return recognize(file) is kind
+    except RecordingError:
+        return False
