@@ -3,7 +3,8 @@
 The ten sums of a cube (count, first and second moments) can be added and subtracted with
 sufficient accuracy, so a multiframe can be removed from a map, for good or for a while.
 Cubes of a level are twice as large as those of the one before: two of them make one along an axis.
-The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 12), ``fits`` (C, 9), ``state`` (C,).
+A cube knows from where it was seen: a thin wall seen from the next room is another surface.
+The tables are plain arrays: ``keys`` (C,), ``sums`` (C, 15), ``fits`` (C, 10), ``state`` (C,).
 """
 
 from __future__ import annotations
@@ -18,9 +19,13 @@ EMPTY = np.int64(-1)
 DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
 """Rows of the array of criteria that a cube's points have to meet to count as a plane."""
-COLUMNS = 12
-"""Columns of ``sums``: ten moments, the number of batches and the number of the newest batch."""
-BATCHES, _NEWEST = 10, 11
+COLUMNS = 15
+"""Columns of ``sums``: ten moments, the number of batches, the number of the newest batch and the
+sum of the places from which the points were seen (NaN = unknown)."""
+BATCHES, _NEWEST, _VIEW = 10, 11, 12
+FIT_COLUMNS = 10
+_MIN_SIDE_M = 0.2
+"""Nearer to a plane than this, the side from which it is seen is not certain [m]."""
 _OFFSET = np.int64(1 << 19)
 _MASK = np.int64((1 << 20) - 1)
 
@@ -60,10 +65,12 @@ def add_points(
     used: int,
     sign: float,
     batch: int,
+    view: NDArray[np.float64],
 ) -> tuple[int, int]:
     """Add (``sign`` 1) or remove (-1) points, (N, 3), beginning with row ``first``.
 
-    Points of one ``batch`` were seen from the same place; a cube counts its batches.
+    Points of one ``batch`` were seen from the same place ``view`` (3,), NaN = unknown; a cube
+    counts its batches.
 
     Stops early if the tables are half full. Returns the row to continue with and the number of
     cubes used.
@@ -94,6 +101,8 @@ def add_points(
             y = p[k, 1] - (jy + 0.5) * sizes[level]
             z = p[k, 2] - (jz + 0.5) * sizes[level]
             add_point(sums[row], sign, x, y, z)
+            for axis in range(3):
+                sums[row, _VIEW + axis] += sign * view[axis]
     return len(p), used
 
 
@@ -188,7 +197,9 @@ def _fit(
     f: NDArray[np.float64],
     work: NDArray[np.float64],
 ) -> np.uint8:
-    """Fit the plane of one cube into ``f``: center, normal, variances across and along."""
+    """Fit the plane of one cube into ``f``: center, normal, variances across and along, count and
+    mean distance of the views, negative behind the plane.
+    """
     n = s[0]
     if n < criteria[MIN_POINTS] or s[BATCHES] < criteria[MIN_BATCHES]:
         return NO_PLANE
@@ -216,6 +227,9 @@ def _fit(
     f[2] = (iz + 0.5) * size + mz
     f[3], f[4], f[5] = vecs[0, 0], vecs[1, 0], vecs[2, 0]
     f[6], f[7], f[8] = across, along, n
+    f[9] = 0.0
+    for axis in range(3):
+        f[9] += f[3 + axis] * (s[_VIEW + axis] / n - f[axis])
     return PLANE
 
 
@@ -315,7 +329,8 @@ def accumulate(
 
     A correction is a rotation about ``center`` and a shift, one at the start and one at the end of
     the frame. A point at ``fraction`` s of the frame moves by (1 - s) times the first and s times
-    the second. Cauchy weights on the distance, scaled by the variances of point and plane.
+    the second. Cauchy weights on the distance, scaled by the variances of point and plane. Points
+    seen from ``center`` do not match a plane that was seen from its other side.
 
     Args:
         q: Points in the map frame [m], (N, 3).
@@ -344,6 +359,9 @@ def accumulate(
         dx, dy, dz = q[k, 0] - f[0], q[k, 1] - f[1], q[k, 2] - f[2]
         r = f[3] * dx + f[4] * dy + f[5] * dz
         if abs(r) > gate:
+            continue
+        side = f[3] * (center[0] - f[0]) + f[4] * (center[1] - f[1]) + f[5] * (center[2] - f[2])
+        if side * f[9] < 0.0 and min(abs(side), abs(f[9])) > _MIN_SIDE_M:
             continue
         inplane_sq = dx * dx + dy * dy + dz * dz - r * r
         var = point_var + f[6] / f[8] * (1.0 + inplane_sq / f[7])

@@ -6,11 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, proper, so3_exp, tangent_size_m
+from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log, tangent_size_m
 from recon4.kernels.imu import place_points
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import observable_directions
-from recon4.registration.motion import Prediction
+from recon4.registration.motion import Prediction, middle_of
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
@@ -20,6 +20,8 @@ from recon4.settings import OdometrySettings
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
 """Largest distance of a point from its plane in each round [m]; the last one is for all further."""
 
+_EXPECTED_VARIANCE = 1e-6
+"""Of an expected pose, which only has to be near [m², rad²]."""
 _STATIONARY_SD_M_S = 0.02
 """Standard deviation of the velocity of a person who stands [m/s]."""
 
@@ -50,6 +52,8 @@ class FrameFitter:
     converged_step_m: float
     coarse: int
     """First level of cubes, 0 = the finest. Larger cubes allow a larger prediction error."""
+    rounds: int
+    """Upper bound on match-and-solve rounds."""
     aiding: GnssAiding | None = None
 
     def fit(
@@ -74,10 +78,10 @@ class FrameFitter:
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
         frame_fraction = p_s / prediction.t_s[-1]
-        delta: Array = np.zeros(END.stop)
+        delta = _first_correction(prediction)
         T_dense = _correct(prediction, delta, center)
         converged, rounds = False, 0
-        for rounds in range(1, self.settings.rounds + 1):
+        for rounds in range(1, self.rounds + 1):
             p_odom = place_points(prediction.t_s, T_dense.R, T_dense.t, p_s, p_body)
             match = target.match(
                 p_odom, frame_fraction, center=center,
@@ -136,6 +140,28 @@ def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
     predicted = prediction.T_odom_body
     arm = np.einsum("nij,nj->ni", R, predicted.t - center)
     return SE3(proper(R @ predicted.R), center + arm + shift)
+
+
+def pose_correction(predicted: SE3, T_odom_body: SE3, center: Array) -> Array:
+    """Rotation about a center and shift that correct a predicted pose to another, (6,)."""
+    omega = so3_log(T_odom_body.R @ predicted.R.T)
+    arm = so3_exp(omega) @ (predicted.t - center)
+    return np.concatenate([omega, T_odom_body.t - center - arm])
+
+
+def _first_correction(prediction: Prediction) -> Array:
+    """Most probable correction of a prediction that passes the pose expected at the middle, (24,).
+
+    It chooses the first planes only: the expected pose has no weight.
+    """
+    if prediction.expected is None:
+        return np.zeros(END.stop)
+    middle = middle_of(prediction.t_s, prediction.T_odom_body)
+    z = pose_correction(middle, prediction.expected, prediction.T_odom_body.t[-1])
+    H = np.zeros((6, END.stop))
+    H[:, START] = H[:, END_POSE] = 0.5 * np.eye(6)
+    cross = prediction.prior @ H.T
+    return np.asarray(cross @ np.linalg.solve(H @ cross + _EXPECTED_VARIANCE * np.eye(6), z))
 
 
 def _largest_move_m(step: Array) -> float:

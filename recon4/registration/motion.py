@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log
+from recon4.geometry.se3 import SE3, Array, interpolate, proper, so3_exp, so3_log
 from recon4.kernels.imu import SIZE, propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
@@ -92,6 +92,8 @@ class Prediction:
     end: MotionState
     prior: Array
     """Covariance of the pose error at the start (6) and the state's error at the end (28)."""
+    expected: SE3 | None = None
+    """Pose at the middle of the frame by registration to the last scan; None = not known."""
 
 
 class ImuMotion:
@@ -261,6 +263,13 @@ def _start_sd(first: Sequence[float]) -> Array:
     sd = np.full(SIZE, 1e-9)
     sd[: 3 * len(first)] = np.repeat(first, 3)
     return sd
+
+
+def middle_of(t_s: Array, T_a_b: SE3) -> SE3:
+    """Pose halfway in time between the first and the last of dense poses."""
+    middle = (t_s[0] + t_s[-1]) / 2
+    k = int(np.searchsorted(t_s, middle)) - 1
+    return interpolate(T_a_b[k], T_a_b[k + 1], (middle - t_s[k]) / (t_s[k + 1] - t_s[k]))
 
 
 def imu_in_body(imu: ImuSamples, rig: Rig) -> tuple[Array, Array]:

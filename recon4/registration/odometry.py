@@ -8,7 +8,7 @@ from functools import cache
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, interpolate, so3_exp
+from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
@@ -19,7 +19,14 @@ from recon4.registration.degeneracy import of_rigid_pose
 from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.lost import FreshChain, LostLimits
-from recon4.registration.motion import FreeMotion, ImuMotion, Motion, MotionState, Prediction
+from recon4.registration.motion import (
+    FreeMotion,
+    ImuMotion,
+    Motion,
+    MotionState,
+    Prediction,
+    middle_of,
+)
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.point_map import PointMap, WeakDirections, frame_points
 from recon4.registration.scan_chain import ScanChain, body_points
@@ -106,12 +113,14 @@ class Odometry:
         self._fitter = FrameFitter(
             settings.odometry,
             settings.registration.converged_step_m,
-            coarse=0 if self._chain is None else settings.planes.levels - 1,
+            coarse=0 if with_imu else settings.planes.levels - 1,
+            rounds=settings.odometry.rounds if with_imu else settings.odometry.rounds_without_imu,
             aiding=aiding,
         )
         self._map = PlaneMap(settings.planes)
         self._points = PointMap(settings.planes)
-        self._keyframes: deque[Array] = deque()
+        self._keyframes: deque[tuple[Array, Array]] = deque()
+        """Ends of the segments of the last keyframes (N, 3), and from where they were seen (3,)."""
         self._last_keyframe = SE3.identity()
         self._lost_frames = 0
         self._limits = LostLimits(settings.odometry)
@@ -143,8 +152,9 @@ class Odometry:
         if self._is_interrupted(frame):
             self._begin_piece(frame.t_ns)
         first = not self._keyframes
-        found = self._place(frame)
-        prediction = self._predict(frame)
+        expected = self._place(frame)
+        found = self._chain is None or first or expected is not None
+        prediction = replace(self._predict(frame), expected=expected)
         points = cache(lambda: frame_points(frame, self._rig))
         weak = WeakDirections(
             self._points,
@@ -254,24 +264,22 @@ class Odometry:
                 self._clear_map()
             self._tracked_frames, self._resets = 0, self._resets + 1
 
-    def _place(self, frame: Multiframe) -> bool:
-        """Without an IMU: predict the frame by registration to the last good scan.
-
-        Returns:
-            Whether the registration succeeded.
-        """
+    def _place(self, frame: Multiframe) -> SE3 | None:
+        """Without an IMU: pose at the middle of a frame by registration to the last good scan."""
         if self._chain is None:
-            return True
+            return None
         found = self._chain.locate(body_points(frame, self._rig), frame.t_mid_ns)
         if self._state is None:
-            return True
+            return None
         if found is None:
             self._state = self._free.at_rest(self._state, frame.t_ns)
-            return False
+            return None
         before, before_ns = self._chain.last
-        T = SE3.stack([before, before @ found])
-        self._state = self._free.between(T, (before_ns, frame.t_mid_ns), frame.t_ns)
-        return True
+        middle = before @ found
+        if self._tracked_frames < 2 or self._lost_frames:  # velocity and turn rate are not known
+            T = SE3.stack([before, middle])
+            self._state = self._free.between(T, (before_ns, frame.t_mid_ns), frame.t_ns)
+        return middle
 
     def _predict(self, frame: Multiframe) -> Prediction:
         start_ns, end_ns = frame.t_ns, frame.t_ns + frame.duration_ns
@@ -333,10 +341,11 @@ class Odometry:
                 place_points(t_s, T_dense.R, T_dense.t, segments.b_s, segments.b_body),
             ]
         )
-        self._map.add(ends_odom)
-        self._keyframes.append(ends_odom)
+        seen_from = T_dense.t[-1].copy()
+        self._map.add(ends_odom, seen_from)
+        self._keyframes.append((ends_odom, seen_from))
         if len(self._keyframes) > self._settings.odometry.history:
-            self._map.remove(self._keyframes.popleft())
+            self._map.remove(*self._keyframes.popleft())
 
 
 def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) -> MotionState:
@@ -349,14 +358,11 @@ def _step(
     frame: Multiframe, prediction: Prediction, fit: FrameFit, *, T_dense: SE3, lost: bool
 ) -> OdometryStep:
     end = prediction.T_odom_body[-1]
-    middle = prediction.t_s[-1] / 2
-    k = int(np.searchsorted(prediction.t_s, middle)) - 1
-    s = (middle - prediction.t_s[k]) / (prediction.t_s[k + 1] - prediction.t_s[k])
     t_ns = frame.t_ns + np.round(prediction.t_s * 1e9).astype(np.int64)
     return OdometryStep(
         frame.frame_id,
         frame.t_mid_ns,
-        interpolate(T_dense[k], T_dense[k + 1], s),
+        middle_of(prediction.t_s, T_dense),
         t_ns,
         T_dense,
         fit.match.mean_m,

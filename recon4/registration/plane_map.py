@@ -98,14 +98,17 @@ class PlaneMap:
         """Number of sizes of cubes."""
         return self._settings.levels
 
-    def add(self, p_map: Array) -> None:
-        """Add points [m], (N, 3), that were seen from one place."""
-        self._batch += 1
-        self._sum(p_map, 1.0)
+    def add(self, p_map: Array, seen_from: Array | None = None) -> None:
+        """Add points [m], (N, 3), that were seen from one place, (3,), None = not known.
 
-    def remove(self, p_map: Array) -> None:
+        A surface whose place is known is not matched by points that see it from its other side.
+        """
+        self._batch += 1
+        self._sum(p_map, 1.0, seen_from)
+
+    def remove(self, p_map: Array, seen_from: Array | None = None) -> None:
         """Remove points that were added before, with exactly the same coordinates."""
-        self._sum(p_map, -1.0)
+        self._sum(p_map, -1.0, seen_from)
 
     def clear(self) -> None:
         """Remove all points; the memory stays allocated."""
@@ -126,12 +129,12 @@ class PlaneMap:
             self._keys, self._sums, self._fits, self._state, self._sizes, self._criteria,
         )  # fmt: skip
 
-    def _sum(self, p_map: Array, sign: float) -> None:
-        row = 0
+    def _sum(self, p_map: Array, sign: float, seen_from: Array | None) -> None:
+        row, view = 0, np.full(3, np.nan) if seen_from is None else seen_from
         while True:
             row, self._used = planes.add_points(
                 self._keys, self._sums, self._state, self._sizes, p_map, row, self._used, sign,
-                self._batch,
+                self._batch, view,
             )  # fmt: skip
             if row == len(p_map):
                 return
@@ -145,7 +148,7 @@ class PlaneMap:
         self._make_room_for_fits()
 
     def _make_room_for_fits(self) -> None:
-        self._fits = np.empty((len(self._keys), 9))
+        self._fits = np.empty((len(self._keys), planes.FIT_COLUMNS))
         self._state = np.zeros(len(self._keys), np.uint8)
 
     def normals(self, p_map: Array, gate_m: float) -> Array:

@@ -97,7 +97,7 @@ class PointMap:
 
     def add(self, points: FramePoints, t_s: Array, T_odom_body: SE3) -> None:
         """Add the points of a keyframe; its poses ``T_odom_body`` (K,) are at ``t_s`` (K,)."""
-        self._planes.add(points.placed(t_s, T_odom_body))
+        self._planes.add(points.placed(t_s, T_odom_body), T_odom_body.t[-1].copy())
         self._keyframes += 1
         if self._keyframes % _FORGET_EVERY == 0:
             self._forget_far(T_odom_body.t[-1])

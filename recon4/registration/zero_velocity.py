@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
-from recon4.registration.frame_fit import FrameFit
+from recon4.geometry.se3 import SE3, Array
+from recon4.registration.frame_fit import FrameFit, pose_correction
 from recon4.registration.motion import Prediction
-from recon4.registration.state import END_MOTION, END_POSE, POSES, START, STATE, VECTOR
+from recon4.registration.state import END_MOTION, END_POSE, POSES, START, VECTOR
 
 _STILL_M = 0.01
 """While stationary two consecutive scans agree to this [m] …"""
@@ -51,10 +51,7 @@ def _standing(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Array:
     predicted, end = prediction.T_odom_body, prediction.end
     center = predicted.t[-1]
     for pose, k in ((delta[START], 0), (delta[END_POSE], -1)):
-        omega = so3_log(T_odom_body.R @ predicted.R[k].T)
-        arm = so3_exp(omega) @ (predicted.t[k] - center)
-        pose[STATE.rotation] = omega
-        pose[STATE.position] = T_odom_body.t - center - arm
+        pose[:] = pose_correction(predicted[k], T_odom_body, center)
     still = np.concatenate([end.vector[VECTOR.velocity], end.vector[VECTOR.gyro_bias]])
     delta[END_MOTION] = -still  # no velocity, no turn rate
     return delta

@@ -21,6 +21,7 @@ from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.corrections import apply_corrections
 from recon4.model.events import RoundRefined
 from recon4.model.figures import RefineFigures, RefineRound
+from recon4.model.multiframe import Multiframe
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.support import SurfaceSupport
@@ -151,7 +152,7 @@ class _Sweep:
         planes = PlaneMap(self._settings.planes)
         for placed in self._in_order(self._ends, self._settings.refine.map_stride):
             if placed is not None:
-                planes.add(placed)
+                planes.add(*placed)
         planes.fit()
         return planes
 
@@ -180,13 +181,18 @@ class _Sweep:
             return KnotSystem(H, g), float("nan"), 0.0
         return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(ratios))
 
-    def _ends(self, row: int) -> Array | None:
+    def _ends(self, row: int) -> tuple[Array, Array] | None:
+        """Ends of the segments of a multiframe, (N, 3), and from where they were seen, (3,)."""
         if self._lost[row]:
             return None
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
-        return np.ascontiguousarray(ends.reshape(-1, 3))
+        return np.ascontiguousarray(ends.reshape(-1, 3)), self._place(frame)
+
+    def _place(self, frame: Multiframe) -> Array:
+        """Place of the body in the middle of a multiframe [m], (3,)."""
+        return self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
 
     def _match_one(self, planes: PlaneMap, row: int) -> tuple[Array, Array, float, float] | None:
         if self._lost[row]:
@@ -195,11 +201,10 @@ class _Sweep:
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
         times_s = np.stack([segments.a_s, segments.b_s], axis=1)
-        center = self._trajectory.at(np.array([frame.t_mid_ns])).t[0]
         found = planes.match(
             ends.reshape(-1, 3),
             times_s.reshape(-1) / (frame.duration_ns * 1e-9),
-            center=center,
+            center=self._place(frame),
             finest=0,
             gate_m=self._settings.refine.gate_m,
         )
@@ -239,21 +244,23 @@ class _Absent:
 
     def __init__(self, planes: PlaneMap, gap_rows: int, stride: int) -> None:
         self._planes, self._gap_rows, self._stride = planes, gap_rows, stride
-        self._ends: dict[int, Array] = {}
+        self._ends: dict[int, tuple[Array, Array]] = {}
         self._next = 0
 
-    def move_to(self, rows: range, ends: Callable[[int], Array | None], count: int) -> None:
+    def move_to(
+        self, rows: range, ends: Callable[[int], tuple[Array, Array] | None], count: int
+    ) -> None:
         """Remove what is near in time to ``rows`` and add the rest again; rows only increase."""
         if self._gap_rows == 0:
             return
         first, last = rows[0] - self._gap_rows, rows[-1] + self._gap_rows
         for row in [row for row in self._ends if row < first]:
-            self._planes.add(self._ends.pop(row))
+            self._planes.add(*self._ends.pop(row))
         for row in range(self._next, min(last + 1, count), self._stride):
             self._next = row + self._stride
             placed = ends(row)
             if placed is not None:
-                self._planes.remove(placed)
+                self._planes.remove(*placed)
                 self._ends[row] = placed
         self._planes.fit()
 

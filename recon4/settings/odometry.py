@@ -21,7 +21,9 @@ class OdometrySettings:
     keyframe_rad: float = 0.26
     """… or turned by this [rad] since the last keyframe."""
     rounds: int = 8
-    """Upper bound on match-and-solve rounds."""
+    """Upper bound on match-and-solve rounds …"""
+    rounds_without_imu: int = 30
+    """… and without an IMU, when the first are far off."""
     information_scale: float = 0.02
     """Fraction of the matches that counts as independent: neighbors have the same plane error."""
     use_imu: bool = True

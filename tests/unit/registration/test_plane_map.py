@@ -191,6 +191,31 @@ def test_points_beyond_the_gate_do_not_match():
     assert hold(planes, asked, gate_m=0.09).matches == 0
 
 
+def test_a_thin_wall_seen_from_its_other_side_does_not_match():
+    face, other_face = patch((1, 0, 0), 3.0), patch((1, 0, 0), 3.12, seed=2)
+    planes = PlaneMap(SETTINGS)
+    planes.add(face, ORIGIN)
+
+    before = hold(planes, other_face, center=np.array([2.0, 1.0, 0.0]))
+    behind = hold(planes, other_face, center=np.array([5.0, 1.0, 0.0]))
+    in_the_door = hold(planes, face, center=np.array([3.1, 4.0, 0.0]))
+
+    assert before.match_ratio > 0.9
+    assert behind.matches == 0
+    assert in_the_door.match_ratio > 0.9
+
+
+def test_removing_points_removes_their_view():
+    face = patch((1, 0, 0), 3.0)
+    planes = PlaneMap(SETTINGS)
+    planes.add(face, ORIGIN)
+    planes.add(face, np.array([9.0, 0.0, 0.0]))
+    planes.remove(face, ORIGIN)
+
+    assert hold(planes, face, center=np.array([8.0, 0.0, 0.0])).match_ratio > 0.9
+    assert hold(planes, face, center=ORIGIN).matches == 0
+
+
 def test_too_few_points_or_a_heap_make_no_plane():
     rng = np.random.default_rng(6)
     few = rng.uniform(0, 0.19, (SETTINGS.min_points - 1, 3)) * [1, 1, 0]

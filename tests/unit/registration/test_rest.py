@@ -77,7 +77,7 @@ def fit_of_second_frame(recording, state):
     target = PlaneMap(settings.planes)
     target.add(np.concatenate([first.a_body, first.b_body]))
     prediction = FreeMotion(settings.odometry).predict(state, start_ns + FRAME_NS)
-    fitter = FrameFitter(settings.odometry, 1e-4, coarse=3)
+    fitter = FrameFitter(settings.odometry, 1e-4, coarse=3, rounds=8)
     return prediction, fitter.fit(target, second, prediction), second
 
 
