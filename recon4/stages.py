@@ -287,7 +287,7 @@ VERIFICATION = Stage(
 )
 REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
-    "refine", 3, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
+    "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
 LEVEL = Stage("level", 9, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)

@@ -20,8 +20,14 @@ from recon4.settings import OdometrySettings
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
 """Largest distance of a point from its plane in each round [m]; the last one is for all further."""
 
-_EXPECTED_VARIANCE = 1e-6
-"""Of an expected pose, which only has to be near [m², rad²]."""
+_EXPECTED_SD: Array = np.repeat([0.02, 0.05], 3)
+"""Standard deviation of the pose that the registration to the last scan expects [rad, m]: both
+scans are distorted. The local map is more exact, but while one turns it may let the body slide."""
+_NEAR_VARIANCE = 1e-6
+"""The first planes are those at the expected pose, to a millimeter [m², rad²]."""
+_MIDDLE: Array = np.zeros((6, END.stop))
+"""A correction of the pose at the middle of a frame, by those at its start and end."""
+_MIDDLE[:, START] = _MIDDLE[:, END_POSE] = 0.5 * np.eye(6)
 _STATIONARY_SD_M_S = 0.02
 """Standard deviation of the velocity of a person who stands [m/s]."""
 
@@ -124,6 +130,10 @@ def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
     """Information (34, 34) of the prediction and gradient (34,) where nothing is corrected."""
     information = np.asarray(np.linalg.inv(prediction.prior + 1e-12 * np.eye(END.stop)), np.float64)
     g = np.zeros(END.stop)
+    if prediction.expected is not None:
+        weighted = _MIDDLE.T / _EXPECTED_SD**2
+        information += weighted @ _MIDDLE
+        g -= weighted @ _from_expected(prediction, prediction.expected)
     if stationary:
         information[END_VELOCITY, END_VELOCITY] += np.eye(3) / _STATIONARY_SD_M_S**2
         g[END_VELOCITY] += prediction.end.vector[VECTOR.velocity] / _STATIONARY_SD_M_S**2
@@ -149,19 +159,20 @@ def pose_correction(predicted: SE3, T_odom_body: SE3, center: Array) -> Array:
     return np.concatenate([omega, T_odom_body.t - center - arm])
 
 
-def _first_correction(prediction: Prediction) -> Array:
-    """Most probable correction of a prediction that passes the pose expected at the middle, (24,).
+def _from_expected(prediction: Prediction, expected: SE3) -> Array:
+    """Correction of the middle of a prediction that leads to the pose expected there, (6,)."""
+    middle = middle_of(prediction.t_s, prediction.T_odom_body)
+    return pose_correction(middle, expected, prediction.T_odom_body.t[-1])
 
-    It chooses the first planes only: the expected pose has no weight.
-    """
+
+def _first_correction(prediction: Prediction) -> Array:
+    """Most probable correction of a prediction that passes the expected pose, (34,)."""
     if prediction.expected is None:
         return np.zeros(END.stop)
-    middle = middle_of(prediction.t_s, prediction.T_odom_body)
-    z = pose_correction(middle, prediction.expected, prediction.T_odom_body.t[-1])
-    H = np.zeros((6, END.stop))
-    H[:, START] = H[:, END_POSE] = 0.5 * np.eye(6)
-    cross = prediction.prior @ H.T
-    return np.asarray(cross @ np.linalg.solve(H @ cross + _EXPECTED_VARIANCE * np.eye(6), z))
+    cross = prediction.prior @ _MIDDLE.T
+    innovation_cov = _MIDDLE @ cross + _NEAR_VARIANCE * np.eye(6)
+    z = _from_expected(prediction, prediction.expected)
+    return np.asarray(cross @ np.linalg.solve(innovation_cov, z))
 
 
 def _largest_move_m(step: Array) -> float:

@@ -46,7 +46,7 @@ def zero_velocity_update(fit: FrameFit, prediction: Prediction, T_odom_body: SE3
 
 
 def _standing(fit: FrameFit, prediction: Prediction, T_odom_body: SE3) -> Array:
-    """Correction that makes a predicted motion stationary at a pose, (24,)."""
+    """Correction that makes a predicted motion stationary at a pose, (34,)."""
     delta = fit.delta.copy()
     predicted, end = prediction.T_odom_body, prediction.end
     center = predicted.t[-1]
