@@ -39,6 +39,7 @@ from recon4.recording.open import (
 )
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.scan_capture import ScanStreams, scan_streams
 from recon4.recording.velodyne.models import RETURN_MODES
 from recon4.recording.velodyne.streams import PacketStream, scan_pcap
 from recon4.settings import IngestSettings
@@ -54,7 +55,7 @@ _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
 _BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 _HEAD_NS = 1_000_000_000
-_SCAN_CAPTURE = "capture of a 2-D laser (pcap)"
+_SCAN_CAPTURE = "capture of scans (pcap)"
 
 
 def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
@@ -99,12 +100,16 @@ def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
     streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
     names = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
     samples = [s for s in streams if s.kind in names]
+    scanners = scan_streams(files)
+    lidars = [_packet_sensor(s) for s in streams if s.kind == "data"]
+    lidars += [_scanner(s, scanners) for s in streams if (s.source, s.port) in scanners.scans]
     return replace(
         info,
+        kind=_SCAN_CAPTURE if scanners.scans else info.kind,
         t_first_ns=min((s.t_first_ns for s in streams), default=0),
         t_last_ns=max((s.t_end_ns for s in streams), default=0),
         estimated=not all(s.whole for s in streams),
-        sensors=tuple(_packet_sensor(s) for s in streams if s.kind == "data"),
+        sensors=tuple(lidars),
         samples=tuple(f"{s.source}:{s.port}: {_total(s)} {names[s.kind]}" for s in samples),
     )
 
@@ -127,6 +132,20 @@ def _packet_sensor(stream: PacketStream) -> SensorInfo:
         rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
         rotation_hz=stream.rotation_hz,
         remarks=stream.remarks,
+    )
+
+
+def _scanner(stream: PacketStream, found: ScanStreams) -> SensorInfo:
+    """A sender of scans; one that also sends angles of a head is a profiler."""
+    key = stream.source, stream.port
+    ratio = found.scans[key] / (found.scans[key] + found.heads[key])
+    span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
+    return SensorInfo(
+        label=f"{stream.source}:{stream.port}",
+        model="profiler" if found.heads[key] else "2-D laser",
+        content="line scans" if found.heads[key] else "scans",
+        count=round(ratio * _total(stream)),
+        rate_hz=ratio * (stream.packets - 1) / span_s if span_s > 0 else float("nan"),
     )
 
 

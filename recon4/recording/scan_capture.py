@@ -47,8 +47,8 @@ class ScanStreams:
 
     scans: Counter[tuple[str, int]]
     """Sender and port -> datagrams with ranges."""
-    heads: frozenset[tuple[str, int]]
-    """Senders and ports that send angles of a head."""
+    heads: Counter[tuple[str, int]]
+    """Sender and port -> angles of a head."""
     has_lidar: bool
     """Whether there are data packets of a LiDAR too."""
 
@@ -67,13 +67,13 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
         RecordingError: If a file cannot be read.
     """
     scans: Counter[tuple[str, int]] = Counter()
-    heads: set[tuple[str, int]] = set()
+    heads: Counter[tuple[str, int]] = Counter()
     for file in files:
         left = _PROBED
         for batch in islice(read_pcap(file, ImportReport()), _PROBED_BATCHES):
             rows = np.arange(min(len(batch), left))
             if np.any(batch.length[rows] == DATA_SIZE):
-                return ScanStreams(scans, frozenset(heads), has_lidar=True)
+                return ScanStreams(scans, heads, has_lidar=True)
             for row in rows.tolist():
                 payload = _payload(batch, row)
                 if not is_scan_datagram(payload):
@@ -82,11 +82,11 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
                 if b'"ranges"' in payload:
                     scans[key] += 1
                 else:
-                    heads.add(key)
+                    heads[key] += 1
             left -= len(rows)
             if left <= 0:
                 break
-    return ScanStreams(scans, frozenset(heads), has_lidar=False)
+    return ScanStreams(scans, heads, has_lidar=False)
 
 
 def is_scan_capture(files: Sequence[Path]) -> bool:

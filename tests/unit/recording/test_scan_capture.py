@@ -98,7 +98,11 @@ def test_the_lines_of_a_capture_are_those_of_the_bag(tmp_path):
     lines = [load_lines(out) for out in stores]
     lasers = [load_laser_scans(out) for out in stores]
 
+    text = "\n".join(describe(capture).lines())
+
     assert not is_laser2d(capture)
+    assert "10.0.0.9:8312 profiler: 400 line scans, 100." in text
+    assert "10.0.0.9:8311 2-D laser: 40 scans, 10.0 a second" in text
     assert len(of_bag) == len(of_capture) > 30
     for row in range(len(of_bag)):
         np.testing.assert_array_equal(of_bag[row].xyz, of_capture[row].xyz)
