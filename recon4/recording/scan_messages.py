@@ -19,6 +19,8 @@ _MAX_BEAMS = 100_000
 _MAX_LINE_S = 10.0
 """A line or scan of longer duration has wrong times."""
 _LONGEST_M = 1e4
+_MAX_ANGLE_RAD = 100.0
+"""Angles of more than some turns are wrong [rad]; degrees are rejected with them."""
 
 
 def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport) -> Shots:
@@ -144,6 +146,11 @@ def _checked(scan: Any) -> tuple[NDArray[np.float32], float, float]:
         )
     if len(ranges) > _MAX_BEAMS:
         raise CorruptFile(f"a scan: expected at most {_MAX_BEAMS} shots, got {len(ranges)}")
+    widest = max(abs(float(scan.angle_min)), abs(float(scan.angle_increment)) * len(ranges))
+    if widest > _MAX_ANGLE_RAD:
+        raise CorruptFile(
+            f"a scan: expected angles within {_MAX_ANGLE_RAD:g} rad, got {widest:.3g} rad"
+        )
     step_s = float(scan.time_increment)
     if not 0.0 <= step_s * len(ranges) <= _MAX_LINE_S:
         raise CorruptFile(

@@ -17,6 +17,7 @@ import numpy as np
 from app.live.store import marks_of
 from recon4.errors import Recon4Error
 from recon4.live.mapper.gnss_watch import GnssWatch
+from recon4.live.mapper.scan_map import ScanMap
 from recon4.live.mapper.tail_file import TailFile, WriteProgress
 from recon4.live.protocol import (
     AddMark,
@@ -30,18 +31,29 @@ from recon4.live.protocol import (
     encode,
 )
 from recon4.live.session import CaptureSession, load_session
+from recon4.model.laser_scans import LaserScans
+from recon4.model.rig import load_rig
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.open import open_recording
+from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
+from recon4.recording.scan_datagrams import (
+    HeadMessage,
+    ScanMessage,
+    decode_scan_datagram,
+    encode_head,
+    encode_scans_row,
+)
+from recon4.recording.scan_messages import ScanCollector, line_of_scan
 from recon4.recording.velodyne.data_packets import PacketDecoder
 from recon4.recording.velodyne.encode import encode_position, rmc_sentence
 from recon4.recording.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.velodyne.position_packets import PositionDecoder
 from recon4.recording.velodyne.sensor_clock import SensorClock
-from recon4.settings import IngestSettings
+from recon4.settings import IngestSettings, Settings
 from tests.builders import T0_NS, room_packets
 from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
@@ -165,6 +177,40 @@ def _datagram(path: Path) -> Reading:
     return Reading(found, salvaged=_dropped(report))
 
 
+def _scan_seeds() -> tuple[bytes, ...]:
+    rng = np.random.default_rng(1)
+    ranges = rng.uniform(0.5, 9.0, 40).astype(np.float32)
+    scans = LaserScans(
+        t_ns=np.array([T0_NS], np.int64),
+        range_m=ranges[None],
+        angle_min_rad=-1.0,
+        angle_step_rad=0.05,
+        range_max_m=20.0,
+        time_step_s=1e-4,
+        odometry=np.array([[1.0, 2.0, 0.3]]),
+    )
+    return encode_scans_row(scans, 0), encode_head(1.25, T0_NS)
+
+
+def _scan(path: Path) -> Reading:
+    """A datagram of a 2-D laser, after a sound one, as the live map and as a line of a profiler."""
+    report, rig = ImportReport(), load_rig("wuerzburg")
+    collector, found = ScanCollector(0, report), 0
+    sound = decode_scan_datagram(_scan_seeds()[0])
+    message = decode_scan_datagram(path.read_bytes())
+    if not isinstance(message, ScanMessage) or not isinstance(sound, ScanMessage):
+        return Reading(0, salvaged=not isinstance(message, HeadMessage))
+    live = ScanMap(rig, Settings())
+    for k, one in enumerate((sound, message)):
+        for scans in (*collector.add(one, T0_NS + k, where="laser2d"), *collector.flush()):
+            scans = LaserUnit(report).in_meters(scans)
+            pose, _ = live.push(scans)
+            assert np.isfinite([*pose.p, pose.yaw]).all()
+            found += 1
+    assert np.isfinite(line_of_scan(message, 1, T0_NS, report=report).xyz).all()
+    return Reading(found, salvaged=found < 2)
+
+
 def _lines(path: Path) -> Reading:
     """Lines of a socket, each as both sides read it."""
     read = [_is_line(line) for line in path.read_bytes().split(b"\n") if line.strip()]
@@ -261,6 +307,7 @@ LIVE_KINDS = (
     Kind(
         name="live-samples", file_name="a", seeds=_datagram_seeds, read=_datagram, knows_end=False
     ),
+    Kind(name="live-scans", file_name="a", seeds=_scan_seeds, read=_scan, knows_end=False),
     Kind(name="live-lines", file_name="a", seeds=_line_seeds, read=_lines, knows_end=False),
     Kind(
         name="live-session",

@@ -205,8 +205,16 @@ def test_a_datagram_that_is_no_scan_is_counted(tmp_path, scans, payload):
     assert report.counts["scans_damaged"] == 1
 
 
-def test_angles_that_are_no_numbers_are_left_out(tmp_path, scans):
-    text = b'{"ranges": [1.0, 2.0], "angle_min": 0.0, "angle_increment": 0.0}'
+@pytest.mark.parametrize(
+    "angles",
+    [
+        b'"angle_min": 0.0, "angle_increment": 0.0',
+        b'"angle_min": -135.0, "angle_increment": 0.25',
+        b'"angle_min": 0.0, "angle_increment": 1e300',
+    ],
+)
+def test_angles_that_are_no_radians_are_left_out(tmp_path, scans, angles):
+    text = b'{"ranges": [1.0, 2.0], ' + angles + b"}"
     write_capture(
         tmp_path / "walk.pcap", [*scan_datagrams(scans), (START_NS * 2, LASER2D_PORT, text)]
     )
