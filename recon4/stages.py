@@ -269,7 +269,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    18,
+    19,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

@@ -9,7 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log, tangent_size_m
 from recon4.kernels.imu import place_points
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.degeneracy import observable_directions
+from recon4.registration.degeneracy import observable_directions, of_rigid_pose
 from recon4.registration.motion import Prediction, middle_of
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
@@ -48,6 +48,14 @@ class FrameFit:
     converged: bool
     stationary: bool
     """Whether the body was known to stand at the end of the frame."""
+
+    @property
+    def weak_sd_m(self) -> float:
+        """Standard deviation along the weak direction by the points alone [m], at most 100 m."""
+        H6 = of_rigid_pose(self.H_lidar)
+        direction = np.zeros(6)
+        direction[STATE.position] = self.match.weak_direction
+        return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -124,6 +132,12 @@ class FrameFitter:
     def _weighted(self, match: Match) -> tuple[Array, Array]:
         H, g = observable_directions(match, self.settings.normal_noise_rad)
         return self.settings.information_scale * H, self.settings.information_scale * g
+
+
+def motion_cov(P: Array) -> Array:
+    """Covariance of the end pose against the start pose, from their joint covariance."""
+    cross = P[START, END_POSE]
+    return np.asarray(P[START, START] + P[END_POSE, END_POSE] - cross - P[END_POSE, START])
 
 
 def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:

@@ -15,8 +15,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.degeneracy import of_rigid_pose
-from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.frame_fit import FrameFit, FrameFitter, motion_cov
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import (
@@ -27,11 +26,12 @@ from recon4.registration.motion import (
     Prediction,
     middle_of,
 )
+from recon4.registration.moving_start import set_moving, starting_velocity
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.point_map import PointMap, WeakDirections, frame_points
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
-from recon4.registration.state import END, END_POSE, START, STATE, VECTOR
+from recon4.registration.state import END, STATE, VECTOR
 from recon4.registration.weak_motion import unknown_speed_sd, weak_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
@@ -126,6 +126,8 @@ class Odometry:
         self._limits = LostLimits(settings.odometry)
         self._fresh: FreshChain | None = None
         """Without an IMU: the scans since tracking was lost."""
+        self._first: Multiframe | None = None
+        """The first frame, until the second one comes."""
         self._end_ns: int | None = None
         self._piece = self._resets = self._tracked_frames = 0
 
@@ -149,6 +151,7 @@ class Odometry:
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
+        self._begin_moving(frame)
         if self._is_interrupted(frame):
             self._begin_piece(frame.t_ns)
         first = not self._keyframes
@@ -175,8 +178,8 @@ class Odometry:
         self._count_lost(prediction.end.t_ns, lost=lost)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
         step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
-        motion_cov = step.motion_cov + self._unknown(frame, fit)
-        step = replace(step, motion_cov=motion_cov, piece=self._piece)
+        cov = step.motion_cov + self._unknown(frame, fit)
+        step = replace(step, motion_cov=cov, piece=self._piece)
         if not lost:
             if self._is_keyframe(T_dense[-1]):
                 self._extend_map(segments, prediction.t_s, T_dense)
@@ -186,6 +189,24 @@ class Odometry:
         self._follow_lost(frame, step)
         self._end_ns = frame.t_ns + frame.duration_ns
         return step
+
+    def _begin_moving(self, frame: Multiframe) -> None:
+        """At the second frame: if the body moves, place the first one again with its velocity."""
+        first, self._first = self._first, frame if self._state is None else None
+        if first is None or self._chain is not None or self._aiding is not None:
+            return
+        velocity_body = starting_velocity(first, frame, self._rig, self._settings.scans)
+        if velocity_body is None:
+            return
+        self._clear_map()
+        start = self._motion.initial(first.t_ns)
+        self._state = set_moving(start, velocity_body, duration_ns=first.duration_ns)
+        prediction = self._predict(first)
+        self._state = self._good = prediction.end
+        segments = sample_segments(first, self._rig, self._settings.segments)
+        self._extend_map(segments, prediction.t_s, prediction.T_odom_body)
+        points = frame_points(first, self._rig)
+        self._points.add(points, prediction.t_s, prediction.T_odom_body)
 
     def _unknown(self, frame: Multiframe, fit: FrameFit) -> Array:
         """Covariance of the motion that neither LiDAR nor GNSS nor standing still excludes."""
@@ -198,7 +219,7 @@ class Odometry:
         unknown_m = seconds * unknown_speed_sd(moved_m / seconds, with_imu=with_imu)
         return weak_motion_cov(
             fit.match.weak_direction,
-            _weak_sd_m(fit),
+            fit.weak_sd_m,
             unknown_m=unknown_m,
             converged=with_imu or fit.converged,
         )
@@ -372,22 +393,8 @@ def _step(
         fit.match.degeneracy,
         float(np.linalg.norm(T_dense.t[-1] - end.t)),
         lost,
-        _motion_cov(prediction.prior if lost else fit.P),
+        motion_cov(prediction.prior if lost else fit.P),
         fit.match.weak_direction,
-        _weak_sd_m(fit),
+        fit.weak_sd_m,
         fit.stationary,
     )
-
-
-def _weak_sd_m(fit: FrameFit) -> float:
-    """Standard deviation along the weak direction by the points alone [m], at most 100 m."""
-    H6 = of_rigid_pose(fit.H_lidar)
-    direction = np.zeros(6)
-    direction[STATE.position] = fit.match.weak_direction
-    return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))
-
-
-def _motion_cov(P: Array) -> Array:
-    """Covariance of the end pose against the start pose, from their joint covariance."""
-    cross = P[START, END_POSE]
-    return P[START, START] + P[END_POSE, END_POSE] - cross - P[END_POSE, START]
