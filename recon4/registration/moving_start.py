@@ -28,7 +28,7 @@ _LONGEST_NS = 300_000_000
 
 
 def starting_velocity(
-    first: Multiframe, second: Multiframe, rig: Rig, settings: ScanSettings
+    first: Multiframe, second: Multiframe, *, rig: Rig, settings: ScanSettings
 ) -> Array | None:
     """Velocity between two frames in axes of the body [m/s], (3,).
 

@@ -195,7 +195,8 @@ class Odometry:
         first, self._first = self._first, frame if self._state is None else None
         if first is None or self._chain is not None or self._aiding is not None:
             return
-        velocity_body = starting_velocity(first, frame, self._rig, self._settings.scans)
+        rig, scans = self._rig, self._settings.scans
+        velocity_body = starting_velocity(first, frame, rig=rig, settings=scans)
         if velocity_body is None:
             return
         self._clear_map()
@@ -205,8 +206,7 @@ class Odometry:
         self._state = self._good = prediction.end
         segments = sample_segments(first, self._rig, self._settings.segments)
         self._extend_map(segments, prediction.t_s, prediction.T_odom_body)
-        points = frame_points(first, self._rig)
-        self._points.add(points, prediction.t_s, prediction.T_odom_body)
+        self._points.add(frame_points(first, rig), prediction.t_s, prediction.T_odom_body)
 
     def _unknown(self, frame: Multiframe, fit: FrameFit) -> Array:
         """Covariance of the motion that neither LiDAR nor GNSS nor standing still excludes."""
