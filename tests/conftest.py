@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from tests.chromium import CHROMIUM, FLAGS
+from tests.made_once import made_once
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -34,6 +35,19 @@ def data() -> Callable[[str], Path]:
         pytest.skip(f"needs real data {name} in {DATA} (set RECON4_DATA)")
 
     return find
+
+
+@pytest.fixture(scope="session")
+def office_recording(tmp_path_factory) -> Path:
+    """Files of six seconds of a simulated walk through the office: capture, IMU, rig, truth."""
+    from recon4.progress import Silent
+    from recon4.simulation.setup import prepare
+    from recon4.simulation.simulate import simulate
+
+    def make(folder: Path) -> None:
+        simulate(prepare("office", seconds=6.0, seed=3), folder, bag=False, progress=Silent())
+
+    return made_once(tmp_path_factory, "office-recording", make)
 
 
 @pytest.fixture(scope="session")

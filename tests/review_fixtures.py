@@ -7,15 +7,14 @@ import shutil
 
 import pytest
 
+from tests.made_once import made_once
 from tests.review_project import make
 from tests.service.running import server_thread
 
 
 @pytest.fixture(scope="session")
 def made(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("made") / "office"
-    make(folder)
-    return folder
+    return made_once(tmp_path_factory, "reviewed-office", make)
 
 
 @pytest.fixture(scope="module")

@@ -13,9 +13,6 @@ import sys
 
 import pytest
 
-from recon4.progress import Silent
-from recon4.simulation.setup import prepare
-from recon4.simulation.simulate import simulate
 from tests.service.running import ROOT
 
 CALLS = "connect,sendto,sendmsg,sendmmsg"
@@ -60,9 +57,11 @@ def traced(isolated, trace, *command):
 
 
 @pytest.mark.slow
-def test_processing_slicing_and_serving_connect_to_nothing_outside(isolated, tmp_path):
+def test_processing_slicing_and_serving_connect_to_nothing_outside(
+    isolated, office_recording, tmp_path
+):
     walk, root = tmp_path / "walk", tmp_path / "projects"
-    simulate(prepare("office", seconds=6.0, seed=2), walk, bag=False, progress=Silent())
+    shutil.copytree(office_recording, walk)  # the server reads what is beside its folder only
     root.mkdir()
     trace = tmp_path / "trace"
 

@@ -5,6 +5,7 @@ Figures to hold: 0 tracebacks, 0 unfinished files, exit code 143 (SIGTERM) or 13
 
 from __future__ import annotations
 
+import shutil
 import signal
 import subprocess
 import sys
@@ -12,9 +13,6 @@ import sys
 import numpy as np
 import pytest
 
-from recon4.progress import Silent
-from recon4.simulation.setup import prepare
-from recon4.simulation.simulate import simulate
 from tests.service.killing import QUICK
 from tests.service.running import ROOT
 
@@ -79,11 +77,11 @@ def test_a_signal_is_obeyed_where_python_throws_exceptions_away(where, name):
 
 
 @pytest.mark.slow
-def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(tmp_path):
+def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(
+    tmp_path, office_recording
+):
     """Each command goes on where the last one was stopped."""
-    simulate(
-        prepare("office", seconds=5.0, seed=3), tmp_path / "walk", bag=False, progress=Silent()
-    )
+    shutil.copytree(office_recording, tmp_path / "walk")
     rng = np.random.default_rng(4)
     stopped = 0
     for _ in range(STOPS):

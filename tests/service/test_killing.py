@@ -5,9 +5,6 @@ import shutil
 import pytest
 
 from app.jobs.run_progress import PIECES, STAGE_PERCENT
-from recon4.progress import Silent
-from recon4.simulation.setup import prepare
-from recon4.simulation.simulate import simulate
 from tests.service import killing
 from tests.service.killing import (
     IN_A_STAGE,
@@ -24,19 +21,12 @@ from tests.service.killing import (
 pytestmark = pytest.mark.slow
 
 
-@pytest.fixture(scope="module")
-def walk(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("walks") / "walk"
-    simulate(prepare("office", seconds=5.0, seed=3), folder, bag=False, progress=Silent())
-    return folder
-
-
 @pytest.fixture
-def roots(tmp_path, walk):
+def roots(tmp_path, office_recording):
     """Two folders of projects, each with the walk."""
     for name in ("unbroken", "killed"):
         (tmp_path / name).mkdir()
-        shutil.copytree(walk, tmp_path / name / "walk")
+        shutil.copytree(office_recording, tmp_path / name / "walk")
     return tmp_path / "unbroken", tmp_path / "killed"
 
 
