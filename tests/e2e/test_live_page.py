@@ -53,7 +53,7 @@ GAPS = """() => new Promise((resolve) => {
 @pytest.fixture(scope="module")
 def walk(tmp_path_factory):
     out = tmp_path_factory.mktemp("walk")
-    simulate(prepare("office", seconds=SECONDS, seed=3), out, progress=Silent())
+    simulate(prepare("office", seconds=SECONDS, seed=3), out, bag=False, progress=Silent())
     return out
 
 

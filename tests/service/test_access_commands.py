@@ -1,5 +1,6 @@
 """``recon4 serve`` and ``recon4 users`` as they are typed."""
 
+import io
 import os
 import re
 import signal
@@ -7,24 +8,36 @@ import ssl
 import subprocess
 import sys
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 import httpx
 import pytest
 
 from app.access.login.login_service import open_access
+from recon4.cli.main import main
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD
 
 
-def recon4(*arguments, answer=""):
-    return subprocess.run(
-        [sys.executable, "-m", "recon4", *map(str, arguments)],
-        input=answer,
-        capture_output=True,
-        text=True,
-        cwd=ROOT,
-        timeout=60.0,
-    )
+@dataclass(frozen=True)
+class Ended:
+    """What a command left behind."""
+
+    returncode: int
+    stdout: str
+    stderr: str
+
+
+@pytest.fixture
+def recon4(capsys, monkeypatch):
+    """Run a command in this process, with what is piped into it."""
+
+    def run(*arguments, answer=""):
+        capsys.readouterr()
+        monkeypatch.setattr(sys, "stdin", io.StringIO(answer))
+        return Ended(main([*map(str, arguments)]), *capsys.readouterr())
+
+    return run
 
 
 @contextmanager
@@ -62,7 +75,7 @@ def serving(root, *arguments):
         ("--lan", "--tls-cert", "x.pem"),
     ],
 )
-def test_a_network_without_tls_and_login_is_wrong_usage(tmp_path, arguments):
+def test_a_network_without_tls_and_login_is_wrong_usage(recon4, tmp_path, arguments):
     ended = recon4("serve", tmp_path, *arguments)
 
     assert ended.returncode == 2
@@ -70,7 +83,7 @@ def test_a_network_without_tls_and_login_is_wrong_usage(tmp_path, arguments):
     assert not (tmp_path / ".recon4").exists()
 
 
-def test_an_invalid_certificate_is_reported(tmp_path):
+def test_an_invalid_certificate_is_reported(recon4, tmp_path):
     (tmp_path / "x.pem").write_text("nothing")
     pem = tmp_path / "x.pem"
 
@@ -110,7 +123,7 @@ def test_the_first_start_shows_fingerprint_and_one_time_link_and_logs_no_secret(
     assert not [one for one in secrets if one in surroundings]
 
 
-def test_people_are_kept_from_the_command_line_and_the_log_is_checked(tmp_path):
+def test_people_are_kept_from_the_command_line_and_the_log_is_checked(recon4, tmp_path):
     weak = recon4(
         "users", "add", "anna", "--role", "admin", "--root", tmp_path, answer="password1234\n"
     )
@@ -134,7 +147,7 @@ def test_people_are_kept_from_the_command_line_and_the_log_is_checked(tmp_path):
     assert PASSWORD not in log.stdout
 
 
-def test_a_log_tampered_with_is_reported_with_exit_code_1(tmp_path):
+def test_a_log_tampered_with_is_reported_with_exit_code_1(recon4, tmp_path):
     (tmp_path / ".recon4").mkdir()
     access = open_access(tmp_path / ".recon4", login=True)
     for what in ("office", "field"):
@@ -151,7 +164,7 @@ def test_a_log_tampered_with_is_reported_with_exit_code_1(tmp_path):
 
 
 @pytest.mark.parametrize("role", ["nobody", "king", ""])
-def test_an_unknown_role_is_wrong_usage(tmp_path, role):
+def test_an_unknown_role_is_wrong_usage(recon4, tmp_path, role):
     ended = recon4("users", "add", "anna", "--role", role, "--root", tmp_path, answer="x\n")
 
     assert ended.returncode == 2

@@ -13,8 +13,6 @@ from recon4.registration import imu_consistency
 from recon4.registration.imu_consistency import Trial, consistent_imu
 from recon4.registration.motion import ImuMotion
 from recon4.settings import OdometrySettings, preset
-from recon4.simulation.setup import prepare
-from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 
 SETTINGS = preset("indoor")
@@ -35,13 +33,11 @@ class Walk:
 
 
 @pytest.fixture(scope="module")
-def frames(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("walk")
-    simulate(prepare("office", seconds=6.0, seed=2), folder / "in", bag=False, progress=Silent())
-    (folder / "frames").mkdir()
-    sources = Sources((folder / "in" / "recording.pcap",), imu=folder / "in" / "imu.csv")
-    ingest(sources, folder / "frames", settings=SETTINGS.ingest, progress=Silent())
-    return FrameStore.open(folder / "frames")
+def frames(office_recording, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("frames")
+    sources = Sources((office_recording / "recording.pcap",), imu=office_recording / "imu.csv")
+    ingest(sources, folder, settings=SETTINGS.ingest, progress=Silent())
+    return FrameStore.open(folder)
 
 
 def altered(frames, turn=lambda gyro: gyro, late_ns=0, force=1.0):
