@@ -22,7 +22,7 @@ from tests.e2e.test_pages import drawn
 from tests.service.running import server_thread, wait_for
 
 pytestmark = pytest.mark.e2e
-SECONDS = 14.0
+SECONDS = 20.0
 VOXEL_M = 0.03
 """Coarser than the preset: this map is drawn without a graphics card."""
 WORK_MS = 240_000

@@ -161,7 +161,7 @@ def test_a_worker_outlives_a_killed_server_and_is_adopted_by_the_next(tmp_path, 
         process.kill()
         process.wait()
 
-    with server_process(tmp_path) as (server, _):
+    with server_thread(tmp_path, worker=SLOW) as server:
         server.wait_at_gate(job)
         gate = open_gate(recording)
         view = server.wait_state(job, "succeeded")
@@ -180,7 +180,7 @@ def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
         process.wait()
     os.kill(server.worker_pid(job), signal.SIGKILL)
 
-    with server_process(tmp_path) as (server, _):
+    with server_thread(tmp_path, worker=SLOW) as server:
         server.wait_at_gate(job, attempt=2)
         gate = open_gate(recording)
         server.wait_state(job, "succeeded")

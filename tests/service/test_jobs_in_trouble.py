@@ -136,7 +136,7 @@ def test_more_jobs_than_may_wait_are_refused(tmp_path, recording):
 
 
 def test_a_damaged_queue_is_replaced_by_its_newest_backup_with_a_notice(tmp_path, recording):
-    with server_process(tmp_path) as (server, _):
+    with server_thread(tmp_path, worker=SLOW) as server:
         job = server.start("office", recording)
         server.wait_at_gate(job)
         server.post(f"/api/jobs/{job}/cancel")
@@ -144,11 +144,11 @@ def test_a_damaged_queue_is_replaced_by_its_newest_backup_with_a_notice(tmp_path
     state = tmp_path / ".recon4"
     copy = next((state / "backups").glob("jobs-*.sqlite"))
     copy.unlink()
-    with server_process(tmp_path):
+    with server_thread(tmp_path, worker=SLOW):
         pass  # makes today's backup again, with the job in it
     damage(state / "jobs.sqlite")
 
-    with server_process(tmp_path) as (server, _):
+    with server_thread(tmp_path, worker=SLOW) as server:
         status = server.get("/api/server").json()
         jobs = server.get("/api/jobs").json()
 
@@ -175,7 +175,7 @@ def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recor
         process.send_signal(signal.SIGTERM)
 
         assert process.wait(10.0 + BUSY_S) == 0
-    with server_process(tmp_path) as (server, _):
+    with server_thread(tmp_path, worker=SLOW) as server:
         server.post(f"/api/jobs/{job}/cancel")
         assert server.wait_state(job, "cancelled")["job"]["attempt"] == 1
 

@@ -154,6 +154,6 @@ def test_answers_are_not_held_back_by_the_network(tmp_path):
 
 
 def test_a_port_in_use_is_reported(tmp_path):
-    with server_process(tmp_path) as (server, _), pytest.raises(StoreError, match="is in use"):
+    with server_thread(tmp_path) as server, pytest.raises(StoreError, match="is in use"):
         (tmp_path / "other").mkdir()
         serve(ServerSettings(root=tmp_path / "other", port=int(server.url.rsplit(":", 1)[1])))

@@ -86,7 +86,7 @@ def test_a_killed_server_knows_where_it_was(tmp_path):
         process.send_signal(signal.SIGKILL)
         process.wait()
 
-    with server_process(tmp_path) as (server, _):
+    with server_thread(tmp_path) as server:
         at = offset(server.url, location)
         patch(server.url, location, at, DATA[at:])
         path = Path(upload_of(server, location)["recording"])
