@@ -163,10 +163,10 @@ def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
     follower = Follower(walk)
     for row in range(100):
         follower.push(row)
-    later = [follower.push(row, 60_000_000_000) for row in range(100, 125)]
+    later = [follower.push(row, 60_000_000_000) for row in range(100, 130)]
 
     assert later[0][0].lost
-    assert not any(pose.lost for pose, _ in later[15:])
+    assert not any(pose.lost for pose, _ in later[20:])
     assert max(error for pose, error in later if not pose.lost) < 0.1
 
 
