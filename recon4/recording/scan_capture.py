@@ -237,7 +237,8 @@ class _LaserReader:
     def __init__(self, sensor: Sensor, report: ImportReport) -> None:
         self._name, self._report = sensor.name, report
         self._messages = _StampedMessages(sensor, report)
-        self._scans = ScanCollector(round(1e9 * sensor.time_offset_s), report)
+        offset_ns = round(1e9 * sensor.time_offset_s)
+        self._scans = ScanCollector(offset_ns, report, exact_angles=True)
         self._unit = LaserUnit(report)
 
     def push(self, slot: Datagrams) -> Iterator[LaserScans]:

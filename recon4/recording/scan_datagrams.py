@@ -116,17 +116,26 @@ def is_scan_datagram(payload: bytes) -> bool:
 # -- what a sender does
 
 
-def encode_scan(scan: Any, t_ns: int, *, odometry: Sequence[float] | None = None) -> bytes:
+def encode_scan(
+    scan: Any,
+    t_ns: int,
+    *,
+    odometry: Sequence[float] | None = None,
+    angles: tuple[float, float] | None = None,
+) -> bytes:
     """A ``LaserScan`` as a datagram; intensities are left out if it would be too long.
 
     Args:
         scan: Fields of a ``LaserScan``.
         t_ns: Time of its first beam [ns].
         odometry: Pose of the laser: x [m], y [m], yaw [rad].
+        angles: First angle and step in place of those of the scan [rad].
     """
     fields: dict[str, object] = {"t_ns": t_ns}
     for name in ("angle_min", "angle_increment", "time_increment", "range_min", "range_max"):
         fields[name] = float(getattr(scan, name))
+    if angles is not None:
+        fields["angle_min"], fields["angle_increment"] = angles
     if odometry is not None:
         fields["odometry"] = [float(value) for value in odometry]
     text = json.dumps(fields)[:-1].encode()

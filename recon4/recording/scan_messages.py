@@ -57,9 +57,20 @@ def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport) -> Sho
 class ScanCollector:
     """Collects the scans of a 2-D laser; those of another layout are counted and left out."""
 
-    def __init__(self, offset_ns: int, report: ImportReport) -> None:
+    def __init__(self, offset_ns: int, report: ImportReport, *, exact_angles: bool = False) -> None:
+        """Prepare.
+
+        Args:
+            offset_ns: Added to all times.
+            report: Receives counts.
+            exact_angles: Take the angles as they are; those of a bag are float32, so only the
+                digits of `usual_angles` mean something.
+        """
         self._offset_ns, self._report = offset_ns, report
+        self._exact = exact_angles
         self._layout: tuple[int, float, float] | None = None
+        self._angles = (0.0, 0.0)
+        """First angle and step [rad]."""
         self._rest = (0.0, 0.0)
         """Largest range [m] and time between two beams [s]."""
         self._ranges: list[NDArray[np.float32]] = []
@@ -95,9 +106,10 @@ class ScanCollector:
             again = t_ns == self._last_ns
             self._report.count("scans_duplicate" if again else "scans_out_of_order")
             return
-        layout = (len(ranges), round(float(scan.angle_min), 6), round(step_rad, 9))
+        layout = (len(ranges), *usual_angles(scan))
         if self._layout is None:
             self._layout = layout
+            self._angles = (float(scan.angle_min), step_rad) if self._exact else layout[1:]
             self._rest = (float(scan.range_max), step_s)
         elif layout != self._layout:
             self._report.count("scans_of_another_layout")
@@ -127,12 +139,17 @@ class ScanCollector:
         yield LaserScans(
             t_ns=t_ns,
             range_m=ranges,
-            angle_min_rad=self._layout[1],
-            angle_step_rad=self._layout[2],
+            angle_min_rad=self._angles[0],
+            angle_step_rad=self._angles[1],
             range_max_m=self._rest[0],
             time_step_s=self._rest[1],
             odometry=odometry,
         )
+
+
+def usual_angles(scan: Any) -> tuple[float, float]:
+    """First angle and step of a ``LaserScan`` [rad], with the digits that float32 has."""
+    return round(float(scan.angle_min), 6), round(float(scan.angle_increment), 9)
 
 
 def _checked(scan: Any) -> tuple[NDArray[np.float32], float, float]:

@@ -20,6 +20,7 @@ from recon4.recording.open import RecordingKind, bag_paths, recognize
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import IMU_HEADER
 from recon4.recording.scan_datagrams import encode_head, encode_scan, encode_scans_row
+from recon4.recording.scan_messages import usual_angles
 
 _BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 
@@ -117,15 +118,17 @@ def _of_lines(recording: Path, rig: Rig) -> Iterator[ScanDatagram]:
             if content is None:
                 continue
             t_ns = stamp_ns(content.header.stamp) or message.t_ns
-            payload = _payload(content, t_ns)
+            is_laser = message.topic == found.scans_topic
+            payload = _payload(content, t_ns, is_laser=is_laser)
             if payload:
                 yield ScanDatagram(message.t_ns, ports[message.topic], payload)
 
 
-def _payload(content: Any, t_ns: int) -> bytes:
+def _payload(content: Any, t_ns: int, *, is_laser: bool) -> bytes:
     """A message as a datagram; empty = it says nothing."""
     if hasattr(content, "ranges"):
-        return encode_scan(content, t_ns)
+        # With these angles the capture gives the same scans as the bag.
+        return encode_scan(content, t_ns, angles=usual_angles(content) if is_laser else None)
     if hasattr(content, "position"):
         return encode_head(content.position[0], t_ns) if len(content.position) else b""
     return _imu_text(t_ns, content)
