@@ -21,6 +21,8 @@ DRAW_LESS = """{
     const chosen = kind.startsWith("webgl") ? { ...options, antialias: false } : options;
     return contextOf.call(this, kind, chosen);
   };
+}
+if (window !== window.parent) {
   const request = window.requestAnimationFrame.bind(window);
   const timers = new Map();
   let last = 0;
@@ -35,7 +37,8 @@ DRAW_LESS = """{
     timers.delete(id);
   };
 }"""
-"""Script for every page: at most 10 frames per second, no antialiasing in WebGL.
+"""Script for every page: no antialiasing in WebGL; in a page within a page 10 frames a second.
 
-Without a graphics card each frame takes processor time that the other tests need.
+Without a graphics card each frame takes processor time that the other tests need. The viewer by
+itself draws at its own pace: its camera comes to rest before a test clicks.
 """
