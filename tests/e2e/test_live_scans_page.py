@@ -116,3 +116,7 @@ def test_a_corridor_that_holds_nothing_is_said_in_words(server, page, screenshot
         screenshot(page, "live-corridor")
     page.get_by_role("button", name="Help and more").click()
     expect(page.get_by_role("button", name="Calibration dance…")).to_be_hidden()
+    page.keyboard.press("Escape")
+    page.get_by_role("button", name="Stop").click()
+    page.locator("#ending").get_by_role("button", name="Stop").click()
+    expect(page.get_by_role("button", name="Make the map")).to_be_visible()
