@@ -22,7 +22,7 @@ SECONDS = 24.0
 BACK_S = 17.0
 """From here on the walk goes back through the corridor where it began (0 to 5 s)."""
 FEW = [
-    *("map.voxel_m=0.03", "graph.node_stride=10", "calibration.mode=off"),
+    *("map.voxel_m=0.02", "graph.node_stride=10", "calibration.mode=off"),
     "refine.rounds=0",  # it would lay the two layers onto each other again
 ]
 
