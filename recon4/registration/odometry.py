@@ -127,7 +127,8 @@ class Odometry:
         self._fresh: FreshChain | None = None
         """Without an IMU: the scans since tracking was lost."""
         self._first: Multiframe | None = None
-        """The first frame, until the second one comes."""
+        """The first frame until the second one comes, and the state at its start."""
+        self._begun: MotionState | None = None
         self._end_ns: int | None = None
         self._piece = self._resets = self._tracked_frames = 0
 
@@ -144,9 +145,8 @@ class Odometry:
     @property
     def imu_estimate(self) -> ImuEstimate | None:
         """What is known of the IMU so far; None without one, or before the first multiframe."""
-        if self._state is None or self._chain is not None:
-            return None
-        return ImuEstimate.of(self._before_hole or self._state)
+        state = None if self._chain else self._before_hole or self._state
+        return ImuEstimate.of(state) if state else None
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
@@ -193,18 +193,18 @@ class Odometry:
     def _begin_moving(self, frame: Multiframe) -> None:
         """At the second frame: if the body moves, place the first one again with its velocity."""
         first, self._first = self._first, frame if self._state is None else None
-        if first is None or self._chain is not None or self._aiding is not None:
+        if first is None or self._begun is None or self._chain or self._aiding:
             return
         rig, scans = self._rig, self._settings.scans
-        velocity_body = starting_velocity(first, frame, rig=rig, settings=scans)
-        if velocity_body is None:
+        velocity = starting_velocity(first, frame, rig=rig, settings=scans)
+        if velocity is None:
             return
         self._clear_map()
-        start = self._motion.initial(first.t_ns)
-        self._state = set_moving(start, velocity_body, duration_ns=first.duration_ns)
+        # Not a new initial state: live there are more samples by now, and they tilt it otherwise.
+        self._state = set_moving(self._begun, velocity, duration_ns=first.duration_ns)
         prediction = self._predict(first)
         self._state = self._good = prediction.end
-        segments = sample_segments(first, self._rig, self._settings.segments)
+        segments = sample_segments(first, rig, self._settings.segments)
         self._extend_map(segments, prediction.t_s, prediction.T_odom_body)
         self._points.add(frame_points(first, rig), prediction.t_s, prediction.T_odom_body)
 
@@ -305,7 +305,7 @@ class Odometry:
     def _predict(self, frame: Multiframe) -> Prediction:
         start_ns, end_ns = frame.t_ns, frame.t_ns + frame.duration_ns
         if self._state is None:
-            self._state = self._initial(start_ns)
+            self._state = self._begun = self._initial(start_ns)
         if self._state.t_ns < start_ns:  # frames are missing in between
             self._state = self._move(self._state, start_ns).end
         return self._move(self._state, end_ns)
