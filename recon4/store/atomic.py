@@ -63,12 +63,8 @@ def atomic_folder(path: Path) -> Iterator[Path]:
         StoreError: If the path cannot be written.
     """
     temporary = _temporary_beside(path)
-    try:
-        temporary.mkdir()
-    except OSError as error:
-        raise_if_full(error, path)
-        raise StoreError(f"cannot write {path.parent}: {error.strerror}") from error
-    try:
+    try:  # a signal may come as soon as the folder is there
+        _make_temporary(temporary, path)
         yield temporary
         _fsync_tree(temporary)
         os.rename(temporary, path)
@@ -158,6 +154,14 @@ def _is_no_space(error: BaseException) -> bool:
 
 def _temporary_beside(path: Path) -> Path:
     return path.with_name(f".tmp-{secrets.token_hex(6)}-{path.name}")
+
+
+def _make_temporary(folder: Path, path: Path) -> None:
+    try:
+        folder.mkdir()
+    except OSError as error:
+        raise_if_full(error, path)
+        raise StoreError(f"cannot write {path.parent}: {error.strerror}") from error
 
 
 def _fsync_tree(folder: Path) -> None:

@@ -47,7 +47,7 @@ class Phone:
         self.path = 0
         self.bytes = 0
 
-    async def follow(self, server, met, have=None, seconds=60.0):
+    async def follow(self, server, met, have=None, seconds=120.0):
         url = server.url.replace("http", "ws") + "/api/live/stream"
         async with asyncio.timeout(seconds):
             async with connect(url, origin=server.url, max_size=None) as socket:
