@@ -1,11 +1,19 @@
 """Capture files with datagrams of scans, for tests."""
 
+import threading
+from contextlib import contextmanager
 from pathlib import Path
 
 from recon4.live.recorder.capture_file import _FILE_HEADER, Datagram, pcap_record
-from recon4.model.rig import LASER2D_PORT
+from recon4.live.replay import replay
+from recon4.model.rig import LASER2D_PORT, format_rig, parse_rig
+from recon4.progress import Silent
 from recon4.recording.scan_datagrams import encode_scans_row
 from recon4.recording.scan_replay import datagrams_of_scans
+from tests.loopback import an_address
+from tests.service.running import server_thread
+
+LASER = parse_rig('name = "robot"\n[[sensor]]\nname = "laser2d"\nkind = "laser2d"', where="test")
 
 DELAY_NS = 3_000_000
 """Time from the stamp of a scan to its arrival."""
@@ -32,3 +40,23 @@ def captured(recording, path, rig=None):
     sent = datagrams_of_scans(recording, rig)
     write_capture(path, ((one.t_ns + DELAY_NS, one.port, one.payload) for one in sent))
     return path
+
+
+@contextmanager
+def robot_server(root):
+    """A server that receives captures, with the rig ``rigs/robot.toml`` of a 2-D laser alone."""
+    (root / "rigs").mkdir(parents=True)
+    (root / "rigs" / "robot.toml").write_text(format_rig(LASER))
+    with server_thread(root, live_address=an_address()) as running:
+        yield running
+
+
+@contextmanager
+def sending(server, recording, **how):
+    """A recording is replayed to a server; at the end all of it was sent."""
+    target = server.app.state.parts.settings.live_address
+    how = {"progress": Silent(), "target": target, **how}
+    thread = threading.Thread(target=replay, args=(recording,), kwargs=how)
+    thread.start()
+    yield
+    thread.join()

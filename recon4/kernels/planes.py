@@ -24,6 +24,7 @@ COLUMNS = 15
 sum of the places from which the points were seen (NaN = unknown)."""
 BATCHES, _NEWEST, _VIEW = 10, 11, 12
 FIT_COLUMNS = 10
+"""Columns of ``fits``, see `_fit`."""
 _MIN_SIDE_M = 0.2
 """Nearer to a plane than this, the side from which it is seen is not certain [m]."""
 _OFFSET = np.int64(1 << 19)

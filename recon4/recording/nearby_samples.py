@@ -19,16 +19,18 @@ def unread_samples(sources: Sources) -> list[str]:
 
     Nobody named these files: what cannot be read is none of them.
     """
-    wanted = {RecordingKind.IMU_CSV: ("--imu", sources.imu)}
-    wanted |= {RecordingKind.GNSS_CSV: ("--gnss", sources.gnss)}
-    files = {
-        kind: _nearby(sources.recordings, kind) for kind, (_, given) in wanted.items() if not given
-    }
-    return [
-        f"{file} lies beside the recording and is not read: give it with {wanted[kind][0]} {file}"
-        for kind, file in files.items()
-        if file and file not in sources.recordings
-    ]
+    wanted = (
+        (RecordingKind.IMU_CSV, "--imu", sources.imu),
+        (RecordingKind.GNSS_CSV, "--gnss", sources.gnss),
+    )
+    texts = []
+    for kind, option, given in wanted:
+        file = None if given else _nearby(sources.recordings, kind)
+        if file and file not in sources.recordings:
+            texts.append(
+                f"{file} lies beside the recording and is not read: give it with {option} {file}"
+            )
+    return texts
 
 
 def _nearby(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:

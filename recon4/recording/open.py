@@ -74,6 +74,12 @@ _KIND_OF_COLUMNS = {
     frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
     frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_CSV,
 }
+_KIND_OF_SUFFIX = {
+    **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
+    **dict.fromkeys(CLOUD_SUFFIXES, RecordingKind.FRAMES),
+    ".bag": RecordingKind.BAG1,
+}
+"""In folders, where not every file is opened."""
 _TABLES = {RecordingKind.LINE_TABLES, RecordingKind.LASER_TABLE, RecordingKind.IMU_CSV}
 
 _OTHERS = {
@@ -237,7 +243,7 @@ def pcap_files(path: Path) -> list[Path]:
         return [path]
     if not path.is_dir():
         raise RecordingError(f"{path} does not exist")
-    return sorted((f for f in path.iterdir() if f.is_file() and is_pcap(f)), key=natural)
+    return sorted(filter(_is_pcap_file, path.iterdir()), key=natural)
 
 
 def lidars_of_packets(
@@ -298,26 +304,22 @@ def _folder_kind(path: Path) -> RecordingKind:
 
 def _kinds_in(path: Path, names: Sequence[str]) -> dict[RecordingKind, str]:
     """The kinds of recordings in a folder, each with the first file that is of it."""
-    suffix_of = {name: Path(name).suffix.lower() for name in names}
-    wanted = {
-        RecordingKind.BAG2: set(STORAGE_SUFFIXES),
-        RecordingKind.FRAMES: set(CLOUD_SUFFIXES),
-        RecordingKind.BAG1: {".bag"},
-    }
-    kinds = {
-        kind: next(name for name in names if suffix_of[name] in suffixes)
-        for kind, suffixes in wanted.items()
-        if suffixes & set(suffix_of.values())
-    }
-    if "metadata.yaml" in names:
-        kinds.setdefault(RecordingKind.BAG2, "metadata.yaml")
+    kinds: dict[RecordingKind, str] = {}
+    for name in names:
+        kind = _KIND_OF_SUFFIX.get(Path(name).suffix.lower())
+        if name == "metadata.yaml":
+            kind = RecordingKind.BAG2
+        elif kind is None and RecordingKind.PCAP not in kinds and _is_pcap_file(path / name):
+            kind = RecordingKind.PCAP
+        if kind is not None:
+            kinds.setdefault(kind, name)
     if (lines := table_in(path, "lines")) and is_line_table(lines):
         kinds[RecordingKind.LINE_TABLES] = lines.name
-    known = set().union(*wanted.values())
-    others = (path / name for name in names if suffix_of[name] not in known)
-    if capture := next((file for file in others if file.is_file() and is_pcap(file)), None):
-        kinds[RecordingKind.PCAP] = capture.name
     return kinds
+
+
+def _is_pcap_file(path: Path) -> bool:
+    return path.is_file() and is_pcap(path)
 
 
 def _known() -> str:

@@ -3,60 +3,27 @@
 from __future__ import annotations
 
 import re
-import threading
-from contextlib import contextmanager
 
 import numpy as np
 import pytest
 from playwright.sync_api import expect
 
-from recon4.live.replay import replay
-from recon4.model.rig import format_rig, load_rig, parse_rig
+from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.simulation.backpack import prepare_backpack, simulate_backpack
-from tests.e2e.conftest import EXPECTED_NOISE, SCREENSHOTS
+from tests.e2e.conftest import SCREENSHOTS, looks
 from tests.e2e.test_live_page import fits, points, wait_for_points
-from tests.loopback import an_address
 from tests.planar_walks import blank_corridor, scanned, write_carmen
-from tests.service.running import server_thread
+from tests.scan_captures import robot_server, sending
 
 pytestmark = pytest.mark.e2e
 SECONDS = 24.0 if SCREENSHOTS else 12.0
-LASER = parse_rig('name = "robot"\n[[sensor]]\nname = "laser2d"\nkind = "laser2d"', where="test")
 
 
 @pytest.fixture
 def server(tmp_path):
-    root = tmp_path / "projects"
-    (root / "rigs").mkdir(parents=True)
-    (root / "rigs" / "robot.toml").write_text(format_rig(LASER))
-    with server_thread(root, live_address=an_address()) as running:
+    with robot_server(tmp_path / "projects") as running:
         yield running
-
-
-@pytest.fixture
-def look(request):
-    return getattr(request, "param", ("phone", "dark"))
-
-
-@pytest.fixture
-def page(context):
-    page = context.new_page()
-    errors = []
-    page.on("pageerror", lambda error: errors.append(str(error)))
-    page.on("console", lambda message: message.type == "error" and errors.append(message.text))
-    yield page
-    assert [text for text in errors if not any(one in text for one in EXPECTED_NOISE)] == []
-
-
-@contextmanager
-def sending(server, recording, **how):
-    target = server.app.state.parts.settings.live_address
-    how = {"progress": Silent(), "target": target, **how}
-    thread = threading.Thread(target=replay, args=(recording,), kwargs=how)
-    thread.start()
-    yield
-    thread.join()
 
 
 def begin(page, server, rig):
@@ -69,7 +36,7 @@ def begin(page, server, rig):
     expect(page.locator("#state")).to_have_text("Recording")
 
 
-@pytest.mark.parametrize("look", [("phone", "dark"), ("phone", "light")], indirect=True, ids=str)
+@looks("phone dark", "phone light")
 def test_a_backpack_with_a_profiler_is_seen_on_the_phone(server, page, screenshot, tmp_path):
     rig = load_rig("wuerzburg")
     walk = tmp_path / "walk"
@@ -103,6 +70,7 @@ def test_a_backpack_with_a_profiler_is_seen_on_the_phone(server, page, screensho
     assert [stage["stage"] for stage in stages] == ["frames"]
 
 
+@looks("phone dark")
 def test_a_corridor_that_holds_nothing_is_said_in_words(server, page, screenshot, tmp_path):
     truth = np.stack([np.linspace(0.0, 12.0, 120), np.zeros(120), np.zeros(120)], axis=1)
     write_carmen(tmp_path / "corridor.log", scanned(blank_corridor(), truth, odometry=False).scans)

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
-import threading
-from contextlib import contextmanager
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
-from recon4.live.replay import Shipment, replay
-from recon4.model.rig import LASER2D_PORT, format_rig, load_rig, parse_rig
+from recon4.live.replay import Shipment
+from recon4.model.rig import LASER2D_PORT, load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -21,20 +19,14 @@ from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.simulation.backpack import prepare_backpack, simulate_backpack
 from recon4.store.frames import FrameStore
-from tests.loopback import an_address
 from tests.planar_walks import along, furnished_room, scanned, write_carmen
-from tests.service.running import server_thread
+from tests.scan_captures import robot_server, sending
 from tests.service.test_live import Phone
-
-LASER = parse_rig('name = "robot"\n[[sensor]]\nname = "laser2d"\nkind = "laser2d"', where="test")
 
 
 @pytest.fixture
 def server(tmp_path):
-    root = tmp_path / "projects"
-    (root / "rigs").mkdir(parents=True)
-    (root / "rigs" / "robot.toml").write_text(format_rig(LASER))
-    with server_thread(root, live_address=an_address()) as running:
+    with robot_server(tmp_path / "projects") as running:
         yield running
 
 
@@ -46,16 +38,6 @@ def log(tmp_path_factory):
     path = tmp_path_factory.mktemp("log") / "walk.log"
     write_carmen(path, scans)
     return path
-
-
-@contextmanager
-def sending(server, recording, **how):
-    target = server.app.state.parts.settings.live_address
-    how = {"progress": Silent(), "target": target, **how}
-    thread = threading.Thread(target=replay, args=(recording,), kwargs=how)
-    thread.start()
-    yield
-    thread.join()
 
 
 def start(server, rig):

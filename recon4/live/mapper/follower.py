@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from typing import Protocol
+from collections.abc import Iterable, Iterator
+from typing import Generic, Protocol, TypeVar
 
 from recon4.live.ipc.messages import Snapshot
 from recon4.live.mapper.imu_synchronization import ImuSynchronization
@@ -18,6 +18,8 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 
 Measured = Multiframe | ImuSamples | LaserScans
+_Mapped = TypeVar("_Mapped")
+_Taken = TypeVar("_Taken", contravariant=True)
 _MOST_SCANS = 8
 """Scans that wait for the IMU at most, 0.3 s at 25 Hz."""
 
@@ -43,86 +45,88 @@ def frame_end_ns(frame: Multiframe) -> int:
     return frame.t_ns + frame.duration_ns
 
 
-class LidarFollower:
+class _LiveMap(Protocol[_Taken]):
+    """A map of a running capture."""
+
+    def extend_imu(self, imu: ImuSamples) -> None: ...
+
+    def push(self, item: _Taken, /) -> tuple[Pose, list[MapperMessage]]: ...
+
+    def thin(self, item: _Taken, /) -> None: ...
+
+    def snapshot(self) -> Snapshot: ...
+
+
+class _MapFollower(Generic[_Mapped]):
+    """Maps what has waited for its IMU samples."""
+
+    def __init__(
+        self,
+        live_map: _LiveMap[_Mapped],
+        rig: Rig,
+        latency: Latency,
+        *,
+        synchronization: ImuSynchronization[_Mapped],
+    ) -> None:
+        self._map, self._latency = live_map, latency
+        self._offset_ns = round(rig.imu_time_offset_s * 1e9)
+        self._synchronization = synchronization
+
+    def flush(self) -> Iterator[MapperMessage]:
+        """Map what still waits."""
+        yield from self._map_all(self._synchronization.flush())
+
+    def snapshot(self) -> Snapshot:
+        """The current state."""
+        return self._map.snapshot()
+
+    def _extend_imu(self, imu: ImuSamples) -> Iterator[MapperMessage]:
+        self._map.extend_imu(imu)
+        until_ns = int(imu.t_ns[-1]) + self._offset_ns
+        yield from self._map_all(self._synchronization.imu_until(until_ns))
+
+    def _map_all(self, items: Iterable[_Mapped]) -> Iterator[MapperMessage]:
+        for item in items:
+            if self._latency.leave_out(self._synchronization.end_ns(item)):
+                self._map.thin(item)
+                continue
+            pose, others = self._map.push(item)
+            pose.t_ns = self._latency.on_recorder_clock(pose.t_ns)
+            pose.age_s = self._latency.age_s(pose.t_ns)
+            yield pose
+            yield from others
+
+
+class LidarFollower(_MapFollower[Multiframe]):
     """Maps the multiframes of LiDARs."""
 
     def __init__(self, live_map: LiveMap, rig: Rig, latency: Latency) -> None:
-        self._map, self._latency = live_map, latency
-        self._offset_ns = round(rig.imu_time_offset_s * 1e9)
-        self._synchronization = ImuSynchronization(frame_end_ns)
+        waiting = ImuSynchronization(frame_end_ns)
+        super().__init__(live_map, rig, latency, synchronization=waiting)
 
     def take(self, item: Measured) -> Iterator[MapperMessage]:
         """Map the multiframes whose IMU samples are there."""
         if isinstance(item, ImuSamples):
-            self._map.extend_imu(item)
-            ready = self._synchronization.imu_until(int(item.t_ns[-1]) + self._offset_ns)
+            yield from self._extend_imu(item)
         elif isinstance(item, Multiframe):
-            ready = self._synchronization.push(item)
-        else:
-            return
-        for frame in ready:
-            yield from self._map_frame(frame)
-
-    def flush(self) -> Iterator[MapperMessage]:
-        """Map the multiframes that still wait."""
-        for frame in self._synchronization.flush():
-            yield from self._map_frame(frame)
-
-    def snapshot(self) -> Snapshot:
-        """The current state."""
-        return self._map.snapshot()
-
-    def _map_frame(self, frame: Multiframe) -> Iterator[MapperMessage]:
-        if self._latency.leave_out(frame_end_ns(frame)):
-            self._map.thin(frame)
-            return
-        pose, others = self._map.push(frame)
-        yield on_recorder_clock(pose, self._latency)
-        yield from others
+            yield from self._map_all(self._synchronization.push(item))
 
 
-class ScanFollower:
+class ScanFollower(_MapFollower[LaserScans]):
     """Maps the scans of a 2-D laser, and the multiframes of a profiler."""
 
     def __init__(self, scan_map: ScanMap, rig: Rig, latency: Latency) -> None:
-        self._map, self._latency = scan_map, latency
-        self._offset_ns = round(rig.imu_time_offset_s * 1e9)
-        self._synchronization = ImuSynchronization(end_of, most=_MOST_SCANS)
+        waiting = ImuSynchronization(end_of, most=_MOST_SCANS)
+        super().__init__(scan_map, rig, latency, synchronization=waiting)
+        self._scan_map = scan_map
 
     def take(self, item: Measured) -> Iterator[MapperMessage]:
         """Map the scans whose IMU samples are there."""
         if isinstance(item, Multiframe):
-            yield from self._map.sweep(item)
-            return
-        if isinstance(item, ImuSamples):
-            self._map.extend_imu(item)
-            ready = self._synchronization.imu_until(int(item.t_ns[-1]) + self._offset_ns)
+            yield from self._scan_map.sweep(item)
+        elif isinstance(item, ImuSamples):
+            yield from self._extend_imu(item)
         else:
             rows = (item[slice(k, k + 1)] for k in range(len(item)))
             ready = [scan for row in rows for scan in self._synchronization.push(row)]
-        for scan in ready:
-            yield from self._map_scan(scan)
-
-    def flush(self) -> Iterator[MapperMessage]:
-        """Map the scans that still wait."""
-        for scan in self._synchronization.flush():
-            yield from self._map_scan(scan)
-
-    def snapshot(self) -> Snapshot:
-        """The current state."""
-        return self._map.snapshot()
-
-    def _map_scan(self, scan: LaserScans) -> Iterator[MapperMessage]:
-        if self._latency.leave_out(end_of(scan)):
-            self._map.thin(int(scan.t_ns[0]))
-            return
-        pose, others = self._map.push(scan)
-        yield on_recorder_clock(pose, self._latency)
-        yield from others
-
-
-def on_recorder_clock(pose: Pose, latency: Latency) -> Pose:
-    """The pose with its time on the recorder's clock, and its age."""
-    pose.t_ns = latency.on_recorder_clock(pose.t_ns)
-    pose.age_s = latency.age_s(pose.t_ns)
-    return pose
+            yield from self._map_all(ready)

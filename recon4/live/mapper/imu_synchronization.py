@@ -23,7 +23,7 @@ class ImuSynchronization(Generic[Measured]):
             end_ns: End of one [ns].
             most: How many wait at most.
         """
-        self._end_ns, self._most = end_ns, most
+        self.end_ns, self._most = end_ns, most
         self._waiting: deque[Measured] = deque()
         self._imu_ns: int | None = None
 
@@ -50,5 +50,5 @@ class ImuSynchronization(Generic[Measured]):
         return ready
 
     def _synchronized(self) -> bool:
-        end_ns = self._end_ns(self._waiting[0])
+        end_ns = self.end_ns(self._waiting[0])
         return self._imu_ns is None or self._imu_ns >= end_ns - _SURE_NS

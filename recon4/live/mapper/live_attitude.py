@@ -19,8 +19,15 @@ _LONGEST_HOLE_NS = 200_000_000
 """Over a longer time without samples the rotation is not known [ns]."""
 _MIN_UPRIGHT = 0.5
 """Cosine of the largest tilt at the start, 60 degrees."""
+IMU_WRONG = "is it mounted as in the rig file (upside down?)"
+NOT_UPRIGHT = f"the IMU does not measure gravity upward and is not used: {IMU_WRONG}"
 _SURE_NS = 10_000_000
 """Samples may be missing for this time at the end; the motion is extrapolated [ns]."""
+
+
+def is_upright(up_body: Array) -> bool:
+    """Whether the mean specific force (3,) lies near the z axis of the body."""
+    return bool(up_body[2] > _MIN_UPRIGHT * np.linalg.norm(up_body))
 
 
 class LiveAttitude:
@@ -70,12 +77,8 @@ class LiveAttitude:
 
     def _begin(self, t_ns: Times, gyro: Array, accel: Array) -> None:
         up = accel.mean(axis=0)
-        length = float(np.linalg.norm(up))
-        if length < 1e-6 or up[2] < _MIN_UPRIGHT * length:
-            self.remark = (
-                "the IMU does not measure gravity upward and is not used: is it mounted as in the "
-                "rig file (upside down?)"
-            )
+        if not is_upright(up):
+            self.remark = NOT_UPRIGHT
             return
         self._t_ns, self._R = t_ns[:1], level_rotation(up)[None]
         self._integrate(t_ns, gyro, accel)

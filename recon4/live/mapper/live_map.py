@@ -18,10 +18,11 @@ from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.motion_watch import MotionWatch
 from recon4.live.mapper.place_index import PlaceIndex
 from recon4.live.mapper.recovery import Recovery
+from recon4.live.mapper.shown import RecentCounts, ShownPath
 from recon4.live.mapper.tracker import Tracker
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import Coverage
-from recon4.live.protocol import Gaps, Loop, MapperMessage, Points, Pose, RecentFrames
+from recon4.live.protocol import Gaps, Loop, MapperMessage, Points, Pose
 from recon4.live.protocol import Path as PathMessage
 from recon4.model.multiframe import Multiframe
 from recon4.model.plain import finite_or_none
@@ -40,7 +41,6 @@ _SEARCH_AFTER = 5
 """Number of lost multiframes after which relocalization starts, and between its attempts."""
 _LOOP_WITHIN_M = 4.0
 _LOOP_WALKED_M = 20.0
-_PATH_STEP_M = 0.25
 """Distance between stored points of the path; an hour's walk has a few thousand."""
 _OFFSET_SHOWN_NS = 3_000_000_000
 _RECENT_NS = 10_000_000_000
@@ -64,9 +64,8 @@ class LiveMap:
         self._preview = PreviewCloud()
         self._intensity = LiveIntensity(len(rig.sensors))
         self._motion = MotionWatch()
-        self._thinned, self._relocated = 0, 0
-        self._recent: deque[tuple[int, bool]] = deque()
-        """Time of each recent multiframe and whether it was left out."""
+        self._relocated = 0
+        self._recent = RecentCounts()
         self._offsets_m: deque[tuple[int, float]] = deque()
         """Time and prediction offset of each recent multiframe."""
         self._summary_ns = 0
@@ -76,7 +75,7 @@ class LiveMap:
         """Reset the map, except the preview, whose generation continues."""
         self._coverage = Coverage()
         self._places = PlaceIndex(self._settings, scratch=self._scratch)
-        self._path: list[list[float]] = []
+        self._path = ShownPath()
         self._here_m = np.zeros(3)
         """Last position before tracking was lost [m]."""
         self._lost = self._lost_steps = 0
@@ -92,8 +91,7 @@ class LiveMap:
 
     def thin(self, frame: Multiframe) -> None:
         """Count a multiframe that is left out because of latency; the recording contains it."""
-        self._thinned += 1
-        self._recent.append((frame.t_ns, True))
+        self._recent.add(frame.t_ns, left_out=True)
 
     def push(self, frame: Multiframe) -> tuple[Pose, list[MapperMessage]]:
         """Map a multiframe.
@@ -102,7 +100,7 @@ class LiveMap:
             The pose, and further messages: ``path`` after a map reset, ``points`` when there are
             new ones, about once a second ``plan``, ``gaps``, ``loop`` and ``motion``.
         """
-        self._recent.append((frame.t_ns, False))
+        self._recent.add(frame.t_ns)
         interrupted = self.tracker.interrupted(frame)
         step = self.tracker.restart(frame) if interrupted else self.tracker.push(frame)
         messages: list[MapperMessage] = []
@@ -128,13 +126,11 @@ class LiveMap:
         chunk = self._preview.since(0) if len(self._preview) else None
         others: list[MapperMessage] = [*self._plan.newest, self._gaps, self._loop]
         others.append(self._motion.message())
-        return Snapshot(list(self._path), chunk, others)
+        return Snapshot(list(self._path.places), chunk, others)
 
     def _extend_path(self, p_map: Array) -> None:
         self._here_m = p_map
-        place = [round(float(v), 2) for v in p_map]
-        if not self._path or np.linalg.norm(p_map - self._path[-1]) >= _PATH_STEP_M:
-            self._path.append(place)
+        self._path.extend(p_map)
 
     def _resume(self, step: OdometryStep) -> tuple[OdometryStep, bool]:
         """After a pause: assume the position of its start until relocalization confirms it."""
@@ -191,8 +187,8 @@ class LiveMap:
             prediction_offset_m=finite_or_none(offset_m, 4),
             turn_rad_s=finite_or_none(_turn_rate(step), 4),
             points=np.bincount(frame.sensor, minlength=len(self._rig.sensors)).tolist(),
-            thinned=self._thinned,
-            lately=self._counts_recently(frame.t_ns),
+            thinned=self._recent.thinned,
+            lately=self._recent.message(frame.t_ns),
             imu=self.tracker.with_imu,
             remark=self.tracker.remark,
         )
@@ -203,12 +199,6 @@ class LiveMap:
         while t_ns - self._offsets_m[0][0] > _OFFSET_SHOWN_NS:
             self._offsets_m.popleft()
         return max(prediction_offset_m for _, prediction_offset_m in self._offsets_m)
-
-    def _counts_recently(self, now_ns: int) -> RecentFrames:
-        """Count the multiframes of the last 10 s and those of them that were left out."""
-        while now_ns - self._recent[0][0] > _RECENT_NS:
-            self._recent.popleft()
-        return RecentFrames(len(self._recent), thinned=sum(out for _, out in self._recent))
 
     def _add_points(self, frame: Multiframe, step: OdometryStep) -> list[Points]:
         rows = np.arange(0, len(frame), max(1, len(frame) // PREVIEW_POINTS))
@@ -238,7 +228,7 @@ class LiveMap:
 
     def _close_loop(self, source: Array, T_map_body: SE3, step: OdometryStep) -> None:
         """Recognize a place visited before and correct the drift of the map."""
-        start_m = np.array(self._path[0])
+        start_m = np.array(self._path.places[0])
         place = self._places.revisited(
             T_map_body.t, within_m=_LOOP_WITHIN_M, walked_before_m=_LOOP_WALKED_M
         )

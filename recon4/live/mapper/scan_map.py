@@ -6,22 +6,21 @@ With a profiler the plan shows what its line scans have covered.
 
 from __future__ import annotations
 
-from collections import deque
-
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se2 import compose, inverse, to_se3, transform, wrap
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.live.ipc.messages import PlanSchedule, Snapshot, gaps_message, points_message
 from recon4.live.mapper.live_attitude import LiveAttitude
 from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.scan_places import ScanPlaces
 from recon4.live.mapper.scan_tracker import ScanStep, ScanTracker
+from recon4.live.mapper.shown import RecentCounts, ShownPath
 from recon4.live.mapper.swept_lines import SweptLines
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import CELL_M, Coverage
-from recon4.live.protocol import Gaps, Loop, MapperMessage, Path, Points, Pose, RecentFrames
+from recon4.live.protocol import Gaps, Loop, MapperMessage, Path, Points, Pose
 from recon4.model.laser_scans import LaserScans
 from recon4.model.multiframe import Multiframe
 from recon4.model.plain import finite_or_none
@@ -40,8 +39,6 @@ RAYS = 400
 """Returns of a scan that are added."""
 _LASER_VALUE = 128
 """Intensity of its points in the preview."""
-_PATH_STEP_M = 0.25
-_RECENT_NS = 10_000_000_000
 _FASTEST_M_S = 1.0
 """Speed of a person or robot that is lost [m/s]."""
 _RESTARTED = "the local map started again: go back to a place seen before, until the loop closes"
@@ -68,10 +65,8 @@ class ScanMap:
         if rig.row_of("profiler") is not None:
             self._lines = SweptLines(rig, min_range_m=settings.lines.min_range_m)
         self._T_map_odom = np.zeros(3)
-        self._path: list[list[float]] = []
-        self._recent: deque[tuple[int, bool]] = deque()
-        """Time of each recent scan and whether it was left out."""
-        self._scans = self._thinned = self._lost = self._relocated = 0
+        self._path, self._recent = ShownPath(), RecentCounts()
+        self._scans = self._lost = self._relocated = 0
         self._tracked_ns = 0
         self._restarted = False
         """Whether the part of the map since a restart is not yet joined to the rest."""
@@ -86,10 +81,9 @@ class ScanMap:
         """Add IMU samples."""
         self._attitude.extend(imu)
 
-    def thin(self, t_ns: int) -> None:
+    def thin(self, scan: LaserScans) -> None:
         """Count a scan that is left out because of latency; the recording contains it."""
-        self._thinned += 1
-        self._recent.append((t_ns, True))
+        self._recent.add(int(scan.t_ns[0]), left_out=True)
 
     def push(self, scan: LaserScans) -> tuple[Pose, list[MapperMessage]]:
         """Map a scan.
@@ -100,7 +94,7 @@ class ScanMap:
         """
         self._scans += 1
         step = self._tracker.push(scan, self._attitude)
-        self._recent.append((step.t_ns, False))
+        self._recent.add(step.t_ns)
         self._follow(step)
         T_map_laser = compose(self._T_map_odom, step.pose)
         T_map_body = self._body(T_map_laser, step)
@@ -108,7 +102,7 @@ class ScanMap:
         if step.lost:
             return pose, []
         self._tracked_ns = step.t_ns
-        self._extend_path(T_map_body.t)
+        self._path.extend(T_map_body.t)
         messages = self._show(step, T_map_laser)
         if step.keyframe:
             self._places.keep(T_map_laser, step.seen)
@@ -127,7 +121,9 @@ class ScanMap:
     def snapshot(self) -> Snapshot:
         """The current state, for clients that connect late."""
         chunk = self._preview.since(0) if len(self._preview) else None
-        return Snapshot(list(self._path), chunk, [*self._plan.newest, self._gaps, self._loop])
+        return Snapshot(
+            list(self._path.places), chunk, [*self._plan.newest, self._gaps, self._loop]
+        )
 
     # -- pose
 
@@ -153,7 +149,7 @@ class ScanMap:
             R_world_body = self._attitude.trajectory().at(at, slack_ns=100_000_000).R[0]
         R_world_laser = R_world_body @ T_body_laser.R
         turn = float(T_map_laser[2]) - _yaw(R_world_laser)
-        R_map_body = _about_z(turn) @ R_world_body
+        R_map_body = so3_exp([0.0, 0.0, turn]) @ R_world_body
         shift = R_map_body @ T_body_laser.t
         T = SE3(R_map_body, np.array([*(T_map_laser[:2] - shift[:2]), 0.0]))
         if self._lines is not None and not step.lost:
@@ -180,23 +176,12 @@ class ScanMap:
             prediction_offset_m=None,
             turn_rad_s=finite_or_none(step.turn_rad_s, 4),
             points=[len(step.seen.points)],
-            thinned=self._thinned,
-            lately=self._counts_recently(step.t_ns),
+            thinned=self._recent.thinned,
+            lately=self._recent.message(step.t_ns),
             imu=step.with_imu,
             remark=_RESTARTED if self._restarted else self._attitude.remark,
             unobserved=along,
         )
-
-    def _counts_recently(self, now_ns: int) -> RecentFrames:
-        """Count the scans of the last 10 s and those of them that were left out."""
-        while now_ns - self._recent[0][0] > _RECENT_NS:
-            self._recent.popleft()
-        return RecentFrames(len(self._recent), thinned=sum(out for _, out in self._recent))
-
-    def _extend_path(self, p_map: Array) -> None:
-        place = [round(float(v), 2) for v in p_map]
-        if not self._path or np.linalg.norm(p_map - self._path[-1]) >= _PATH_STEP_M:
-            self._path.append(place)
 
     # -- what is shown
 
@@ -250,7 +235,7 @@ class ScanMap:
         if len(self._places) > self._tried:  # standing still says nothing new
             self._tried = len(self._places)
             self._recognize(place)
-        start_m = np.array(self._path[0][:2])
+        start_m = np.array(self._path.places[0][:2])
         self._loop = Loop(
             near=place is not None,
             closed=self._gate.closed,
@@ -280,14 +265,14 @@ class ScanMap:
         self._coverage = Coverage()
         self._preview.reset()
         self._plan.reset()
-        self._path = []
+        self._path = ShownPath()
         height_m = float(self._laser.T_body_sensor.t[2])
         for pose, seen in self._places.views():
             ends = _raised(seen[:: max(1, len(seen) // RAYS)], height_m)
             self._coverage.add(np.array([pose[0], pose[1], height_m]), ends)
             self._preview.add(ends, np.full(len(ends), _LASER_VALUE, np.uint8))
-            self._extend_path(self._level_body(pose))
-        return [Path(list(self._path)), points_message(self._preview.since(0))]
+            self._path.extend(self._level_body(pose))
+        return [Path(list(self._path.places)), points_message(self._preview.since(0))]
 
     def _level_body(self, T_map_laser: Array) -> Array:
         """Position of the body under a laser, if both are level [m], (3,)."""
@@ -299,11 +284,6 @@ class ScanMap:
 
 def _yaw(R: Array) -> float:
     return float(np.arctan2(R[1, 0], R[0, 0]))
-
-
-def _about_z(angle_rad: float) -> Array:
-    c, s = np.cos(angle_rad), np.sin(angle_rad)
-    return np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
 
 
 def _raised(points: Array, height_m: float) -> Array:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import Array, so3_exp
 from recon4.kernels.imu import place_points
 from recon4.live.mapper.live_attitude import LiveAttitude
 from recon4.live.mapper.live_intensity import LiveIntensity
@@ -108,7 +108,10 @@ class SweptLines:
         known_s: Array = (t_ns - frame.t_ns).astype(np.float64) * 1e-9
         knot_s: Array = (knot_ns - frame.t_ns).astype(np.float64) * 1e-9
         turn = np.interp(knot_s, known_s, np.unwrap(poses[:, 0]))
-        R = _about_z(turn) @ attitude.trajectory().at(knot_ns, slack_ns=_LONGEST_HOLE_NS).R
+        R = (
+            so3_exp(np.outer(turn, [0.0, 0.0, 1.0]))
+            @ attitude.trajectory().at(knot_ns, slack_ns=_LONGEST_HOLE_NS).R
+        )
         p = np.zeros((len(knot_s), 3))
         for axis in (0, 1):
             p[:, axis] = np.interp(knot_s, known_s, poses[:, 1 + axis])
@@ -122,10 +125,3 @@ class SweptLines:
         middle = len(knot_s) // 2
         step = max(1, len(p_map) // COVERAGE_RAYS)
         return PlacedLines(R[middle] @ T.t + p[middle], p_map[::step], p_map, values)
-
-
-def _about_z(angle_rad: Array) -> Array:
-    R = np.zeros((len(angle_rad), 3, 3))
-    c, s = np.cos(angle_rad), np.sin(angle_rad)
-    R[:, 0, 0], R[:, 0, 1], R[:, 1, 0], R[:, 1, 1], R[:, 2, 2] = c, -s, s, c, 1.0
-    return R

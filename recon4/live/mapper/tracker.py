@@ -7,6 +7,7 @@ from collections import deque
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.live.mapper.live_attitude import IMU_WRONG, NOT_UPRIGHT, is_upright
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -22,11 +23,8 @@ _FAR_M = 0.08
 _BETTER = 0.75
 _EARLY_FRAMES = 100
 """If the IMU is rejected before this multiframe, the map made with it is reset."""
-_MIN_UPRIGHT = 0.5
-"""Cosine of the largest tilt at the start, 60 degrees."""
 _INTERRUPTED_NS = 2_000_000_000
 """Duration of a pause after which the pose is unknown, unless the IMU continued."""
-_IMU_WRONG = "is it mounted as in the rig file (upside down?)"
 
 
 class Tracker:
@@ -96,7 +94,7 @@ class Tracker:
         self.with_imu = imu is not None and len(imu) > 1
         if self.with_imu and imu is not None and not _upright(imu, self._rig):
             self.with_imu, imu = False, None
-            self.remark = f"the IMU does not measure gravity upward and is not used: {_IMU_WRONG}"
+            self.remark = NOT_UPRIGHT
         return Odometry(self._rig, self._settings, imu)
 
     def restart(self, frame: Multiframe) -> OdometryStep:
@@ -128,7 +126,7 @@ class Tracker:
         T_map_body = self.T_map_odom @ step.T_odom_body
         self._odometry, self.with_imu = odometry, False
         self.remark = (
-            f"the IMU contradicts the LiDARs and is not used: {_IMU_WRONG}, its clock the same?"
+            f"the IMU contradicts the LiDARs and is not used: {IMU_WRONG}, its clock the same?"
         )
         self.map_reset = self._frames < _EARLY_FRAMES
         if self.map_reset:
@@ -152,5 +150,4 @@ def _upright(imu: ImuSamples, rig: Rig) -> bool:
     force = imu.accel_m_s2 @ rig.T_body_imu.R.T
     if not np.isfinite(force).all():  # gyroscope only
         return True
-    up = force.mean(axis=0)
-    return bool(up[2] > _MIN_UPRIGHT * np.linalg.norm(up))
+    return is_upright(force.mean(axis=0))
