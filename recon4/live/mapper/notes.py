@@ -20,6 +20,7 @@ class NotesWatch:
         self._report = report
         self._seen_s: list[float] = []
         self._counts: deque[tuple[float, dict[str, int]]] = deque()
+        """Time and counts of recent messages; before the first one nothing was counted."""
 
     def message(self, now_s: float) -> Notes:
         """Build the message ``notes`` of ``docs/live.md``.
@@ -35,6 +36,8 @@ class NotesWatch:
             if now_s - seen_s < FRESH_S or "clock" in text
         ]
         counts = dict(self._report.counts)
+        if not self._counts:
+            self._counts.append((now_s, {}))
         self._counts.append((now_s, counts))
         while now_s - self._counts[0][0] > RECENT_S:
             self._counts.popleft()

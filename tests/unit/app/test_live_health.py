@@ -58,6 +58,16 @@ def test_lost_packets_are_those_of_the_lidar_that_lost_them():
     assert [(one.name, one.lost) for one in found] == [("horizontal", 0.0), ("vertical", 0.1)]
 
 
+def test_what_went_wrong_before_the_first_message_is_reported_for_ten_seconds():
+    report = ImportReport()
+    report.count("clock_jumps")
+    notes = NotesWatch(report)
+
+    recent = [notes.message(now_s).recent for now_s in (30.0, 39.0, 41.0)]
+
+    assert recent == [{"clock_jumps": 1}, {"clock_jumps": 1}, {}]
+
+
 def test_without_data_and_for_a_silent_lidar_loss_and_clock_are_unknown():
     assert lidars(RIG, Newest()) == []
     (first, _) = lidars(RIG, newest())
