@@ -62,6 +62,9 @@ KINDS: Mapping[str, DegradationKind] = {
         0.03, 1, "°", "standard deviation of the elevation and azimuth of each laser"
     ),
     "packet-loss": DegradationKind(0.25, 0.95, "", "ratio of packets or line scans lost, in runs"),
+    "late-start": DegradationKind(
+        3.0, 1e4, "s", "the recording begins this long after the walk, in motion"
+    ),
     "people": DegradationKind(5, 12, "", "number of people who walk along and hide the view"),
     "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
     "head-stuck": DegradationKind(_SWITCH, 1, "", "the profiler reports one angle of its head"),
@@ -84,7 +87,9 @@ ONLY_PROFILER = frozenset(
     | {"laser2d-silent", "laser2d-mirrored", "no-laser2d"}
 )
 """Degradations of rigs with a profiler."""
-NOT_PROFILER = frozenset({"wrong-model", "dead-beams", "beam-bias", "swap-lidars", BEAM_ANGLE})
+NOT_PROFILER = frozenset(
+    {"wrong-model", "dead-beams", "beam-bias", "swap-lidars", "late-start", BEAM_ANGLE}
+)
 """Degradations that a rig with a profiler cannot have."""
 
 
@@ -185,11 +190,14 @@ class Degradation:
         if "imu-axes" in self.values:  # a rotation, so the axes stay right-handed
             gyro, accel = (v[:, [1, 0, 2]] * [1.0, 1.0, -1.0] for v in (gyro, accel))
         t_ns = self._stamps("imu", samples.t_ns, samples.t_ns[0])
-        return ImuSamples(t_ns, gyro, accel)
+        kept = self.recorded(samples.t_ns - samples.t_ns[0])
+        return ImuSamples(t_ns[kept], gyro[kept], accel[kept])
 
     def gnss(self, samples: GnssSamples) -> GnssSamples:
         """Positions as they are written."""
-        return replace(samples, t_ns=self._stamps("gnss", samples.t_ns, samples.t_ns[0]))
+        kept = self.recorded(samples.t_ns - samples.t_ns[0])
+        stamped = replace(samples, t_ns=self._stamps("gnss", samples.t_ns, samples.t_ns[0]))
+        return stamped.take(kept)
 
     def stamps(self, row: int, t_ns: Times, *, sensors: int) -> Times:
         """Times since the start of the walk by the clock of a LiDAR [ns], (N,)."""
@@ -205,7 +213,7 @@ class Degradation:
             rng = np.random.default_rng([self.seed, 9, row, second])
             units = self.bias_m[row] / RESOLUTION_M + rng.uniform(-0.5, 0.5, distance.shape)
             distance = np.where(distance > 0, np.clip(np.rint(distance + units), 1, 65535), 0)
-        kept = self._kept(len(distance), row, second)
+        kept = self._kept(len(distance), row, second) & self.recorded(shots.t_ns[:, 0, 0])
         return Firings(
             shots.t_ns[kept],
             shots.azimuth_rad[kept],
@@ -217,6 +225,10 @@ class Degradation:
     def kept(self, count: int, row: int, second: int) -> NDArray[np.bool_]:
         """Packets or line scans of a second that are recorded, (N,) bool."""
         return self._kept(count, row, second)
+
+    def recorded(self, t_ns: Times) -> NDArray[np.bool_]:
+        """Which times since the start of the walk are in the recording, (N,) bool."""
+        return t_ns >= round(1e9 * self._get("late-start"))
 
     def to_json(self) -> dict[str, object]:
         """What was degraded, with all that was drawn, for ``world.json``."""

@@ -70,6 +70,8 @@ def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup
     owner = np.repeat(np.arange(len(parts)), [len(part.t_arrival_ns) for part in parts])
     place = np.concatenate([np.arange(len(part.t_arrival_ns)) for part in parts])
     order = np.argsort(t_ns, kind="stable")
+    if not len(order):  # a second before the recording began, or all packets of it are lost
+        return
     # Runs of one sensor are written at once.
     breaks = np.flatnonzero(np.diff(owner[order])) + 1
     for run in np.split(order, breaks):

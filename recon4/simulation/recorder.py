@@ -70,7 +70,8 @@ class WalkRecorder:
             pack(firings, row, setup, degradation=degradation, rng=setup.rng(4, row, second))
             for row, firings in enumerate(parts)
         ]
-        write_positions(self._pcap, second, setup)
+        if degradation.recorded(np.array([second * _SECOND_NS]))[0]:
+            write_positions(self._pcap, second, setup)
         write_packets(self._pcap, packets, setup)
         for row, firings in enumerate(parts):
             self._reflectivity.append(row, firings.reflectivity)

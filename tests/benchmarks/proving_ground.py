@@ -52,7 +52,7 @@ WALKS = (
 DEGRADATIONS = (
     "none", "extrinsics", "imu-rotation", "imu-clock", "lidar-clock", "imu-grade", "imu-unit",
     "imu-axes", "imu-scale", "swap-lidars", "wrong-model", "dead-beams", "packet-loss", "beam-bias",
-    "lever-arm", "gnss-clock", "no-imu", "people",
+    "lever-arm", "gnss-clock", "no-imu", "people", "late-start",
 )  # fmt: skip
 ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss"}
 GENERIC = ("No loop closure was accepted", "no IMU: motion within a frame")

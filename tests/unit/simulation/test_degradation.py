@@ -7,9 +7,10 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.model.rig import load_rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
+from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.recording.velodyne.models import MODELS
 from recon4.simulation.degradation import KINDS, Degradation, parse_degradations
 from recon4.simulation.imu import ImuModel
@@ -210,6 +211,7 @@ def recordings(tmp_path_factory):
     folders = {
         root / "clean": {},
         root / "clock": {"lidar-clock": 0.02, "lever-arm": 0.15, "no-imu": 1.0},
+        root / "late": {"late-start": 1.5, "imu-clock": 0.02},
     }
     record(setup, folders, bag=False, progress=Silent())
     simulate(prepare("tunnel", seconds=5.0, seed=3), root / "alone", bag=False, progress=Silent())
@@ -255,3 +257,36 @@ def test_the_truth_names_the_degradations_and_the_rig_file_does_not(recordings):
     assert read_tum(folder / "truth.tum").t_ns[0] == read_tum(
         recordings / "clean" / "truth.tum"
     ).t_ns[0]  # fmt: skip
+
+
+def test_a_late_recording_has_nothing_from_before_it_began(recordings):
+    def stamps(name):
+        """Microseconds of the hour in data packets of both LiDARs, and arrivals of positions."""
+        data, arrivals = {2368: [], 2369: []}, []
+        for t_s, _, port, payload in datagrams(recordings / name / "recording.pcap"):
+            if port in data:
+                data[port].append(int.from_bytes(payload[1200:1204], "little"))
+            else:
+                arrivals.append(t_s)
+        return data, arrivals
+
+    (clean, clean_s), (late, late_s) = stamps("clean"), stamps("late")
+    for port, sent in clean.items():
+        assert sent[0] < 10_000  # the walk begins at the full hour
+        assert late[port] == [us for us in sent if us >= 1_500_000]
+    assert late_s == [t_s for t_s in clean_s if t_s % 3600.0 >= 2.0]
+    start_ns = read_tum(recordings / "late" / "truth.tum").t_ns[0]
+    imu = read_imu_csv(recordings / "late" / "imu.csv")
+    assert imu.t_ns[0] == start_ns + 1_520_000_000
+
+
+def test_a_late_recording_has_no_earlier_positions():
+    t_ns = np.arange(50, dtype=np.int64) * 100_000_000
+    column = np.arange(50, dtype=float)
+    rows = np.zeros((50, 3))
+    fixes = GnssSamples(t_ns, column, column, column, rows, np.zeros(50, np.uint8), rows)
+
+    found = degraded("late-start=2", "gnss-clock=0.1").gnss(fixes)
+
+    assert found.t_ns.tolist() == (t_ns[20:] + 100_000_000).tolist()
+    assert found.lat_rad.tolist() == column[20:].tolist()
