@@ -76,6 +76,8 @@ class Raster:
     z_sum: Array = field(init=False)
     intensity_sum: Array = field(init=False)
     normalized_sum: Array = field(init=False)
+    ink: bytes | None = field(init=False, default=None)
+    """Image of the density, once it was made."""
 
     def __post_init__(self) -> None:
         size = self.frame.width * self.frame.height
@@ -84,6 +86,7 @@ class Raster:
 
     def add(self, chunk: MapChunk) -> None:
         """Add points."""
+        self.ink = None
         f, p = self.frame, chunk.xyz_m
         column = np.floor((p[:, self.view.right] - f.left_m) / f.pixel_m).astype(np.int64)
         row = (
@@ -155,10 +158,12 @@ def rasterize(
 
 def ink_png(raster: Raster) -> bytes:
     """Image of the point density: walls seen from above are dark lines."""
-    shade = _steps(raster.density**1.3)
-    rgba = np.zeros((*shade.shape, 4))
-    rgba[..., 3] = shade
-    return _png(rgba)
+    if raster.ink is None:
+        shade = _steps(raster.density**1.3)
+        rgba = np.zeros((*shade.shape, 4))
+        rgba[..., 3] = shade
+        raster.ink = _png(rgba)
+    return raster.ink
 
 
 def height_png(raster: Raster) -> tuple[bytes, tuple[float, float]]:
@@ -235,9 +240,9 @@ def _steps(shade: Array) -> Array:
 
 
 def _png(rgba: Array) -> bytes:
-    from matplotlib.image import imsave
+    from PIL import Image
 
     buffer = BytesIO()
     pixels: NDArray[np.uint8] = np.round(255.0 * rgba).astype(np.uint8)
-    imsave(buffer, pixels, format="png")
+    Image.fromarray(pixels, "RGBA").save(buffer, "PNG")
     return buffer.getvalue()
