@@ -32,7 +32,7 @@ _ABOVE, _BESIDE, _BELOW = 8.0, 12.0, 2.0 * LINE + 6.0
 _KEY = 22.0
 """Space of a line of the legend without its text."""
 _FEW = 60
-"""A curve of at most so many points shows each of them."""
+"""Points of a curve up to which each of them is shown."""
 
 
 class Chart:

@@ -72,7 +72,7 @@ def ticks_of(span: AxisSpan, most: int, *, integer: bool = False) -> list[AxisTi
 
     Args:
         span: Of the axis.
-        most: So many ticks at most, of a linear axis.
+        most: Largest number of ticks of a linear axis.
         integer: Whole numbers only.
     """
     low, high = sorted((span.first, span.last))
