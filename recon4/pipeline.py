@@ -50,6 +50,8 @@ class Measurements:
     frames: Artifact
     calibration: Artifact | None
     """None = the rig of the recording is used."""
+    audit: Artifact | None = None
+    """What contradicts the rig that is used; None = it was not compared, or is calibrated."""
 
     @property
     def inputs(self) -> dict[str, Artifact]:
@@ -204,7 +206,7 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary | Summary2
         runner = StageRunner(project, settings, progress)
         frames, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW)
         calibration = runner.keep(stages.CALIBRATION) if stages.CALIBRATION.name in made else None
-        measurements = Measurements(frames, _if_applied(runner, calibration))
+        measurements = _measured(runner, frames, calibration)
         run_from_review(
             runner, measurements, odometry=odometry, graph=graph, decided=read_decided(out)
         )
@@ -240,7 +242,7 @@ def run_before_review(
         return _lines_before_review(runner, frames)
     odometry = run(stages.ODOMETRY, frames=frames)
     calibration = run(stages.CALIBRATION, frames=frames, odometry=odometry)
-    measurements = Measurements(frames, _if_applied(runner, calibration))
+    measurements = _measured(runner, frames, calibration)
     if measurements.calibration:
         odometry = run(stages.ODOMETRY, **measurements.inputs)
     searched = run(stages.GRAPH, **measurements.inputs, odometry=odometry)
@@ -258,11 +260,13 @@ def _lines_before_review(
     return Measurements(frames, None), odometry, verified
 
 
-def _if_applied(runner: StageRunner, calibration: Artifact | None) -> Artifact | None:
-    """The calibration if its rig is used from here on."""
+def _measured(runner: StageRunner, frames: Artifact, calibration: Artifact | None) -> Measurements:
+    """The calibrated rig from here on if there is one, else what its audit found."""
     if calibration is None:
-        return None
-    return calibration if figures_of(runner.runs, stages.CALIBRATION).applied else None
+        return Measurements(frames, None)
+    if figures_of(runner.runs, stages.CALIBRATION).applied:
+        return Measurements(frames, calibration)
+    return Measurements(frames, None, audit=calibration)
 
 
 def run_from_review(
@@ -288,4 +292,5 @@ def run_trajectory(
     lines = stages.has_profiler(measurements.frames.folder)
     refine = stages.LINE_REFINE if lines else stages.REFINE
     refined = runner.run(refine, **measurements.inputs, odometry=odometry, graph=graph)
-    return runner.run(stages.LEVEL, **measurements.inputs, refined=refined, graph=graph)
+    inputs = measurements.inputs | {"refined": refined, "graph": graph}
+    return runner.run(stages.LEVEL, **inputs, audit=measurements.audit)

@@ -156,11 +156,14 @@ def _level(
     refined: Path,
     graph: Path,
     calibration: Path | None = None,
+    audit: Path | None = None,
 ) -> LevelFigures:
     from recon4.georeference.stage import level_and_georeference
     from recon4.pose_graph.files import load_graph
+    from recon4.pose_graph.rig_error import EXACT, audited_error
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
+    from recon4.store.stage import read_figures
 
     leveled = level_and_georeference(
         open_frames(frames, calibration),
@@ -168,6 +171,9 @@ def _level(
         load_graph(graph),
         settings=context.settings,
         progress=context.progress,
+        rig_error=(
+            audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
+        ),
     )
     return leveled.save(context.out)
 
@@ -289,7 +295,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 9, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 10, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 5, ("map",), _map, MapFigures)
 

@@ -23,6 +23,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.relations import with_residuals
+from recon4.pose_graph.rig_error import EXACT, RigError
 from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again
@@ -112,6 +113,7 @@ def level_and_georeference(
     *,
     settings: Settings,
     progress: Progress,
+    rig_error: RigError = EXACT,
 ) -> LeveledMap:
     """Level a finished trajectory and, if there are GNSS positions, georeference it.
 
@@ -123,6 +125,7 @@ def level_and_georeference(
         graph: The verified graph.
         settings: Uses level, gnss and verification.
         progress: Counts the steps.
+        rig_error: What the audit of the rig says of the poses.
     """
     progress.start("level", 2, "steps")
     nodes = graph.with_poses(trajectory.at(graph.t_ns))
@@ -140,7 +143,7 @@ def level_and_georeference(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
-    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna)
+    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna, rig_error=rig_error)
     return LeveledMap(
         dense,
         with_residuals(judged),
@@ -166,15 +169,16 @@ def _uncertainty(
     placed: GeoreferenceResult,
     *,
     antenna: AntennaFigures | None,
+    rig_error: RigError,
 ) -> PoseUncertainty | None:
-    """Covariances of the final poses, with an error of the antenna that was found."""
+    """Covariances of the final poses, with errors of antenna and rig that were found."""
     if frames.rig.row_of("profiler") is not None:
         return None  # line scans have errors of their own kind, which the model does not know
     model = CALIBRATED
     if antenna is not None and antenna_contradictions(antenna):
         known_m = float(np.linalg.norm(antenna.arm_m)) + _WALK_M_S * abs(antenna.clock_s)
         model = replace(model, gnss_m=float(np.hypot(model.gnss_m, known_m)))
-    return pose_uncertainty(graph, positions=placed.positions, model=model)
+    return pose_uncertainty(graph, positions=placed.positions, model=model, rig=rig_error)
 
 
 def _audit_antenna(

@@ -1,0 +1,80 @@
+"""What an error of the rig file does to the poses: an error that turns with the body.
+
+Two LiDARs that contradict each other pull every pose of the body to a place between what each of
+them says. Where the body stands as at the start this is the same and cancels out; where it has
+turned, it does not. Neighboring poses share it, so no residual of the graph shows it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array
+from recon4.model.figures import GNSS, IMU, ParameterFigures
+
+_PULL = 0.35
+"""A pose follows a wrong LiDAR by this ratio of its error (1.4° in eleven worlds: NEES of the turns
+0.3 to 2.5 with it, 0.8 to 20 without it)."""
+_ARM_M = 0.6
+"""Surfaces that a wrongly turned LiDAR sees pull the body aside by its turn times this [m]."""
+_WALK_M_S, _TURN_RAD_S = 1.3, 1.0
+"""Speeds by which an error of a LiDAR's clock becomes one of the pose."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigError:
+    """Standard deviations along each axis of the body."""
+
+    turn_rad: float = 0.0
+    shift_m: float = 0.0
+
+    def cov(self, T_map_body: SE3, *, on_earth: bool) -> Array:
+        """Covariances that it adds to poses, (N, 6, 6), turn first, in axes of the map.
+
+        Args:
+            T_map_body: N poses.
+            on_earth: False = relative to the first pose, which has the same error.
+        """
+        R = T_map_body.R
+        since = R if on_earth else R - R[0]
+        turned = since @ np.swapaxes(since, 1, 2)
+        out = np.zeros((len(R), 6, 6))
+        out[:, ROTATION, ROTATION] = self.turn_rad**2 * turned
+        out[:, TRANSLATION, TRANSLATION] = self.shift_m**2 * turned
+        return out
+
+
+EXACT = RigError()
+"""The rig file is right as far as is known."""
+
+
+def audited_error(parameters: Sequence[ParameterFigures]) -> RigError:
+    """The error of the poses by what an audit found of the LiDARs; the worst of them counts.
+
+    The odometry estimates the errors of the IMU by itself, and an error of the GNSS antenna moves
+    the map on the earth only.
+    """
+    off = [row for row in parameters if row.status == "off" and row.sensor not in (IMU, GNSS)]
+    found = [_of_one(list(rows)) for _, rows in groupby(off, key=lambda row: row.sensor)]
+    return RigError(
+        turn_rad=max((one.turn_rad for one in found), default=0.0),
+        shift_m=max((one.shift_m for one in found), default=0.0),
+    )
+
+
+def _of_one(rows: Sequence[ParameterFigures]) -> RigError:
+    """The same of one LiDAR, by the rows that are off."""
+    turn_rad, shift_m, clock_s = (
+        float(np.linalg.norm([row.change for row in rows if row.quantity == quantity]))
+        for quantity in ("rotation", "position", "clock")
+    )
+    return RigError(
+        turn_rad=_PULL * float(np.hypot(turn_rad, _TURN_RAD_S * clock_s)),
+        shift_m=float(
+            np.linalg.norm([_ARM_M * turn_rad, _PULL * shift_m, _PULL * _WALK_M_S * clock_s])
+        ),
+    )

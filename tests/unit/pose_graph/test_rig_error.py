@@ -1,0 +1,96 @@
+"""Covariances of poses by errors of the rig file that an audit found."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION
+from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.pipeline import _measured
+from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
+from recon4.pose_graph.uncertainty import pose_uncertainty
+from recon4.store.stage import Artifact
+from tests.unit.pose_graph.test_uncertainty import chain
+
+
+def found(sensor: str, quantity: str, axis: str, change: float, status: str = "off"):
+    unit = {"rotation": "rad", "position": "m", "clock": "s"}[quantity]
+    return ParameterFigures(
+        sensor=sensor, quantity=quantity, axis=axis, unit=unit, change=change, sd=1e-4,
+        status=status,
+    )  # fmt: skip
+
+
+def turned(*yaw_deg: float) -> SE3:
+    return SE3.stack(SE3.from_rpy(0.0, 0.0, np.deg2rad(a), t=[a, 0.0, 0.0]) for a in yaw_deg)
+
+
+def test_an_error_that_turns_with_the_body_cancels_out_where_the_body_stands_as_at_the_start():
+    cov = RigError(turn_rad=0.01, shift_m=0.02).cov(turned(0, 360, 180, 90), on_earth=False)
+
+    np.testing.assert_allclose(cov[:2], 0.0, atol=1e-15)
+    # Half a turn about z: what was to the left is to the right, twice as far from where it was.
+    np.testing.assert_allclose(np.diag(cov[2])[:3], [4e-4, 4e-4, 0.0], atol=1e-12)
+    np.testing.assert_allclose(np.diag(cov[2])[3:], [16e-4, 16e-4, 0.0], atol=1e-12)
+    np.testing.assert_allclose(np.diag(cov[3])[:3], [2e-4, 2e-4, 0.0], atol=1e-12)
+
+
+def test_on_the_earth_it_is_the_same_everywhere():
+    cov = RigError(turn_rad=0.01, shift_m=0.02).cov(turned(0, 90, 180), on_earth=True)
+
+    np.testing.assert_allclose(cov, np.tile(np.diag([1e-4] * 3 + [4e-4] * 3), (3, 1, 1)))
+
+
+def test_it_is_the_covariance_of_errors_drawn_in_the_body():
+    rng = np.random.default_rng(3)
+    R = turned(0, 40, 130).R
+    drawn = rng.normal(0.0, 0.01, (20_000, 3))
+    errors = np.einsum("kij,nj->kni", R - R[0], drawn)
+
+    cov = RigError(turn_rad=0.01).cov(turned(0, 40, 130), on_earth=False)
+
+    sampled = np.einsum("kni,knj->kij", errors, errors) / len(drawn)
+    np.testing.assert_allclose(cov[:, ROTATION, ROTATION], sampled, atol=1.5e-5)
+
+
+def test_the_worst_lidar_counts_and_neither_imu_nor_antenna():
+    nothing = [found("imu", "rotation", "x", 0.5), found("gnss", "position", "x", 0.5)]
+    small = [found("a", "rotation", "y", 0.003), found("a", "rotation", "z", 0.004)]
+    large = [found("b", "rotation", "x", 0.02), found("b", "rotation", "y", 9.0, "consistent")]
+
+    assert audited_error(nothing) == EXACT
+    assert audited_error(small).turn_rad == pytest.approx(0.35 * 0.005)
+    assert audited_error([*nothing, *small, *large]).turn_rad == pytest.approx(0.35 * 0.02)
+
+
+def test_a_mount_and_a_clock_that_are_off_shift_the_body():
+    moved = audited_error([found("a", "position", "x", 0.3), found("a", "position", "y", 0.4)])
+    late = audited_error([found("a", "clock", "", -0.02)])
+
+    assert moved.shift_m == pytest.approx(0.35 * 0.5) and moved.turn_rad == 0.0
+    assert late.shift_m == pytest.approx(0.35 * 1.3 * 0.02)
+    assert late.turn_rad == pytest.approx(0.35 * 0.02)
+
+
+def test_poses_of_a_graph_state_it():
+    graph = chain(60)
+
+    exact, off = (pose_uncertainty(graph, rig=rig) for rig in (EXACT, RigError(shift_m=0.05)))
+
+    added = (off.cov - exact.cov)[:, TRANSLATION, TRANSLATION]
+    np.testing.assert_allclose(added[:14], 0.0, atol=1e-12)  # not turned yet
+    assert np.sqrt(np.linalg.eigvalsh(added[35])[-1]) == pytest.approx(0.1, rel=0.01)
+    assert off.helpful.largest_m > exact.helpful.largest_m + 0.05
+
+
+@pytest.mark.parametrize("applied", [False, True])
+def test_an_audit_counts_unless_the_rig_was_calibrated(applied: bool):
+    frames, audit = (Artifact(name, name, Path(name)) for name in ("frames", "calibration"))
+    runs = {"calibration": SimpleNamespace(figures=CalibrationFigures(applied=applied))}
+
+    measured = _measured(SimpleNamespace(runs=runs), frames, audit)
+
+    assert measured.audit is (None if applied else audit)
+    assert measured.calibration is (audit if applied else None)
