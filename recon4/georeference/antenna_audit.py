@@ -103,6 +103,25 @@ def unexplained(
     return np.inf if rows is None else fit_drift(rows, drift=_DRIFT_M, fixed=True).rms
 
 
+def turn_by_antenna(trajectory: Trajectory, found: AntennaFigures) -> float:
+    """Turn about the vertical by which the error of an antenna bends a whole map [rad].
+
+    Fixes that lie aside of the walk in one direction where it begins and in another where it ends
+    turn the map that is fitted to them: by centimeters in meters, on a short walk.
+
+    Args:
+        trajectory: ``T_map_body`` with z up, at some times of the walk; at least two.
+        found: The error of lever arm and clock.
+    """
+    T = trajectory.T_a_b
+    speed_m_s = np.gradient(T.t, (trajectory.t_ns - trajectory.t_ns[0]) / 1e9, axis=0)
+    aside = T.R @ np.array(found.arm_m) + found.clock_s * speed_m_s
+    place, aside = T.t - T.t.mean(axis=0), aside - aside.mean(axis=0)
+    turning = place[:, 0] * aside[:, 1] - place[:, 1] * aside[:, 0]
+    spread = float((place[:, :2] ** 2).sum())
+    return float(turning.sum()) / spread if spread > 0.0 else 0.0
+
+
 def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
     """A sentence for a lever arm, and one for a clock, that the fixes contradict.
 

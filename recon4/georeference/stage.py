@@ -8,7 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.georeference.antenna_audit import antenna_contradictions, audit_antenna
+from recon4.georeference.antenna_audit import (
+    antenna_contradictions,
+    audit_antenna,
+    turn_by_antenna,
+)
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
@@ -177,7 +181,12 @@ def _uncertainty(
     model = CALIBRATED
     if antenna is not None and antenna_contradictions(antenna):
         known_m = float(np.linalg.norm(antenna.arm_m)) + _WALK_M_S * abs(antenna.clock_s)
-        model = replace(model, gnss_m=float(np.hypot(model.gnss_m, known_m)))
+        nodes = Trajectory(graph.t_ns, graph.T_map_body)
+        model = replace(
+            model,
+            gnss_m=float(np.hypot(model.gnss_m, known_m)),
+            gnss_turn_rad=abs(turn_by_antenna(nodes, antenna)) if len(nodes) > 1 else 0.0,
+        )
     return pose_uncertainty(graph, positions=placed.positions, model=model, rig=rig_error)
 
 

@@ -62,7 +62,9 @@ class ErrorModel:
     anchor_ratio: float = 0.06
     """The same as a ratio of what half a second of odometry usually states."""
     gnss_m: float = 0.02
-    """Error of GNSS that all fixes of a walk share [m]."""
+    """Error of GNSS that all fixes of a walk share [m] …"""
+    gnss_turn_rad: float = 0.0
+    """… and turn of the whole map about the vertical that they make [rad]."""
     usual_rad: float = 1.15e-3
     """Median residual of registered edges where these factors hold: turn [rad] …"""
     usual_m: float = 3.2e-3

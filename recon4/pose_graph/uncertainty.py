@@ -293,6 +293,8 @@ def _alone(chain: _Chain, model: ErrorModel, ratio: Array, *, on_earth: bool) ->
     alone = np.diag(np.repeat(single, 3) ** 2)
     if on_earth:
         common = np.diag(np.repeat([0.0, model.gnss_m], 3) ** 2)
-        return np.tile(alone + common, (len(chain.t_ns), 1, 1))
+        about_z = np.diag([0.0, 0.0, model.gnss_turn_rad**2, 0.0, 0.0, 0.0])
+        move = _transport(chain.T_map_body.t - chain.T_map_body.t.mean(axis=0))
+        return np.asarray(alone + common + move @ about_z @ np.swapaxes(move, 1, 2))
     move = _transport(chain.T_map_body.t - chain.T_map_body.t[0])
     return np.asarray(move @ alone @ np.swapaxes(move, 1, 2) + alone)

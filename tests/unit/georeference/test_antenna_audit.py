@@ -2,11 +2,16 @@
 
 from dataclasses import replace
 
+import msgspec
 import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.georeference.antenna_audit import antenna_contradictions, audit_antenna
+from recon4.georeference.antenna_audit import (
+    antenna_contradictions,
+    audit_antenna,
+    turn_by_antenna,
+)
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig, load_rig
@@ -113,3 +118,31 @@ def test_few_or_coarse_fixes_are_not_compared() -> None:
 
     assert audit_antenna(true, coarse, RIG, origin=PLACE) is None
     assert audit_antenna(walk(4.0), few, RIG, origin=PLACE) is None
+
+
+def test_an_error_of_the_antenna_turns_the_map_that_is_fitted_to_the_fixes() -> None:
+    """Worked out by a fit of the walk to the places of the wrong antenna."""
+    true = walk(20.0)
+    error = AntennaFigures(
+        arm_m=(-0.15, 0.02, 0.0), arm_sd_m=(0.01, 0.01, 0.01), arm_sigmas=15.0,
+        clock_s=-0.1, clock_sd_s=0.001, fixes=190,
+    )  # fmt: skip
+    T = true.T_a_b
+    late = true.at(np.clip(true.t_ns - 10**8, true.t_ns[0], None)).t
+    seen = T.R @ np.array(error.arm_m) + late
+    place, seen = T.t - T.t.mean(axis=0), seen - seen.mean(axis=0)
+    U, _, Vt = np.linalg.svd(place[:, :2].T @ seen[:, :2])
+    R = (U @ Vt).T
+
+    turn = turn_by_antenna(true, error)
+
+    assert abs(turn) > 0.005
+    assert turn == pytest.approx(np.arctan2(R[1, 0], R[0, 0]), rel=0.05)
+    assert turn_by_antenna(true, replace_error(error, arm_m=(0.0, 0.0, 0.3))) == pytest.approx(
+        0.0, abs=1e-3
+    )
+
+
+def replace_error(error: AntennaFigures, *, arm_m: tuple[float, float, float]) -> AntennaFigures:
+    """Another lever arm, and a clock that is right."""
+    return msgspec.structs.replace(error, arm_m=arm_m, clock_s=0.0)

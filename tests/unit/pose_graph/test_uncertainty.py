@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.geometry.se3 import SE3, Array, so3_log
+from recon4.geometry.se3 import SE3, TRANSLATION, Array, so3_log
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph import uncertainty
@@ -148,6 +148,25 @@ def test_positions_keep_the_walk_on_earth() -> None:
     assert found is not None and found.on_earth
     assert np.all(found.sd_m > 0.03)
     assert np.all(found.sd_m < 0.08)
+
+
+def test_fixes_that_turn_the_map_move_its_ends_most() -> None:
+    graph = chain()
+    arm = np.zeros((60, 3))
+    priors = PositionPriors(np.arange(60), graph.T_map_body.t, arm, np.full((60, 3), 0.01))
+
+    straight, turned = (
+        pose_uncertainty(graph, positions=priors, model=ErrorModel(gnss_turn_rad=turn))
+        for turn in (0.0, 0.02)
+    )
+
+    assert straight is not None and turned is not None
+    added = turned.cov - straight.cov
+    np.testing.assert_allclose(added[:, 2, 2], 4e-4, atol=1e-9)
+    far_m = np.linalg.norm((graph.T_map_body.t - graph.T_map_body.t.mean(axis=0))[:, :2], axis=1)
+    moved_m = np.sqrt(np.linalg.eigvalsh(added[:, TRANSLATION, TRANSLATION])[:, -1])
+    np.testing.assert_allclose(moved_m, 0.02 * far_m, atol=1e-6)
+    np.testing.assert_allclose(added[:, 5, :], 0.0, atol=1e-9)  # no height
 
 
 def test_a_control_point_helps_most_where_least_is_known() -> None:
