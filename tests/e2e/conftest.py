@@ -45,6 +45,9 @@ def look(request) -> tuple[str, str]:
 
 looks = pytest.mark.looks
 """Only on these screens, where a test sees the same on the others; ``@looks("desktop light")``."""
+TWO_LOOKS = ("desktop light", "phone dark")
+"""Each screen and each color scheme once: layout depends on the screen, colors on the scheme, and
+nothing on both. Only screenshots are made of all four."""
 
 
 LONG = (
@@ -71,7 +74,11 @@ def _rank(path: Path) -> int:
 
 def _asked_for(item: pytest.Item) -> bool:
     mark, call = item.get_closest_marker("looks"), getattr(item, "callspec", None)
-    return mark is None or call is None or call.params["look"] in mark.args
+    if call is None or "look" not in call.params:
+        return True
+    if mark is None:
+        return SCREENSHOTS or call.params["look"] in TWO_LOOKS
+    return call.params["look"] in mark.args
 
 
 @contextmanager
