@@ -77,16 +77,20 @@ PRESSES = """async (key) => {
 than the pause after which a press counts as a new one."""
 
 
-def only_one_decision(page, root, key):
-    """Decide about another pair, after everything the page sent before, and look at the journal."""
+def only_one_decision(page, root, key, *, before=0):
+    """Decide about another pair, after everything the page sent before, and look at the journal.
+
+    Args:
+        before: Decisions of earlier steps.
+    """
     page.get_by_label("Go on to the next", exact=False).uncheck()
     page.keyboard.press("j")
     decidable(page)
     other = "r" if key == "a" else "a"
     page.keyboard.press(other)
     kinds = {"a": "accept", "r": "reject"}
-    expect(page.locator("review-queue")).to_contain_text("2 decided by people")
-    assert [row.kind for row in read_rows(root)] == [kinds[key], kinds[other]]
+    expect(page.locator("review-queue")).to_contain_text(f"· {before + 2} decided by people")
+    assert [row.kind for row in read_rows(root)[before:]] == [kinds[key], kinds[other]]
 
 
 def decidable(page):

@@ -45,63 +45,51 @@ def test_forty_loops_are_reviewed_without_the_mouse(opened, root):
     expect(page.locator("review-queue")).to_contain_text("38 decided by people")
 
 
-@looks("desktop light")
-@pytest.mark.parametrize("onwards", [False, True], ids=["stay", "go on"])
-@pytest.mark.parametrize("key", ["a", "r"])
-def test_a_key_held_down_decides_about_one_pair(opened, root, key, onwards):
-    page = opened
-    if onwards:
-        page.get_by_label("Go on to the next pair after a decision").check()
-    page.keyboard.press("j")
-    decidable(page)
-
-    for _ in range(40):  # the second and later ones are repeats, as of a key held down
+def hold(page, key):
+    """Presses a key once; the next 39 are repeats, as of a key held down."""
+    for _ in range(40):
         page.keyboard.down(key)
     page.keyboard.up(key)
 
-    only_one_decision(page, root, key)
+
+def hold_the_focused_button(page, key):
+    page.locator("#decision").get_by_role("button", name=BUTTONS[key]).focus()
+    hold(page, "Enter")
 
 
-@looks("desktop light")
-@pytest.mark.parametrize("key", ["a", "r"])
-def test_a_key_that_a_remote_desktop_repeats_as_presses_decides_about_one_pair(opened, root, key):
-    page = opened
-    page.get_by_label("Go on to the next pair after a decision").check()
-    page.keyboard.press("j")
-    decidable(page)
+def click_twice(page, key):
+    """The pair that follows is drawn already."""
+    for step in ("j", "k"):
+        page.keyboard.press(step)
+        decidable(page)
+    page.locator("#decision").get_by_role("button", name=BUTTONS[key]).dblclick(delay=0)
 
+
+def press_as_a_remote_desktop(page, key):
     page.evaluate(PRESSES, key)
 
-    only_one_decision(page, root, key)
+
+BUTTONS = {"a": "Accept", "r": "Reject"}
+WAYS = [
+    *((hold, key, onwards) for key in BUTTONS for onwards in (False, True)),
+    *((press_as_a_remote_desktop, key, True) for key in BUTTONS),
+    (click_twice, "a", True),
+    (hold_the_focused_button, "a", True),
+]
+"""Ways to decide more often than meant: what is done, its key, whether the page goes on."""
 
 
 @looks("desktop light")
-def test_a_double_click_decides_about_one_pair(opened, root):
+def test_whatever_is_held_or_pressed_again_decides_about_one_pair(opened, root):
     page = opened
-    page.get_by_label("Go on to the next pair after a decision").check()
-    page.keyboard.press("j")
-    decidable(page)
-    page.keyboard.press("k")
-    decidable(page)
+    for done, (decide, key, onwards) in enumerate(WAYS):
+        page.get_by_label("Go on to the next pair after a decision").set_checked(onwards)
+        page.keyboard.press("j")
+        decidable(page)
 
-    page.locator("#decision").get_by_role("button", name="Accept").dblclick(delay=0)
+        decide(page, key)
 
-    only_one_decision(page, root, "a")
-
-
-@looks("desktop light")
-def test_a_focused_button_held_down_decides_about_one_pair(opened, root):
-    page = opened
-    page.get_by_label("Go on to the next pair after a decision").check()
-    page.keyboard.press("j")
-    decidable(page)
-    page.locator("#decision").get_by_role("button", name="Accept").focus()
-
-    for _ in range(40):
-        page.keyboard.down("Enter")
-    page.keyboard.up("Enter")
-
-    only_one_decision(page, root, "a")
+        only_one_decision(page, root, key, before=2 * done)
 
 
 @looks("desktop light")
