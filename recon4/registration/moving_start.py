@@ -19,11 +19,11 @@ from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.state import STATE, VECTOR
 from recon4.settings import ScanSettings
 
-_MOVING_M_S = 0.3
+MOVING_M_S = 0.3
 """A slower body is taken for one that stands [m/s]."""
 _SD_M_S = 0.2
 """Standard deviation of the velocity between two scans [m/s]."""
-_LONGEST_NS = 300_000_000
+LONGEST_NS = 300_000_000
 """Frames that are farther apart do not show the velocity of the first [ns]."""
 
 
@@ -35,7 +35,7 @@ def starting_velocity(
     None if the body stands, or if the scans do not surely fit each other.
     """
     span_ns = second.t_mid_ns - first.t_mid_ns
-    if not 0 < span_ns <= _LONGEST_NS:
+    if not 0 < span_ns <= LONGEST_NS:
         return None
     chain = ScanChain(settings)
     chain.locate(body_points(first, rig), first.t_mid_ns)
@@ -44,7 +44,7 @@ def starting_velocity(
     if found is None or not chain.is_sure:
         return None
     velocity = found.t / (1e-9 * span_ns)
-    return velocity if float(np.linalg.norm(velocity)) > _MOVING_M_S else None
+    return velocity if float(np.linalg.norm(velocity)) > MOVING_M_S else None
 
 
 def set_moving(state: MotionState, velocity_body: Array, *, duration_ns: int) -> MotionState:

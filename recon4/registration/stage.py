@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.make import make_odometry
+from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.odometry import Odometry, OdometryStep
 from recon4.registration.unseen_rides import unseen_rides
 from recon4.settings import Settings
@@ -106,6 +108,7 @@ def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
 
 def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
     """The dense poses of all steps as one trajectory, at most about 100 Hz."""
+    steps = _begun_in_motion(steps)
     t_ns = np.concatenate([step.t_ns for step in steps])
     R = np.concatenate([step.T_dense.R for step in steps])
     t_m = np.concatenate([step.T_dense.t for step in steps])
@@ -116,6 +119,29 @@ def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
     kept = np.append(np.diff(slot) > 0, True)
     kept[0] = True
     return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
+
+
+def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
+    """The steps with a first frame that moves as fast as the second one begins.
+
+    The velocity at the start is known only with the second frame, when the poses inside the first
+    one were already reported: half a frame of a walk puts them 6 cm beside their places.
+    """
+    if len(steps) < 2 or len(steps[0].t_ns) < 2 or steps[1].lost:
+        return steps
+    first, second = steps[:2]
+    span_ns = second.t_mid_ns - first.t_mid_ns
+    if second.piece != first.piece or not 0 < span_ns <= LONGEST_NS:
+        return steps
+    # Both at the end of the first frame; what the IMU measured inside it stays.
+    there = (second.T_odom_body.t - first.T_odom_body.t) / (1e-9 * span_ns)
+    reported = (first.T_dense.t[-1] - first.T_dense.t[-2]) / (1e-9 * np.diff(first.t_ns)[-1])
+    missing = there - reported
+    if float(np.linalg.norm(missing)) < MOVING_M_S:
+        return steps
+    since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
+    moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
+    return [replace(first, T_dense=moving), *steps[1:]]
 
 
 def _save_steps(path: Path, steps: list[OdometryStep]) -> None:

@@ -8,6 +8,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.registration import odometry as module
 from recon4.registration.moving_start import starting_velocity
 from recon4.registration.odometry import Odometry
+from recon4.registration.stage import dense_trajectory
 from recon4.settings import Settings
 
 FIRST = 25
@@ -53,3 +54,27 @@ def test_a_walk_that_begins_in_motion_is_followed(office_frames, truth, monkeypa
 
     assert found.max() < 0.06
     assert as_if_standing.max() > 3.0 * found.max()
+
+
+def test_poses_inside_the_first_frame_move_too(office_frames, office_walk):
+    odometry = Odometry(office_frames.rig, Settings(), office_frames.imu)
+    steps = [odometry.push(office_frames[k]) for k in range(FIRST, FIRST + 4)]
+
+    dense = dense_trajectory(steps)
+
+    true = read_tum(office_walk / "truth.tum").at(dense.t_ns)
+    middle = int(np.searchsorted(dense.t_ns, steps[1].t_mid_ns))
+    T, T_true = (T[middle].inverse() @ T for T in (dense.T_a_b, true))
+    off_m = np.linalg.norm(T.t - T_true.t, axis=1)
+    reported_m = np.linalg.norm(steps[0].T_dense.t[0] - dense.T_a_b.t[0])
+    assert reported_m > 0.03  # before the velocity was known
+    assert off_m.max() < 0.015
+
+
+def test_a_first_frame_that_stands_stays_as_it_was_reported(office_frames):
+    odometry = Odometry(office_frames.rig, Settings(), office_frames.imu)
+    steps = [odometry.push(office_frames[k]) for k in range(3)]
+
+    dense = dense_trajectory(steps)
+
+    np.testing.assert_array_equal(dense.T_a_b.t[0], steps[0].T_dense.t[0])
