@@ -275,7 +275,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    20,
+    21,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

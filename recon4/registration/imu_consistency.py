@@ -17,6 +17,9 @@ from recon4.settings import Settings
 
 _FRAMES = 10
 """Multiframes of one trial."""
+_SETTLING = 10
+"""A trial that begins within a turn knows neither the tilt nor the velocity of the body: what looks
+like a wrong accelerometer is tried again from this many multiframes before."""
 _REST_NS = 500_000_000
 """The gyroscope bias is its mean over this time from the start, if the body is stationary [ns]."""
 _ZERO_RAD_S = 0.06
@@ -101,6 +104,12 @@ def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSampl
         found = _try(frames, turns_only, settings)
         if not found.clearly_better(best):
             return chosen
+        settling = min(_SETTLING, max(len(frames) - _FRAMES, 0))
+        best, found = (
+            _try(frames, samples, settings, settling=settling) for samples in (used, turns_only)
+        )
+        if not found.clearly_better(best):
+            return chosen
         return turns_only, _contradicts("accelerometer", best, found)
     return None, _contradicts("IMU", best, found)
 
@@ -113,12 +122,17 @@ def _contradicts(what: str, with_it: Trial, without: Trial) -> str:
     )
 
 
-def _try(frames: RecordedFrames, imu: ImuSamples | None, settings: Settings) -> Trial:
+def _try(
+    frames: RecordedFrames, imu: ImuSamples | None, settings: Settings, *, settling: int = 0
+) -> Trial:
+    """Register some multiframes; of the first ``settling`` of each trial nothing counts."""
     lost, errors = 0, []
     turns: list[tuple[int, int, Array]] = []
     for first in _starts(frames):
         odometry = Odometry(frames.rig, settings, imu)
-        steps = [odometry.push(frames[k]) for k in range(first, min(first + _FRAMES, len(frames)))]
+        begin = max(first - settling, 0)
+        end = min(begin + settling + _FRAMES, len(frames))
+        steps = [odometry.push(frames[k]) for k in range(begin, end)][settling:]
         lost += sum(step.lost for step in steps)
         errors += [step.error_m for step in steps[1:]]
         turns += [

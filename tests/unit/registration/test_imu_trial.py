@@ -98,13 +98,45 @@ def test_a_gyroscope_that_explains_the_turns_is_not_dropped(monkeypatch, frames,
     monkeypatch.setattr(
         imu_consistency,
         "_try",
-        lambda _, imu, __: Trial(1, 0.021, turns) if imu is None else rotated,
+        lambda _, imu, __, **settling: Trial(1, 0.021, turns) if imu is None else rotated,
     )
 
     imu, remark = consistent_imu(Walk(frames, frames.imu), SETTINGS)
 
     assert imu is (frames.imu if kept else None)
     assert (remark == "") == kept
+
+
+@pytest.mark.parametrize(("settled_m", "kept"), [(0.0105, True), (0.0158, False)])
+def test_an_accelerometer_is_tried_again_after_it_settled(monkeypatch, frames, settled_m, kept):
+    """Errors of corridor:2/3, whose second trial begins within its fastest turn."""
+    asked = []
+
+    def trial(_, imu, __, *, settling=0):
+        asked.append(settling)
+        if imu is None:
+            return Trial(0, 0.0111, [])
+        if np.isnan(imu.accel_m_s2).all():
+            return Trial(0, 0.0118, [])
+        return Trial(0, settled_m if settling else 0.0158, [])
+
+    monkeypatch.setattr(imu_consistency, "_try", trial)
+    monkeypatch.setattr(Trial, "unexplained", lambda *_: 0.07)
+
+    imu, remark = consistent_imu(frames, SETTINGS)
+
+    assert (imu is frames.imu) == kept == (remark == "")
+    assert max(asked) == 10
+
+
+def test_multiframes_that_settle_do_not_count(frames):
+    whole = imu_consistency._try(frames, frames.imu, SETTINGS)
+    settled = imu_consistency._try(frames, frames.imu, SETTINGS, settling=10)
+
+    assert len(settled.turns) == len(whole.turns) == 18
+    first_ns = int(frames.t_mid_ns[0])
+    assert whole.turns[0][0] == first_ns
+    assert settled.turns[0][0] == int(frames.t_mid_ns[10])
 
 
 def test_without_an_imu_or_with_use_imu_off_no_trial_runs(frames):
