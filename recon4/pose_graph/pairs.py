@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
@@ -23,7 +23,7 @@ from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_ra
 from recon4.settings import Settings
 
 _CHUNK = 8
-"""Target nodes per task of a thread; neighbors share their multiframes."""
+"""Nodes per task of a thread."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,16 +36,11 @@ class Pair:
     T_i_j: SE3
 
 
-SubmapFactory = Callable[[], Submaps]
-
-
 class PairRegistrar:
     """Registers pairs on several threads; the result does not depend on their number."""
 
-    def __init__(
-        self, make_submaps: SubmapFactory, views: NodeRangeImages, settings: Settings
-    ) -> None:
-        self._make_submaps = make_submaps
+    def __init__(self, submaps: Submaps, views: NodeRangeImages, settings: Settings) -> None:
+        self._submaps = submaps
         self.views, self.settings = views, settings
 
     def prepare(self, nodes: int, progress: Progress) -> None:
@@ -53,7 +48,7 @@ class PairRegistrar:
         progress.start("view volumes", nodes, "node")
         chunks = [range(k, min(k + _CHUNK, nodes)) for k in range(0, nodes, _CHUNK)]
         with ThreadPoolExecutor(self.settings.graph.workers) as pool:
-            fills = pool.map(lambda chunk: self.views.fill(self._make_submaps(), chunk), chunks)
+            fills = pool.map(lambda chunk: self.views.fill(self._submaps, chunk), chunks)
             for chunk, _ in zip(chunks, fills, strict=True):
                 progress.advance(len(chunk))
 
@@ -78,12 +73,12 @@ class PairRegistrar:
         return seen_through(i, j, edge.T_i_j, settings=self.settings.overlap)
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
-        submaps, planes = self._make_submaps(), PlaneMap(self.settings.planes)
-        edges = [self._try_group(submaps, planes, group, pairs=pairs) for group in groups]
+        planes = PlaneMap(self.settings.planes)
+        edges = [self._try_group(planes, group, pairs=pairs) for group in groups]
         return {k: edge for tried in edges for k, edge in tried}
 
     def _try_group(
-        self, submaps: Submaps, planes: PlaneMap, group: list[int], *, pairs: Sequence[Pair]
+        self, planes: PlaneMap, group: list[int], *, pairs: Sequence[Pair]
     ) -> list[tuple[int, Edge]]:
         """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
@@ -97,7 +92,7 @@ class PairRegistrar:
                 out.append((k, _edge(pair, overlap_ratio, Reason.OVERLAP)))
                 continue
             if target is None:
-                target = self._target(submaps.around(pair.i, reach), planes)
+                target = self._target(self._submaps.around(pair.i, reach), planes)
             out.append(
                 (
                     k,

@@ -138,11 +138,10 @@ def make_registrar(
     scratch: Path,
 ) -> PairRegistrar:
     """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""
-    return PairRegistrar(
-        lambda: Submaps(frames, odometry.trajectory, rows, settings=settings, skip=odometry.lost),
-        NodeRangeImages(len(rows), settings, scratch),
-        settings,
+    submaps = Submaps(
+        frames, odometry.trajectory, rows, settings=settings, skip=odometry.lost, scratch=scratch
     )
+    return PairRegistrar(submaps, NodeRangeImages(len(rows), settings, scratch), settings)
 
 
 def close_loops(

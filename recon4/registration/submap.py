@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections import OrderedDict
+import threading
+import weakref
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -13,22 +14,22 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.imu import place_points
+from recon4.kernels.points import transform_points
 from recon4.model.frames import RecordedFrames
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.overlap import make_range_image
 from recon4.registration.segments import Segments, sample_segments
 from recon4.settings import Settings
 
-_CACHED_FRAMES = 64
-
 Ends = NDArray[np.float64]
 """Both ends of M segments [m], (M, 2, 3)."""
 
 
 class Submaps:
-    """Computes the segments around nodes on demand; the last frames stay in a small cache.
+    """Computes the segments around nodes on demand.
 
-    Not thread-safe: each thread creates its own.
+    The segments of a multiframe are drawn once and kept in an unnamed file, for all nodes and
+    all threads.
     """
 
     def __init__(
@@ -39,49 +40,91 @@ class Submaps:
         *,
         settings: Settings,
         skip: NDArray[np.bool_],
+        scratch: Path,
     ) -> None:
+        """Arguments as of `search`.
+
+        Args:
+            frames: The multiframes.
+            odometry: ``T_odom_body``, dense.
+            rows: Multiframe of each node, (N,).
+            settings: Uses segments.
+            skip: Which multiframes have no segments, (F,).
+            scratch: Folder for the unnamed file; a full disk raises OSError.
+        """
         self._frames, self._odometry, self._settings = frames, odometry, settings
         self._rows = rows
         self._skip = skip
-        self._cache: OrderedDict[int, Ends] = OrderedDict()
-        self._t_ns = frames.t_mid_ns[rows]
+        self._T_odom_frame = odometry.at(frames.t_mid_ns)
+        self._drawn = _DrawnEnds(scratch)
 
     def around(self, node: int, reach: int) -> Ends:
         """Segments of the multiframes up to ``reach`` before and after the node's own."""
         row = int(self._rows[node])
         near = range(max(row - reach, 0), min(row + reach + 1, len(self._frames)))
-        parts = [self._ends_odom(k) for k in near if not self._skip[k]]
-        ends = np.concatenate(parts) if parts else np.empty((0, 2, 3))
-        T_odom_body = self._odometry.at(self._t_ns[node : node + 1])[0]
-        # Flattened: numpy multiplies a stack of 2 x 3 matrices one by one.
-        return (T_odom_body.inverse() @ ends.reshape(-1, 3)).reshape(-1, 2, 3)
+        parts = [(k, self._ends_of(k)) for k in near if not self._skip[k]]
+        ends = np.empty((sum(len(part) for _, part in parts), 2, 3))
+        T_node_odom, filled = self._T_odom_frame[row].inverse(), 0
+        for k, part in parts:
+            T = T_node_odom @ self._T_odom_frame[k]
+            out = ends[filled : filled + len(part)].reshape(-1, 3)
+            transform_points(T.R, T.t, part.reshape(-1, 3), out)
+            filled += len(part)
+        return ends
 
     def points_of(self, node: int) -> Array:
         """All points of the node's multiframe, undistorted, in its body frame [m], (N, 3)."""
-        frame, rig = self._frames[int(self._rows[node])], self._frames.rig
+        row, rig = int(self._rows[node]), self._frames.rig
+        frame = self._frames[row]
         part = _covering(self._odometry, frame.t_ns, frame.duration_ns)
         t_s = (part.t_ns - frame.t_ns).astype(np.float64) * 1e-9
         dt_s = frame.dt_ns.astype(np.float64) * 1e-9
         placed = [np.empty((0, 3))]
-        for row, sensor in enumerate(rig.sensors):
-            of_sensor = frame.sensor == row
+        for k, sensor in enumerate(rig.sensors):
+            of_sensor = frame.sensor == k
             if sensor.enabled:
                 p_body = sensor.T_body_sensor @ frame.xyz[of_sensor].astype(np.float64)
                 T = part.T_a_b
                 placed.append(place_points(t_s, T.R, T.t, dt_s[of_sensor], p_body))
-        T_odom_body = self._odometry.at(self._t_ns[node : node + 1])[0]
-        return T_odom_body.inverse() @ np.concatenate(placed)
+        return self._T_odom_frame[row].inverse() @ np.concatenate(placed)
 
-    def _ends_odom(self, row: int) -> Ends:
-        if row in self._cache:
-            self._cache.move_to_end(row)
-            return self._cache[row]
+    def _ends_of(self, row: int) -> NDArray[np.float32]:
+        """Segments of a multiframe in its body frame at its middle."""
+        kept = self._drawn.read(row)
+        if kept is not None:
+            return kept
         frame = self._frames[row]
         segments = sample_segments(frame, self._frames.rig, self._settings.segments)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._odometry)
-        self._cache[row] = ends
-        if len(self._cache) > _CACHED_FRAMES:
-            self._cache.popitem(last=False)
+        in_frame = self._T_odom_frame[row].inverse() @ ends.reshape(-1, 3)
+        return self._drawn.write(row, in_frame.reshape(-1, 2, 3).astype(np.float32))
+
+
+class _DrawnEnds:
+    """Segments of multiframes in an unnamed file; several threads may use it at once."""
+
+    def __init__(self, folder: Path) -> None:
+        self._file = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115
+        weakref.finalize(self, self._file.close)
+        self._lock = threading.Lock()
+        self._places: dict[int, tuple[int, int]] = {}
+        """First byte and number of segments of each multiframe that was written."""
+
+    def read(self, row: int) -> NDArray[np.float32] | None:
+        """Segments of a multiframe, (M, 2, 3); None = not written yet."""
+        if row not in self._places:
+            return None
+        first, count = self._places[row]
+        data = os.pread(self._file.fileno(), 24 * count, first)
+        return np.frombuffer(data, np.float32).reshape(count, 2, 3)
+
+    def write(self, row: int, ends: NDArray[np.float32]) -> NDArray[np.float32]:
+        """Append the segments of a multiframe and return them."""
+        with self._lock:
+            first = self._file.seek(0, os.SEEK_END)
+            self._file.write(ends.tobytes())
+            self._file.flush()
+        self._places[row] = (first, len(ends))
         return ends
 
 

@@ -163,11 +163,11 @@ def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
     lost = _lost(source)
     rows = np.array(pair, dtype=np.intp)
-    views = NodeRangeImages(2, settings, Path(gettempdir()))
-
-    def submaps() -> Submaps:
-        return Submaps(source.frames, source.odometry, rows, settings=settings, skip=lost)
-
+    scratch = Path(gettempdir())
+    views = NodeRangeImages(2, settings, scratch)
+    submaps = Submaps(
+        source.frames, source.odometry, rows, settings=settings, skip=lost, scratch=scratch
+    )
     registrar = PairRegistrar(submaps, views, settings)
     registrar.prepare(2, Silent())
     tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]

@@ -23,15 +23,19 @@ def stroll():
     return walk(strolling, 21)
 
 
+def submaps_of(stroll, rows, settings=None, *, skip=NOTHING_LOST, trajectory=None):
+    return Submaps(
+        stroll, trajectory or stroll.truth, np.array(rows),
+        settings=settings or Settings(), skip=skip, scratch=Path(gettempdir()),
+    )  # fmt: skip
+
+
 def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None):
     settings = override(Settings(), ["graph.workers=1", *assignments])
     rows = node_rows(stroll.t_mid_ns, settings.graph.node_stride, lost)
     views = NodeRangeImages(len(rows), settings, Path(gettempdir()))
-    made = PairRegistrar(
-        lambda: Submaps(stroll, trajectory or stroll.truth, rows, settings=settings, skip=lost),
-        views,
-        settings,
-    )
+    submaps = submaps_of(stroll, rows, settings, skip=lost, trajectory=trajectory)
+    made = PairRegistrar(submaps, views, settings)
     made.prepare(len(rows), Silent())
     return made
 
@@ -71,7 +75,7 @@ def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(strol
     edge = try_one(stroll)
 
     settings = Settings()
-    submaps = Submaps(stroll, stroll.truth, np.array([2]), settings=settings, skip=NOTHING_LOST)
+    submaps = submaps_of(stroll, [2])
     range_m = median_range_m(submaps.around(0, settings.graph.source_reach))
     assert 2.0 < range_m < 5.0
     assert edge.limit_m == pytest.approx(0.01 * range_m + 0.05, abs=2e-4)
@@ -111,9 +115,7 @@ def test_the_mode_of_overlap_counts(stroll):
         for mode in ("target", "source", "min", "harmonic")
     }
 
-    submaps = Submaps(
-        stroll, stroll.truth, np.array([2, 17]), settings=Settings(), skip=NOTHING_LOST
-    )
+    submaps = submaps_of(stroll, [2, 17])
     views = NodeRangeImages(2, Settings(), Path(gettempdir()))
     views.fill(submaps, [0, 1])
     first, second = (RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1))
@@ -241,8 +243,7 @@ def test_the_information_is_in_the_axes_of_the_second_node(stroll):
 
 
 def test_a_submap_holds_its_multiframes_in_the_axes_of_the_node(stroll):
-    settings = Settings()
-    submaps = Submaps(stroll, stroll.truth, np.array([10]), settings=settings, skip=NOTHING_LOST)
+    submaps = submaps_of(stroll, [10])
 
     ends = submaps.around(0, 2)
     alone = submaps.around(0, 0)
@@ -257,23 +258,18 @@ def test_lost_multiframes_have_no_segments(stroll):
     lost = NOTHING_LOST.copy()
     lost[[9, 11]] = True
     whole, holed = (
-        Submaps(stroll, stroll.truth, np.array([10]), settings=Settings(), skip=skip).around(0, 1)
-        for skip in (NOTHING_LOST, lost)
+        submaps_of(stroll, [10], skip=skip).around(0, 1) for skip in (NOTHING_LOST, lost)
     )
 
     assert 0 < len(holed) < 0.5 * len(whole)
     everything = np.ones(21, bool)
-    none = Submaps(
-        stroll, stroll.truth, np.array([10]), settings=Settings(), skip=everything
-    ).around(0, 5)
+    none = submaps_of(stroll, [10], skip=everything).around(0, 5)
     assert none.shape == (0, 2, 3)
     assert median_range_m(none) == 0.0
 
 
 def test_a_submap_at_the_start_takes_what_there_is(stroll):
-    submaps = Submaps(
-        stroll, stroll.truth, np.array([0, 20]), settings=Settings(), skip=NOTHING_LOST
-    )
+    submaps = submaps_of(stroll, [0, 20])
 
     first, last = submaps.around(0, 3), submaps.around(1, 3)
 
@@ -283,9 +279,7 @@ def test_a_submap_at_the_start_takes_what_there_is(stroll):
 def test_nodes_keep_a_limited_number_of_segments_spread_over_all(stroll, tmp_path):
     settings = override(Settings(), ["graph.source_segments=500"])
     views = NodeRangeImages(1, settings, tmp_path)
-    views.fill(
-        Submaps(stroll, stroll.truth, np.array([10]), settings=settings, skip=NOTHING_LOST), [0]
-    )
+    views.fill(submaps_of(stroll, [10], settings), [0])
 
     ends = views.ends(0)
 
