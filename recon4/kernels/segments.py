@@ -125,3 +125,36 @@ def draw_pairs(
                     out[size] = best[m]
                     size += 1
     return out[:size]
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def segment_ends(
+    xyz: NDArray[np.float32],
+    dt_ns: NDArray[np.int32],
+    pairs: NDArray[np.int32],
+    ends: NDArray[np.float64],
+    times_s: NDArray[np.float64],
+    range_m: NDArray[np.float64],
+) -> None:
+    """Positions and times of the ends of segments, in one pass over them.
+
+    Args:
+        xyz: Points of one sensor in its own frame [m], (N, 3).
+        dt_ns: Their times, (N,).
+        pairs: Rows of the two ends, (M, 2).
+        ends: Receives the positions [m], (2, M, 3).
+        times_s: Receives the times [s], (2, M).
+        range_m: Receives the distance of the nearer end [m], (M,).
+    """
+    for m in range(len(pairs)):
+        nearer_sq = np.inf
+        for e in range(2):
+            row = pairs[m, e]
+            squared = 0.0
+            for d in range(3):
+                value = np.float64(xyz[row, d])
+                ends[e, m, d] = value
+                squared += value * value
+            nearer_sq = min(nearer_sq, squared)
+            times_s[e, m] = dt_ns[row] * 1e-9
+        range_m[m] = np.sqrt(nearer_sq)

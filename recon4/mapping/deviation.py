@@ -37,8 +37,9 @@ def point_deviations(
     Returns:
         One standard deviation [m], (N,).
     """
-    rows = frame_id.astype(np.intp)
-    out = np.empty(len(rows), np.float32)
-    d = np.ascontiguousarray(p_map - np.take(poses.position_m, rows, axis=0))
-    worst_deviation(d, rows, np.ascontiguousarray(poses.cov), out)
+    out = np.empty(len(frame_id), np.float32)
+    worst_deviation(
+        np.ascontiguousarray(p_map), np.ascontiguousarray(frame_id),
+        np.ascontiguousarray(poses.position_m), np.ascontiguousarray(poses.cov), out,
+    )  # fmt: skip
     return out.astype(np.float16)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.kernels.segments import draw_pairs
+from recon4.kernels.segments import draw_pairs, segment_ends
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.settings import SegmentSettings
@@ -58,16 +58,11 @@ def _of_sensor(
         xyz, ring, int(ring.max()) + 1, settings.azimuth_bins, settings.generated,
         settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
     )  # fmt: skip
-    first, second = pairs[:, 0], pairs[:, 1]
-    a, b = xyz[first].astype(np.float64), xyz[second].astype(np.float64)
-    nearer = np.sqrt(np.minimum(_squares(a), _squares(b)))
-    a_s, b_s = (frame.dt_ns[rows[ends]].astype(np.float64) * 1e-9 for ends in (first, second))
-    return sensor.T_body_sensor @ a, sensor.T_body_sensor @ b, a_s, b_s, nearer
-
-
-def _squares(p: Array) -> Array:
-    """Squared length of each vector, (N, 3) -> (N,)."""
-    return np.einsum("ij,ij->i", p, p)
+    ends, times_s = np.empty((2, len(pairs), 3)), np.empty((2, len(pairs)))
+    range_m = np.empty(len(pairs))
+    segment_ends(xyz, np.ascontiguousarray(frame.dt_ns[rows]), pairs, ends, times_s, range_m)
+    a_body, b_body = (sensor.T_body_sensor @ end for end in ends)
+    return a_body, b_body, times_s[0], times_s[1], range_m
 
 
 def _seed(seed: int, frame: Multiframe, row: int) -> int:
