@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -12,12 +13,15 @@ import pytest
 
 from tests.chromium import CHROMIUM, FLAGS
 from tests.made_once import made_once
+from tests.short_capture import cut_capture
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 ROOT = Path(__file__).parents[1]
 DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
+
+CAPTURE = "recording.pcap"
 
 
 def pytest_collection_finish() -> None:
@@ -55,6 +59,19 @@ def office_recording(tmp_path_factory) -> Path:
         simulate(prepare("office", seconds=6.0, seed=3), folder, bag=False, progress=Silent())
 
     return made_once(tmp_path_factory, "office-recording", make)
+
+
+@pytest.fixture(scope="session")
+def short_recording(office_recording, tmp_path_factory) -> Path:
+    """The first two and a half seconds of it, for tests of runs whatever they map."""
+
+    def make(folder: Path) -> None:
+        folder.mkdir()
+        cut_capture(office_recording / CAPTURE, folder / CAPTURE, seconds=2.5)
+        for name in ("imu.csv", "rig.toml"):
+            shutil.copyfile(office_recording / name, folder / name)
+
+    return made_once(tmp_path_factory, "short-recording", make)
 
 
 @pytest.fixture(scope="session")

@@ -58,10 +58,10 @@ def traced(isolated, trace, *command):
 
 @pytest.mark.slow
 def test_processing_slicing_and_serving_connect_to_nothing_outside(
-    isolated, office_recording, tmp_path
+    isolated, short_recording, tmp_path
 ):
     walk, root = tmp_path / "walk", tmp_path / "projects"
-    shutil.copytree(office_recording, walk)  # the server reads what is beside its folder only
+    shutil.copytree(short_recording, walk)  # the server reads what is beside its folder only
     root.mkdir()
     trace = tmp_path / "trace"
 

@@ -77,11 +77,9 @@ def test_a_signal_is_obeyed_where_python_throws_exceptions_away(where, name):
 
 
 @pytest.mark.slow
-def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(
-    tmp_path, office_recording
-):
+def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(tmp_path, short_recording):
     """Each command goes on where the last one was stopped."""
-    shutil.copytree(office_recording, tmp_path / "walk")
+    shutil.copytree(short_recording, tmp_path / "walk")
     rng = np.random.default_rng(4)
     stopped = 0
     for _ in range(STOPS):

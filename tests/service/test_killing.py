@@ -22,11 +22,11 @@ pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
-def roots(tmp_path, office_recording):
+def roots(tmp_path, short_recording):
     """Two folders of projects, each with the walk."""
     for name in ("unbroken", "killed"):
         (tmp_path / name).mkdir()
-        shutil.copytree(office_recording, tmp_path / name / "walk")
+        shutil.copytree(short_recording, tmp_path / name / "walk")
     return tmp_path / "unbroken", tmp_path / "killed"
 
 

@@ -16,10 +16,24 @@ PROGRAM = [sys.executable, "-m", "tests.unit.store.small_pipeline"]
 ROOT = Path(__file__).parents[3]
 
 
-def killed_before(operation: int, root: Path) -> bool:
-    ended = subprocess.run([*PROGRAM, str(root), str(operation)], cwd=ROOT, check=False)
-    assert ended.returncode in {0, -signal.SIGKILL}
-    return ended.returncode != 0
+@pytest.fixture(scope="module")
+def killed_before():
+    """Runs a pipeline up to an operation on a file; whether it was killed there."""
+    with subprocess.Popen(
+        PROGRAM, cwd=ROOT, text=True, stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as program:
+        assert program.stdin is not None and program.stdout is not None
+
+        def run(operation: int, root: Path) -> bool:
+            program.stdin.write(f"{operation} {root}\n")
+            program.stdin.flush()
+            code = int(program.stdout.readline())
+            assert code in {0, -signal.SIGKILL}
+            return code != 0
+
+        yield run
+        program.stdin.close()
+    assert program.returncode == 0
 
 
 @pytest.fixture(scope="module")
@@ -30,7 +44,9 @@ def expected(tmp_path_factory) -> dict[str, bytes]:
 
 
 @pytest.mark.parametrize("part", range(4))
-def test_a_kill_before_any_file_operation_leaves_a_project_that_resumes(tmp_path, expected, part):
+def test_a_kill_before_any_file_operation_leaves_a_project_that_resumes(
+    tmp_path, expected, killed_before, part
+):
     operation, kills = 1 + part, 0
     while killed_before(operation, tmp_path / str(operation)):
         root = tmp_path / str(operation)
@@ -43,7 +59,7 @@ def test_a_kill_before_any_file_operation_leaves_a_project_that_resumes(tmp_path
     assert kills >= 10
 
 
-def test_a_run_killed_repeatedly_gives_the_same_result(tmp_path, expected):
+def test_a_run_killed_repeatedly_gives_the_same_result(tmp_path, expected, killed_before):
     root = tmp_path / "project"
     for operation in range(4, 40, 4):
         killed_before(operation, root)
