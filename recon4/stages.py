@@ -70,7 +70,7 @@ def _odometry(
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
-    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry)
+    aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=store.imu)
     return run_odometry(
         store, context.out, settings=context.settings, progress=context.progress, aiding=aiding
     )
@@ -275,7 +275,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    21,
+    22,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
