@@ -292,5 +292,5 @@ def run_trajectory(
     lines = stages.has_profiler(measurements.frames.folder)
     refine = stages.LINE_REFINE if lines else stages.REFINE
     refined = runner.run(refine, **measurements.inputs, odometry=odometry, graph=graph)
-    inputs = measurements.inputs | {"refined": refined, "graph": graph}
+    inputs = measurements.inputs | {"refined": refined, "graph": graph, "odometry": odometry}
     return runner.run(stages.LEVEL, **inputs, audit=measurements.audit)

@@ -157,23 +157,25 @@ def _level(
     graph: Path,
     calibration: Path | None = None,
     audit: Path | None = None,
+    odometry: Path | None = None,
 ) -> LevelFigures:
     from recon4.georeference.stage import level_and_georeference
     from recon4.pose_graph.files import load_graph
+    from recon4.pose_graph.known_errors import KnownErrors
     from recon4.pose_graph.rig_error import EXACT, audited_error
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
     from recon4.store.stage import read_figures
 
+    rig = audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
+    heights = read_figures(odometry, OdometryFigures).heights if odometry else ()
     leveled = level_and_georeference(
         open_frames(frames, calibration),
         load_trajectory(refined / "trajectory.npz"),
         load_graph(graph),
         settings=context.settings,
         progress=context.progress,
-        rig_error=(
-            audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
-        ),
+        known=KnownErrors(rig=rig, heights=heights),
     )
     return leveled.save(context.out)
 
@@ -275,7 +277,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    22,
+    23,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
@@ -295,7 +297,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 11, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 12, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 5, ("map",), _map, MapFigures)
 

@@ -26,8 +26,8 @@ from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.files import save_graph
+from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.relations import with_residuals
-from recon4.pose_graph.rig_error import EXACT, RigError
 from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again
@@ -117,7 +117,7 @@ def level_and_georeference(
     *,
     settings: Settings,
     progress: Progress,
-    rig_error: RigError = EXACT,
+    known: KnownErrors = NOTHING_KNOWN,
 ) -> LeveledMap:
     """Level a finished trajectory and, if there are GNSS positions, georeference it.
 
@@ -129,7 +129,7 @@ def level_and_georeference(
         graph: The verified graph.
         settings: Uses level, gnss and verification.
         progress: Counts the steps.
-        rig_error: What the audit of the rig says of the poses.
+        known: What other stages found to be wrong.
     """
     progress.start("level", 2, "steps")
     nodes = graph.with_poses(trajectory.at(graph.t_ns))
@@ -147,7 +147,7 @@ def level_and_georeference(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
-    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna, rig_error=rig_error)
+    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna, known=known)
     return LeveledMap(
         dense,
         with_residuals(judged),
@@ -173,9 +173,9 @@ def _uncertainty(
     placed: GeoreferenceResult,
     *,
     antenna: AntennaFigures | None,
-    rig_error: RigError,
+    known: KnownErrors,
 ) -> PoseUncertainty | None:
-    """Covariances of the final poses, with errors of antenna and rig that were found."""
+    """Covariances of the final poses, with the errors that were found."""
     if frames.rig.row_of("profiler") is not None:
         return None  # line scans have errors of their own kind, which the model does not know
     model = CALIBRATED
@@ -187,7 +187,7 @@ def _uncertainty(
             gnss_m=float(np.hypot(model.gnss_m, known_m)),
             gnss_turn_rad=abs(turn_by_antenna(nodes, antenna)) if len(nodes) > 1 else 0.0,
         )
-    return pose_uncertainty(graph, positions=placed.positions, model=model, rig=rig_error)
+    return pose_uncertainty(graph, positions=placed.positions, model=model, known=known)
 
 
 def _audit_antenna(

@@ -33,6 +33,16 @@ class FrameFigures(Figures, frozen=True, kw_only=True):
     warnings: tuple[str, ...] = ()
 
 
+class HeightDoubt(msgspec.Struct, frozen=True, kw_only=True):
+    """A stretch of the walk in which the IMU measures a height that the trajectory has not."""
+
+    start_s: float
+    """After the first pose [s]."""
+    end_s: float
+    rise_m: float
+    """Up is positive [m]."""
+
+
 class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Odometry of all multiframes."""
 
@@ -46,6 +56,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Those of the warnings that forbid the use of the map: heights that are wrong by meters."""
     gnss: bool = False
     """Whether fixes were used."""
+    heights: tuple[HeightDoubt, ...] = ()
+    """Rides that no LiDAR sees, and other contradictions of the heights."""
 
 
 IMU, GNSS = "imu", "gnss"

@@ -18,7 +18,7 @@ from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
 from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement, agreement
-from recon4.pose_graph.rig_error import EXACT, RigError
+from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.solve import PositionPriors
 
 _MAX_KNOTS = 300
@@ -92,7 +92,7 @@ def pose_uncertainty(
     *,
     positions: PositionPriors | None = None,
     model: ErrorModel = CALIBRATED,
-    rig: RigError = EXACT,
+    known: KnownErrors = NOTHING_KNOWN,
 ) -> PoseUncertainty | None:
     """Covariances of the poses of a graph; None with fewer than two nodes.
 
@@ -101,7 +101,7 @@ def pose_uncertainty(
         positions: Positions of the antenna that place the map on earth; None = the first pose is
             the reference.
         model: Factors on the covariances of the edges.
-        rig: What a wrong rig file does to every pose.
+        known: What other stages found to be wrong.
     """
     from scipy.linalg import cho_factor, cho_solve  # slow to import, and the server solves nothing
 
@@ -122,7 +122,7 @@ def pose_uncertainty(
     own = np.arange(knots)
     on_earth = positions is not None
     alone = _alone(chain, model, agrees.ratio, on_earth=on_earth)
-    alone += rig.cov(chain.T_map_body, on_earth=on_earth)
+    alone += known.cov(chain.t_ns, chain.T_map_body, on_earth=on_earth)
     cov = every[own, :, own, :] + alone
     place = every[:, TRANSLATION, :, TRANSLATION].transpose(0, 2, 1, 3)
     helpful = _helpful(place, alone[:, TRANSLATION, TRANSLATION], chain.t_ns)

@@ -21,7 +21,7 @@ from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.make import make_odometry
 from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.odometry import Odometry, OdometryStep
-from recon4.registration.unseen_rides import unseen_rides
+from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.settings import Settings
 from recon4.store.arrays import save_trajectory
 
@@ -65,7 +65,9 @@ def run_odometry(
     save_trajectory(out / "trajectory.npz", trajectory)
     _save_steps(out / "steps.npz", steps)
     used = imu if settings.odometry.use_imu else None
-    contradicted, severe = _contradicted(trajectory, used, frames.rig, steps=steps)
+    rides = _rides(trajectory, used, frames.rig, steps=steps)
+    texts = [ride.text for ride in rides]
+    contradicted = (*texts, *(wrong_gravity(trajectory, used, frames.rig) if used else ()))
     if isinstance(odometry, Odometry) and odometry.imu_estimate:
         contradicted = (*contradicted, *odometry.imu_estimate.texts)
     for text in contradicted:
@@ -76,21 +78,20 @@ def run_odometry(
         lost=lost,
         imu=imu is not None,
         warnings=(remark, *contradicted) if remark else contradicted,
-        severe=severe,
+        severe=tuple(ride.text for ride in rides if ride.is_severe),
         gnss=aiding is not None,
+        heights=tuple(ride.doubt for ride in rides),
     )
 
 
-def _contradicted(
+def _rides(
     trajectory: Trajectory, imu: ImuSamples | None, rig: Rig, *, steps: list[OdometryStep]
-) -> tuple[tuple[str, ...], tuple[str, ...]]:
-    """What the IMU says against the trajectory, and what of it forbids the use of the map."""
+) -> list[UnseenRide | HeightContradiction]:
+    """What the IMU says against the heights of the trajectory."""
     if imu is None:
-        return (), ()
+        return []
     lost_ns = np.array([step.t_mid_ns for step in steps if step.lost], np.int64)
-    rides = unseen_rides(trajectory, imu, rig, lost_ns=lost_ns)
-    texts = (*(ride.text for ride in rides), *wrong_gravity(trajectory, imu, rig))
-    return texts, tuple(ride.text for ride in rides if ride.is_severe)
+    return unseen_rides(trajectory, imu, rig, lost_ns=lost_ns)
 
 
 def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:

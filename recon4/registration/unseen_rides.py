@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.model.figures import HeightDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -39,11 +40,16 @@ _CONTRADICTION_M_S2, _CONTRADICTION_S = 0.1, 2.0
 """A difference above the first contradicts the heights, if it lasts for the second. On walks with
 known truth it is 0.003 to 0.04."""
 _BRIDGED_KNOTS = 2
+_SAME_RIDE_S = 3.0
+"""Stretches with no longer break between them are one: the speed that the first has built up
+carries on through the break."""
 _BALANCE = 0.4
 """The changes of the speed at both ends of a ride cancel out but for this ratio."""
 _LONGEST_S = 120.0
 _STOREY_M = 1.0
 """Heights that are wrong by more than this put one storey onto another [m]."""
+_UNKNOWN_RIDE_M = 3.0
+"""A ride of which the end, or the begin, was not recorded [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,6 +68,12 @@ class UnseenRide:
     def is_severe(self) -> bool:
         """Whether heights are wrong by meters: also if a ride has no end, or no begin."""
         return not abs(self.rise_m) < _STOREY_M
+
+    @property
+    def doubt(self) -> HeightDoubt:
+        """What it makes of the heights; a ride without an end, or a begin, counts as a storey."""
+        rise_m = self.rise_m if np.isfinite(self.rise_m) else _UNKNOWN_RIDE_M
+        return HeightDoubt(start_s=self.start_s, end_s=self.end_s, rise_m=rise_m)
 
     @property
     def text(self) -> str:
@@ -96,6 +108,11 @@ class HeightContradiction:
     def is_severe(self) -> bool:
         """Whether the heights are contradicted by meters."""
         return abs(self.rise_m) >= _STOREY_M
+
+    @property
+    def doubt(self) -> HeightDoubt:
+        """What it makes of the heights."""
+        return HeightDoubt(start_s=self.start_s, end_s=self.end_s, rise_m=self.rise_m)
 
     @property
     def text(self) -> str:
@@ -141,16 +158,21 @@ def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightCont
     if not len(rows):
         return []
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > _BRIDGED_KNOTS) + 1)
+    spans: list[slice] = []
+    for run in (run for run in runs if len(run) * _KNOT_S >= _CONTRADICTION_S):
+        begin, end = int(run[0]), int(run[-1]) + 1
+        if spans and (begin - spans[-1].stop) * _KNOT_S <= _SAME_RIDE_S:
+            begin = spans.pop().start
+        spans.append(slice(begin, end))
     return [
         HeightContradiction(
-            float(knots_s[run[0]]),
-            float(knots_s[run[-1]]),
-            float(np.abs(extra[run]).max()),
+            float(knots_s[span.start]),
+            float(knots_s[span.stop - 1]),
+            float(np.abs(extra[span]).max()),
             usual,
-            _rise_m(extra[run[0] : run[-1] + 1]),
+            _rise_m(extra[span]),
         )
-        for run in runs
-        if len(run) * _KNOT_S >= _CONTRADICTION_S
+        for span in spans
     ]
 
 

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.figures import CalibrationFigures, HeightDoubt, ParameterFigures
 from recon4.pipeline import _measured
+from recon4.pose_graph.known_errors import KnownErrors
 from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
 from recon4.pose_graph.uncertainty import pose_uncertainty
 from recon4.store.stage import Artifact
@@ -77,7 +78,10 @@ def test_a_mount_and_a_clock_that_are_off_shift_the_body():
 def test_poses_of_a_graph_state_it():
     graph = chain(60)
 
-    exact, off = (pose_uncertainty(graph, rig=rig) for rig in (EXACT, RigError(shift_m=0.05)))
+    exact, off = (
+        pose_uncertainty(graph, known=KnownErrors(rig=rig))
+        for rig in (EXACT, RigError(shift_m=0.05))
+    )
 
     added = (off.cov - exact.cov)[:, TRANSLATION, TRANSLATION]
     np.testing.assert_allclose(added[:14], 0.0, atol=1e-12)  # not turned yet
@@ -94,3 +98,17 @@ def test_an_audit_counts_unless_the_rig_was_calibrated(applied: bool):
 
     assert measured.audit is (None if applied else audit)
     assert measured.calibration is (audit if applied else None)
+
+
+def test_a_ride_makes_the_heights_after_it_unknown():
+    ride = HeightDoubt(start_s=10.0, end_s=15.0, rise_m=-3.4)
+    t_ns = 10**18 + np.array([0, 10, 12, 15, 20], np.int64) * 10**9
+    known, T = KnownErrors(heights=(ride,)), turned(0, 90, 90, 90, 0)
+
+    local, placed = (known.cov(t_ns, T, on_earth=on_earth) for on_earth in (False, True))
+
+    sd_m = np.sqrt(local[:, 5, 5])
+    np.testing.assert_allclose(sd_m, [0.0, 0.0, 0.4 * 3.4, 3.4, 3.4], atol=1e-12)
+    local[:, 5, 5] = 0.0
+    assert not local.any()
+    assert not placed.any()  # positions on the earth have their own heights

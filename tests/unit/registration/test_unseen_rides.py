@@ -6,10 +6,16 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
+from recon4.model.figures import HeightDoubt
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
+from recon4.registration.unseen_rides import (
+    HeightContradiction,
+    UnseenRide,
+    _contradicted,
+    unseen_rides,
+)
 from recon4.simulation.degradation import Degradation
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.imu import ImuModel, simulate_imu
@@ -100,6 +106,30 @@ def test_a_step_of_a_lift_is_announced_but_forbids_nothing() -> None:
     assert not platform.is_severe
     assert not HeightContradiction(3.0, 6.0, 0.15, 0.03, -0.6).is_severe
     assert HeightContradiction(3.0, 6.0, 0.15, 0.03, -1.2).is_severe
+
+
+@pytest.mark.parametrize(("break_knots", "found"), [(4, 1), (12, 2)])
+def test_a_contradiction_goes_on_through_a_short_break(break_knots: int, found: int) -> None:
+    """As in elevator:2: 0.2 m/s² up for 2.5 s, a break, 0.2 m/s² down for 2.5 s."""
+    push = np.full(5, 0.2)
+    extra = np.concatenate([np.zeros(10), push, np.zeros(break_knots), -push, np.zeros(10)])
+
+    stretches = _contradicted(0.5 * np.arange(len(extra)), extra, 0.02)
+
+    assert len(stretches) == found
+    if found == 1:
+        # 0.5 m/s after the first push, so 0.6 + 1.0 + 0.6 m, and a little more at the knots.
+        assert stretches[0].rise_m == pytest.approx(2.25, abs=0.1)
+        assert stretches[0].is_severe
+        assert (stretches[0].start_s, stretches[0].end_s) == (5.0, 11.5)
+    assert stretches[0].doubt == HeightDoubt(
+        start_s=stretches[0].start_s, end_s=stretches[0].end_s, rise_m=stretches[0].rise_m
+    )
+
+
+def test_a_ride_without_an_end_is_doubted_like_a_storey() -> None:
+    assert UnseenRide(3.0, 6.0, -3.4, 0.6).doubt.rise_m == -3.4
+    assert UnseenRide(3.0, 6.0, float("nan"), 0.6).doubt.rise_m == 3.0
 
 
 def test_an_imu_that_contradicts_the_whole_walk_has_no_rides() -> None:

@@ -1,0 +1,42 @@
+"""Errors of the poses that other stages have found, and no residual of the graph shows."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.figures import HeightDoubt
+from recon4.model.trajectory import Times
+from recon4.pose_graph.rig_error import EXACT, RigError
+
+_Z = 5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownErrors:
+    """What is known to be wrong."""
+
+    rig: RigError = EXACT
+    """A LiDAR that is not as the rig file says."""
+    heights: tuple[HeightDoubt, ...] = ()
+    """Rides that no LiDAR sees; positions on the earth show them, a local map does not."""
+
+    def cov(self, t_ns: Times, T_map_body: SE3, *, on_earth: bool) -> Array:
+        """Covariances that they add to poses, (N, 6, 6), turn first, in axes of the map.
+
+        Args:
+            t_ns: Times of the poses, the first one that of the walk.
+            T_map_body: N poses with z up.
+            on_earth: False = relative to the first pose.
+        """
+        out = self.rig.cov(T_map_body, on_earth=on_earth)
+        since_s = (t_ns - t_ns[0]) / 1e9
+        for doubt in () if on_earth else self.heights:
+            height_m = np.interp(since_s, [doubt.start_s, doubt.end_s], [0.0, doubt.rise_m])
+            out[:, _Z, _Z] += height_m**2
+        return out
+
+
+NOTHING_KNOWN = KnownErrors()
