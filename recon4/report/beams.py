@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.report.chart import BLUE, GREEN, ORANGE, PINK, Chart
+from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.rig import SHOWN
 
 
@@ -83,14 +83,17 @@ def _text(one: ParameterFigures | None, quantity: _Quantity) -> str:
 
 
 def _chart(rows: Sequence[ParameterFigures], quantity: _Quantity) -> str:
-    label = f"{quantity.name} [{quantity.unit.strip()}]"
-    chart = Chart(f"beams-{quantity.name}", labels=("ring (0 = lowest)", label))
+    chart = Chart(f"beams-{quantity.name}")
     for k, sensor in enumerate(dict.fromkeys(one.sensor for one in rows)):
         own = [one for one in rows if one.sensor == sensor]
-        color = _COLORS[k % len(_COLORS)]
-        x = np.array([int(one.axis) + 0.15 * k for one in own])
-        y = quantity.factor * np.array([one.change for one in own])
-        wide = _WIDTH_SD * quantity.factor * np.array([one.sd or np.nan for one in own])
-        chart.bars((x, y - wide), (x, y + wide), color=color)
-        chart.dots(x, y, color=color, width=5.0, name=sensor)
+        chart.axes.errorbar(
+            [int(one.axis) + 0.15 * k for one in own],
+            [quantity.factor * one.change for one in own],
+            yerr=[_WIDTH_SD * quantity.factor * (one.sd or np.nan) for one in own],
+            fmt="o",
+            ms=4.0,
+            color=_COLORS[k % len(_COLORS)],
+            label=sensor,
+        )
+    chart.axes.set(xlabel="ring (0 = lowest)", ylabel=f"{quantity.name} [{quantity.unit.strip()}]")
     return chart.svg()

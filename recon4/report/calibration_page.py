@@ -9,8 +9,8 @@ from pathlib import Path
 from recon4.geometry.se3 import Array
 from recon4.model.figures import CalibrationFigures
 from recon4.report.beams import beam_charts, beam_rows
-from recon4.report.chart import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.chart_groups import framed
+from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.html import environment
 from recon4.report.rig import rig_charts, rig_rows
 from recon4.store.atomic import write_text
@@ -18,7 +18,7 @@ from recon4.store.atomic import write_text
 THICKNESS_M = 0.2
 """Of the slice [m]."""
 _COLORS = (BLUE, ORANGE, GREEN, PINK)
-_HEIGHT = 331.0
+_HEIGHT_IN = 4.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,8 +71,9 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
 
 
 def _chart(one: RigSlice) -> str:
-    chart = Chart(f"slice-{one.name}", labels=("x [m]", "y [m]"), height=_HEIGHT)
+    chart = Chart(f"slice-{one.name}", height=_HEIGHT_IN)
     for k, (name, p_m) in enumerate(one.p_m):
-        chart.dots(*p_m.T, color=_COLORS[k % len(_COLORS)], width=0.9, name=name)
-    chart.keep_aspect()
+        color = _COLORS[k % len(_COLORS)]
+        chart.axes.plot(*p_m.T, ".", ms=1.2, color=color, label=name, rasterized=True)
+    chart.axes.set(xlabel="x [m]", ylabel="y [m]", aspect="equal")
     return chart.svg()

@@ -13,10 +13,9 @@ from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import PoseUncertainty
-from recon4.report.chart import BLUE, GRAY, GREEN, ORANGE, PINK
 from recon4.report.drift import DriftClosed
 from recon4.report.edges import by_verdict, spanning
-from recon4.report.figures import cumulative, histogram, lines
+from recon4.report.figures import BLUE, GRAY, GREEN, ORANGE, PINK, cumulative, histogram, lines
 from recon4.report.intensity import Dependency
 from recon4.report.placement import GnssFacts
 

@@ -1,16 +1,87 @@
-"""The kinds of charts of the report: curves, histograms, cumulative ratios."""
+"""Charts as inline SVG: drawn by matplotlib, colored by the page (light, dark or paper)."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
+from io import StringIO
 from typing import Any
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.report.chart import BLUE, INK, ORANGE, Chart
 
-_ENDLESS = np.array([-np.inf, np.inf])
+BLUE, ORANGE, GREEN, GRAY, PINK = "#0072b2", "#d55e00", "#009e73", "#999999", "#cc79a7"
+"""Okabe & Ito 2008: distinguishable for color-blind readers."""
+_INK = "#010203"
+"""Placeholder of the page's text color until the SVG is written."""
+_STYLE: dict[Any, Any] = {
+    "svg.fonttype": "none",
+    "font.family": ["sans-serif"],
+    "font.sans-serif": ["DejaVu Sans"],
+    "font.size": 9.0,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.labelcolor": _INK,
+    "axes.edgecolor": _INK,
+    "text.color": _INK,
+    "xtick.color": _INK,
+    "ytick.color": _INK,
+    "axes.grid": True,
+    "grid.color": "#808080",
+    "grid.alpha": 0.25,
+    "grid.linewidth": 0.6,
+    "legend.frameon": False,
+    "figure.subplot.left": 0.15,
+    "figure.subplot.right": 0.97,
+    "figure.subplot.bottom": 0.19,
+    "figure.subplot.top": 0.95,
+    "figure.facecolor": "none",
+    "figure.edgecolor": "none",
+    "axes.facecolor": "none",
+}
+
+
+class Chart:
+    """One pair of axes; `svg` returns the finished chart."""
+
+    def __init__(self, name: str, *, height: float = 2.7, numbers: bool = False) -> None:
+        """Empty axes.
+
+        Args:
+            name: Unique in the page.
+            height: [in].
+            numbers: The ticks are numbers and fit into fixed margins. Else the margins are fitted
+                to the ticks, which takes as long as the rest of a chart.
+        """
+        import matplotlib
+        from matplotlib.backends.backend_svg import FigureCanvasSVG
+        from matplotlib.figure import Figure
+
+        self._name = name
+        self._context = matplotlib.rc_context({**_STYLE, "svg.hashsalt": f"recon4 {name}"})
+        with self._context:
+            self.figure = Figure(figsize=(5.4, height), layout=None if numbers else "constrained")
+            FigureCanvasSVG(self.figure)
+            self.axes: Any = self.figure.subplots()
+
+    def svg(self, *, legend: bool = True) -> str:
+        """The chart as SVG, with its text in the page's color."""
+        import matplotlib
+
+        with matplotlib.rc_context({**_STYLE, "svg.hashsalt": f"recon4 {self._name}"}):
+            if legend and self.axes.get_legend_handles_labels()[0]:
+                self.axes.legend(fontsize=8)
+            buffer = StringIO()
+            # `savefig` draws twice, first for a layout that drawing makes anyway.
+            canvas: Any = self.figure.canvas
+            canvas.print_svg(buffer, metadata={"Date": None, "Creator": None})
+        text = buffer.getvalue()
+        text = text[text.index("<svg") :].replace(_INK, "currentColor")
+        text = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", text, count=1)
+        text = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", text, count=1)
+        text = re.sub(r' xmlns(:xlink)?="[^"]*"', "", text)
+        return text.replace("<svg", f'<svg role="img" class="chart" data-name="{self._name}"', 1)
 
 
 def lines(
@@ -22,22 +93,22 @@ def lines(
 ) -> str:
     """Curves ``(label, x, y, color)`` with axes named ``labels``.
 
-    The vertical axis spans at least ``least``, so that negligible values look small. It begins at 0
-    unless a value is negative.
+    The vertical axis spans at least ``least``, so that negligible values look small.
     """
-    chart = Chart(name, labels=labels)
+    chart = Chart(name, numbers=True)
     for label, x, y, color in series:
         few = thinned(len(x))
         at, shown = broken_at_holes(x[few], y[few])
-        chart.curve(at, shown, color=color, name=label)
-    span = chart.span_y
-    low, high = span.first, span.last
-    if all(np.nanmin(y, initial=0.0) >= 0.0 for _, _, y, _ in series):
-        low, high = 0.0, max(high, least)
-    elif high - low < least:
+        # A marker takes as long as ten pieces of a line: only where no line shows the value.
+        marked = {"marker": ".", "ms": 2.5, "markevery": _alone(shown)}
+        chart.axes.plot(at, shown, color=color, lw=1.3, label=label, **marked)
+    chart.axes.set(xlabel=labels[0], ylabel=labels[1])
+    low, high = chart.axes.get_ylim()
+    low = min(0.0, low)
+    if high - low < least:
         middle = 0.5 * (low + high)
-        low, high = middle - 0.5 * least, middle + 0.5 * least
-    chart.limit_y(low, high)
+        low, high = (0.0, least) if low == 0.0 else (middle - 0.5 * least, middle + 0.5 * least)
+    chart.axes.set_ylim(low, high)
     return chart.svg()
 
 
@@ -63,31 +134,41 @@ def histogram(
     high = max([values.max() for _, values, _ in finite] + [limit[0] if limit else 0.0, 1e-9])
     low = 1e-3 * high if log else 0.0
     bins = np.geomspace(low, 1.001 * high, 46) if log else np.linspace(0.0, 1.001 * high, 41)
-    chart = Chart(name, labels=labels)
-    most = 1
+    chart = Chart(name, numbers=True)
     for label, values, color in finite:
-        counts, _ = np.histogram(np.maximum(values, low), bins=bins)
-        chart.area(bins, counts, color=color, name=f"{label} ({len(values)})")
-        most = max(most, int(counts.max()))
+        chart.axes.hist(
+            np.maximum(values, low),
+            bins=bins.tolist(),
+            histtype="stepfilled",
+            color=color,
+            alpha=0.6,
+            label=f"{label} ({len(values)})",
+        )
     if limit is not None:
-        chart.dashes(np.full(2, limit[0]), _ENDLESS, color=INK, name=limit[1])
-    chart.limit_x(low, 1.05 * high, log=log)
-    chart.limit_y(0.0, 1.05 * most, integer=True)
+        chart.axes.axvline(limit[0], color=_INK, lw=1.2, ls="--", label=limit[1])
+    if log:
+        chart.axes.set_xscale("log")
+        chart.axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
+    chart.axes.yaxis.get_major_locator().set_params(integer=True)
+    chart.axes.set(xlabel=labels[0], ylabel=labels[1], xlim=(low, 1.05 * high))
     return chart.svg()
 
 
 def cumulative(name: str, distance_m: Array, counts: Array, *, marks_m: Sequence[float]) -> str:
     """Cumulative ratio of points within a distance (V Fig. 3.2)."""
-    chart = Chart(name, labels=("distance to the model [cm]", "points nearer [%]"))
+    chart = Chart(name, numbers=True)
     ratio = 100.0 * np.cumsum(counts) / max(counts.sum(), 1)
-    chart.curve(100.0 * distance_m, ratio, color=BLUE)
+    chart.axes.plot(100.0 * distance_m, ratio, color=BLUE, lw=1.6)
     for mark in marks_m:
         at = float(np.interp(mark, distance_m, ratio))
-        chart.dashes(np.full(2, 100.0 * mark), np.array([0.0, at]), color=ORANGE)
-        chart.note(100.0 * mark, at, f"{at:.1f} %")
-    chart.limit_x(0.0, 10.0)
-    chart.limit_y(0.0, 101.0)
-    return chart.svg()
+        chart.axes.plot([100 * mark] * 2, [0, at], color=ORANGE, lw=1.0, ls="--")
+        chart.axes.annotate(
+            f"{at:.1f} %", (100 * mark, at), xytext=(4, -12), textcoords="offset points"
+        )
+    chart.axes.set(
+        xlabel="distance to the model [cm]", ylabel="points nearer [%]", ylim=(0, 101), xlim=(0, 10)
+    )
+    return chart.svg(legend=False)
 
 
 def broken_at_holes(x: Array, y: Array) -> tuple[Array, Array]:
@@ -97,6 +178,12 @@ def broken_at_holes(x: Array, y: Array) -> tuple[Array, Array]:
     step = np.diff(x)
     after = np.flatnonzero(step > 3.0 * np.median(step)) + 1
     return np.insert(x, after, np.nan), np.insert(y.astype(np.float64), after, np.nan)
+
+
+def _alone(y: Array) -> list[int]:
+    """Rows of the values without a neighbor on either side."""
+    known = np.pad(np.isfinite(y), 1)
+    return np.flatnonzero(known[1:-1] & ~known[:-2] & ~known[2:]).tolist()
 
 
 def thinned(count: int, most: int = 1500) -> Any:

@@ -16,11 +16,10 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict, Usability
 from recon4.report.approval import draft_block
 from recon4.report.artifacts import path_length_m
-from recon4.report.chart import BLUE, ORANGE, Chart
 from recon4.report.chart_groups import ChartFigure, framed
 from recon4.report.edges import edge_paths, edge_rows
 from recon4.report.facts import StageTiming
-from recon4.report.figures import thinned
+from recon4.report.figures import BLUE, ORANGE, Chart
 from recon4.report.html import changed_settings, environment
 from recon4.report.maps import ABOVE, ImageFrame
 from recon4.report.plan import PlanOverlay, PlanPath, plan_svg
@@ -151,15 +150,13 @@ def _maps(page: Page2d) -> list[ChartFigure]:
 def _charts(page: Page2d) -> list[tuple[str, str]]:
     """Uncertainty, and what loop closure corrected, along the path."""
     along_m = path_length_m(page.trajectory)
-    sd_cm = 100.0 * page.sd_m[: len(along_m)]
+    sd = Chart("sd-2d")
+    sd.axes.plot(along_m, 100.0 * page.sd_m[: len(along_m)], color=BLUE, lw=1.2)
+    sd.axes.set(xlabel="path [m]", ylabel="σ of the position [cm]", ylim=(0.0, None))
     moved = page.trajectory.T_a_b.t - page.odometry.T_a_b.t
-    corrected_cm = 100.0 * np.linalg.norm(moved, axis=1)
-    sd = Chart("sd-2d", labels=("path [m]", "σ of the position [cm]"))
-    corrected = Chart("corrected-2d", labels=("path [m]", "correction [cm]"))
-    few = thinned(len(along_m))
-    for chart, values, color in ((sd, sd_cm, BLUE), (corrected, corrected_cm, ORANGE)):
-        chart.curve(along_m[few], values[few], color=color)
-        chart.limit_y(0.0, chart.span_y.last)
+    corrected = Chart("corrected-2d")
+    corrected.axes.plot(along_m, 100.0 * np.linalg.norm(moved, axis=1), color=ORANGE, lw=1.2)
+    corrected.axes.set(xlabel="path [m]", ylabel="correction [cm]", ylim=(0.0, None))
     return [
         (sd.svg(), "Largest standard deviation of the position relative to the start."),
         (corrected.svg(), "How far loop closure moved each scan from the odometry."),

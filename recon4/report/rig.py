@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from recon4.evaluation.table import number
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
-from recon4.report.chart import BLUE, GRAY, LINE, ORANGE, Chart
+from recon4.report.figures import BLUE, GRAY, ORANGE, Chart
 
 SHOWN = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
 """Factor and unit in which parameters are shown."""
@@ -90,14 +88,19 @@ def _name(one: ParameterFigures) -> str:
 
 def _chart(rows: Sequence[ParameterFigures], unit: str, title: str) -> str:
     factor, _ = SHOWN[unit]
-    chart = Chart(f"rig-{unit}", labels=(title, ""), height=4.0 * LINE + 19.0 * len(rows))
+    chart = Chart(f"rig-{unit}", height=0.7 + 0.26 * len(rows))
     for at, one in enumerate(rows):
         if one.sd is None:
             continue
-        x, y = factor * np.array([one.change]), np.array([float(at)])
-        wide = _WIDTH_SD * factor * one.sd
-        chart.bars((x - wide, y), (x + wide, y), color=_COLORS[one.status])
-        chart.dots(x, y, color=_COLORS[one.status], width=5.0)
-    chart.dashes(np.zeros(2), np.array([-np.inf, np.inf]), color=GRAY)
-    chart.list_rows([f"{_name(one)}: {one.status}" for one in rows])
-    return chart.svg()
+        chart.axes.errorbar(
+            factor * one.change,
+            at,
+            xerr=_WIDTH_SD * factor * one.sd,
+            fmt="o",
+            ms=4.0,
+            color=_COLORS[one.status],
+        )
+    chart.axes.axvline(0.0, color=GRAY, lw=1.0, ls="--")
+    chart.axes.set(xlabel=title, ylim=(len(rows) - 0.5, -0.5))
+    chart.axes.set_yticks(range(len(rows)), [f"{_name(one)}: {one.status}" for one in rows])
+    return chart.svg(legend=False)
