@@ -159,7 +159,7 @@ def _level(
     audit: Path | None = None,
     odometry: Path | None = None,
 ) -> LevelFigures:
-    from recon4.georeference.stage import level_and_georeference
+    from recon4.georeference.stage import RefinedWalk, level_and_georeference
     from recon4.pose_graph.files import load_graph
     from recon4.pose_graph.known_errors import KnownErrors
     from recon4.pose_graph.rig_error import EXACT, audited_error
@@ -171,11 +171,13 @@ def _level(
     heights = read_figures(odometry, OdometryFigures).heights if odometry else ()
     leveled = level_and_georeference(
         open_frames(frames, calibration),
-        load_trajectory(refined / "trajectory.npz"),
-        load_graph(graph),
+        RefinedWalk(
+            trajectory=load_trajectory(refined / "trajectory.npz"),
+            graph=load_graph(graph),
+            known=KnownErrors(rig=rig, heights=heights),
+        ),
         settings=context.settings,
         progress=context.progress,
-        known=KnownErrors(rig=rig, heights=heights),
     )
     return leveled.save(context.out)
 

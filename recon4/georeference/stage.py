@@ -110,14 +110,20 @@ class LeveledMap:
         )
 
 
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class RefinedWalk:
+    """What the stages before have made of a walk."""
+
+    trajectory: Trajectory
+    """The refined one, dense."""
+    graph: PoseGraph
+    """The verified one."""
+    known: KnownErrors = NOTHING_KNOWN
+    """What they found to be wrong."""
+
+
 def level_and_georeference(
-    frames: FrameStore,
-    trajectory: Trajectory,
-    graph: PoseGraph,
-    *,
-    settings: Settings,
-    progress: Progress,
-    known: KnownErrors = NOTHING_KNOWN,
+    frames: FrameStore, walk: RefinedWalk, *, settings: Settings, progress: Progress
 ) -> LeveledMap:
     """Level a finished trajectory and, if there are GNSS positions, georeference it.
 
@@ -125,13 +131,12 @@ def level_and_georeference(
 
     Args:
         frames: The multiframes with IMU and GNSS.
-        trajectory: The refined one, dense.
-        graph: The verified graph.
+        walk: The refined trajectory with its graph.
         settings: Uses level, gnss and verification.
         progress: Counts the steps.
-        known: What other stages found to be wrong.
     """
     progress.start("level", 2, "steps")
+    trajectory, graph = walk.trajectory, walk.graph
     nodes = graph.with_poses(trajectory.at(graph.t_ns))
     leveling = find_level(frames, trajectory, source=settings.level.source)
     dense = Trajectory(trajectory.t_ns, leveling.T_level_odom @ trajectory.T_a_b)
@@ -147,7 +152,7 @@ def level_and_georeference(
     if placed.rejected:
         judged = confirmed_again(judged, settings=settings.verification)
     progress.advance()
-    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna, known=known)
+    uncertainty = _uncertainty(frames, judged, placed, antenna=antenna, known=walk.known)
     return LeveledMap(
         dense,
         with_residuals(judged),

@@ -18,6 +18,7 @@ from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_gravity import wrong_gravity
+from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.make import make_odometry
 from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.odometry import Odometry, OdometryStep
@@ -53,6 +54,35 @@ def run_odometry(
     if remark:
         progress.event(Warned(text=remark))
     odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
+    steps = _register(frames, odometry, progress)
+    trajectory = dense_trajectory(steps)
+    save_trajectory(out / "trajectory.npz", trajectory)
+    _save_steps(out / "steps.npz", steps)
+    used = imu if settings.odometry.use_imu else None
+    rides = _rides(trajectory, used, frames.rig, steps=steps)
+    estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
+    contradicted = (
+        *(ride.text for ride in rides),
+        *(wrong_gravity(trajectory, used, frames.rig) if used else ()),
+        *(estimate.texts if estimate else ()),
+    )
+    for text in contradicted:
+        progress.event(Warned(text=text))
+    return OdometryFigures(
+        multiframes=len(steps),
+        lost=sum(step.lost for step in steps),
+        imu=imu is not None,
+        warnings=(remark, *contradicted) if remark else contradicted,
+        severe=tuple(ride.text for ride in rides if ride.is_severe),
+        gnss=aiding is not None,
+        heights=tuple(ride.doubt for ride in rides),
+    )
+
+
+def _register(
+    frames: RecordedFrames, odometry: Odometry | LineOdometry, progress: Progress
+) -> list[OdometryStep]:
+    """Register all multiframes in order, and report the growing trajectory."""
     steps: list[OdometryStep] = []
     for frame in track(frames, progress, what="odometry", unit="multiframe"):
         step = odometry.push(frame)
@@ -61,27 +91,7 @@ def run_odometry(
         steps.append(step)
         if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
             _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
-    trajectory = dense_trajectory(steps)
-    save_trajectory(out / "trajectory.npz", trajectory)
-    _save_steps(out / "steps.npz", steps)
-    used = imu if settings.odometry.use_imu else None
-    rides = _rides(trajectory, used, frames.rig, steps=steps)
-    texts = [ride.text for ride in rides]
-    contradicted = (*texts, *(wrong_gravity(trajectory, used, frames.rig) if used else ()))
-    if isinstance(odometry, Odometry) and odometry.imu_estimate:
-        contradicted = (*contradicted, *odometry.imu_estimate.texts)
-    for text in contradicted:
-        progress.event(Warned(text=text))
-    lost = sum(step.lost for step in steps)
-    return OdometryFigures(
-        multiframes=len(steps),
-        lost=lost,
-        imu=imu is not None,
-        warnings=(remark, *contradicted) if remark else contradicted,
-        severe=tuple(ride.text for ride in rides if ride.is_severe),
-        gnss=aiding is not None,
-        heights=tuple(ride.doubt for ride in rides),
-    )
+    return steps
 
 
 def _rides(
