@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -83,8 +84,12 @@ def render(assessed: Assessment) -> str:
     return page.encode("utf-8", errors="replace").decode("utf-8")  # invalid file names
 
 
+@cache
 def environment() -> Environment:
-    """Templates of this folder, with the filters they use; all texts are escaped."""
+    """Templates of this folder, with the filters they use; all texts are escaped.
+
+    Each is compiled once in a process.
+    """
     made = Environment(
         loader=PackageLoader("recon4.report", "."),
         autoescape=True,
