@@ -34,8 +34,8 @@ RETIRED = {
     r"\bguess(?:es|ed|ing)?\b|_guess(?:es)?\b|\bguess_": "prediction, hypothesis, detect",
     r"\bbeliev\w*|\bunbeliev\w*": "consistent, plausible, accepted, trusted",
     r"\blet(?:s|ting)? (?:somebody |them |it |him |in )?in\b": "sign in, admit, accept",
-    r"\bpictures?\b|_pictures?\b|\bpictures?_|\w+Picture\b": "preview, thumbnail, image, chart",
-    r"(?<!\")\blevell\w*|\bmetres?\b|\b\w*metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
+    r"\bpictures?\b|_pictures?\b|\bpictures?_|(?<=\w)Picture\b": "preview, thumbnail, image, chart",
+    r"(?<!\")\blevell\w*|\bmetre\b|metres\b|\bcolour\w*|\bnormalis\w*|\bgrey\w*|\bcentre\w*"
     r"|\bneighbour\w*|\bbehaviour\w*|\banalys(?:e|ed|es|ing)\b": "American spelling",
     r"\bway_m\b|\bthe way\b(?! (?:to|it|they|that|a|in which)\b)|\bof way\b": "path, path length",
     r"\bwhoever\b": "the person who, anyone who",
@@ -66,9 +66,11 @@ def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:
         if name in ALLOWED or Path(name).suffix not in SUFFIXES:
             continue
         rules = everywhere + [(rx, "a plain verb") for rx, at in local if name.startswith(at)]
-        for number, line in enumerate((ROOT / name).read_text("utf-8").splitlines(), 1):
-            for own_name in FOREIGN:
-                line = line.replace(own_name, "")
+        text = (ROOT / name).read_text("utf-8")
+        for own_name in FOREIGN:
+            text = text.replace(own_name, "")
+        rules = [(rx, fix) for rx, fix in rules if rx.search(text)]
+        for number, line in enumerate(text.splitlines() if rules else (), 1):
             for rx, fix in rules:
                 for found in rx.finditer(line):
                     yield name, number, found.group(), fix

@@ -21,7 +21,7 @@ OFF_M = np.array([0.0, 0.05, 0.0])
 SECONDS = 24.0
 BACK_S = 17.0
 """From here on the walk goes back through the corridor where it began (0 to 5 s)."""
-FEW = ["map.voxel_m=0.02", "graph.node_stride=10", "refine.rounds=0"]
+FEW = ["map.voxel_m=0.02", "graph.node_stride=10", "refine.rounds=0", "calibration.mode=off"]
 """Refinement would lay the two layers onto each other again."""
 
 

@@ -43,12 +43,12 @@ class Outcome:
 class ReaderProcess:
     """Reads files in children; use as a context manager."""
 
-    def __init__(self, *, max_bytes: int = GIB, deadline_s: int = 10) -> None:
-        self._arguments = [str(max_bytes), str(deadline_s)]
+    def __init__(self, *, max_bytes: int = GIB) -> None:
+        self._max_bytes = max_bytes
 
     def __enter__(self) -> Self:
         self._process = subprocess.Popen(
-            [sys.executable, "-m", "tests.security.reader_process", *self._arguments],
+            [sys.executable, "-m", "tests.security.reader_process", str(self._max_bytes)],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             text=True,
@@ -63,16 +63,16 @@ class ReaderProcess:
         self._process.wait()
         self._process.stdout.close()
 
-    def read(self, path: Path, kind: str = "") -> Outcome:
-        """Read one file as ``recon4 info`` and the stage ``frames`` do."""
+    def read(self, path: Path, kind: str = "", *, deadline_s: int = 10) -> Outcome:
+        """Read one file as ``recon4 info`` and the stage ``frames`` do, in limited time."""
         assert self._process.stdin is not None
         assert self._process.stdout is not None
-        self._process.stdin.write(json.dumps([str(path), kind]) + "\n")
+        self._process.stdin.write(json.dumps([str(path), kind, deadline_s]) + "\n")
         self._process.stdin.flush()
         return Outcome(**json.loads(self._process.stdout.readline()))
 
 
-def _serve(max_bytes: int, deadline_s: int) -> None:
+def _serve(max_bytes: int) -> None:
     from tests.security.fuzz.seeds_recordings import SEEDS, read_pcap
 
     for kind, (build, read, suffix) in SEEDS.items():
@@ -84,7 +84,7 @@ def _serve(max_bytes: int, deadline_s: int) -> None:
         finally:
             path.unlink()
     for line in sys.stdin:
-        name, kind = json.loads(line)
+        name, kind, deadline_s = json.loads(line)
         read = SEEDS[kind][1] if kind else read_pcap
         sys.stdout.write(json.dumps(_in_child(Path(name), read, max_bytes, deadline_s)) + "\n")
         sys.stdout.flush()
@@ -145,4 +145,4 @@ def _status(field: str) -> int:
 
 
 if __name__ == "__main__":
-    _serve(int(sys.argv[1]), int(sys.argv[2]))
+    _serve(int(sys.argv[1]))
