@@ -44,9 +44,10 @@ class RigError:
         turned = since @ np.swapaxes(since, 1, 2)
         # A turn that is not small acts about every axis, by its square.
         spread = np.trace(turned, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
+        every = turned + self.turn_rad**2 * spread
         out = np.zeros((len(R), 6, 6))
-        out[:, ROTATION, ROTATION] = self.turn_rad**2 * turned + self.turn_rad**4 * spread
-        out[:, TRANSLATION, TRANSLATION] = self.shift_m**2 * turned
+        out[:, ROTATION, ROTATION] = self.turn_rad**2 * every
+        out[:, TRANSLATION, TRANSLATION] = self.shift_m**2 * every
         return out
 
 
