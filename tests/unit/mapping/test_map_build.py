@@ -326,11 +326,14 @@ def test_the_tiles_of_a_map_do_not_show_in_its_surfaces(tmp_path):
     assert np.mean(apart > 0.001) < 0.06  # sparse places: their larger cells begin at the tile
 
 
-def test_fitted_maps_do_not_depend_on_the_number_of_bursts(tmp_path):
+def test_fitted_maps_do_not_depend_on_the_number_of_bursts_and_threads(tmp_path, monkeypatch):
     walk = room_walk(frames=15)
     settings = MapSettings(voxel_m=0.05, surface="fitted")
 
-    for name, burst in {"once": 10**9, "streamed": 5000}.items():
-        build(walk, tmp_path / name, settings, burst=burst)
+    for threads, burst in ((2, 10**9), (2, 5000), (1, 10**9), (4, 10**9)):
+        monkeypatch.setattr("recon4.mapping.build.WORKERS", threads)
+        build(walk, tmp_path / f"{threads} {burst}", settings, burst=burst)
 
-    assert digest(tmp_path / "once") == digest(tmp_path / "streamed")
+    first, *others = (digest(folder) for folder in tmp_path.iterdir())
+    assert len(others) == 3
+    assert all(other == first for other in others)
