@@ -11,6 +11,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from app.deps import Server
+from app.pages import WEB
 from app.projects.model import ProjectView
 
 router = APIRouter()
@@ -70,6 +71,13 @@ def viewer_without_slash(project_id: str, server: Server) -> Response:
 
 
 @cache
+def drawing() -> str:
+    """The script that spares a battery: a module without ``export``, as it runs before viser's."""
+    module = (WEB / "shared" / "draw_at_rest.js").read_text("utf-8")
+    return f"<script>{module.replace('export ', '')}\ndrawLessAtRest();</script>"
+
+
+@cache
 def client() -> str:
     """The client of viser: one self-contained file of its wheel."""
     found = find_spec("viser")
@@ -87,7 +95,7 @@ def with_shims(page: str, caption: str) -> str:
         '<div id="cover">Opening the map…</div>'
         f'<div id="frame-caption">{html.escape(caption)}</div>'
     )
-    return page[:head] + SHIMS + page[head:body] + badge + page[body:]
+    return page[:head] + drawing() + SHIMS + page[head:body] + badge + page[body:]
 
 
 def policy_for(host: str) -> str:

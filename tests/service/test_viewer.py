@@ -282,6 +282,7 @@ def test_the_page_is_viser_with_our_repairs_and_a_policy(server):
 
     policy = answer.headers["content-security-policy"]
     assert SHIMS in answer.text
+    assert 0 < answer.text.find("drawLessAtRest();") < answer.text.find(SHIMS)
     assert "map frame · z up · meters" in answer.text
     assert f"connect-src 'self' ws://{urlsplit(server.url).netloc} " in policy
     assert "frame-ancestors 'self'" in policy
