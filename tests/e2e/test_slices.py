@@ -67,7 +67,7 @@ def test_a_2d_map_is_shown_as_the_one_slice_it_is(server, page, screenshot):
     screenshot(page, "slices-plan")
 
 
-@looks("desktop light", "phone dark")
+@looks("desktop light")
 def test_keys_change_the_cut_and_the_address_keeps_it(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
 
@@ -150,7 +150,7 @@ def test_two_slices_stand_side_by_side_and_move_together(server, page, screensho
     assert frames[0] == frames[1]
 
 
-@looks("desktop light", "phone dark")
+@looks("desktop light")
 def test_no_double_wall_is_found_where_there_is_none(server, page):
     opened(page, server)
 
@@ -228,7 +228,7 @@ def test_a_reference_is_uploaded_and_shown(server, page):
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 
 
-@looks("desktop dark", "phone light")
+@looks("desktop dark")
 def test_an_invalid_reference_is_rejected_with_a_message(server, page):
     opened(page, server)
 
@@ -253,7 +253,7 @@ def test_tools_take_two_rows_at_most_and_are_large_enough_to_touch(server, page)
     fits(page)
 
 
-@looks("desktop light", "phone dark")
+@looks("desktop light")
 def test_a_double_wall_is_listed_in_slices_near_it(server, page):
     opened(page, server)
 
@@ -319,7 +319,7 @@ def test_two_tabs_measure_control_points_and_neither_overwrites_the_other(server
     other.close()
 
 
-@looks("desktop light", "phone dark")
+@looks("desktop light")
 def test_a_sheet_is_downloaded(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
 
