@@ -45,9 +45,10 @@ from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file, copy_file, write_json
 from recon4.store.checked import Altered
 from recon4.store.frames import FrameStore, open_frames
+from recon4.store.package_versions import versions
 from recon4.store.project import SUMMARY, read_artifacts
 from recon4.store.seal import changing
-from recon4.store.stage import StageRun, figures_of, versions
+from recon4.store.stage import StageRun, figures_of
 
 COVARIANCES = "poses_covariance.csv"
 RESULTS = (

@@ -41,9 +41,10 @@ from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.verdict import Facts2d, judge
 from recon4.store.arrays import load_record, load_trajectory
 from recon4.store.atomic import copy_file, write_json
+from recon4.store.package_versions import versions
 from recon4.store.project import SUMMARY
 from recon4.store.seal import changing
-from recon4.store.stage import StageRun, figures_of, versions
+from recon4.store.stage import StageRun, figures_of
 
 RESULTS_2D = (
     "map.png",

@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import platform
 import secrets
 import time
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, fields, replace
-from functools import cache
-from importlib import metadata
 from pathlib import Path
 from typing import Any, Generic, TypedDict, TypeVar
 
 import msgspec
 
-import recon4
 from recon4.errors import StoreError
 from recon4.model.events import ArtifactDamaged, StageChanged
 from recon4.model.figures import Figures
@@ -26,6 +22,7 @@ from recon4.store.checked import Altered
 from recon4.store.hashing import FileDigest, FileEntry, files_below, hash_file, hash_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage
+from recon4.store.package_versions import versions
 from recon4.store.project import Project
 from recon4.store.seal import changing, check_sealed
 from recon4.store.usage import Meter
@@ -37,7 +34,6 @@ OfStage = TypeVar("OfStage", bound=Figures)
 """Figures of a stage."""
 _NOT_DECLARED: Any = None
 """In place of a group of settings that a stage does not declare."""
-_KEY_PACKAGES = ("numpy", "scipy", "numba", "gtsam", "laspy", "pyproj")
 
 
 @dataclass(frozen=True, slots=True)
@@ -340,21 +336,6 @@ def damage_of(folder: Path, *, hashes: bool) -> list[str]:
         elif hashes and hash_file(folder / name) != files[name].sha256:
             damage.append(f"{name} has other bytes")
     return damage
-
-
-def versions() -> dict[str, str]:
-    """Versions of recon4, Python and the packages that influence results."""
-    found = {"recon4": recon4.__version__, "python": platform.python_version()}
-    return found | {name: _installed(name) for name in _KEY_PACKAGES}
-
-
-@cache
-def _installed(package: str) -> str:
-    """Version of a package; reading it from the disk takes 2 ms."""
-    try:
-        return metadata.version(package)
-    except metadata.PackageNotFoundError:
-        return "missing"
 
 
 def _finished_stage(artifact: Artifact) -> FinishedStage:
