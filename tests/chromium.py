@@ -40,7 +40,11 @@ if (window !== window.parent) {
   window.requestAnimationFrame = (draw) => {
     const id = ++last;
     const drawUnlessCancelled = (time) => timers.delete(id) && draw(time);
-    timers.set(id, setTimeout(() => request(drawUnlessCancelled), 100));
+    const draws = () =>
+      window.parent.unwatched
+        ? timers.set(id, setTimeout(draws, 400))
+        : request(drawUnlessCancelled);
+    timers.set(id, setTimeout(draws, 400));
     return id;
   };
   window.cancelAnimationFrame = (id) => {
@@ -48,7 +52,8 @@ if (window !== window.parent) {
     timers.delete(id);
   };
 }"""
-"""Script for every page: no antialiasing in WebGL; in a page within a page 10 frames a second.
+"""Script for every page: no antialiasing in WebGL; in a page within a page two frames a second, and
+none while a test sets ``window.unwatched`` of the page around it.
 
 Without a graphics card each frame takes processor time that the other tests need. The viewer by
 itself draws at its own pace: its camera comes to rest before a test clicks.
