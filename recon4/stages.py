@@ -156,25 +156,20 @@ def _level(
     refined: Path,
     graph: Path,
     calibration: Path | None = None,
-    audit: Path | None = None,
-    odometry: Path | None = None,
+    **doubts: Path | None,
 ) -> LevelFigures:
     from recon4.georeference.stage import RefinedWalk, level_and_georeference
     from recon4.pose_graph.files import load_graph
-    from recon4.pose_graph.known_errors import KnownErrors
-    from recon4.pose_graph.rig_error import EXACT, audited_error
+    from recon4.pose_graph.known_errors import load_known_errors
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
-    from recon4.store.stage import read_figures
 
-    rig = audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
-    heights = read_figures(odometry, OdometryFigures).heights if odometry else ()
     leveled = level_and_georeference(
         open_frames(frames, calibration),
         RefinedWalk(
             trajectory=load_trajectory(refined / "trajectory.npz"),
             graph=load_graph(graph),
-            known=KnownErrors(rig=rig, heights=heights),
+            known=load_known_errors(**doubts),
         ),
         settings=context.settings,
         progress=context.progress,

@@ -25,7 +25,7 @@ _CLEARLY = 0.5
 """The turns at the clock that is found differ by less than this ratio of those at the stamps."""
 
 
-def receiver_clock_s(t_ns: Times, R_enu_body: Array, imu: ImuSamples, rig: Rig) -> float:
+def receiver_clock_s(t_ns: Times, R_enu_body: Array, *, imu: ImuSamples, rig: Rig) -> float:
     """Time to be added to attitudes so that they turn when the gyroscope does [s]; 0 = none.
 
     Args:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.figures import HeightDoubt
+from recon4.model.figures import CalibrationFigures, HeightDoubt, OdometryFigures
 from recon4.model.trajectory import Times
-from recon4.pose_graph.rig_error import EXACT, RigError
+from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
+from recon4.store.stage import read_figures
 
 _Z = 5
 
@@ -40,3 +42,14 @@ class KnownErrors:
 
 
 NOTHING_KNOWN = KnownErrors()
+
+
+def load_known_errors(*, audit: Path | None = None, odometry: Path | None = None) -> KnownErrors:
+    """What the figures of stages say against the poses; None = there is no such stage.
+
+    Raises:
+        StoreError: If figures are missing or damaged.
+    """
+    rig = audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
+    heights = read_figures(odometry, OdometryFigures).heights if odometry else ()
+    return KnownErrors(rig=rig, heights=heights)

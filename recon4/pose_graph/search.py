@@ -26,7 +26,7 @@ from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.recognition import recognize, without_settled
 from recon4.pose_graph.solve import Kernel, Solution, optimize
 from recon4.progress import Progress
-from recon4.registration.submap import NodeRangeImages, Submaps, node_rows
+from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames, node_rows
 from recon4.settings import GraphSettings, Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -138,9 +138,8 @@ def make_registrar(
     scratch: Path,
 ) -> PairRegistrar:
     """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""
-    submaps = Submaps(
-        frames, odometry.trajectory, rows, settings=settings, skip=odometry.lost, scratch=scratch
-    )
+    tracked = TrackedFrames(frames, odometry.trajectory, odometry.lost)
+    submaps = Submaps(tracked, rows, settings=settings, scratch=scratch)
     return PairRegistrar(submaps, NodeRangeImages(len(rows), settings, scratch), settings)
 
 

@@ -7,6 +7,7 @@ import tempfile
 import threading
 import weakref
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,6 +26,17 @@ Ends = NDArray[np.float64]
 """Both ends of M segments [m], (M, 2, 3)."""
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackedFrames:
+    """Multiframes and their poses by odometry."""
+
+    frames: RecordedFrames
+    trajectory: Trajectory
+    """``T_odom_body``, dense."""
+    lost: NDArray[np.bool_]
+    """Multiframes without a pose, which have no segments here, (F,)."""
+
+
 class Submaps:
     """Computes the segments around nodes on demand.
 
@@ -33,36 +45,28 @@ class Submaps:
     """
 
     def __init__(
-        self,
-        frames: RecordedFrames,
-        odometry: Trajectory,
-        rows: NDArray[np.intp],
-        *,
-        settings: Settings,
-        skip: NDArray[np.bool_],
-        scratch: Path,
+        self, tracked: TrackedFrames, rows: NDArray[np.intp], *, settings: Settings, scratch: Path
     ) -> None:
-        """Arguments as of `search`.
+        """Nothing is drawn yet.
 
         Args:
-            frames: The multiframes.
-            odometry: ``T_odom_body``, dense.
+            tracked: The multiframes.
             rows: Multiframe of each node, (N,).
             settings: Uses segments.
-            skip: Which multiframes have no segments, (F,).
             scratch: Folder for the unnamed file; a full disk raises OSError.
         """
-        self._frames, self._odometry, self._settings = frames, odometry, settings
+        self._frames, self._odometry = tracked.frames, tracked.trajectory
+        self._lost = tracked.lost
+        self._settings = settings
         self._rows = rows
-        self._skip = skip
-        self._T_odom_frame = odometry.at(frames.t_mid_ns)
+        self._T_odom_frame = tracked.trajectory.at(tracked.frames.t_mid_ns)
         self._drawn = _DrawnEnds(scratch)
 
     def around(self, node: int, reach: int) -> Ends:
         """Segments of the multiframes up to ``reach`` before and after the node's own."""
         row = int(self._rows[node])
         near = range(max(row - reach, 0), min(row + reach + 1, len(self._frames)))
-        parts = [(k, self._ends_of(k)) for k in near if not self._skip[k]]
+        parts = [(k, self._ends_of(k)) for k in near if not self._lost[k]]
         ends = np.empty((sum(len(part) for _, part in parts), 2, 3))
         T_node_odom, filled = self._T_odom_frame[row].inverse(), 0
         for k, part in parts:

@@ -21,7 +21,7 @@ from recon4.pose_graph.pairs import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar
 from recon4.progress import Silent
 from recon4.registration.overlap import RangeImage, overlap
-from recon4.registration.submap import NodeRangeImages, Submaps
+from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
 from recon4.review.planar_pairs import align_keyframes, keyframe_points
@@ -161,13 +161,11 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
 def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     # An operator's pair is registered at any overlap.
     settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
-    lost = _lost(source)
     rows = np.array(pair, dtype=np.intp)
     scratch = Path(gettempdir())
     views = NodeRangeImages(2, settings, scratch)
-    submaps = Submaps(
-        source.frames, source.odometry, rows, settings=settings, skip=lost, scratch=scratch
-    )
+    tracked = TrackedFrames(source.frames, source.odometry, _lost(source))
+    submaps = Submaps(tracked, rows, settings=settings, scratch=scratch)
     registrar = PairRegistrar(submaps, views, settings)
     registrar.prepare(2, Silent())
     tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]

@@ -51,7 +51,7 @@ def recorded(
 
 
 def found_s(gnss: GnssSamples, imu: ImuSamples, rig: Rig = RIG) -> float:
-    return receiver_clock_s(gnss.t_ns, attitudes(gnss.rpy_ned_rad), imu, rig)
+    return receiver_clock_s(gnss.t_ns, attitudes(gnss.rpy_ned_rad), imu=imu, rig=rig)
 
 
 @pytest.mark.parametrize("late_s", [0.1, -0.1, 0.05, 0.34])
@@ -70,7 +70,7 @@ def test_a_cart_that_hardly_turns_shows_no_clock() -> None:
     noise = 1e-3 * np.random.default_rng(1).standard_normal(straight.shape)
     still = ImuSamples(imu.t_ns, np.zeros_like(imu.gyro_rad_s), imu.accel_m_s2)
 
-    assert receiver_clock_s(gnss.t_ns, attitudes(straight + noise), still, RIG) == 0.0
+    assert receiver_clock_s(gnss.t_ns, attitudes(straight + noise), imu=still, rig=RIG) == 0.0
 
 
 def test_another_imu_than_that_of_the_body_shows_no_clock() -> None:

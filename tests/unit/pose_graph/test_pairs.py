@@ -11,7 +11,13 @@ from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.progress import Silent
 from recon4.registration.collar_lines import register_lines
 from recon4.registration.overlap import RangeImage, overlap
-from recon4.registration.submap import NodeRangeImages, Submaps, median_range_m, node_rows
+from recon4.registration.submap import (
+    NodeRangeImages,
+    Submaps,
+    TrackedFrames,
+    median_range_m,
+    node_rows,
+)
 from recon4.settings import Settings, override
 from tests.scanned_room import strolling, walk
 
@@ -24,10 +30,9 @@ def stroll():
 
 
 def submaps_of(stroll, rows, settings=None, *, skip=NOTHING_LOST, trajectory=None):
-    return Submaps(
-        stroll, trajectory or stroll.truth, np.array(rows),
-        settings=settings or Settings(), skip=skip, scratch=Path(gettempdir()),
-    )  # fmt: skip
+    tracked = TrackedFrames(stroll, trajectory or stroll.truth, skip)
+    scratch = Path(gettempdir())
+    return Submaps(tracked, np.array(rows), settings=settings or Settings(), scratch=scratch)
 
 
 def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None):
