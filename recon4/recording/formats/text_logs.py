@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import bz2
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -16,6 +16,7 @@ from recon4.recording.report import ImportReport
 MAX_LOG_BYTES = 4 << 30
 """A log of eight hours at 40 Hz with 1081 beams has 8 GB; decompressed logs are smaller."""
 _PIECE = 1 << 20
+_BZIP2, _GZIP = b"BZh", b"\x1f\x8b"
 
 
 def log_lines(path: Path, report: ImportReport) -> Iterator[bytes]:
@@ -66,7 +67,7 @@ def _largest(path: Path, file: BinaryIO) -> int:
     size = path.stat().st_size
     head = file.read(3)
     file.seek(0)
-    if head.startswith((b"BZh", b"\x1f\x8b")):
+    if head.startswith((_BZIP2, _GZIP)):
         return min(MAX_LOG_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * size))
     return MAX_LOG_BYTES
 
@@ -75,10 +76,10 @@ def _pieces(file: BinaryIO, name: str, report: ImportReport) -> Iterator[bytes]:
     """The content, decompressed."""
     head = file.read(3)
     file.seek(0)
-    if head.startswith(b"BZh"):
-        yield from _decompressed(file, bz2.BZ2Decompressor(), name=name, report=report)
-    elif head.startswith(b"\x1f\x8b"):
-        yield from _decompressed(file, _Gzip(), name=name, report=report)
+    if head.startswith(_BZIP2):
+        yield from _decompressed(file, bz2.BZ2Decompressor, magic=_BZIP2, name=name, report=report)
+    elif head.startswith(_GZIP):
+        yield from _decompressed(file, _Gzip, magic=_GZIP, name=name, report=report)
     else:
         while piece := file.read(_PIECE):
             yield piece
@@ -95,6 +96,10 @@ class _Gzip:
         return self._stream.eof
 
     @property
+    def unused_data(self) -> bytes:
+        return self._stream.unused_data
+
+    @property
     def needs_input(self) -> bool:
         return not self._stream.unconsumed_tail
 
@@ -103,15 +108,39 @@ class _Gzip:
 
 
 def _decompressed(
-    file: BinaryIO, decoder: Any, *, name: str, report: ImportReport
+    file: BinaryIO, new_decoder: Callable[[], Any], *, magic: bytes, name: str, report: ImportReport
 ) -> Iterator[bytes]:
-    while not decoder.eof:
-        data = file.read(_PIECE) if decoder.needs_input else b""
-        if decoder.needs_input and not data:
-            report.outcome = "lossy"
-            report.count("files_cut")
-            report.warn(f"{name}: the compressed file is cut off; what it still has is read")
+    """The content of all streams: parallel compressors write several, one after the other."""
+    data = b""
+    while True:
+        decoder = new_decoder()
+        yield from _one_stream(file, decoder, data, name=name, report=report)
+        if not decoder.eof:
             return
+        data = decoder.unused_data
+        if len(data) < len(magic):
+            data += file.read(_PIECE)
+        if data.startswith(magic):
+            continue
+        if data.strip(b"\0"):
+            report.outcome = "lossy"
+            report.count("files_damaged")
+            report.warn(f"{name}: what follows the compressed data is not compressed: not read")
+        return
+
+
+def _one_stream(
+    file: BinaryIO, decoder: Any, data: bytes, *, name: str, report: ImportReport
+) -> Iterator[bytes]:
+    """The content of a stream that begins with ``data``; it may end without the stream's end."""
+    while not decoder.eof:
+        if decoder.needs_input and not data:
+            data = file.read(_PIECE)
+            if not data:
+                report.outcome = "lossy"
+                report.count("files_cut")
+                report.warn(f"{name}: the compressed file is cut off; what it still has is read")
+                return
         try:
             piece = decoder.decompress(data, max_length=_PIECE)
         except (OSError, ValueError, EOFError, zlib.error) as error:
@@ -119,5 +148,6 @@ def _decompressed(
             report.count("files_damaged")
             report.warn(f"{name}: the compressed file is damaged, the rest is not read: {error}")
             return
+        data = b""
         if piece:
             yield piece

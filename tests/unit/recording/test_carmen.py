@@ -80,6 +80,33 @@ def test_a_compressed_log_that_is_cut_off_is_read_as_far_as_it_goes(tmp_path, wa
     assert "cut off" in " ".join(report.warnings)
 
 
+@pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
+def test_all_streams_of_a_compressed_log_are_read(tmp_path, walk, pack):
+    """Parallel compressors write several streams into one file, and tapes end with zeros."""
+    parts = ["\n".join(carmen_lines(walk.scans)[a:b]) + "\n" for a, b in ((0, 20), (20, 60))]
+    packed = b"".join(pack(part.encode()) for part in parts)
+    (tmp_path / "log").write_bytes(packed)
+    (tmp_path / "padded").write_bytes(packed + bytes(100))
+
+    whole, report = read(tmp_path / "log")
+    padded, also = read(tmp_path / "padded")
+
+    assert len(whole) == len(padded) == 30
+    assert report.warnings == also.warnings == []
+
+
+@pytest.mark.parametrize("pack", [bz2.compress, gzip.compress])
+def test_what_follows_the_compressed_data_is_reported(tmp_path, walk, pack):
+    text = "\n".join(carmen_lines(walk.scans)) + "\n"
+    (tmp_path / "log").write_bytes(pack(text.encode()) + b"FLASER 180")
+
+    scans, report = read(tmp_path / "log")
+
+    assert len(scans) == 30
+    assert report.outcome == "lossy"
+    assert "not compressed: not read" in " ".join(report.warnings)
+
+
 def test_a_flaser_of_180_beams_begins_at_minus_90_degrees(tmp_path):
     scans, _ = read(tmp_path / "log", flaser([2.0] * 180, 5.25) + flaser([2.1] * 180, 5.5))
 
