@@ -44,7 +44,7 @@ if (window !== window.parent) {
       window.parent.unwatched
         ? timers.set(id, setTimeout(draws, 400))
         : request(drawUnlessCancelled);
-    timers.set(id, setTimeout(draws, 400));
+    timers.set(id, setTimeout(draws, 100));
     return id;
   };
   window.cancelAnimationFrame = (id) => {
@@ -52,9 +52,10 @@ if (window !== window.parent) {
     timers.delete(id);
   };
 }"""
-"""Script for every page: no antialiasing in WebGL; in a page within a page two frames a second, and
+"""Script for every page: no antialiasing in WebGL; in a page within a page 10 frames a second, and
 none while a test sets ``window.unwatched`` of the page around it.
 
-Without a graphics card each frame takes processor time that the other tests need. The viewer by
-itself draws at its own pace: its camera comes to rest before a test clicks.
+Without a graphics card each frame takes processor time that the other tests need. Menus follow the
+frames, too: with fewer of them a test clicks beside an entry. The viewer by itself draws at its own
+pace: its camera comes to rest before a test clicks.
 """
