@@ -20,7 +20,7 @@ from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import FrameFigures, GraphFigures, OdometryFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.trajectory import Trajectory
-from recon4.pipeline import remake
+from recon4.pipeline import Measurements, remake, run_from_review
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
 from recon4.results import publish
@@ -68,17 +68,12 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         odometry = runner.run(Stage("odometry", 1, (), _odometry, OdometryFigures), frames=frames)
         searched = runner.run(Stage("graph", 1, (), _graph, GraphFigures), frames=frames)
         graph = runner.run(stages.VERIFICATION, graph=searched)
-        if decided := read_decided(root):
-            decisions = Input(decided.key, decided.standing)
-            graph = runner.run(stages.REVIEW, graph=graph, decisions=decisions)
-        else:
-            runner.skip(stages.REVIEW)
+        decided = read_decided(root)
         if graph_only:
+            stages.reviewed(runner, graph, decided)
             return
-        refined = runner.run(stages.REFINE, frames=frames, odometry=odometry, graph=graph)
-        level = runner.run(stages.LEVEL, frames=frames, refined=refined, graph=graph)
-        intensity = runner.run(stages.INTENSITY, frames=frames, level=level)
-        runner.run(stages.MAP, frames=frames, level=level, intensity=intensity)
+        measured = Measurements(frames, None)
+        run_from_review(runner, measured, odometry=odometry, graph=graph, decided=decided)
         about = About(ProjectDescription.read(root), SETTINGS)
         publish(root, runner.runs, about, progress=progress or Silent())
 
