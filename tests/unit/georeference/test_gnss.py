@@ -281,6 +281,21 @@ def test_a_stationary_receiver_gives_no_heading_and_a_reason(
     assert "agreeing fixes" in result.reason
 
 
+def test_fixes_that_contradict_the_trajectory_are_said_with_their_distance(
+    true: Trajectory, gnss: GnssSamples
+) -> None:
+    shuffled = np.random.default_rng(3).permutation(len(gnss))
+    elsewhere = replace(gnss, lat_rad=gnss.lat_rad[shuffled], lon_rad=gnss.lon_rad[shuffled])
+
+    result = run(true, elsewhere, gate_relative=0.0)
+
+    assert result.origin is None
+    assert f"of {len(gnss)} fixes agree with the trajectory" in result.reason
+    assert "Either the trajectory or GNSS is wrong" in result.reason
+    beside_m = float(result.reason.split("up to ")[1].split(" m")[0])
+    assert beside_m > 50.0
+
+
 def test_no_receiver_and_switched_off_are_named(true: Trajectory, gnss: GnssSamples) -> None:
     assert "no GNSS" in run(true, None).reason
     assert "switched off" in run(true, gnss, enabled=False).reason
