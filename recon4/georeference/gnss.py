@@ -175,7 +175,8 @@ def _place_by_priors(
     T_enu_map, near = align_heading(p_map, gnss_priors, settings=settings)
     extent = float(np.linalg.norm(np.ptp(p_map[near, :2], axis=0))) if near.any() else 0.0
     if near.sum() < _MIN_PRIORS or extent < settings.min_extent_m:
-        why = _disagreement(p_map, gnss_priors, near, settings=settings)
+        why = f"{near.sum()} agreeing fixes over {extent:.1f} m"
+        why += _contradiction(p_map, gnss_priors, settings=settings)
         return _local(graph, why, samples=samples)
     graph = graph.with_poses(T_enu_map @ graph.T_map_body)
     rejected = _contradicting(graph, gnss_priors, near, settings=settings)
@@ -194,22 +195,16 @@ def _place_by_priors(
     )
 
 
-def _disagreement(
-    p_map: Array, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
-) -> str:
-    """Why fixes do not place the map: the receiver stood, or they contradict the trajectory."""
-    extents = [
-        float(np.linalg.norm(np.ptp(p[:, :2], axis=0)))
-        for p in (gnss_priors.p_enu, p_map, p_map[near] if near.any() else np.zeros((1, 3)))
-    ]
-    if min(extents[:2]) < settings.min_extent_m:
-        return f"{near.sum()} agreeing fixes over {extents[2]:.1f} m"
+def _contradiction(p_map: Array, gnss_priors: GnssPriors, *, settings: GnssSettings) -> str:
+    """By how much fixes contradict a trajectory that they do not place; empty if one stood."""
+    tracks = (gnss_priors.p_enu[:, :2], p_map[:, :2])
+    if min(np.linalg.norm(np.ptp(track, axis=0)) for track in tracks) < settings.min_extent_m:
+        return ""
     T_enu_map = _heading_fit(p_map, gnss_priors.p_enu, gnss_priors.sd_m)
     beside_m = np.linalg.norm((gnss_priors.p_enu - T_enu_map @ p_map)[:, :2], axis=1)
     return (
-        f"only {near.sum()} of {len(near)} fixes agree with the trajectory, over "
-        f"{extents[2]:.1f} m; with all of them they lie up to {beside_m.max():.1f} m beside it. "
-        "Either the trajectory or GNSS is wrong"
+        f" of {len(p_map)} usable ones, which lie up to {beside_m.max():.1f} m beside the "
+        "trajectory. Either the trajectory or GNSS is wrong"
     )
 
 

@@ -16,7 +16,7 @@ def transform_points(
 ) -> None:
     """Transform points from b to a, in one pass over them.
 
-    A product of matrices three wide takes five times as long.
+    A matrix product, with the conversion to float64, takes nine times as long.
 
     Args:
         R_a_b: Rotation, (3, 3).
