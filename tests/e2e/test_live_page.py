@@ -228,8 +228,25 @@ def axes_are_shown(page, screenshot):
     rotation = page.locator("#dance-axes tr").nth(0)
     expect(rotation).to_have_text(re.compile(r"rotation(\d+ %|✓ observed){3}"))
     fits(page, "#dance")
+    on_one_line(page.locator("#dance-axes td").nth(2), "✓ observed")
     screenshot(page, "live-dance")
     page.get_by_role("button", name="Close").click()
+
+
+def on_one_line(cell, text):
+    """Whether a cell with this text is no higher than with one character."""
+    heights = cell.evaluate(
+        """(cell, text) => ["1", text].map((shown) => {
+          const copy = cell.parentElement.cloneNode(true);
+          for (const one of copy.querySelectorAll("td")) one.textContent = shown;
+          cell.closest("tbody").append(copy);
+          const { height } = copy.getBoundingClientRect();
+          copy.remove();
+          return height;
+        })""",
+        text,
+    )
+    assert heights[1] == heights[0]
 
 
 def mark(page, text):
