@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from recon4.calibration.calibrate import Agreement
+from recon4.calibration.held_out import Agreement
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.slices import LidarSlices
 from recon4.geometry.se3 import SE3

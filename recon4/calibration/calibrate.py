@@ -8,24 +8,34 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.calibration.equations import Fit
-from recon4.calibration.joint import ROUNDS, JointEstimate, calibrate_jointly, explain
+from recon4.calibration.equations import RoundBounds
+from recon4.calibration.held_out import (
+    Agreement,
+    not_observable,
+    refusal,
+    unexplained,
+    with_known_errors,
+)
+from recon4.calibration.joint import (
+    LAST_ROUNDS,
+    NEAR_ROUNDS,
+    ROUNDS,
+    JointEstimate,
+    calibrate_jointly,
+    explain,
+)
 from recon4.calibration.judgment import judge
 from recon4.calibration.mount_search import search_mounts, without_others
-from recon4.calibration.parameters import Parameters, Unit
+from recon4.calibration.parameters import Parameters
 from recon4.calibration.walk import RecordedWalk
-from recon4.calibration.window import Window
+from recon4.calibration.window import Window, points_of_frame
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.model.figures import GNSS, IMU, ParameterFigures
 from recon4.model.rig import Rig
-from recon4.progress import Progress
+from recon4.progress import Progress, track
 from recon4.settings import CalibrationSettings, Settings
 
-_KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}
-"""Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
-_KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
-"""The same of single beams."""
 _SIGMAS = 3.0
 _MIN_WINDOWS = 3
 _FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
@@ -33,30 +43,6 @@ _FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
 _SEARCH_WINDOWS, _SEARCH_WINDOW_S = 3, 3.0
 _CLEARLY = 1.2
 """How many times the points another mount must put on planes that two LiDARs see."""
-_NOT_WORSE, _BETTER = 1.01, 0.99
-"""Ratio of figures of fit, after against before."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Agreement:
-    """How well windows that were not used are explained by a rig."""
-
-    rms_m: float
-    """Distance of points from common planes, median of the windows [m]."""
-    offset_m: float
-    """Between one surface as seen by two LiDARs [m]; NaN = none is."""
-    imu_rms: float
-    """Of the normalized residuals of the IMU; NaN = no IMU."""
-
-    @staticmethod
-    def of(fits: Sequence[Fit | None]) -> Agreement:
-        """Medians over the windows."""
-        known = [fit for fit in fits if fit is not None]
-        return Agreement(
-            rms_m=_median([fit.rms_m for fit in known]),
-            offset_m=_median([fit.offset_m for fit in known]),
-            imu_rms=_median([fit.imu_rms for fit in known]),
-        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -145,7 +131,7 @@ def audit(
     """
     s = settings.calibration
     windows = walk.windows(s.audit_windows, s.audit_window_s)
-    found = _estimate(windows, start, parameters, settings=settings, progress=progress)
+    found = _Estimator(settings, progress).estimate(windows, start, parameters)
     if found is not None and _is_near(found, walk.frames.rig):
         return _counted_from(found, walk.frames.rig)
     others = _from_other_mounts(walk, start, parameters, settings=settings, progress=progress)
@@ -165,7 +151,9 @@ def calibrate(
 ) -> Calibration | None:
     """Calibrate the rig on every second window and check it on the others.
 
-    The windows are tracked again with the rig of the audit: a better trajectory to begin with.
+    If both halves of the walk agree and the others are explained better by the rig of the first,
+    the rig that is used comes from all windows. They are tracked again with the rig of the audit:
+    a better trajectory to begin with.
 
     Args:
         walk: The recording.
@@ -177,36 +165,42 @@ def calibrate(
     Returns:
         None if there are no windows with planes.
     """
-    recorded = walk.frames.rig
-    s = settings.calibration
+    recorded, s = walk.frames.rig, settings.calibration
     rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
     moved = walk.with_rig(start)
-    windows = moved.tracked_windows(rows, start, settings, imu=moved.frames.imu)
+    windows = moved.tracked_windows(
+        rows, start, settings,
+        imu=moved.frames.imu, points=points_of_frame(len(rows), beams=s.beams),
+    )  # fmt: skip
     used, others = windows[::2], windows[1::2]
-    first = _estimate(used, start, parameters, settings=settings, progress=progress)
+    estimator = _Estimator(settings, progress)
+    first = estimator.estimate(used, start, parameters, rounds=NEAR_ROUNDS)
     if first is None:
         return None
     first = _counted_from(first, recorded)
-    second = _second_opinion(others, first, settings=settings, progress=progress)
-    unknown = _not_observable(first, second)
-    final = first
-    if unknown.any():
-        begin = parameters.keeping(unknown, recorded, first.rig)
-        fixed = parameters.fixing(unknown)
-        found = _estimate(used, begin, fixed, settings=settings, progress=progress)
-        final = _counted_from(found, recorded) if found else first
+    second = estimator.second(others, first)
+    unknown = not_observable(first, second)
+    table = judge(first, not_observable=unknown)
     before = Agreement.of(explain(others, recorded, settings=settings))
-    after = Agreement.of(explain(others, final.rig, settings=settings))
-    rows_of_table = judge(final, not_observable=unknown)
-    refusal = _refusal(rows_of_table, before, after, second=second, first=first)
-    return Calibration(final, rows_of_table, before, after, refusal)
+    after = Agreement.of(explain(others, first.rig, settings=settings))
+    why_not = refusal(table, first, second) or unexplained(before, after)
+    if why_not:
+        return Calibration(first, table, before, after, why_not)
+    final = estimator.of_all(windows, first, unknown, recorded=recorded)
+    return Calibration(final, judge(final, not_observable=unknown), before, after, "")
 
 
 def _is_near(found: JointEstimate, recorded: Rig) -> bool:
-    """Whether no parameter is certainly so far from the rig file that the estimate may be false."""
+    """Whether no LiDAR is certainly so far from the rig file that the estimate may be false.
+
+    Of the IMU nothing is asked: other mounts of LiDARs would not explain it, and a walk that only
+    turns about the vertical hardly shows its position.
+    """
     change = np.abs(found.parameters.between(recorded, found.rig))
     noise = _SIGMAS * np.where(np.isfinite(found.sd), found.sd, 0.0)
-    return bool(np.all(change < np.maximum(_far(found.parameters), noise)))
+    of_lidars = np.array([parameter.sensor != IMU for parameter in found.parameters.listed])
+    near = change < np.maximum(_far(found.parameters), noise)
+    return bool(np.all(near[of_lidars]))
 
 
 def _far(parameters: Parameters) -> Array:
@@ -233,7 +227,7 @@ def _from_other_mounts(
     alone = without_others(start, reference)
     windows = walk.tracked_windows(rows, alone, settings, imu=None)
     found = [
-        _estimate(windows, rig, parameters, settings=settings, progress=progress)
+        _Estimator(settings, progress).estimate(windows, rig, parameters)
         for rig in search_mounts(windows, start, reference=reference)
     ]
     return [estimate for estimate in found if estimate is not None]
@@ -243,92 +237,46 @@ def _shared_points(found: JointEstimate | None) -> int:
     return sum(fit.shared_points for fit in found.fits) if found else 0
 
 
-def _estimate(
-    windows: Sequence[Window],
-    rig: Rig,
-    parameters: Parameters,
-    *,
-    settings: Settings,
-    progress: Progress,
-) -> JointEstimate | None:
-    if not windows:
-        return None
-    progress.start("calibration", len(ROUNDS), "rounds")
-    found = calibrate_jointly(
-        windows, rig, parameters, settings=settings, progress=progress.advance
-    )
-    return found if found.fits else None
+@dataclass(frozen=True, slots=True, eq=False)
+class _Estimator:
+    """Joint estimates of one calibration."""
 
+    settings: Settings
+    progress: Progress
+    """Counts their rounds."""
 
-def _second_opinion(
-    windows: Sequence[Window], first: JointEstimate, *, settings: Settings, progress: Progress
-) -> JointEstimate | None:
-    """An estimate from other windows that begins with known errors; None without windows."""
-    if len(windows) < _MIN_WINDOWS:
-        return None
-    wrong = first.parameters.changed(first.rig, _known_errors(first.parameters))
-    return _estimate(windows, wrong, first.parameters, settings=settings, progress=progress)
+    def estimate(
+        self,
+        windows: Sequence[Window],
+        rig: Rig,
+        parameters: Parameters,
+        *,
+        rounds: Sequence[RoundBounds] = ROUNDS,
+    ) -> JointEstimate | None:
+        """From some windows, begun at a rig; None if none has planes."""
+        if not windows:
+            return None
+        counted = track(rounds, self.progress, what="calibration", unit="rounds")
+        found = calibrate_jointly(windows, rig, parameters, rounds=counted, settings=self.settings)
+        return found if found.fits else None
 
+    def second(self, windows: Sequence[Window], first: JointEstimate) -> JointEstimate | None:
+        """From other windows, begun with known errors; None if there are too few."""
+        if len(windows) < _MIN_WINDOWS:
+            return None
+        wrong = with_known_errors(first.rig, first.parameters)
+        return self.estimate(windows, wrong, first.parameters, rounds=NEAR_ROUNDS)
 
-def _known_errors(parameters: Parameters) -> Array:
-    """The wrong values that are put in, with alternating signs, (P,)."""
-    size = np.array(
-        [
-            (_KNOWN_BEAM_ERROR if parameter.of_beam else _KNOWN_ERROR)[parameter.unit]
-            for parameter in parameters.listed
-        ]
-    )
-    return size * np.where(np.arange(len(size)) % 2, -1.0, 1.0)
-
-
-def _not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArray[np.bool_]:
-    """Parameters that keep their values: not different, and known errors may be missed, (P,)."""
-    if second is None:
-        return np.zeros(len(first.parameters), dtype=bool)
-    limit = np.abs(_known_errors(first.parameters))
-    undetected = _SIGMAS * np.hypot(first.sd, second.sd) > limit
-    return np.asarray(undetected & (np.abs(first.change) <= _SIGMAS * first.sd))
-
-
-def _refusal(
-    rows: Sequence[ParameterFigures],
-    before: Agreement,
-    after: Agreement,
-    *,
-    second: JointEstimate | None,
-    first: JointEstimate,
-) -> str:
-    """Why a calibrated rig must not be used; empty = it may."""
-    if second is None:
-        return "the walk is too short to check the calibrated rig on another part of it"
-    if not any(row.status == "off" for row in rows):
-        if first.parameters.beams:
-            return "nothing is corrected: mounts, clocks and beams agree with the rig file"
-        return "inconclusive: longer windows do not confirm what the audit found"
-    apart = np.abs(first.parameters.between(first.rig, second.rig))
-    scatter = _SIGMAS * np.hypot(first.sd, second.sd)
-    limit = np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters)))
-    checked = np.array([row.status != "not observable" for row in rows])
-    wrong = np.flatnonzero(checked & (apart > limit))
-    if len(wrong):
-        names = ", ".join(first.parameters.listed[k].name for k in wrong)
-        return f"inconclusive: another part of the walk gives another value for {names}"
-    worse = [
-        name
-        for name, old, new in (
-            ("the distance of points from planes", before.rms_m, after.rms_m),
-            ("the residual of the IMU", before.imu_rms, after.imu_rms),
-        )
-        if new > _NOT_WORSE * old
-    ]
-    if worse:
-        return f"inconclusive: {' and '.join(worse)} grows in another part of the walk"
-    gains = [after.rms_m / before.rms_m, after.imu_rms / before.imu_rms]
-    if not np.nanmin(gains) < _BETTER:
-        return "inconclusive: another part of the walk is explained no better"
-    return ""
-
-
-def _median(values: Sequence[float]) -> float:
-    known = [value for value in values if np.isfinite(value)]
-    return float(np.median(known)) if known else float("nan")
+    def of_all(
+        self,
+        windows: Sequence[Window],
+        first: JointEstimate,
+        unknown: NDArray[np.bool_],
+        *,
+        recorded: Rig,
+    ) -> JointEstimate:
+        """From all windows; the parameters that are unknown, (P,) bool, keep their values."""
+        begin = first.parameters.keeping(unknown, recorded, first.rig)
+        fixed = first.parameters.fixing(unknown) if unknown.any() else first.parameters
+        found = self.estimate(windows, begin, fixed, rounds=LAST_ROUNDS)
+        return _counted_from(found or first, recorded)

@@ -32,7 +32,12 @@ ROUNDS = (
     _TIGHT,
     _TIGHT,
 )
-"""Bounds of each round of an estimate."""
+"""Bounds of each round of an estimate that begins at a rig file."""
+NEAR_ROUNDS = (*ROUNDS[2:], _TIGHT, _TIGHT)
+"""The same near the right rig: bounds as wide as the first ones join both sides of thin walls and
+of flights of stairs, and a window that is bent so far does not come back."""
+LAST_ROUNDS = (_TIGHT,) * 4
+"""The same at a rig that others confirm."""
 EXPLAIN = (
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
@@ -67,8 +72,8 @@ def calibrate_jointly(
     rig: Rig,
     parameters: Parameters,
     *,
+    rounds: Iterable[RoundBounds] = ROUNDS,
     settings: Settings,
-    progress: Callable[[], None] = lambda: None,
 ) -> JointEstimate:
     """Estimate mounts and clocks from windows of a walk.
 
@@ -76,8 +81,8 @@ def calibrate_jointly(
         windows: Cut from the walk; rotations about all axes should occur in them.
         rig: Where to begin: some degrees and centimeters from the truth.
         parameters: What is estimated; what is known already has a small ``prior_sd``.
+        rounds: Bounds of each round.
         settings: Noise of the IMU, number of threads.
-        progress: Called after each round.
     """
     first, states = rig, [_first_state(window) for window in windows]
     samples = [window.imu for window in windows if window.imu is not None]
@@ -85,14 +90,13 @@ def calibrate_jointly(
     prior = parameters.prior
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
-        for bounds in ROUNDS:
+        for bounds in rounds:
             found = list(pool.map(_reducer(rig, parameters, noise, bounds=bounds), states))
             H, g = _total(found, len(parameters))
             pull = g + prior @ parameters.between(first, rig)
             delta = np.asarray(-np.linalg.solve(H + prior, pull), np.float64)
             rig = parameters.changed(rig, delta)
             states = [_moved(state, part, delta) for state, part in zip(states, found, strict=True)]
-            progress()
     usable = [part for part in found if part is not None]
     H, _ = _total(usable, len(parameters))
     formal = np.sqrt(np.diag(np.linalg.inv(H + prior)))

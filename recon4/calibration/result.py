@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.calibration.calibrate import Agreement
+from recon4.calibration.held_out import Agreement
 from recon4.calibration.slices import THICKNESS_M, LidarSlices
 from recon4.model.figures import CalibrationFigures
 from recon4.model.plain import to_plain

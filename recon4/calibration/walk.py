@@ -8,12 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.calibration.selection import choose_windows
-from recon4.calibration.window import (
-    BEAM_POINTS_OF_FRAME,
-    POINTS_OF_FRAME,
-    Window,
-    cut_window,
-)
+from recon4.calibration.window import POINTS_OF_FRAME, Window, cut_window
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -70,17 +65,23 @@ class RecordedWalk:
         return dense_trajectory([odometry.push(frame) for frame in frames])
 
     def tracked_windows(
-        self, rows: list[range], rig: Rig, settings: Settings, *, imu: ImuSamples | None
+        self,
+        rows: list[range],
+        rig: Rig,
+        settings: Settings,
+        *,
+        imu: ImuSamples | None,
+        points: int = POINTS_OF_FRAME,
     ) -> list[Window]:
         """Windows tracked by themselves with another rig, except where tracking is lost.
 
         Args:
             rows: Multiframes of each window.
             rig: Rig of the odometry; LiDARs that are not enabled do not take part.
-            settings: Of the odometry; windows for single beams have more points.
+            settings: Of the odometry.
             imu: Samples for the odometry; None = without an IMU.
+            points: Largest number of points of one sensor in one multiframe.
         """
-        points = BEAM_POINTS_OF_FRAME if settings.calibration.beams else POINTS_OF_FRAME
         found = []
         for part in rows:
             odometry = Odometry(rig, settings, imu)

@@ -18,8 +18,12 @@ from recon4.model.trajectory import Times, Trajectory
 KNOT_S = 0.05
 """Distance in time of the knots of the trajectory's correction [s]."""
 _KNOT_NS = round(1e9 * KNOT_S)
-POINTS_OF_FRAME, BEAM_POINTS_OF_FRAME = 600, 2400
-"""Largest number of points of one sensor in one multiframe; single beams need more."""
+POINTS_OF_FRAME = 600
+"""Largest number of points of one sensor in one multiframe."""
+_MOST_POINTS, _BEAM_POINTS = 1200, 2400
+"""The same where there are few windows, and for single beams."""
+_ENOUGH_WINDOWS = 24
+"""From this number on the windows say enough with the fewest points."""
 _MARGIN_NS = 100_000_000
 """Samples of the IMU are kept this much longer than the window on both sides [ns]."""
 _VELOCITY_S = 1e-3
@@ -78,6 +82,19 @@ class PlacedPoints:
     """The knot before, (N,)."""
     fraction: Array
     """Time since that knot as a part of the interval, 0..1, (N,)."""
+
+
+def points_of_frame(windows: int, *, beams: bool) -> int:
+    """Largest number of points of one sensor in one multiframe for a calibration.
+
+    Args:
+        windows: Their number: of few windows more points are used.
+        beams: Whether single beams are calibrated, which need more.
+    """
+    if beams:
+        return _BEAM_POINTS
+    many = POINTS_OF_FRAME * _ENOUGH_WINDOWS // max(windows, 1)
+    return min(max(many, POINTS_OF_FRAME), _MOST_POINTS)
 
 
 def cut_window(

@@ -91,6 +91,7 @@ def test_a_confirmed_calibration_is_written_and_used(wrong, calibrated, tmp_path
     figures = found.save(tmp_path)
 
     assert figures.applied, figures.outcome
+    assert figures.windows == 2 * AUTO.calibration.windows
     assert found.after.rms_m < found.before.rms_m
     assert found.after.offset_m < 0.5 * found.before.offset_m
     assert found.after.imu_rms < found.before.imu_rms
@@ -131,6 +132,17 @@ def test_exchanged_mounts_are_called_so(dance, tmp_path):
     assert "The mounts of 's0' and 's1' seem to be exchanged in the rig file." in (
         found.figures.warnings
     )
+
+
+def test_an_imu_that_is_far_off_asks_for_no_other_mounts(dance, tmp_path, monkeypatch):
+    def never(*_args, **_named):
+        raise AssertionError("mounts are searched")
+
+    monkeypatch.setattr("recon4.calibration.calibrate.search_mounts", never)
+    found = run(store(tmp_path, dance, imu_mounted(dance.rig, turn_deg=(0, 0, 90)), dance.imu))
+
+    turned = np.rad2deg(np.linalg.norm([row.change for row in rows_of(found, "imu")[:3]]))
+    assert turned == pytest.approx(90.0, abs=0.2)
 
 
 def test_without_an_imu_the_lidars_are_compared(dance, tmp_path):

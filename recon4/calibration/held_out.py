@@ -1,0 +1,126 @@
+"""Whether a calibrated rig may be used: what another part of the walk says of it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.calibration.equations import Fit
+from recon4.calibration.joint import JointEstimate
+from recon4.calibration.parameters import Parameters, Unit
+from recon4.geometry.se3 import Array
+from recon4.model.figures import ParameterFigures
+from recon4.model.rig import Rig
+
+_KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}
+"""Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
+_KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
+"""The same of single beams."""
+_SIGMAS = 3.0
+_NOT_WORSE, _BETTER = 1.01, 0.99
+"""Ratio of figures of fit, after against before."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Agreement:
+    """How well windows that were not used are explained by a rig."""
+
+    rms_m: float
+    """Distance of points from common planes, median of the windows [m]."""
+    offset_m: float
+    """Between one surface as seen by two LiDARs [m]; NaN = none is."""
+    imu_rms: float
+    """Of the normalized residuals of the IMU; NaN = no IMU."""
+
+    @staticmethod
+    def of(fits: Sequence[Fit | None]) -> Agreement:
+        """Medians over the windows."""
+        known = [fit for fit in fits if fit is not None]
+        return Agreement(
+            rms_m=_median([fit.rms_m for fit in known]),
+            offset_m=_median([fit.offset_m for fit in known]),
+            imu_rms=_median([fit.imu_rms for fit in known]),
+        )
+
+
+def with_known_errors(rig: Rig, parameters: Parameters) -> Rig:
+    """The rig with errors in all parameters that another estimate must find."""
+    return parameters.changed(rig, _known_errors(parameters))
+
+
+def _known_errors(parameters: Parameters) -> Array:
+    """The wrong values that are put in, with alternating signs, (P,)."""
+    size = np.array(
+        [
+            (_KNOWN_BEAM_ERROR if parameter.of_beam else _KNOWN_ERROR)[parameter.unit]
+            for parameter in parameters.listed
+        ]
+    )
+    return size * np.where(np.arange(len(size)) % 2, -1.0, 1.0)
+
+
+def not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArray[np.bool_]:
+    """Parameters that keep their values: not different, and known errors may be missed, (P,)."""
+    if second is None:
+        return np.zeros(len(first.parameters), dtype=bool)
+    limit = np.abs(_known_errors(first.parameters))
+    undetected = _SIGMAS * np.hypot(first.sd, second.sd) > limit
+    return np.asarray(undetected & (np.abs(first.change) <= _SIGMAS * first.sd))
+
+
+def refusal(
+    rows: Sequence[ParameterFigures], first: JointEstimate, second: JointEstimate | None
+) -> str:
+    """Why two estimates from different windows must not be used; empty = they agree.
+
+    Args:
+        rows: The table of the first.
+        first: From the windows that are used.
+        second: From the others, begun with known errors; None = there are too few.
+    """
+    if second is None:
+        return "the walk is too short to check the calibrated rig on another part of it"
+    if not any(row.status == "off" for row in rows):
+        if first.parameters.beams:
+            return "nothing is corrected: mounts, clocks and beams agree with the rig file"
+        return "inconclusive: longer windows do not confirm what the audit found"
+    apart = np.abs(first.parameters.between(first.rig, second.rig))
+    scatter = _SIGMAS * np.hypot(first.sd, second.sd)
+    limit = np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters)))
+    checked = np.array([row.status != "not observable" for row in rows])
+    wrong = np.flatnonzero(checked & (apart > limit))
+    if len(wrong):
+        names = ", ".join(first.parameters.listed[k].name for k in wrong)
+        return f"inconclusive: another part of the walk gives another value for {names}"
+    return ""
+
+
+def unexplained(before: Agreement, after: Agreement) -> str:
+    """Why a rig must not be used that explains other windows so; empty = it may.
+
+    Args:
+        before: With the rig file.
+        after: With the calibrated rig.
+    """
+    worse = [
+        name
+        for name, old, new in (
+            ("the distance of points from planes", before.rms_m, after.rms_m),
+            ("the residual of the IMU", before.imu_rms, after.imu_rms),
+        )
+        if new > _NOT_WORSE * old
+    ]
+    if worse:
+        return f"inconclusive: {' and '.join(worse)} grows in another part of the walk"
+    gains = [after.rms_m / before.rms_m, after.imu_rms / before.imu_rms]
+    if not np.nanmin(gains) < _BETTER:
+        return "inconclusive: another part of the walk is explained no better"
+    return ""
+
+
+def _median(values: Sequence[float]) -> float:
+    known = [value for value in values if np.isfinite(value)]
+    return float(np.median(known)) if known else float("nan")
