@@ -61,7 +61,7 @@ web:
 
 # Else processes that tests run side by side each compile them.
 kernels: $(VENV)/installed-dev
-	@$(BIN)/python -m tests.compile_kernels
+	@$(BIN)/recon4 compile
 
 bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \

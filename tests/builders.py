@@ -132,8 +132,11 @@ def _body(table, encoding, padding):
         raw += bytes(padding * len(columns[0]))
         packed = lzf_literals(raw)
         return struct.pack("<II", len(packed), len(raw)) + packed
-    rows = zip(*columns, strict=True)
-    return b"".join(b"".join(v.tobytes() for v in row) + bytes(padding) for row in rows)
+    fields = [(f"f{k}", column.dtype) for k, column in enumerate(columns)]
+    rows = np.zeros(len(columns[0]), [*fields, ("_", f"V{padding}")] if padding else fields)
+    for (name, _), column in zip(fields, columns, strict=True):
+        rows[name] = column
+    return rows.tobytes()
 
 
 def lzf_literals(raw: bytes) -> bytes:

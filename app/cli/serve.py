@@ -95,6 +95,7 @@ def demo(
 
 
 def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: bool = False) -> None:
+    from app.jobs.compiling import compiling_beside
     from app.main import serve as run
 
     def ready(url: str, notes: list[str]) -> None:
@@ -105,5 +106,5 @@ def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: boo
 
     # The server has signal handlers of its own: it stops in order and ends with code 0.
     signal.signal(signal.SIGINT, signal.default_int_handler)
-    with suppress(KeyboardInterrupt):
+    with suppress(KeyboardInterrupt), compiling_beside():
         run(chosen, open_project=open_project, on_ready=ready)

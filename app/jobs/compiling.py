@@ -1,56 +1,69 @@
-"""Compile the kernels once, on simulated data, before the first worker reads a user's file.
+"""Compile the kernels once, before the first worker reads a user's file.
 
-A confined worker must not write code that other processes load, so what it compiles is lost with
-it. On a new installation the first worker therefore starts a small simulated walk through the
-pipeline, outside its confinement.
+A confined process must not write code that other processes load, so what it compiles is lost with
+it (`recon4.compile_kernels`). A server of a new installation begins with that at once; a worker
+waits for it, outside its confinement.
 """
 
 from __future__ import annotations
 
 import contextlib
 import logging
+import os
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
-from recon4.sandbox.private_cache import is_cold
+from recon4.sandbox.private_cache import is_compiled
 
 log = logging.getLogger("recon4.job")
 
-WALK_S = 6
 WITHIN_S = 1800.0
 BEAT_EVERY_S = 1.0
+_NICENESS = 10
 
 
-def compile_kernels_once(scratch: Path, heartbeat: Path) -> None:
-    """Fill the shared cache of compiled kernels if it is empty; a failure is only logged.
+@contextmanager
+def compiling_beside() -> Iterator[None]:
+    """Compile the kernels in another process meanwhile, unless they are; it ends with the block."""
+    if is_compiled():
+        yield
+        return
+    child = _start()
+    os.setpriority(os.PRIO_PROCESS, child.pid, _NICENESS)
+    try:
+        yield
+    finally:
+        child.terminate()
+        child.wait()
+
+
+def compile_kernels_once(heartbeat: Path) -> None:
+    """Compile the kernels unless they are, or wait for who does; a failure is only logged.
 
     Args:
-        scratch: Folder for the simulated walk, made when missing.
         heartbeat: File that is touched meanwhile.
     """
-    if not is_cold():
+    if is_compiled():
         return
     log.info("compiling the kernels: once after an installation, some minutes")
-    walk, rig = scratch / "walk", "4recon"
-    scratch.mkdir(parents=True, exist_ok=True)
-    simulate = ["simulate", "office", str(walk), "--seconds", str(WALK_S), "--no-bag", "--rig", rig]
-    process = ["process", str(walk / "recording.pcap"), "--rig", rig]
-    process += ["--imu", str(walk / "imu.csv"), "--out", str(scratch / "project")]
+    child = _start()
     deadline_s = time.monotonic() + WITHIN_S
-    for command in (simulate, process):
-        if not _ran(command, heartbeat, deadline_s):
-            log.warning("the kernels could not be compiled ahead; every job compiles its own")
-            return
-
-
-def _ran(command: list[str], heartbeat: Path, deadline_s: float) -> bool:
-    child = subprocess.Popen([sys.executable, "-m", "recon4", *command], stdin=subprocess.DEVNULL)
     while time.monotonic() < deadline_s:
         heartbeat.touch()
         with contextlib.suppress(subprocess.TimeoutExpired):
-            return child.wait(BEAT_EVERY_S) == 0
+            if child.wait(BEAT_EVERY_S):
+                break
+            return
     child.kill()
     child.wait()
-    return False
+    log.warning("the kernels could not be compiled ahead; every job compiles its own")
+
+
+def _start() -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "recon4", "compile"]
+    silent = subprocess.DEVNULL
+    return subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent)

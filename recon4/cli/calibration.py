@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from recon4.cli.confinement import confine_command, result_folder
+from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.errors import CalibrationError, ConfigError
 from recon4.terminal import write
 
@@ -44,6 +44,7 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     if out.suffix != ".toml":
         raise ConfigError(f"--out: expected a file that ends with .toml, got {out.name!r}")
     folder = project or out.with_suffix(".project")
+    compile_first()
     confine_command(write=[result_folder(folder), out.parent])
 
     from recon4.calibration_methods import CalibrationChoice, calibrate_by, check_choice, page_of

@@ -19,7 +19,7 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.sandbox import Policy, confine
-from recon4.sandbox.private_cache import use_private_cache
+from recon4.sandbox.private_cache import is_compiled, use_private_cache
 
 _OPEN_FILES = 4096
 _REMOVER = """
@@ -82,6 +82,19 @@ def _remove_if_empty(folders: list[Path]) -> None:
         start_new_session=True,  # Ctrl-C is for the command
     )
     atexit.register(remover.communicate)
+
+
+def compile_first() -> None:
+    """Have another process compile the kernels, if they are not: a confined one cannot keep them.
+
+    Once after an installation; without effect in a process that does not belong to the command.
+    """
+    if not _own_process or is_compiled():
+        return
+    sys.stderr.write("compiling the kernels: once after an installation, some minutes\n")
+    compiler = [sys.executable, "-m", "recon4", "compile"]
+    if subprocess.run(compiler, stdout=subprocess.DEVNULL, check=False).returncode:
+        sys.stderr.write("not compiled: this command compiles them for itself\n")
 
 
 def confine_command(*, write: Iterable[Path] = ()) -> None:

@@ -21,7 +21,7 @@ from app.cli.serve import server
 from app.cli.users import users
 from recon4.cli.backup import backups
 from recon4.cli.calibration import calibration
-from recon4.cli.confinement import confine_command, result_folder
+from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.evaluation import evaluation
 from recon4.cli.live import live
 from recon4.cli.simulation import simulation
@@ -114,13 +114,11 @@ def process(  # noqa: PLR0913 - an argument for each option
 ) -> None:
     """Make a map of a recording; started again, it continues where it stopped."""
     from recon4.recording.sources import Sources, require_files
-    from recon4.sandbox.private_cache import is_compiled, mark_compiled
 
     chosen = _settings(preset, [*_calibrate(calibrate), *(assignments or [])])
     require_files([*recordings, *(path for path in (imu, gnss) if path)])
-    folder, compiled = result_folder(out), is_compiled()
-    if compiled:  # else this run compiles them, for every later process
-        confine_command(write=[folder])
+    compile_first()
+    confine_command(write=[result_folder(out)])
 
     from recon4.model.events import Warned
     from recon4.model.rig import load_rig
@@ -133,8 +131,6 @@ def process(  # noqa: PLR0913 - an argument for each option
         for text in unread_samples(sources):
             progress.event(Warned(text=text))
         summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
-    if not compiled:
-        mark_compiled()
     if as_json:
         _write_json(summary.to_json())
     else:
@@ -150,6 +146,17 @@ def _calibrate(word: str) -> list[str]:
     if word == "beams":
         return ["calibration.mode=auto", "calibration.beams=true"]
     return ["calibration.mode=auto", f"calibration.sensors={word}"]
+
+
+@app.command("compile")
+def compile_command() -> None:
+    """Compile the kernels, once after an installation; other commands do it when they need to."""
+    from recon4.compile_kernels import compile_kernels
+    from recon4.terminal import watcher
+
+    with watcher() as progress:
+        new = compile_kernels(progress)
+    write("compiled" if new else "compiled already")
 
 
 @app.command()

@@ -78,12 +78,12 @@ def _font_lists() -> Iterator[Path]:
 
 
 def is_compiled() -> bool:
-    """Whether an unconfined process has run a whole recording with the kernels as they are now."""
+    """Whether `recon4.compile_kernels` has run with the kernels as they are now."""
     return any((cache / _mark()).exists() for cache in shared_caches())
 
 
 def mark_compiled() -> None:
-    """Note that an unconfined process has run a whole recording: its kernels are cached."""
+    """Note that an unconfined process has compiled all kernels into a shared cache."""
     for cache in shared_caches():
         if _files(cache, ".nbi"):
             with suppress(OSError):
@@ -96,11 +96,6 @@ def _mark() -> str:
     versions = f"{sys.implementation.cache_tag} {version('numba')}".encode()
     sources = (path.read_bytes() for path in sorted(KERNELS.glob("*.py")))
     return f"compiled-{hashlib.sha256(b'|'.join((versions, *sources))).hexdigest()[:16]}"
-
-
-def is_cold() -> bool:
-    """Whether no kernel was ever compiled by an unconfined process."""
-    return not any(_files(cache, ".nbi") for cache in shared_caches())
 
 
 def shared_caches() -> Iterator[Path]:

@@ -98,6 +98,7 @@ NOBODY_IMPORTS = {
     "recon4.pipeline": {
         "recon4/cli/main.py",
         "recon4/calibration_methods.py",
+        "recon4/compile_kernels.py",
         "app/cli/serve.py",
         "app",
     },
