@@ -44,7 +44,7 @@ def compile_kernels(progress: Progress) -> bool:
     """Compile all kernels, unless they are compiled; a second process waits for the first.
 
     Args:
-        progress: Told of each kind of work.
+        progress: Receives each kind of work.
 
     Returns:
         Whether there was anything to compile.

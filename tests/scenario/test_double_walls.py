@@ -1,5 +1,7 @@
 """Double walls in a map of the pipeline: none in a good one, found after one wrong decision."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -8,6 +10,7 @@ from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind, Verdict
 from recon4.pose_graph.files import load_graph
+from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.review.decisions import Decision, DecisionKind, Measurement
 from recon4.review.journal import append
@@ -28,10 +31,14 @@ FEW = ["map.voxel_m=0.02", "graph.node_stride=10", "refine.rounds=0", "calibrati
 @pytest.fixture(scope="module")
 def process(tmp_path_factory):
     walk = tmp_path_factory.mktemp("recording") / "walk"
-    simulate(prepare("office", seconds=SECONDS, seed=2), walk, bag=False, progress=Silent())
+    rig = load_rig("4recon")
+    horizontal = replace(rig, sensors=rig.sensors[:1])  # it sees the walls
+    office = prepare("office", seconds=SECONDS, seed=2, rig=horizontal)
+    simulate(office, walk, bag=False, progress=Silent())
     root = tmp_path_factory.mktemp("project") / "office"
     more = [word for setting in FEW for word in ("--set", setting)]
     recording = [str(walk / "recording.pcap"), "--imu", str(walk / "imu.csv")]
+    recording += ["--rig", str(walk / "rig.toml")]
 
     def run():
         assert main(["process", *recording, "--out", str(root), *more]) == 0
