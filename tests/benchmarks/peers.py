@@ -73,6 +73,29 @@ def kiss_icp(*, deskew: bool, voxel_m: float = VOXEL_M) -> Register:
     return register
 
 
+def genz_icp(*, deskew: bool, voxel_m: float = VOXEL_M) -> Register:
+    """GenZ-ICP, which weighs planes and points by how planar the scan is, on one thread.
+
+    Raises:
+        ImportError: If it is not installed; it is no dependency of recon4.
+    """
+    from genz_icp.config import GenZConfig
+    from genz_icp.genz_icp import GenZICP
+
+    config = GenZConfig()
+    config.data.max_range, config.data.min_range = MAX_RANGE_M, MIN_RANGE_M
+    config.data.deskew = deskew
+    config.mapping.voxel_size = voxel_m
+    config.registration.max_num_threads = 1
+    odometry = GenZICP(config)
+
+    def register(points: Array, times: Array, turn: Array | None) -> Array:
+        odometry.register_frame(points, times if deskew else [])
+        return np.array(odometry.last_pose)
+
+    return register
+
+
 def vgicp(*, voxel_m: float = 0.5, downsample_m: float = 0.25) -> Register:
     """small_gicp's VGICP against a Gaussian voxel map of the walk, on one thread."""
     import small_gicp

@@ -9,8 +9,8 @@ from recon4.cli.main import main
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.pose_graph import EdgeKind, Verdict
-from recon4.pose_graph.files import load_graph
 from recon4.model.rig import load_rig
+from recon4.pose_graph.files import load_graph
 from recon4.progress import Silent
 from recon4.review.decisions import Decision, DecisionKind, Measurement
 from recon4.review.journal import append
