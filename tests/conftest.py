@@ -24,6 +24,19 @@ DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
 CAPTURE = "recording.pcap"
 
 
+E2E = "pytest.mark.e2e"
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Import no file without a test that is asked for: all of them take ten seconds."""
+    asked = config.option.markexpr
+    if asked not in {"e2e", "not e2e"} or collection_path.suffix != ".py":
+        return None
+    text = collection_path.read_text("utf-8")
+    unwanted = f"pytestmark = {E2E}" in text if asked == "not e2e" else E2E not in text
+    return True if unwanted else None
+
+
 def pytest_collection_finish() -> None:
     """What is loaded by now stays: the garbage collector need not look at it again and again."""
     gc.collect()
