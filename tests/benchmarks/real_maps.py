@@ -24,6 +24,7 @@ from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.kitti import official_drift
 from recon4.evaluation.sharpness import draw_places, sharpness
 from recon4.evaluation.table import number, text_table
+from recon4.geometry.se3 import Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
@@ -46,7 +47,7 @@ from tests.builders import write_pcd
 
 _DRIFT_M = (5.0, 10.0, 20.0, 40.0)
 _CRISP_FRAMES = 60
-_KEPT_EVERY_NS = 500_000_000
+_SHORTEST_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -58,7 +59,7 @@ class Sequence:
     truth: Callable[[Path], Trajectory] | None
     preset: str
     deskewed: bool
-    """Scans without times inside; they were kept every 0.6 m of a walk, so they get 2 Hz."""
+    """Scans without times, kept every 0.6 m or so of a walk: they get times, see `stamps`."""
     voxel_m: float
     """Of KISS-ICP."""
 
@@ -74,15 +75,28 @@ SEQUENCES = {
 def write_scans(sequence: Sequence, name: str, folder: Path) -> None:
     """A folder of PCD files with ring, times of the points and of the scans."""
     folder.mkdir(parents=True)
-    stamps = []
+    t_ns = []
     for k, frame in enumerate(sequence.load(DATA / name)):
         table = {axis: frame.xyz[:, i] for i, axis in enumerate("xyz")} | {"ring": frame.ring}
         if not sequence.deskewed:
             table["t"] = frame.dt_ns.astype(np.float32) * np.float32(1e-9)
         write_pcd(folder / f"{k:06d}.pcd", table)
-        stamps.append(k * _KEPT_EVERY_NS if sequence.deskewed else frame.t_ns)
-    lines = [f"{(stamp - stamps[0]) / 1e9:.9f}\n" for stamp in stamps]
+        t_ns.append(frame.t_ns)
+    t_s = (
+        stamps(sequence, name, len(t_ns)) if sequence.deskewed else (np.array(t_ns) - t_ns[0]) / 1e9
+    )
+    lines = [f"{stamp:.9f}\n" for stamp in t_s]
     (folder / "times.txt").write_text("".join(lines))
+
+
+def stamps(sequence: Sequence, name: str, count: int) -> Array:
+    """Times that a carrier at 1.2 m/s and 45 deg/s would have needed, at most 2 Hz [s], (N,)."""
+    if sequence.truth is None:
+        return np.arange(count) * _SHORTEST_S
+    T = sequence.truth(DATA / name).T_a_b
+    motion = T[:-1].inverse() @ T[1:]
+    needed = np.maximum(np.linalg.norm(motion.t, axis=1) / 1.2, np.rad2deg(motion.angle()) / 45.0)
+    return np.concatenate([[0.0], np.cumsum(np.maximum(needed, _SHORTEST_S))])
 
 
 def finished(name: str, sequence: Sequence, out: Path) -> tuple[list[PeerRun], FrameStore, str]:
