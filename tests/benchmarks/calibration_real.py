@@ -5,6 +5,10 @@
 The registration of the method ``maps`` on the OpenCalib scenes: no motion, so each cloud is the map
 of its LiDAR. The drawings of the mounts are 45° off; the roll is searched. Both scenes share a rig:
 their mounts must agree. small_gicp, started where the search ends, is the reference.
+
+LiDAR and INS of another car: the published poses of the LiDAR are those of the INS, moved by the
+extrinsics that were calibrated (the published file is the drawing). `hand_eye` must not claim what
+a car does not show; the floor of the five published scans tells the tilt.
 """
 
 from __future__ import annotations
@@ -14,8 +18,11 @@ import time
 from pathlib import Path
 
 import numpy as np
+from scipy.optimize import least_squares
 
-from recon4.geometry.se3 import SE3, Array
+from recon4.calibration.pose_pairs import MarkerPosePairs, hand_eye
+from recon4.errors import CalibrationError
+from recon4.geometry.se3 import SE3, Array, proper, so3_log
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.registration.result import Registration
 from recon4.registration.scans import Scan, make_scan, register_scans
@@ -28,12 +35,82 @@ DRAWN = {
     "right": (-90.0, (-0.0001307057033816915, -0.4632752877792159, -0.46602840121078765)),
 }
 """Yaw [°] and position [m] in the frame of the top LiDAR, from ``initial_extrinsic.txt``."""
+INS = DATA.parent / "gnss" / "lidar2imu"
+INS_DRAWN = SE3.from_rpy(0.0, 0.0, np.deg2rad(90.0), t=[0.0, 1.0, 1.3])
+"""The LiDAR in the frame of the INS: inverse of ``gnss-to-top_center_lidar-extrinsic.json``."""
+LAG = 50
+"""Poses from the beginning to the end of a motion: 5 s."""
+FLOOR_M = (2.0, 12.0)
 REACH_M = 60.0
 GRID_DEG = np.arange(-60.0, 61.0, 15.0)
 SETTINGS = ScanSettings()
 
 
 def main() -> None:
+    """Print the mounts of both cars."""
+    lidar_lidar()
+    lidar_ins()
+
+
+def lidar_ins() -> None:
+    """The LiDAR on the INS: by its poses, and its tilt by the floor."""
+    ins, lidar = (
+        poses(f"{name}.txt") for name in ("NovAtel-pose-lidar-time", "top_center_lidar-pose")
+    )
+    reference, residual_m = moved_by(ins, lidar)
+    print(
+        f"LiDAR-INS reference: rpy {np.round(np.rad2deg(reference.rpy()), 3)}°, "
+        f"{np.round(100 * reference.t, 1)} cm, residual {1e3 * residual_m:.3f} mm; "
+        f"the drawing is {apart(reference, INS_DRAWN)} away"
+    )
+    try:
+        print(
+            f"hand-eye: {apart(reference, hand_eye(MarkerPosePairs(ins, lidar)).T_marker_sensor)}"
+        )
+    except CalibrationError as refused:
+        print(f"hand-eye refuses: {refused}")
+    up = poses("top_center_lidar-enu.txt").R[:, 2]
+    tilts = [
+        tilt_deg(up[k], path) for k, path in enumerate(sorted((INS / "top_center_lidar").iterdir()))
+    ]
+    print(f"floor: {min(tilts):.2f} to {max(tilts):.2f}° from the reference, road included")
+
+
+def poses(name: str) -> SE3:
+    """Poses of a file with twelve numbers a line after the time."""
+    table = np.loadtxt(INS / name, usecols=range(1, 13)).reshape(-1, 3, 4)
+    return SE3(np.stack([proper(R) for R in table[:, :, :3]]), table[:, :, 3])
+
+
+def moved_by(ins: SE3, lidar: SE3) -> tuple[SE3, float]:
+    """The extrinsics by which the poses of the LiDAR were made from those of the INS."""
+    a, b = (T[:-LAG].inverse() @ T[LAG:] for T in (ins, lidar))
+
+    def residuals(step: Array) -> Array:
+        T = INS_DRAWN @ SE3.exp(step)
+        difference = (a @ T).inverse() @ (T @ b)
+        return np.concatenate([so3_log(difference.R).ravel(), 0.1 * difference.t.ravel()])
+
+    found = least_squares(residuals, np.zeros(6))
+    return INS_DRAWN @ SE3.exp(found.x), float(10.0 * np.sqrt(np.mean(found.fun**2)))
+
+
+def tilt_deg(up_lidar: Array, path: Path) -> float:
+    """Angle between the normal of the floor and what the INS calls up, in the LiDAR's frame."""
+    p = points_of(path)
+    p = p[
+        (np.linalg.norm(p[:, :2], axis=1) > FLOOR_M[0])
+        & (np.linalg.norm(p[:, :2], axis=1) < FLOOR_M[1])
+    ]
+    p = p[p[:, 2] < np.median(p[:, 2]) + 0.1]
+    for gate_m in (0.3, 0.1, 0.05, 0.05):
+        center = np.median(p, axis=0) if gate_m > 0.2 else p.mean(axis=0)
+        normal = np.linalg.svd(p - p.mean(axis=0), full_matrices=False)[2][2]
+        p = p[np.abs((p - center) @ normal) < gate_m]
+    return float(np.rad2deg(np.arccos(abs(normal @ up_lidar))))
+
+
+def lidar_lidar() -> None:
     """Print each mount, how far the scenes differ, and how far small_gicp is."""
     for name in DRAWN:
         mounts = []
@@ -57,6 +134,11 @@ def main() -> None:
 def cloud(scene: str, name: str) -> Array:
     """Points of one LiDAR [m], (N, 3)."""
     (path,) = (DATA / scene).glob(f"{name}*.pcd")
+    return points_of(path)
+
+
+def points_of(path: Path) -> Array:
+    """Points of a cloud that are neither the car nor far away [m], (N, 3)."""
     table = read_cloud(path)
     p = np.stack([np.asarray(table[axis], np.float64) for axis in "xyz"], axis=1)
     length = np.linalg.norm(p, axis=1)
