@@ -20,6 +20,9 @@ _COLUMNS = 14
 _UNIT_TOLERANCE = 0.01
 _OUTLIER_RAD, _OUTLIER_M = 0.1, 0.2
 _MIN_AXES = 2e-3
+"""Of the mean of rotations: the second singular value, 1 if all are alike."""
+_LEAST_NOISE_RAD, _VAGUE_RAD = float(np.deg2rad(0.05)), float(np.deg2rad(0.5))
+"""No tracking is better; a rotation that is known no better is refused."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,24 +115,32 @@ def hand_eye(pairs: MarkerPosePairs) -> PairAlignment:
     which they were measured do not matter.
 
     Raises:
-        CalibrationError: If the motions do not turn about two different axes.
+        CalibrationError: If the motions turn too little about a second axis to show the rotation.
     """
     of_marker = pairs.T_world_marker[0].inverse() @ pairs.T_world_marker[1:]
     of_sensor = pairs.T_world_sensor[0].inverse() @ pairs.T_world_sensor[1:]
     a, b = so3_log(of_marker.R), so3_log(of_sensor.R)
-    U, singular, Vt = np.linalg.svd(a.T @ b)
-    if len(a) < 2 or singular[1] < _MIN_AXES * len(a):
-        raise CalibrationError(
-            "hand-eye: expected motions that turn about two different axes, got fewer"
-        )
+    U, _, Vt = np.linalg.svd(a.T @ b)
     R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
     left = (of_marker.R - np.eye(3)).reshape(-1, 3)
     right = (np.einsum("ij,nj->ni", R, of_sensor.t) - of_marker.t).ravel()
     T_marker_sensor = SE3(R, np.linalg.lstsq(left, right, rcond=None)[0])
     apart = (of_marker @ T_marker_sensor).inverse() @ (T_marker_sensor @ of_sensor)
-    return PairAlignment(
+    found = PairAlignment(
         T_marker_sensor, np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1)
     )
+    if not found.contradictory and not _rotation_sd_rad(b, found.residual_rad) < _VAGUE_RAD:
+        raise CalibrationError(
+            "hand-eye: expected motions that turn about two different axes, got fewer"
+        )
+    return found
+
+
+def _rotation_sd_rad(turns: Array, residual_rad: Array) -> float:
+    """Standard deviation of the rotation about its least known axis, from turns (N, 3) [rad]."""
+    noise_rad = max(_LEAST_NOISE_RAD, float(np.sqrt(np.mean(residual_rad**2))))
+    least = np.linalg.eigvalsh(np.sum(turns**2) * np.eye(3) - turns.T @ turns)[0]
+    return noise_rad / float(np.sqrt(max(least, 1e-300)))
 
 
 def _with_residuals(mean: SE3, each: SE3) -> PairAlignment:

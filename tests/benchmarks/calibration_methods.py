@@ -1,7 +1,7 @@
 """Error and time of every method of calibration on the same simulated walks.
 
     python -m tests.benchmarks.calibration FOLDER --seconds 40     # makes the walks
-    python -m tests.benchmarks.calibration_methods FOLDER/hall-107 …
+    python -m tests.benchmarks.calibration_methods [--only maps,pairs] FOLDER/hall-107 …
 
 The rig file is 1.5° and 2 cm off, see `tests.benchmarks.calibration`. Of the joint method the table
 has the same parameters: rotation and position of the last LiDAR.
@@ -21,23 +21,29 @@ from recon4.calibration.floors import find_inclinations
 from recon4.calibration.gravity_alignment import align_gravity
 from recon4.calibration.map_alignment import align_maps
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.pose_pairs import MarkerPosePairs, average_pairs
 from recon4.calibration.stage import run_calibration
 from recon4.calibration.walk import RecordedWalk
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
 from recon4.settings import EntropySettings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from tests.benchmarks.calibration import SETTINGS, true_rig
 
+STOPS, POSE_SD_RAD, POSE_SD_M = 20, float(np.deg2rad(0.1)), 0.005
+"""Pairs of poses, and the errors drawn for each of the two."""
 Method = Callable[[RecordedWalk, Path], str]
 
 
 def main() -> None:
     """A row for each walk and method."""
-    for folder in map(Path, sys.argv[1:]):
-        for name, method in METHODS.items():
+    chosen = sys.argv[2].split(",") if sys.argv[1] == "--only" else METHODS
+    for folder in map(Path, sys.argv[1 if chosen is METHODS else 3 :]):
+        for name in chosen:
+            method = METHODS[name]
             began = time.process_time()
             text = method(recorded(folder), folder)
             print(f"{folder.name} {name}: {text}, {time.process_time() - began:.0f} s", flush=True)
@@ -105,12 +111,29 @@ def gravity(walk: RecordedWalk, folder: Path) -> str:
     return f"IMU {np.rad2deg(off):.2f}° from {len(pairs)} inclinations{seen}"
 
 
+def pairs(walk: RecordedWalk, folder: Path) -> str:
+    """L-CAL-2: poses of the walk as a tracking system and control points would give them."""
+    true = true_rig(folder / "walk").sensors[-1].T_body_sensor
+    rows = np.linspace(0, len(walk.frames.t_mid_ns) - 1, STOPS + 2).astype(int)[1:-1]
+    T_world_body = read_tum(folder / "walk" / "truth.tum").at(walk.frames.t_mid_ns[rows])
+    rng = np.random.default_rng(1)
+    tracked, sensed = (T @ _noise(rng) for T in (T_world_body, T_world_body @ true))
+    found = average_pairs(MarkerPosePairs(tracked, sensed))
+    return f"{error(found.T_marker_sensor, folder)} from {STOPS} drawn pairs"
+
+
+def _noise(rng: np.random.Generator) -> SE3:
+    turn = rng.normal(0.0, POSE_SD_RAD, (STOPS, 3))
+    return SE3(so3_exp(turn), rng.normal(0.0, POSE_SD_M, (STOPS, 3)))
+
+
 METHODS: dict[str, Method] = {
     "rig file": rig_file,
     "joint": joint,
     "maps": maps,
     "gravity": gravity,
     "entropy": entropy,
+    "pairs": pairs,
 }
 
 

@@ -60,6 +60,26 @@ def test_hand_eye_needs_no_common_world():
     np.testing.assert_allclose(found.T_marker_sensor.t, MOUNT.t, atol=1e-6)
 
 
+def test_hand_eye_is_content_with_small_turns_about_other_axes():
+    """As those of a car or of a walk: 2° about the other axes."""
+    rng = np.random.default_rng(3)
+    turn = np.deg2rad([2.0, 2.0, 120.0]) * rng.uniform(-1, 1, (100, 3))
+    marker = SE3(so3_exp(turn), rng.uniform(-5, 5, (100, 3)))
+    found = hand_eye(MarkerPosePairs(marker, marker @ MOUNT))
+
+    np.testing.assert_allclose(found.T_marker_sensor.R, MOUNT.R, atol=1e-6)
+
+
+def test_hand_eye_refuses_what_noise_hides():
+    rng = np.random.default_rng(3)
+    turn = np.deg2rad([1.0, 1.0, 120.0]) * rng.uniform(-1, 1, (100, 3))
+    marker = SE3(so3_exp(turn), rng.uniform(-0.5, 0.5, (100, 3)))
+    noise = SE3(so3_exp(np.deg2rad(0.3) * rng.normal(size=(100, 3))), np.zeros((100, 3)))
+
+    with pytest.raises(CalibrationError, match="two different axes"):
+        hand_eye(MarkerPosePairs(marker, marker @ MOUNT @ noise))
+
+
 def test_hand_eye_refuses_turns_about_one_axis():
     turns = SE3(so3_exp(np.outer(np.arange(6), [0, 0, 0.2])), np.zeros((6, 3)))
 
