@@ -281,7 +281,7 @@ ODOMETRY = Stage(
 )
 CALIBRATION = Stage(
     "calibration",
-    4,
+    5,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,

@@ -63,12 +63,18 @@ def _known_errors(parameters: Parameters) -> Array:
 
 
 def not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArray[np.bool_]:
-    """Parameters that keep their values: not different, and known errors may be missed, (P,)."""
+    """Parameters that keep their values, (P,).
+
+    Those that are not different while known errors may be missed; and those that are known no
+    better than the known errors, however different they seem: at a constant turn rate heading and
+    clock look alike, and all windows are wrong together.
+    """
     if second is None:
         return np.zeros(len(first.parameters), dtype=bool)
     limit = np.abs(_known_errors(first.parameters))
     undetected = _SIGMAS * np.hypot(first.sd, second.sd) > limit
-    return np.asarray(undetected & (np.abs(first.change) <= _SIGMAS * first.sd))
+    vague = np.maximum(first.sd, second.sd) > limit
+    return np.asarray(vague | (undetected & (np.abs(first.change) <= _SIGMAS * first.sd)))
 
 
 def refusal(

@@ -48,6 +48,14 @@ def planar(t_s):
     return SE3(so3_exp(np.stack([zero, zero, 0.9 * np.sin(0.8 * t)], axis=1)), place)
 
 
+def circle(t_s):
+    """Turns about the vertical at a constant rate."""
+    t = np.asarray(t_s)
+    zero = np.zeros_like(t)
+    place = np.stack([np.sin(0.5 * t), 1.0 - np.cos(0.5 * t), zero], 1)
+    return SE3(so3_exp(np.stack([zero, zero, 0.5 * t], axis=1)), place)
+
+
 def mounted(rig: Rig, row: int, *, turn_deg=(0.0, 0.0, 0.0), shift_m=(0.0, 0.0, 0.0), late_s=0.0):
     """The rig with another mount and clock offset of one LiDAR."""
     sensors = list(rig.sensors)
