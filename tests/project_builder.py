@@ -10,7 +10,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
-from recon4.mapping.tiles import TileWriter
+from recon4.mapping.tile_writer import TileWriter
 from recon4.model.figures import MapFigures
 from recon4.model.multiframe import Multiframe
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict

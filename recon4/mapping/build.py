@@ -9,19 +9,21 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from threading import Event
 from typing import TypeVar
 
 import numpy as np
 
 from recon4.mapping.buckets import BURST, TileBuckets
-from recon4.mapping.deviation import PoseCovariances, point_deviations
+from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs, MapNotes
 from recon4.mapping.place import place_with_origins
 from recon4.mapping.records import Records, Tile, split_into_tiles
 from recon4.mapping.scratch import Scratch
-from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, MadeTile, Recipe, make_tile
-from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
+from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tiles import TileSet
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
@@ -80,17 +82,17 @@ def build_map(
     progress = progress or Silent()
     grid, frames = Grid.of(settings), inputs.frames
     t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
-    recipe = Recipe(grid, settings, inputs.intensity, t_ns)
+    recipe = Recipe(grid, settings, inputs.intensity, t_ns, inputs.covariances)
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
         TileWriter(out, _fields(recipe, inputs), tile_m=grid.tile_m) as writer,
     ):
         buckets = TileBuckets(Path(folder), grid, burst=burst)
         _distribute(inputs, buckets, settings=settings, progress=progress)
-        make = partial(
-            _make_tile, buckets, recipe, scratch=Scratch(), covariances=inputs.covariances
+        finish = partial(
+            _finish_tile, buckets=buckets, recipe=recipe, scratch=Scratch(), writer=writer
         )
-        removed = _finish_tiles(buckets.tiles(), make, writer, progress=progress)
+        removed = _finish_tiles(buckets.tiles(), finish, progress=progress)
         writer.notes = MapNotes(
             voxel_m=settings.voxel_m,
             crs=inputs.crs,
@@ -131,36 +133,46 @@ def _distribute(
         buckets.flush(pool)
 
 
-def _make_tile(
-    buckets: TileBuckets,
-    recipe: Recipe,
-    tile: Tile,
-    *,
-    scratch: Scratch,
-    covariances: PoseCovariances | None,
-) -> MadeTile:
-    made = make_tile(buckets.read(tile), recipe, scratch)
-    buckets.drop(tile)
-    if covariances:
-        columns = made.columns
-        p_map = columns["xyz"] + np.array(tile, dtype=np.float64) * recipe.grid.tile_m
-        columns[DEVIATION] = point_deviations(covariances, p_map, columns["frame_id"])
-    return made
+@dataclass(frozen=True, slots=True)
+class _Turn:
+    """A tile, and when its rows may be reserved: after those of the one before it."""
+
+    tile: Tile
+    before: Event
+    done: Event
+
+
+def _turns(tiles: Sequence[Tile]) -> Iterator[_Turn]:
+    before = Event()
+    before.set()
+    for tile in tiles:
+        yield _Turn(tile, before, before := Event())
+
+
+def _finish_tile(
+    turn: _Turn, *, buckets: TileBuckets, recipe: Recipe, scratch: Scratch, writer: TileWriter
+) -> Counter[str]:
+    """Make a tile and write it; what was removed from it."""
+    try:
+        made = make_tile(buckets.read(turn.tile), turn.tile, recipe, scratch=scratch)
+        buckets.drop(turn.tile)
+        turn.before.wait()
+        rows = writer.reserve(turn.tile, made.count, strays=made.strays)
+    finally:
+        turn.done.set()
+    for block in made.blocks:
+        rows.write(block)
+    return made.removed
 
 
 def _finish_tiles(
-    tiles: Sequence[Tile],
-    make: Callable[[Tile], MadeTile],
-    writer: TileWriter,
-    *,
-    progress: Progress,
+    tiles: Sequence[Tile], finish: Callable[[_Turn], Counter[str]], *, progress: Progress
 ) -> Counter[str]:
     removed: Counter[str] = Counter()
     with ThreadPoolExecutor(WORKERS) as pool:
-        made_tiles = zip(tiles, _in_order(pool, make, tiles), strict=True)
-        for tile, made in track(made_tiles, progress, what="map", unit="tiles", total=len(tiles)):
-            writer.append(tile, made.columns, strays=made.strays)
-            removed += made.removed
+        parts = _in_order(pool, finish, _turns(tiles))
+        for part in track(parts, progress, what="map", unit="tiles", total=len(tiles)):
+            removed += part
     return removed
 
 

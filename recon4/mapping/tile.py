@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -12,10 +14,11 @@ from numpy.typing import NDArray
 from recon4.kernels.halves import round_to_half
 from recon4.kernels.surface_points import spread_surfaces
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
+from recon4.mapping.deviation import PoseCovariances, point_deviations
 from recon4.mapping.grid import Grid
 from recon4.mapping.intensity import normalized_intensity
-from recon4.mapping.normals import local_normals
-from recon4.mapping.records import Records, Views, is_own, to_sensor_m
+from recon4.mapping.normals import Normals, local_normals
+from recon4.mapping.records import Records, Tile, Views, is_own, to_sensor_m
 from recon4.mapping.scratch import Scratch
 from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surfaces import FittedSurfaces, fit_surfaces
@@ -49,8 +52,8 @@ SURFACE_FIELDS = ("raw_offset_m", "returns", "sigma_m", "planarity")
 
 STRATA = 64
 """Number of uniform samples of itself in which a tile is stored, one after the other."""
-BLOCK = 1 << 18
-"""Rows of fitted surfaces made at once, which bounds the memory for what is temporary."""
+BLOCK = 1 << 16
+"""Rows made at once: the columns of a whole tile take more memory than all else of it."""
 FAR_CELL_M = 1.0
 """Size of the cubes of ``MapSettings.far_ratio`` [m]."""
 
@@ -66,23 +69,29 @@ class Recipe:
     intensity: IntensityTable | None
     t_ns: Times
     """Start of each multiframe [ns], (F,)."""
+    covariances: PoseCovariances | None = None
+    """Of the multiframes; None = no deviations of the points."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MadeTile:
     """Columns of a tile in the stored order, and counts of removed points by reason."""
 
-    columns: Columns
+    count: int
+    """Rows, stray returns included."""
     removed: Counter[str]
+    blocks: Iterator[Columns]
+    """The columns, `BLOCK` rows at a time; valid until the same thread makes the next tile."""
     strays: int = 0
     """How many of the last rows are stray returns."""
 
 
-def make_tile(records: Records, recipe: Recipe, scratch: Scratch) -> MadeTile:
+def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch) -> MadeTile:
     """Remove noise from the records of a tile and compute the columns of the rest.
 
     Args:
         records: In the order of their voxels, thinned, with the halo.
+        tile: Index of the tile.
         recipe: Parameters.
         scratch: Memory to work in.
     """
@@ -90,41 +99,56 @@ def make_tile(records: Records, recipe: Recipe, scratch: Scratch) -> MadeTile:
     removed: Counter[str] = Counter()
     if settings.far_ratio > 0.0:
         records, removed["far"] = _without_far(records, settings.far_ratio)
-    if settings.surface == "fitted":
-        return _fitted(records, recipe, scratch, removed=removed)
     own = is_own(records)
+    if settings.surface == "fitted":
+        surfaces = _surfaces(records, recipe, scratch)
+        stray = own & (surfaces.stray | (surfaces.support < settings.min_neighborhood))
+        strays = progressive(np.flatnonzero(stray))
+        rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
+        columns = partial(_fitted_columns, records, surfaces, recipe=recipe)
+        return MadeTile(
+            len(rows), removed, _blocks(rows, columns, tile=tile, recipe=recipe), len(strays)
+        )
     normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
     lonely = own & (normals.support < settings.min_neighborhood)
     removed["lonely"] = int(lonely.sum())
     rows = progressive(np.flatnonzero(own & ~lonely))
-    columns = _columns(records, rows, np.take(normals.normal, rows, axis=0), recipe=recipe)
-    return MadeTile(columns, removed)
+    columns = partial(_raw_columns, records, normals, recipe=recipe)
+    return MadeTile(len(rows), removed, _blocks(rows, columns, tile=tile, recipe=recipe))
 
 
-def _fitted(
-    records: Records, recipe: Recipe, scratch: Scratch, *, removed: Counter[str]
-) -> MadeTile:
-    """Columns with the points on their surfaces; ``raw_offset_m`` leads back."""
-    settings, own = recipe.settings, is_own(records)
-    grid, noise_m = recipe.grid, settings.range_noise_m
-    surfaces = fit_surfaces(records, grid, noise_m=noise_m, scratch=scratch)
-    surfaces = with_sparse_places(records, surfaces, grid, noise_m=noise_m, scratch=scratch)
-    stray = own & (surfaces.stray | (surfaces.support < settings.min_neighborhood))
-    strays = progressive(np.flatnonzero(stray))
-    rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
-    columns: Columns = {}
-    for first in range(0, max(1, len(rows)), BLOCK):
-        part = _fitted_columns(records, rows[first : first + BLOCK], surfaces, recipe=recipe)
-        for name, column in part.items():
-            if first == 0:
-                columns[name] = np.empty((len(rows), *column.shape[1:]), column.dtype)
-            columns[name][first : first + BLOCK] = column
-    return MadeTile(columns, removed, len(strays))
+def _blocks(
+    rows: NDArray[np.intp],
+    columns_of: Callable[[NDArray[np.intp]], Columns],
+    *,
+    tile: Tile,
+    recipe: Recipe,
+) -> Iterator[Columns]:
+    origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
+    for first in range(0, len(rows), BLOCK):
+        columns = columns_of(rows[first : first + BLOCK])
+        if recipe.covariances:
+            p_map = columns["xyz"] + origin_m
+            columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
+        yield columns
+
+
+def _surfaces(records: Records, recipe: Recipe, scratch: Scratch) -> FittedSurfaces:
+    grid, noise_m = recipe.grid, recipe.settings.range_noise_m
+    found = fit_surfaces(records, grid, noise_m=noise_m, scratch=scratch)
+    return with_sparse_places(records, found, grid, noise_m=noise_m, scratch=scratch)
+
+
+def _raw_columns(
+    records: Records, normals: Normals, rows: NDArray[np.intp], *, recipe: Recipe
+) -> Columns:
+    return _columns(records, rows, np.take(normals.normal, rows, axis=0), recipe=recipe)
 
 
 def _fitted_columns(
-    records: Records, rows: NDArray[np.intp], surfaces: FittedSurfaces, *, recipe: Recipe
+    records: Records, surfaces: FittedSurfaces, rows: NDArray[np.intp], *, recipe: Recipe
 ) -> Columns:
+    """Columns with the points on their surfaces; ``raw_offset_m`` leads back."""
     n = len(rows)
     offset, normal = np.empty((2, n, 3), np.float32)
     facts, returns = np.empty((2, n), np.float32), np.empty(n, np.uint16)

@@ -10,10 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from types import TracebackType
-from typing import Any, BinaryIO, Literal, Self, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,14 +21,11 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.mapping.columns import (
     check_columns,
-    column_header,
-    column_shape,
     map_rows,
     row_offset,
 )
 from recon4.mapping.notes import MapCrs, MapNotes, read_map_list
-from recon4.mapping.tile import FIELDS, Columns, spatial_order
-from recon4.store.atomic import raise_if_full, write_json
+from recon4.mapping.tile import Columns, spatial_order
 from recon4.store.checked import Altered, CheckedArtifact
 
 FORMAT = 1
@@ -218,105 +214,6 @@ class TileSet:
             return np.full(3, np.nan), np.full(3, np.nan)
         low = np.min([tile.low_m for tile in self.tiles], axis=0)
         return low, np.max([tile.high_m for tile in self.tiles], axis=0)
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class _TileRow:
-    """A tile in ``tiles.json``; the fields are its keys."""
-
-    ijk: list[int]
-    origin_m: list[float]
-    start: int
-    stop: int
-    strays: int = 0
-    low_m: list[float]
-    high_m: list[float]
-    time_ns: list[int]
-    """Times of its first and last point [ns], (2,)."""
-
-
-class TileWriter:
-    """Writes tiles one after the other; ``tiles.json`` last, if the block ends without error."""
-
-    def __init__(self, folder: Path, fields: Sequence[str], *, tile_m: float) -> None:
-        self._folder = folder
-        self._fields = list(fields)
-        self._tile_m = tile_m
-        self._rows: list[_TileRow] = []
-        self._points = 0
-        self._files: dict[str, BinaryIO] = {}
-        self.notes = MapNotes()
-
-    def __enter__(self) -> Self:
-        (self._folder / "tiles").mkdir(parents=True)
-        for name in self._fields:
-            self._files[name] = (self._folder / "tiles" / f"{name}.npy").open("wb")
-            self._files[name].write(column_header(name, 0))
-        return self
-
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
-    ) -> None:
-        try:
-            for name, file in self._files.items():
-                with file:
-                    file.seek(0)
-                    file.write(column_header(name, self._points))
-        except OSError as failed:
-            raise_if_full(failed, self._folder)
-            raise StoreError(f"cannot write {self._folder}: {failed.strerror}") from failed
-        if kind is None:
-            self._write_list()
-
-    def append(self, ijk: tuple[int, int, int], columns: Columns, *, strays: int = 0) -> None:
-        """Write the points of one tile in the given order; an empty tile is omitted.
-
-        Args:
-            ijk: Index in the grid of tiles.
-            columns: Its fields.
-            strays: How many of the last rows are stray returns.
-        """
-        count = len(columns["xyz"])
-        if count == 0:
-            return
-        for name in self._fields:
-            column = np.ascontiguousarray(columns[name], dtype=FIELDS[name][0])
-            assert column.shape == column_shape(name, count), f"{name}: {column.shape}"
-            self._files[name].write(column.data)
-        origin = np.array(ijk) * self._tile_m
-        # A tile of strays only has their bounds: every tile has some.
-        xyz, t_ns = (columns[name][: (count - strays) or count] for name in ("xyz", "t_ns"))
-        self._rows.append(
-            _TileRow(
-                ijk=list(ijk),
-                origin_m=origin.tolist(),
-                start=self._points,
-                stop=self._points + count - strays,
-                strays=strays,
-                low_m=(origin + xyz.min(axis=0)).tolist(),
-                high_m=(origin + xyz.max(axis=0)).tolist(),
-                time_ns=[int(t_ns.min()), int(t_ns.max())],
-            )
-        )
-        self._points += count
-
-    def _write_list(self) -> None:
-        rows = self._rows
-        bounds = [
-            np.min([row.low_m for row in rows], axis=0).tolist() if rows else None,
-            np.max([row.high_m for row in rows], axis=0).tolist() if rows else None,
-        ]
-        times = [t for row in rows for t in row.time_ns]
-        points = self._points - sum(row.strays for row in rows)
-        facts: dict[str, object] = {"format": FORMAT, "points": points, "bounds_m": bounds}
-        facts |= self.notes.to_json()
-        facts["time_ns"] = [min(times), max(times)] if times else None
-        listed = [asdict(row) for row in rows]
-        for row in listed:
-            if not row["strays"]:
-                del row["strays"]
-        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": listed}
-        write_json(self._folder / "tiles.json", facts)
 
 
 def _tile(

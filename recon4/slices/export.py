@@ -17,7 +17,8 @@ from recon4.export.names import check_name
 from recon4.export.points import OutputCrs
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import DEVIATION, progressive
-from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.scratch import scratch_folder
 from recon4.slices.frames import MapFrame, jacobian
 from recon4.slices.points import SliceWindow, TilePart, points_in

@@ -14,7 +14,8 @@ from recon4.errors import CorruptFile, UnknownFormat
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
-from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tiles import TileSet
 from recon4.names import visible
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.slices.frames import MapFrame

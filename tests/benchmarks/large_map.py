@@ -13,7 +13,7 @@ import numpy as np
 
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS, progressive
-from recon4.mapping.tiles import TileWriter
+from recon4.mapping.tile_writer import TileWriter
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.store.project import Project

@@ -28,7 +28,7 @@ from app.viewer.scene.nodes import LinesNode
 from app.viewer.scene.source import ProjectSource
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
-from recon4.mapping.tiles import TileWriter
+from recon4.mapping.tile_writer import TileWriter
 from recon4.model.pose_graph import Verdict
 from tests.project_builder import build_project, loop_walk, verified_graph
 

@@ -11,7 +11,7 @@ import pytest
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import evaluate
 from recon4.geometry.se3 import SE3
-from recon4.mapping.tiles import TileWriter
+from recon4.mapping.tile_writer import TileWriter
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin

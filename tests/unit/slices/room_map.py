@@ -6,7 +6,8 @@ import numpy as np
 
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
-from recon4.mapping.tiles import TileSet, TileWriter
+from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tiles import TileSet
 
 TILE_M = 5.0
 T0_NS = 1_700_000_000_000_000_000
