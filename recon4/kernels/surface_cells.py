@@ -135,17 +135,17 @@ def find_rings(
     Args:
         cells: Of `find_cells`, (C,).
         side: Cells along tile and halo.
-        low: First layer of cells that there are.
-        high: First layer beyond.
+        low: First row of cells along y that there is.
+        high: First row beyond.
         out: Receives 0, 1 or 2, (C,).
     """
     for c in range(len(cells)):
         i, j, k = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
-        out[c] = min(i, j, k - low, side - 1 - i, side - 1 - j, high - 1 - k, 2)
+        out[c] = min(i, j - low, k, side - 1 - i, high - 1 - j, side - 1 - k, 2)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def first_of_layers(
+def first_of_rows(
     xyz: NDArray[np.float32],
     voxel_m: float,
     cell_voxels: int,
@@ -153,7 +153,7 @@ def first_of_layers(
     halo: int,
     out: NDArray[np.int64],
 ) -> None:
-    """First point of each layer of cells; the points are in the order of their voxels.
+    """First point of each row of cells along x; the points are in the order of their voxels.
 
     Args:
         xyz: Points from the tile's origin [m], (N, 3) or more columns.
@@ -161,22 +161,21 @@ def first_of_layers(
         cell_voxels: Voxels along a cell.
         side: Cells along tile and halo.
         halo: Cells of the halo.
-        out: Receives the rows, and N after the last, (side + 1,).
+        out: Receives the points, row j + side k, and N after the last, (side**2 + 1,).
     """
-    first: Any = 0
-    for layer in range(side):
-        out[layer] = first
-        low, high = first, len(xyz)
-        while low < high:
-            middle = (low + high) // 2
+    next_row = 0
+    for p in range(len(xyz)):
+        row: Any = np.int64(0)
+        for d in range(2, 0, -1):
             # As the voxels were numbered: each coordinate within tile and halo.
-            v: Any = np.int64(np.floor(xyz[middle, 2] / voxel_m)) + halo * cell_voxels
-            if min(max(v, 0), side * cell_voxels - 1) // cell_voxels <= layer:
-                low = middle + 1
-            else:
-                high = middle
-        first = low
-    out[side] = len(xyz)
+            v: Any = np.int64(np.floor(xyz[p, d] / voxel_m)) + halo * cell_voxels
+            row = row * side + min(max(v, 0), side * cell_voxels - 1) // cell_voxels
+        while next_row <= row:
+            out[next_row] = p
+            next_row += 1
+    while next_row < len(out):
+        out[next_row] = len(xyz)
+        next_row += 1
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -206,7 +206,7 @@ def nearest_in_voxels(
         shift: As given to it.
         i2: The records as int16, (N, 16).
         u1: The records as uint8, (N, 32).
-        rows: Receives the rows, voxel by voxel, int64 (N,).
+        rows: Receives the rows, voxel by voxel, int64 (N,); may be ``order`` itself.
         returns: Receives the returns of the voxel, at most `MAX_RETURNS`, uint8 (N,). The limited
             sum is the same however the records are grouped.
 

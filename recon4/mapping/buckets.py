@@ -37,7 +37,10 @@ class TileBuckets:
     def flush(self, pool: ThreadPoolExecutor) -> None:
         """Thin and write the records held in memory."""
         pending, self._pending, self._held = self._pending, {}, 0
-        for tile, records in zip(pending, pool.map(self._thinned, pending.values()), strict=True):
+        tiles = list(pending)
+        # Taken out one by one, so that what is thinned does not stand beside what it was.
+        thinned = pool.map(lambda tile: self._thinned(pending.pop(tile)), tiles)
+        for tile, records in zip(tiles, thinned, strict=True):
             self._tiles.add(tile)
             with self._path(tile).open("ab") as file:
                 file.write(records.data)
@@ -51,29 +54,38 @@ class TileBuckets:
 
         Read and thinned in parts: memory depends on the thinned tile, not on all its points.
         """
-        part = max(1, self._burst // 3)
+        part = max(1, self._burst // 6)
         kept: list[Records] = []
         fresh, limit = 0, part
         for records in self._parts(tile, part):
             kept.append(records)
             fresh += len(records)
+            del records  # or it stands beside what is made of it
             if self._grid.thin and fresh >= limit:
-                kept = [in_voxel_order(joined(kept), self._grid)]
+                kept = [in_voxel_order(_taken(kept), self._grid)]
                 fresh, limit = 0, max(part, len(kept[0]))
-        return in_voxel_order(kept[0] if len(kept) == 1 else joined(kept), self._grid)
+        return in_voxel_order(_taken(kept), self._grid) if fresh else kept[0]
 
     def drop(self, tile: Tile) -> None:
         """Remove the file of a finished tile."""
         self._path(tile).unlink()
 
     def _thinned(self, parts: list[Records]) -> Records:
-        records = joined(parts)
+        records = _taken(parts)
         return in_voxel_order(records, self._grid) if self._grid.thin else records
 
     def _parts(self, tile: Tile, part: int) -> Iterator[Records]:
-        with self._path(tile).open("rb") as file:
-            while len(records := np.fromfile(file, RECORD, part)):
-                yield records
+        path = self._path(tile)
+        with path.open("rb") as file:
+            for _ in range(0, path.stat().st_size, part * RECORD.itemsize):
+                yield np.fromfile(file, RECORD, part)
 
     def _path(self, tile: Tile) -> Path:
         return self._folder / "{}_{}_{}".format(*tile)
+
+
+def _taken(parts: list[Records]) -> Records:
+    """All records of some parts; the list is empty then, which frees them."""
+    records = parts[0] if len(parts) == 1 else joined(parts)
+    parts.clear()
+    return records

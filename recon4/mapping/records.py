@@ -112,14 +112,12 @@ def in_voxel_order(records: Records, grid: Grid) -> Records:
     order = np.empty(n, np.int64)
     cells = (grid.cell_voxels, grid.side_cells, grid.halo_cells)
     voxel_keys(views.f4, grid.voxel_m, *cells, shift, order)
-    spare = np.empty(n, np.int64)
-    order = radix_sort(order, shift, shift + grid.key_bits, spare)
+    order = radix_sort(order, shift, shift + grid.key_bits, np.empty(n, np.int64))
     if not grid.thin:
         return np.take(records, order & ((1 << shift) - 1))
-    rows = np.empty(n, np.int64)
     returns = np.empty(n, np.uint8)
-    count = nearest_in_voxels(order, shift, views.i2, views.u1, rows, returns)
-    kept = np.take(records, rows[:count])
+    count = nearest_in_voxels(order, shift, views.i2, views.u1, order, returns)
+    kept = np.take(records, order[:count])
     kept["returns"] = returns[:count]
     return kept
 

@@ -11,7 +11,7 @@ from recon4.kernels.surface_cells import number_cells
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, Views
 from recon4.mapping.scratch import Scratch
-from recon4.mapping.surfaces import SPREAD, FittedSurfaces, Noise, fit_layers
+from recon4.mapping.surface_fit import SPREAD, FittedSurfaces, Noise, fit_rows
 
 SCALE = 3
 """Cells of the larger scale are as many times as large."""
@@ -62,9 +62,9 @@ def with_sparse_places(
     marked.flat[cell[loose]] = True
     wanted = np.flatnonzero(maximum_filter(marked, _REACH).ravel()[cell])
     rows = wanted[np.argsort(cell[wanted], kind="stable")]
-    layers = 0, coarse.side_cells
     noise = Noise(noise_m, NOISE * noise_m)
-    made = fit_layers(np.take(records, rows), coarse, layers, noise=noise, array=array)
+    every = 0, coarse.side_cells
+    made = fit_rows(np.take(records, rows), coarse, every, noise=noise, array=array)
     mine = loose[rows]
     able = mine & made.on_surface
     moved = np.flatnonzero(able & _thin_enough(made, able, noise_m))
