@@ -11,6 +11,7 @@ from numpy.typing import DTypeLike, NDArray
 
 from recon4.kernels import (
     surface_cells,
+    surface_ends,
     surface_points,
     surface_shapes,
     surface_slots,
@@ -305,7 +306,7 @@ class _Fit:
         count = len(found.cells)
         shift_m = array("slab_shift_m", (n, 3), np.float32)
         surface_of = array("slab_surface_of", (n,), np.int32)
-        surfaces = array("surfaces", (min(n, (SLOTS + 1) * count), SURFACE), np.float32)
+        surfaces = array("surfaces", (min(n, SLOTS * count) + count, SURFACE), np.float32)
         made = surface_points.onto_planes(
             xyz, to_sensor, starts, found.rings, found.cells, self.step[1:],
             (found.begin, found.near, found.at), windows.normals,
@@ -313,6 +314,16 @@ class _Fit:
             windows.moments.reshape(2 * count, MOMENTS), slots.sums,
             np.array([MIN_RETURNS, 0.3 * grid.cell_m, BEND_M]), GATE,
             slots.slot_of, shift_m, surface_of, surfaces,
+        )  # fmt: skip
+        beyond = array("beyond", (count, SLOTS, 4), np.bool_)
+        neighbors = found.begin, found.near, found.at
+        surface_ends.find_beyond(
+            xyz, weight, starts, found.cells, self.step[1:], neighbors, slots.other,
+            slots.slot_of, shift_m, surface_of, surfaces, beyond,
+        )  # fmt: skip
+        made = surface_ends.put_back(
+            xyz, starts, found.cells, self.step[1:], windows.normals, beyond,
+            slots.slot_of, shift_m, surface_of, surfaces, made,
         )  # fmt: skip
         stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 2), np.float64)
         surface_points.find_strays(

@@ -154,6 +154,28 @@ def test_a_convex_corner_stays_sharp(rng):
     assert np.mean(distance(p[edge])) < 0.6 * np.mean(distance(raw[edge]))
 
 
+@pytest.mark.parametrize("edge_m", [2.28, 2.33])
+def test_a_narrow_reveal_is_not_drawn_onto_the_plane_of_its_wall(rng, edge_m):
+    """The reveal of a doorway in a wall of 8 cm; no window holds it without both faces."""
+    depth_m = 0.08
+    faces = [
+        returns(rng, rectangle(rng, [1.5, y_m, 1.5], [edge_m - 1.5, 0, 0], [0, 0, 1.2]), sensor)
+        for y_m, sensor in ((WALL_M, FRONT), (WALL_M + depth_m, np.array([2.5, 3.2, 2.2])))
+    ]
+    reveal = rectangle(rng, [edge_m, WALL_M, 1.5], [0, depth_m, 0], [0, 0, 1.2])
+
+    _, raw, p, _ = fitted(*faces, returns(rng, reveal, np.array([3.1, 1.8, 2.1])))
+
+    def in_doorway(q):
+        """Returns on the plane of the wall, beyond its end."""
+        on_plane = np.abs(q[:, 1] - WALL_M) < 0.005
+        beyond = (q[:, 0] > edge_m + 0.01) & (q[:, 0] < edge_m + 0.05)
+        return (on_plane & beyond & (np.abs(q[:, 2] - 2.1) < 0.4)).sum()
+
+    assert in_doorway(raw) > 50
+    assert in_doorway(p) < 1.5 * in_doorway(raw)
+
+
 def test_a_few_returns_before_a_wall_are_strays_and_keep_their_place(rng):
     loose = np.array([[2.2, WALL_M - 0.075, 2.0], [2.6, WALL_M - 0.07, 2.3]])
 
