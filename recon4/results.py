@@ -165,7 +165,17 @@ class MapExport:
     """Also the stray returns, marked as noise; only as LAZ."""
 
 
-def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> int:
+@dataclass(frozen=True, slots=True)
+class ExportedMap:
+    """What was written."""
+
+    points: int
+    """In the file."""
+    strays: int
+    """Stray returns of the map, in the file or left out of it."""
+
+
+def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
     """Write the map of a finished run as LAZ or PLY; the file notes an approval.
 
     Args:
@@ -175,7 +185,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         progress: Counts points.
 
     Returns:
-        How many points were written.
+        How many points were written, and how many stray returns there are.
 
     Raises:
         Altered: If it was approved and is not what was approved; nothing is written.
@@ -205,7 +215,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
             count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
-    return count
+    return ExportedMap(count, tiles.strays)
 
 
 def _ending_of_map(path: Path, *, strays: bool) -> str:

@@ -195,8 +195,11 @@ def export(
             write(f"{export_3dtk(project, file, progress=progress)} points in {file}")
             return
         wanted = MapExport(crs=crs, raw=raw, strays=strays)
-        points = export_map(project, file, wanted, progress=progress)
-    write(f"{points} points in {file}")
+        made = export_map(project, file, wanted, progress=progress)
+    write(f"{made.points} points in {file}")
+    if made.strays:
+        left = "of them, marked as noise" if strays else "left out; --strays writes them"
+        write(f"{made.strays} stray returns {left}")
 
 
 @app.command()
