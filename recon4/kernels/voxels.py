@@ -157,6 +157,22 @@ def fill_tiles(
                     u1[row, 31] = 1
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def voxel_at(
+    f4: NDArray[np.float32], n: int, voxel_m: float, cell_voxels: int, side_cells: int, halo: int
+) -> np.int64:
+    """Number of the voxel of a record: cells in order, voxels in order within a cell."""
+    cell: Any = np.int64(0)
+    inside: Any = np.int64(0)
+    for d in range(2, -1, -1):
+        v: Any = np.int64(np.floor(f4[n, d] / voxel_m)) + halo * cell_voxels
+        v = min(max(v, 0), side_cells * cell_voxels - 1)
+        c = v // cell_voxels
+        cell = cell * side_cells + c
+        inside = inside * cell_voxels + (v - c * cell_voxels)
+    return np.int64(cell * cell_voxels**3 + inside)
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def voxel_keys(
     f4: NDArray[np.float32],
@@ -179,15 +195,8 @@ def voxel_keys(
         out: Receives the keys.
     """
     for n in range(len(f4)):
-        cell: Any = np.int64(0)
-        inside: Any = np.int64(0)
-        for d in range(2, -1, -1):
-            v: Any = np.int64(np.floor(f4[n, d] / voxel_m)) + halo_cells * cell_voxels
-            v = min(max(v, 0), side_cells * cell_voxels - 1)
-            c = v // cell_voxels
-            cell = cell * side_cells + c
-            inside = inside * cell_voxels + (v - c * cell_voxels)
-        out[n] = ((cell * cell_voxels**3 + inside) << shift) | n
+        voxel = voxel_at(f4, n, voxel_m, cell_voxels, side_cells, halo_cells)
+        out[n] = (voxel << shift) | n
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
@@ -10,6 +9,7 @@ import numpy as np
 
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Tile, in_voxel_order, joined
+from recon4.mapping.voxel_runs import merged_runs
 
 BURST = 6_000_000
 """Records held in memory before they are thinned and written (192 MB)."""
@@ -24,7 +24,7 @@ class TileBuckets:
         self._burst = burst
         self._pending: dict[Tile, list[Records]] = {}
         self._held = 0
-        self._tiles: set[Tile] = set()
+        self._counts: dict[Tile, list[int]] = {}
 
     def add(self, parts: dict[Tile, Records], pool: ThreadPoolExecutor) -> None:
         """Add the records of a multiframe; write all when `BURST` is reached."""
@@ -41,30 +41,23 @@ class TileBuckets:
         # Taken out one by one, so that what is thinned does not stand beside what it was.
         thinned = pool.map(lambda tile: self._thinned(pending.pop(tile)), tiles)
         for tile, records in zip(tiles, thinned, strict=True):
-            self._tiles.add(tile)
+            self._counts.setdefault(tile, []).append(len(records))
             with self._path(tile).open("ab") as file:
                 file.write(records.data)
 
     def tiles(self) -> list[Tile]:
         """The tiles that have points, in a fixed order."""
-        return sorted(self._tiles)
+        return sorted(self._counts)
 
     def read(self, tile: Tile) -> Records:
         """All records of a tile in the order of their voxels, thinned.
 
-        Read and thinned in parts: memory depends on the thinned tile, not on all its points.
+        Memory depends on the thinned tile, not on all its points.
         """
-        part = max(1, self._burst // 6)
-        kept: list[Records] = []
-        fresh, limit = 0, part
-        for records in self._parts(tile, part):
-            kept.append(records)
-            fresh += len(records)
-            del records  # or it stands beside what is made of it
-            if self._grid.thin and fresh >= limit:
-                kept = [in_voxel_order(_taken(kept), self._grid)]
-                fresh, limit = 0, max(part, len(kept[0]))
-        return in_voxel_order(_taken(kept), self._grid) if fresh else kept[0]
+        path, counts = self._path(tile), self._counts[tile]
+        if self._grid.thin:
+            return merged_runs(path, counts, self._grid)
+        return in_voxel_order(np.fromfile(path, RECORD), self._grid)
 
     def drop(self, tile: Tile) -> None:
         """Remove the file of a finished tile."""
@@ -73,12 +66,6 @@ class TileBuckets:
     def _thinned(self, parts: list[Records]) -> Records:
         records = _taken(parts)
         return in_voxel_order(records, self._grid) if self._grid.thin else records
-
-    def _parts(self, tile: Tile, part: int) -> Iterator[Records]:
-        path = self._path(tile)
-        with path.open("rb") as file:
-            for _ in range(0, path.stat().st_size, part * RECORD.itemsize):
-                yield np.fromfile(file, RECORD, part)
 
     def _path(self, tile: Tile) -> Path:
         return self._folder / "{}_{}_{}".format(*tile)

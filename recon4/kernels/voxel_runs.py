@@ -1,0 +1,89 @@
+"""Kernel that merges runs of records, each in the order of its voxels."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from recon4.kernels.voxels import MAX_RETURNS, voxel_at
+
+MERGED, FULL = -1, -2
+"""In place of a run: all are merged, the output is full."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _squared_range(i2: NDArray[np.int16], n: int) -> np.int64:
+    x, y, z = np.int64(i2[n, 10]), np.int64(i2[n, 11]), np.int64(i2[n, 12])
+    return x * x + y * y + z * z
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def merge_runs(
+    f4: NDArray[np.float32],
+    i4: NDArray[np.int32],
+    i2: NDArray[np.int16],
+    u1: NDArray[np.uint8],
+    cells: tuple[float, int, int, int],
+    head: NDArray[np.int64],
+    stop: NDArray[np.int64],
+    left: NDArray[np.int64],
+    keys: NDArray[np.int64],
+    out_i4: NDArray[np.int32],
+    out_i2: NDArray[np.int16],
+    out_u1: NDArray[np.uint8],
+    state: NDArray[np.int64],
+) -> int:
+    """Merge until a run needs more records or the output more room; called again, it continues.
+
+    The nearest of each voxel is kept, of equal ones that of the first run, as
+    `recon4.kernels.voxels.nearest_in_voxels` does.
+
+    Args:
+        f4: Some records of each run as float32, (N, 8).
+        i4: The same as int32, (N, 8).
+        i2: The same as int16, (N, 16).
+        u1: The same as uint8, (N, 32).
+        cells: Edge of a voxel [m], voxels along a cell, cells along tile and halo, of the halo.
+        head: Next record of each run, advanced, (R,).
+        stop: First record that is not of the run, (R,).
+        left: Records of each run that are not among these, (R,).
+        keys: Voxel of each next record, -1 = to be computed, (R,).
+        out_i4: Receives the records as int32, (M, 8).
+        out_i2: The same as int16, (M, 16).
+        out_u1: The same as uint8, (M, 32).
+        state: Records written and the voxel of the last one, continued, (2,).
+
+    Returns:
+        The run that needs records, `MERGED` or `FULL`.
+    """
+    while True:
+        best = -1
+        for r in range(len(head)):
+            if head[r] == stop[r]:
+                if left[r] > 0:
+                    return r
+                continue
+            if keys[r] < 0:
+                keys[r] = voxel_at(f4, head[r], cells[0], cells[1], cells[2], cells[3])
+            if best < 0 or keys[r] < keys[best]:
+                best = r
+        if best < 0:
+            return MERGED
+        n, fresh = head[best], keys[best] != state[1]
+        if fresh and state[0] == len(out_i4):
+            return FULL
+        at = state[0] if fresh else state[0] - 1
+        returns: Any = np.int64(u1[n, 31])
+        if not fresh:
+            returns = min(returns + np.int64(out_u1[at, 31]), MAX_RETURNS)
+        if fresh or _squared_range(i2, n) < _squared_range(out_i2, at):
+            for d in range(8):
+                out_i4[at, d] = i4[n, d]
+        out_u1[at, 31] = returns
+        if fresh:
+            state[0], state[1] = at + 1, keys[best]
+        head[best] += 1
+        keys[best] = -1
