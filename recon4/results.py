@@ -173,6 +173,16 @@ class ExportedMap:
     """In the file."""
     strays: int
     """Stray returns of the map, in the file or left out of it."""
+    noise: bool
+    """Whether they are in the file, marked as noise."""
+
+    @property
+    def text(self) -> str:
+        """Both numbers in words."""
+        if not self.strays:
+            return f"{self.points} points"
+        where = "of them marked as noise" if self.noise else "left out"
+        return f"{self.points} points, {self.strays} stray returns {where},"
 
 
 def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
@@ -215,7 +225,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
             count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
-    return ExportedMap(count, tiles.strays)
+    return ExportedMap(count, tiles.strays, wanted.strays)
 
 
 def _ending_of_map(path: Path, *, strays: bool) -> str:

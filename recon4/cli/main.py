@@ -194,12 +194,10 @@ def export(
         if file.suffix.lower() == ".3dtk":
             write(f"{export_3dtk(project, file, progress=progress)} points in {file}")
             return
-        wanted = MapExport(crs=crs, raw=raw, strays=strays)
-        made = export_map(project, file, wanted, progress=progress)
-    write(f"{made.points} points in {file}")
-    if made.strays:
-        left = "of them, marked as noise" if strays else "left out; --strays writes them"
-        write(f"{made.strays} stray returns {left}")
+        made = export_map(
+            project, file, MapExport(crs=crs, raw=raw, strays=strays), progress=progress
+        )
+    write(f"{made.text} in {file}")
 
 
 @app.command()
