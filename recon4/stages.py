@@ -207,9 +207,11 @@ def _map(
     from recon4.georeference.crs_file import read_crs
     from recon4.mapping.build import MapInputs, build_map
     from recon4.result_files import covariances_of
+    from recon4.sandbox.freed_memory import return_freed_memory
     from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.frames import open_frames
 
+    return_freed_memory()
     store, covariances_at = open_frames(frames, calibration), covariances_of(level)
     inputs = MapInputs(
         store,

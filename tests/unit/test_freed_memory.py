@@ -1,0 +1,36 @@
+"""Large blocks go back to the system when they are freed."""
+
+import subprocess
+import sys
+
+import pytest
+
+_CHILD = """
+import sys
+import numpy as np
+from recon4.sandbox.freed_memory import return_freed_memory
+
+def held_mb():
+    for line in open("/proc/self/status"):
+        if line.startswith("RssAnon"):
+            return int(line.split()[1]) / 1024
+
+np.ones(3_900_000)  # 31 MB, freed: glibc keeps blocks of this size from now on
+if sys.argv[1] == "returned":
+    return_freed_memory()
+before = held_mb()
+blocks = [np.ones(1_000_000) for _ in range(30)]
+del blocks[:-1]
+print(held_mb() - before)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="RssAnon is of Linux")
+def test_freed_blocks_below_a_used_one_are_returned():
+    kept, returned = (
+        float(subprocess.check_output([sys.executable, "-c", _CHILD, mode], text=True))
+        for mode in ("kept", "returned")
+    )
+
+    assert kept > 100.0
+    assert returned < 20.0
