@@ -24,7 +24,6 @@ from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.kitti import official_drift
 from recon4.evaluation.sharpness import draw_places, sharpness
 from recon4.evaluation.table import number, text_table
-from recon4.geometry.se3 import Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
@@ -47,7 +46,6 @@ from tests.builders import write_pcd
 
 _DRIFT_M = (5.0, 10.0, 20.0, 40.0)
 _CRISP_FRAMES = 60
-_SHORTEST_S = 0.5
 
 
 @dataclass(frozen=True)
@@ -59,14 +57,16 @@ class Sequence:
     truth: Callable[[Path], Trajectory] | None
     preset: str
     deskewed: bool
-    """Scans without times, kept every 0.6 m or so of a walk: they get times, see `stamps`."""
+    """Scans without times."""
     voxel_m: float
     """Of KISS-ICP."""
+    period_s: float = 0.0
+    """Between scans without times [s]: they were kept every 0.6 m or so of a walk."""
 
 
 SEQUENCES = {
-    "nclt-hdl32": Sequence(nclt, one_sensor("HDL-32E"), nclt_truth, "outdoor", True, 0.6),
-    "vlp16-corridor": Sequence(corridor, one_sensor("VLP-16"), None, "indoor", True, 0.25),
+    "nclt-hdl32": Sequence(nclt, one_sensor("HDL-32E"), nclt_truth, "outdoor", True, 0.6, 1.0),
+    "vlp16-corridor": Sequence(corridor, one_sensor("VLP-16"), None, "indoor", True, 0.25, 0.5),
     "hdl64-muehlburg": Sequence(muehlburg, one_sensor("HDL-64E"), None, "outdoor", False, 0.6),
     "hdl64-durlacher": Sequence(durlacher, one_sensor("HDL-64E"), None, "outdoor", False, 0.6),
 }
@@ -82,21 +82,11 @@ def write_scans(sequence: Sequence, name: str, folder: Path) -> None:
             table["t"] = frame.dt_ns.astype(np.float32) * np.float32(1e-9)
         write_pcd(folder / f"{k:06d}.pcd", table)
         t_ns.append(frame.t_ns)
-    t_s = (
-        stamps(sequence, name, len(t_ns)) if sequence.deskewed else (np.array(t_ns) - t_ns[0]) / 1e9
-    )
+    t_s = (np.array(t_ns) - t_ns[0]) / 1e9
+    if sequence.deskewed:
+        t_s = np.arange(len(t_ns)) * sequence.period_s
     lines = [f"{stamp:.9f}\n" for stamp in t_s]
     (folder / "times.txt").write_text("".join(lines))
-
-
-def stamps(sequence: Sequence, name: str, count: int) -> Array:
-    """Times that a carrier at 1.2 m/s and 45 deg/s would have needed, at most 2 Hz [s], (N,)."""
-    if sequence.truth is None:
-        return np.arange(count) * _SHORTEST_S
-    T = sequence.truth(DATA / name).T_a_b
-    motion = T[:-1].inverse() @ T[1:]
-    needed = np.maximum(np.linalg.norm(motion.t, axis=1) / 1.2, np.rad2deg(motion.angle()) / 45.0)
-    return np.concatenate([[0.0], np.cumsum(np.maximum(needed, _SHORTEST_S))])
 
 
 def finished(name: str, sequence: Sequence, out: Path) -> tuple[list[PeerRun], FrameStore, str]:
