@@ -25,6 +25,7 @@ _BIN_M = 0.0025
 _USUAL = 8.0
 """Pieces with fewer points in a bin say nothing of where a face ends."""
 _NEAR_EDGE_M = 0.03
+_MET_M = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,6 +92,8 @@ class Coverage:
     """Of what the raw map has a point within 10 cm of."""
     seen: float
     """Of what a sensor without errors covers on the same walk."""
+    met: float
+    """Of what such a sensor has a point within 1 cm of: no noise of others is needed there."""
 
 
 def coverage(
@@ -102,11 +105,8 @@ def coverage(
     for tiles in (*maps, perfect):
         few = thin((tile.xyz_m() for tile in tiles), voxel_m=0.01)
         away.append(cKDTree(few).query(sample, distance_upper_bound=4.0 * within_m)[0])
-    measured, seen = away[0] < 2.0 * within_m, away[-1] < within_m
-    return [
-        Coverage(float((d[measured] < within_m).mean()), float((d[seen] < within_m).mean()))
-        for d in away[:-1]
-    ]
+    parts = away[0] < 2.0 * within_m, away[-1] < within_m, away[-1] < _MET_M
+    return [Coverage(*(float((d[part] < within_m).mean()) for part in parts)) for d in away[:-1]]
 
 
 def digest(folder: Path) -> str:

@@ -169,6 +169,7 @@ def against_truth(frames: Path, perfect: Path, work: Path, *, times: int) -> Non
                 f"{100 * error.far:.3f}",
                 f"{100 * share.measured:.2f}",
                 f"{100 * share.seen:.2f}",
+                f"{100 * share.met:.2f}",
                 f"{100 * made.tiles.strays / max(1, len(made.tiles)):.2f}",
                 f"{made.cpu_s / maps['raw'].cpu_s:.2f}",
                 f"{made.peak_bytes / maps['raw'].peak_bytes:.2f}",
@@ -177,7 +178,7 @@ def against_truth(frames: Path, perfect: Path, work: Path, *, times: int) -> Non
             )
         )
     head = ("", "points", "mean cm", "median", "< 2 cm %", "far %", "covered %", "of seen %",
-            "strays %", "CPU", "memory", "LAZ MB", "same bytes")  # fmt: skip
+            "of met %", "strays %", "CPU", "memory", "LAZ MB", "same bytes")  # fmt: skip
     print(f"\n{frames.name}\n{text_table(head, rows)}", flush=True)
     if scene == "exhibition":
         _print_exhibition(build(), maps)
