@@ -40,7 +40,8 @@ def simulate(
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
     from recon4.model.rig import load_rig
     from recon4.simulation.backpack import prepare_backpack, simulate_backpack
-    from recon4.simulation.degradation import PEOPLE, parse_degradations
+    from recon4.simulation.crowd import Crowd
+    from recon4.simulation.degradation import parse_degradations
     from recon4.simulation.setup import models_with, prepare
     from recon4.simulation.simulate import simulate as run
     from recon4.terminal import watcher
@@ -49,16 +50,16 @@ def simulate(
     profiler = mounted.row_of("profiler") is not None
     if figure and not profiler:
         raise typer.BadParameter("--figure is for rigs with a profiler, as --rig wuerzburg")
-    people = int(degradations.get(PEOPLE, 0))
+    crowd = Crowd.of(degradations)
     with watcher() as progress:
         if profiler:
             prepared = partial(prepare_backpack, world, figure=figure, rig=mounted)
-            walk = prepared(seconds=seconds or 0.0, seed=seed, people=people)
+            walk = prepared(seconds=seconds or 0.0, seed=seed, people=crowd.people)
             simulate_backpack(walk, out, degradations=degradations, progress=progress)
         else:
             models = models_with(degradations)
             setup = prepare(
-                world, seconds=seconds or 60.0, seed=seed, rig=mounted, models=models, people=people
+                world, seconds=seconds or 60.0, seed=seed, rig=mounted, models=models, crowd=crowd
             )
             run(setup, out, bag=bag, degradations=degradations, progress=progress)
     write(f"{out}")

@@ -14,7 +14,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import Rig, load_rig
 from recon4.progress import Progress
 from recon4.simulation.backpack_recorder import BackpackRecorder
-from recon4.simulation.companions import Companions
+from recon4.simulation.crowd import Crowd
 from recon4.simulation.degradation import NOT_PROFILER, UPSIDE_DOWN, Degradation
 from recon4.simulation.figures import along_figure, figure_named
 from recon4.simulation.gait import plan_walk
@@ -100,7 +100,7 @@ def prepare_backpack(
         place = along_figure(place, figure_named(figure))
         found = models or _models_of(figure)
         seconds = seconds or figure_named(figure).seconds
-    companions = Companions.drawn(people, np.random.default_rng([seed, 6])) if people else None
+    companions = Crowd(people).drawn(seed)[0]
     seconds = seconds or 60.0
     if not 5.0 <= seconds < 1e6:
         raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")

@@ -1,8 +1,8 @@
 """Errors of a recording that its rig file does not know: ``recon4 simulate --degrade``.
 
-Nothing here changes the walk, and only `PEOPLE`, `BEAM_ANGLE` and `UPSIDE_DOWN` the rays. A
-degradation changes what is written: what the rig file says, the clocks of the stamps, the samples
-of the IMU, which shots and packets there are.
+Nothing here changes the walk, and only `PEOPLE`, `VEHICLES`, `BEAM_ANGLE` and `UPSIDE_DOWN` the
+rays. A degradation changes what is written: what the rig file says, the clocks of the stamps, the
+samples of the IMU, which shots and packets there are.
 """
 
 from __future__ import annotations
@@ -66,6 +66,9 @@ KINDS: Mapping[str, DegradationKind] = {
         3.0, 1e4, "s", "the recording begins this long after the walk, in motion"
     ),
     "people": DegradationKind(5, 12, "", "number of people who walk along and hide the view"),
+    "vehicles": DegradationKind(
+        3, 6, "", "number of vehicles that move: a car beside, a bus that drives off, a fast car"
+    ),
     "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
     "head-stuck": DegradationKind(_SWITCH, 1, "", "the profiler reports one angle of its head"),
     "head-pause": DegradationKind(4.0, 1e4, "s", "the head reports one angle from 20 s on"),
@@ -78,6 +81,8 @@ KINDS: Mapping[str, DegradationKind] = {
 }
 PEOPLE = "people"
 """It changes the rays, see `recon4.simulation.companions`."""
+VEHICLES = "vehicles"
+"""Likewise, see `recon4.simulation.vehicles`."""
 BEAM_ANGLE = "beam-angle"
 """See `recon4.simulation.lidar.LidarModel.beam_angle_sd_rad`."""
 UPSIDE_DOWN = "laser2d-mirrored"
@@ -88,7 +93,7 @@ ONLY_PROFILER = frozenset(
 )
 """Degradations of rigs with a profiler."""
 NOT_PROFILER = frozenset(
-    {"wrong-model", "dead-beams", "beam-bias", "swap-lidars", "late-start", BEAM_ANGLE}
+    {"wrong-model", "dead-beams", "beam-bias", "swap-lidars", "late-start", BEAM_ANGLE, VEHICLES}
 )
 """Degradations that a rig with a profiler cannot have."""
 

@@ -15,9 +15,12 @@ from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.velodyne.models import BLOCKS, MODELS
-from recon4.simulation.companions import REFLECTIVITY, Companions
+from recon4.simulation.companions import REFLECTIVITY as OF_PEOPLE
+from recon4.simulation.companions import Companions
 from recon4.simulation.mirrors import follow
 from recon4.simulation.rides import Car, CarScene
+from recon4.simulation.vehicles import REFLECTIVITY as OF_VEHICLES
+from recon4.simulation.vehicles import Vehicles
 from recon4.simulation.walk import Walk
 
 _VLP16 = MODELS["VLP-16"]
@@ -167,18 +170,20 @@ class Lidar:
 
 @dataclass(frozen=True, eq=False)
 class Surroundings:
-    """A mesh with its ray caster, people who walk with the carrier, the car of an elevator."""
+    """A mesh with its ray caster, people and vehicles that move, the car of an elevator."""
 
     mesh: WorldMesh
     scene: Scene
     companions: Companions | None = None
     car: Car | None = None
+    vehicles: Vehicles | None = None
 
     @cached_property
     def reflectivity(self) -> NDArray[np.float32]:
-        """Of all triangles: of the mesh, of the car of an elevator, and the last of people."""
+        """Of all triangles: mesh, car of an elevator, then one of people and one of vehicles."""
         car = [self.car.reflectivity] if self.car else []
-        return np.concatenate([self.mesh.reflectivity, *car, [np.float32(REFLECTIVITY)]])
+        moving = np.array([OF_PEOPLE, OF_VEHICLES], np.float32)
+        return np.concatenate([self.mesh.reflectivity, *car, moving])
 
     @cached_property
     def _car_scene(self) -> CarScene:
@@ -193,10 +198,11 @@ class Surroundings:
         if self.car is not None and walk.ride is not None:
             first = len(self.mesh.reflectivity)
             hits = self._car_scene.hide(hits, rays, ride=walk.ride, t_s=t_s, surface=first)
-        if self.companions is None:
-            return hits
-        people = len(self.reflectivity) - 1
-        return self.companions.hide(hits, rays, walk=walk, t_s=t_s, surface=people)
+        last = len(self.reflectivity) - 1
+        for moving, surface in ((self.companions, last - 1), (self.vehicles, last)):
+            if moving is not None:
+                hits = moving.hide(hits, rays, walk=walk, t_s=t_s, surface=surface)
+        return hits
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -138,6 +138,7 @@ def _parameters(setup: SimulationSetup) -> dict[str, object]:
         "outdoors": setup.world.outdoors,
         "origin": asdict(setup.world.origin),
         "people": len(setup.surroundings.companions or ()),
+        "vehicles": len(setup.surroundings.vehicles or ()),
         "seconds": setup.walk.seconds,
         "seed": setup.seed,
         "epoch_ns": setup.epoch_ns,

@@ -11,7 +11,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.raycast import Scene
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
-from recon4.simulation.companions import Companions
+from recon4.simulation.crowd import ALONE, Crowd
 from recon4.simulation.degradation import BEAM_ANGLE
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.gnss import GnssModel, simulate_gnss
@@ -23,7 +23,6 @@ from recon4.simulation.worlds import build_world
 
 EPOCH_NS = 1_780_308_000_000_000_000
 """Start of every simulated walk: 2026-06-01T10:00:00Z."""
-_MOST_PEOPLE = 12
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +71,7 @@ def prepare(
     seed: int,
     rig: Rig | None = None,
     models: Models | None = None,
-    people: int = 0,
+    crowd: Crowd = ALONE,
 ) -> SimulationSetup:
     """Build a world, plan the walk and mount the sensors.
 
@@ -83,7 +82,7 @@ def prepare(
         rig: VLP-16s and their mounting; None = 4RECON. Addresses and topics that are
             missing are filled in.
         models: Errors of the sensors; None = those of the real ones.
-        people: Number of people who walk with the carrier and hide part of the view.
+        crowd: People and vehicles that move around the carrier and hide part of the view.
 
     Raises:
         ConfigError: If there is no such world, the walk is shorter than 5 s, the seed is
@@ -93,8 +92,7 @@ def prepare(
         raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
     if seed < 0:
         raise ConfigError(f"the seed must not be negative, got {seed}")
-    if not 0 <= people <= _MOST_PEOPLE:
-        raise ConfigError(f"0 to {_MOST_PEOPLE} people can walk along, got {people}")
+    crowd.check()
     used, errors = _addressed(rig or load_rig("4recon")), models or Models()
     for sensor in used.sensors:
         if sensor.model != "VLP-16":
@@ -104,14 +102,14 @@ def prepare(
         Lidar.drawn(sensor, errors.lidar, np.random.default_rng([seed, 1, row]))
         for row, sensor in enumerate(used.sensors)
     )
-    companions = Companions.drawn(people, np.random.default_rng([seed, 6])) if people else None
+    companions, vehicles = crowd.drawn(seed)
     return SimulationSetup(
         place,
         plan_walk(place, seconds=seconds, rng=np.random.default_rng([seed, 0])),
         used,
         errors,
         lidars,
-        Surroundings(place.mesh, Scene(place.mesh), companions, place.car),
+        Surroundings(place.mesh, Scene(place.mesh), companions, place.car, vehicles),
         seed,
         EPOCH_NS,
     )

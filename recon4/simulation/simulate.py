@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress
-from recon4.simulation.degradation import BEAM_ANGLE, ONLY_PROFILER, PEOPLE, Degradation
+from recon4.simulation.degradation import BEAM_ANGLE, ONLY_PROFILER, PEOPLE, VEHICLES, Degradation
 from recon4.simulation.lidar import Firings
 from recon4.simulation.recorder import WalkRecorder
 from recon4.simulation.setup import SimulationSetup
@@ -107,6 +107,7 @@ def _check_possible(values: Mapping[str, float], setup: SimulationSetup) -> None
         raise ConfigError(f"{wrong[0]}: only possible on a rig with a profiler")
     cast = {
         PEOPLE: float(len(setup.surroundings.companions or ())),
+        VEHICLES: float(len(setup.surroundings.vehicles or ())),
         BEAM_ANGLE: float(np.rad2deg(setup.models.lidar.beam_angle_sd_rad)),
     }
     for name, prepared in cast.items():

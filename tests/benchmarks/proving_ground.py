@@ -32,7 +32,8 @@ from recon4.report.verdict import assess
 from recon4.results import report_facts
 from recon4.run_summary import About
 from recon4.settings import preset
-from recon4.simulation.degradation import PEOPLE, parse_degradations
+from recon4.simulation.crowd import Crowd
+from recon4.simulation.degradation import parse_degradations
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
 from recon4.simulation.worlds import build_world
@@ -52,11 +53,11 @@ WALKS = (
 DEGRADATIONS = (
     "none", "extrinsics", "imu-rotation", "imu-clock", "lidar-clock", "imu-grade", "imu-unit",
     "imu-axes", "imu-scale", "swap-lidars", "wrong-model", "dead-beams", "packet-loss", "beam-bias",
-    "lever-arm", "gnss-clock", "no-imu", "people", "late-start",
+    "lever-arm", "gnss-clock", "no-imu", "people", "vehicles", "late-start",
 )  # fmt: skip
 OF_LIDARS = {"extrinsics", "lidar-clock", "swap-lidars", "wrong-model"}
 """What the audit of the rig finds of a LiDAR is part of the covariances."""
-ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss"}
+ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss", "vehicles"}
 GENERIC = ("No loop closure was accepted", "no IMU: motion within a frame")
 """Reasons that say nothing but that nobody came back to a place, or that there is no IMU."""
 _REASON_LENGTH = 160
@@ -296,11 +297,11 @@ def _simulate(walk: str, folders: Mapping[str, Path], *, seconds: float) -> None
     """Write the recordings of a walk; the rays are cast once for all that do not change them."""
     world, seed = walk.split("/")
     values = {degradation: values_of(degradation) for degradation in folders}
-    for people in {of_one.get(PEOPLE, 0.0) for of_one in values.values()}:
-        same = {folders[d]: v for d, v in values.items() if v.get(PEOPLE, 0.0) == people}
+    for crowd in {Crowd.of(of_one) for of_one in values.values()}:
+        same = {folders[d]: v for d, v in values.items() if Crowd.of(v) == crowd}
         for folder in same:
             folder.parent.mkdir(parents=True, exist_ok=True)
-        setup = prepare(world, seconds=seconds, seed=int(seed), people=int(people))
+        setup = prepare(world, seconds=seconds, seed=int(seed), crowd=crowd)
         record(setup, same, bag=False, progress=Silent())
 
 

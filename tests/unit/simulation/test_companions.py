@@ -6,6 +6,7 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.geometry.raycast import Hits
 from recon4.simulation.companions import Companions
+from recon4.simulation.crowd import Crowd
 from recon4.simulation.setup import prepare
 from recon4.simulation.walk import Walk
 
@@ -66,4 +67,4 @@ def test_five_people_hide_a_fifth_of_the_view_or_more() -> None:
 
 def test_a_crowd_that_does_not_fit_is_refused() -> None:
     with pytest.raises(ConfigError, match="0 to 12 people can walk along, got 13"):
-        prepare("tunnel", seconds=5.0, seed=1, people=13)
+        prepare("tunnel", seconds=5.0, seed=1, crowd=Crowd(people=13))
