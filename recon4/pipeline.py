@@ -281,8 +281,8 @@ def run_from_review(
     run = runner.run
     graph = stages.reviewed(runner, graph, decided)
     level = run_trajectory(runner, measurements, odometry=odometry, graph=graph)
-    intensity = run(stages.INTENSITY, **measurements.inputs, level=level)
-    run(stages.MAP, **measurements.inputs, level=level, intensity=intensity)
+    points = measurements.inputs | {"odometry": odometry, "level": level}
+    run(stages.MAP, **points, intensity=run(stages.INTENSITY, **points))
 
 
 def run_trajectory(

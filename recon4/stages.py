@@ -78,9 +78,9 @@ def _odometry(
 
 def _calibration(context: StageContext, *, frames: Path, odometry: Path) -> CalibrationFigures:
     from recon4.calibration.stage import run_calibration
-    from recon4.store.frames import FrameStore
+    from recon4.store.frames import open_frames
 
-    store = FrameStore.open(frames)
+    store = open_frames(frames, None, odometry)
     return run_calibration(
         store, odometry, settings=context.settings, progress=context.progress
     ).save(context.out)
@@ -92,7 +92,7 @@ def _graph(
     from recon4.pose_graph.search import build_graph
     from recon4.store.frames import open_frames
 
-    store = open_frames(frames, calibration)
+    store = open_frames(frames, calibration, odometry)
     return build_graph(
         store, odometry, context.out, settings=context.settings, progress=context.progress
     )
@@ -142,7 +142,7 @@ def _refine(
     from recon4.semi_rigid.refine import refine
     from recon4.store.frames import open_frames
 
-    store = open_frames(frames, calibration)
+    store = open_frames(frames, calibration, odometry)
     found = refine(
         store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
     )
@@ -178,14 +178,19 @@ def _level(
 
 
 def _intensity(
-    context: StageContext, *, frames: Path, level: Path, calibration: Path | None = None
+    context: StageContext,
+    *,
+    frames: Path,
+    odometry: Path,
+    level: Path,
+    calibration: Path | None = None,
 ) -> None:
     from recon4.intensity.normalize import write_intensity
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
 
     write_intensity(
-        open_frames(frames, calibration),
+        open_frames(frames, calibration, odometry),
         load_trajectory(level / "trajectory.npz"),
         context.out,
         settings=context.settings.intensity,
@@ -197,9 +202,10 @@ def _map(
     context: StageContext,
     *,
     frames: Path,
+    odometry: Path,
     level: Path,
     intensity: Path,
-    calibration: Path | None = None,
+    **rig: Path | None,
 ) -> MapFigures:
     from recon4.evaluation.thickness import plane_thickness
     from recon4.export.laz import export_laz
@@ -212,7 +218,8 @@ def _map(
     from recon4.store.frames import open_frames
 
     return_freed_memory()
-    store, covariances_at = open_frames(frames, calibration), covariances_of(level)
+    store = open_frames(frames, rig.get("calibration"), odometry)
+    covariances_at = covariances_of(level)
     inputs = MapInputs(
         store,
         load_trajectory(level / "trajectory.npz"),
@@ -276,7 +283,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    23,
+    24,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

@@ -6,7 +6,8 @@ manifest of an earlier version may lack those that have a default.
 
 from __future__ import annotations
 
-from typing import Literal
+from enum import StrEnum
+from typing import ClassVar, Literal
 
 import msgspec
 
@@ -43,6 +44,41 @@ class HeightDoubt(msgspec.Struct, frozen=True, kw_only=True):
     """Up is positive [m]."""
 
 
+class MovingOutcome(StrEnum):
+    """What became of the points of moving objects."""
+
+    KEPT = "kept"
+    """There are few, or the settings keep them."""
+    LEFT_OUT = "left out"
+    NOT_SETTLED = "not settled"
+    """Left out, but which points they are still changes from pass to pass of the odometry."""
+    NOT_HELD = "not held"
+    """Kept, because what is left of the view does not hold the trajectory."""
+
+
+class MovingFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """How much of the view people and vehicles fill in the course of a walk."""
+
+    CROWDED: ClassVar[float] = 0.1
+    """Ratio from which on they are announced. On walks without any it is below 0.06."""
+
+    t_s: tuple[float, ...]
+    """After the first multiframe [s]."""
+    ratio: tuple[float, ...]
+    """Ratio of the points that lie on moving objects at these times, 0..1."""
+    outcome: MovingOutcome = MovingOutcome.KEPT
+
+    @property
+    def is_crowded(self) -> bool:
+        """Whether they fill so much of the view that it is announced."""
+        return max(self.ratio, default=0.0) >= self.CROWDED
+
+    @property
+    def is_severe(self) -> bool:
+        """Whether they have pulled the trajectory along."""
+        return self.outcome in (MovingOutcome.NOT_SETTLED, MovingOutcome.NOT_HELD)
+
+
 class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Odometry of all multiframes."""
 
@@ -58,6 +94,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Whether fixes were used."""
     heights: tuple[HeightDoubt, ...] = ()
     """Rides that no LiDAR sees, and other contradictions of the heights."""
+    moving: MovingFigures | None = None
+    """People and vehicles in view; None = not searched for."""
 
 
 IMU, GNSS = "imu", "gnss"

@@ -2,32 +2,42 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from collections.abc import Callable
+from dataclasses import dataclass
+from dataclasses import replace as with_fields
 from pathlib import Path
 
 import numpy as np
+from msgspec.structs import replace
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3
 from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
-from recon4.model.figures import OdometryFigures
+from recon4.model.figures import MovingFigures, MovingOutcome, OdometryFigures
 from recon4.model.frames import RecordedFrames
+from recon4.model.hidden import HiddenPoints
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.imu_consistency import consistent_imu
+from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.make import make_odometry
+from recon4.registration.moving import StandingFrames, crowd_text, find_moving, hide_moving
 from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.odometry import Odometry, OdometryStep
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.settings import Settings
-from recon4.store.arrays import save_trajectory
+from recon4.store.arrays import save_record, save_trajectory
 
 _REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
 """The pose of every n-th multiframe is reported while the stage runs, some per event."""
+_ROUNDS, _SETTLED_M = 4, 0.05
+"""Most passes without moving objects; a trajectory is settled if the last one moved no position by
+more than this [m]."""
 _DENSE_NS = 9_000_000
 """Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
 
@@ -40,42 +50,120 @@ def run_odometry(
     progress: Progress,
     aiding: GnssAiding | None = None,
 ) -> OdometryFigures:
-    """Register all multiframes in order.
+    """Register all multiframes in order; again without moving objects, if these fill the view.
 
     Args:
         frames: The multiframes with their rig and IMU.
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense) and ``steps.npz``
-            (a row a multiframe).
+            (a row a multiframe), ``moving.npz`` if points on moving objects are left out.
         settings: Uses segments, planes, registration and odometry.
         progress: Counts multiframes; tracking that is lost and an IMU that is wrong are events.
         aiding: Fixes of a GNSS/INS, outdoors.
     """
+
+    def register(seen: RecordedFrames) -> _Pass:
+        return _track(seen, settings, progress=progress, aiding=aiding)
+
+    made = register(frames)
+    moving = find_moving(frames, made.trajectory, made.pieces)
+    if settings.odometry.leave_out_moving and moving.is_crowded:
+        made, moving, hidden = _without_moving(frames, made, moving, track=register)
+        if hidden is not None:
+            save_record(out / "moving.npz", hidden)
+    save_trajectory(out / "trajectory.npz", made.trajectory)
+    _save_steps(out / "steps.npz", made.steps)
+    figures = _judged(made, frames.rig, moving=moving)
+    for text in figures.warnings:
+        progress.event(Warned(text=text))
+    return replace(figures, gnss=aiding is not None)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Pass:
+    """Odometry of all multiframes, and what was found out about the IMU meanwhile."""
+
+    steps: list[OdometryStep]
+    trajectory: Trajectory
+    """``T_odom_body``, dense."""
+    imu: ImuSamples | None
+    """As it was used; None = not."""
+    remark: str
+    """What is wrong with it before any multiframe is registered; empty = nothing."""
+    estimate: ImuEstimate | None
+
+    @property
+    def lost(self) -> int:
+        """Multiframes where tracking was lost."""
+        return sum(step.lost for step in self.steps)
+
+    @property
+    def pieces(self) -> NDArray[np.int64]:
+        """Number of the piece of each multiframe, -1 = lost, (N,)."""
+        return np.array([-1 if step.lost else step.piece for step in self.steps], np.int64)
+
+
+def _track(
+    frames: RecordedFrames, settings: Settings, *, progress: Progress, aiding: GnssAiding | None
+) -> _Pass:
+    """Register all multiframes once."""
     imu, remark = consistent_imu(frames, settings)
-    if remark:
-        progress.event(Warned(text=remark))
     odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
     steps = _register(frames, odometry, progress)
-    trajectory = dense_trajectory(steps)
-    save_trajectory(out / "trajectory.npz", trajectory)
-    _save_steps(out / "steps.npz", steps)
-    used = imu if settings.odometry.use_imu else None
-    rides = _rides(trajectory, used, frames.rig, steps=steps)
     estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
+    used = imu if settings.odometry.use_imu else None
+    return _Pass(steps, dense_trajectory(steps), used, remark, estimate)
+
+
+def _without_moving(
+    frames: RecordedFrames,
+    made: _Pass,
+    moving: MovingFigures,
+    *,
+    track: Callable[[RecordedFrames], _Pass],
+) -> tuple[_Pass, MovingFigures, HiddenPoints | None]:
+    """Register again without moving objects, until that does not move the trajectory any more.
+
+    A trajectory that they have pulled along shows only some of them. The next one, without these,
+    shows the others.
+    """
+    now, outcome = made, MovingOutcome.NOT_SETTLED
+    for _ in range(_ROUNDS):
+        hidden = hide_moving(frames, now.trajectory, now.pieces, found=moving)
+        before, now = now, track(StandingFrames(frames, hidden))
+        if now.lost > made.lost:
+            return made, replace(moving, outcome=MovingOutcome.NOT_HELD), None
+        moving = find_moving(frames, now.trajectory, now.pieces)
+        if _moved_m(before.steps, now.steps) < _SETTLED_M:
+            outcome = MovingOutcome.LEFT_OUT
+            break
+    return now, replace(moving, outcome=outcome), hidden
+
+
+def _moved_m(before: list[OdometryStep], after: list[OdometryStep]) -> float:
+    """Largest distance of the positions of two passes, which begin at the same place [m]."""
+    a, b = (SE3.stack(step.T_odom_body for step in steps).t for steps in (before, after))
+    return float(np.linalg.norm((a - a[0]) - (b - b[0]), axis=1).max())
+
+
+def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures) -> OdometryFigures:
+    """Figures of a pass, with what contradicts it."""
+    rides = _rides(made.trajectory, made.imu, rig, steps=made.steps)
+    crowd = crowd_text(moving)
     contradicted = (
         *(ride.text for ride in rides),
-        *(wrong_gravity(trajectory, used, frames.rig) if used else ()),
-        *(estimate.texts if estimate else ()),
+        *(wrong_gravity(made.trajectory, made.imu, rig) if made.imu else ()),
+        *(made.estimate.texts if made.estimate else ()),
+        *crowd,
     )
-    for text in contradicted:
-        progress.event(Warned(text=text))
+    severe = tuple(ride.text for ride in rides if ride.is_severe)
     return OdometryFigures(
-        multiframes=len(steps),
-        lost=sum(step.lost for step in steps),
-        imu=imu is not None,
-        warnings=(remark, *contradicted) if remark else contradicted,
-        severe=tuple(ride.text for ride in rides if ride.is_severe),
-        gnss=aiding is not None,
+        multiframes=len(made.steps),
+        lost=made.lost,
+        imu=made.imu is not None,
+        warnings=(made.remark, *contradicted) if made.remark else contradicted,
+        severe=(*severe, *(crowd if moving.is_severe else ())),
         heights=tuple(ride.doubt for ride in rides),
+        moving=moving,
     )
 
 
@@ -152,7 +240,7 @@ def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
         return steps
     since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
     moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
-    return [replace(first, T_dense=moving), *steps[1:]]
+    return [with_fields(first, T_dense=moving), *steps[1:]]
 
 
 def _save_steps(path: Path, steps: list[OdometryStep]) -> None:

@@ -37,6 +37,9 @@ class OdometrySettings:
     weak_eigenvalue: float = 0.05
     """A direction is weak if the mean squared component of the planes' normals along it is smaller
     (1/3 = isotropic, 0 = unobservable): there single points are registered beside the segments."""
+    leave_out_moving: bool = True
+    """Where people or vehicles fill much of the view, register a second time without their points,
+    and leave these out of the map."""
     normal_noise_rad: float = 0.03
     """Error of a plane's normal [rad]: directions with no more information than such errors create
     count as unobservable."""

@@ -77,7 +77,12 @@ PRESETS: dict[str, Settings] = {
         calibration=CalibrationSettings(mode="off"),
         registration=RegistrationSettings(solver="svd", max_iterations=500),
         odometry=OdometrySettings(
-            use_imu=False, use_gnss=False, history=1, history_mode="averaged", line_sd_rad=0.02
+            use_imu=False,
+            use_gnss=False,
+            history=1,
+            history_mode="averaged",
+            leave_out_moving=False,
+            line_sd_rad=0.02,
         ),
         graph=GraphSettings(
             mode="verification",

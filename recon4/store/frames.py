@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.beams import beam_change
+from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -45,6 +46,8 @@ INDEX = np.dtype(
 
 CALIBRATED_RIG = "rig.toml"
 """In the folder of the stage ``calibration``: the calibrated rig, if it is used."""
+MOVING_POINTS = "moving.npz"
+"""In the folder of the stage ``odometry``: points on moving objects, if they are left out."""
 CALIBRATION_SLICES = "slices.json"
 """There, too: what the LiDARs see with the rig file and with the calibrated rig."""
 _HEADER_BYTES = 128
@@ -160,15 +163,20 @@ class FrameStore:
     report: dict[str, object]
     recorded: Rig
     """The rig whose clock offsets are in the files."""
+    hidden: HiddenPoints | None = None
+    """Points that are left out; None = all are there."""
 
     @staticmethod
-    def open(folder: Path, rig: Rig | None = None) -> FrameStore:
+    def open(
+        folder: Path, rig: Rig | None = None, hidden: HiddenPoints | None = None
+    ) -> FrameStore:
         """Open what a `FrameWriter` left.
 
         Args:
             folder: Where it is.
             rig: The same sensors with calibrated mounts and clocks; None = the rig of the
                 recording. All times are given by its clocks.
+            hidden: Points that are left out.
 
         Raises:
             StoreError: If something is missing or the files do not fit each other.
@@ -192,6 +200,7 @@ class FrameStore:
             _gnss(gnss, rig.gnss_time_offset_s - recorded.gnss_time_offset_s),
             _read_report(folder / "report.json"),
             recorded,
+            hidden,
         )
 
     def __len__(self) -> int:
@@ -206,19 +215,21 @@ class FrameStore:
         if self.rig is not self.recorded:
             columns["dt_ns"] = columns["dt_ns"] + self._clock_change_ns()[columns["sensor"]]
             columns["xyz"] = self._with_beams(columns["xyz"], columns["ring"], columns["sensor"])
-        return Multiframe(
+        frame = Multiframe(
             int(row["frame_id"]), int(row["t_ns"]), int(row["duration_ns"]), **columns
         )
+        return self.hidden.seen(frame) if self.hidden else frame
 
     def __iter__(self) -> Iterator[Multiframe]:
         return (self[k] for k in range(len(self)))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return FrameStore.open, (self.folder, None if self.rig is self.recorded else self.rig)
+        rig = None if self.rig is self.recorded else self.rig
+        return FrameStore.open, (self.folder, rig, self.hidden)
 
     def with_rig(self, rig: Rig) -> FrameStore:
         """The same multiframes with calibrated mounts and clocks."""
-        return FrameStore.open(self.folder, rig)
+        return FrameStore.open(self.folder, rig, self.hidden)
 
     def _clock_change_ns(self) -> NDArray[np.int32]:
         """How the clock offset of each LiDAR differs from that in the files [ns], (S,)."""
@@ -251,19 +262,26 @@ class FrameStore:
         return int(self.index["stop"][-1]) if len(self) else 0
 
 
-def open_frames(frames: Path, calibration: Path | None) -> FrameStore:
+def open_frames(frames: Path, calibration: Path | None, odometry: Path | None = None) -> FrameStore:
     """Open the multiframes of a project with its calibrated rig, if that is used.
 
     Args:
         frames: Folder of the stage ``frames``.
         calibration: Folder of the stage ``calibration``; None = the rig of the recording.
+        odometry: Folder of the stage ``odometry``, which knows the points on moving objects: they
+            are left out. None = all points are there.
 
     Raises:
         StoreError: If a folder is incomplete or damaged.
         ConfigError: If the rig file is damaged.
     """
     path = calibration / CALIBRATED_RIG if calibration else None
-    return FrameStore.open(frames, load_rig(path) if path and path.is_file() else None)
+    moving = odometry / MOVING_POINTS if odometry else None
+    return FrameStore.open(
+        frames,
+        load_rig(path) if path and path.is_file() else None,
+        load_record(moving, HiddenPoints) if moving and moving.is_file() else None,
+    )
 
 
 def _imu(path: Path, change_s: float) -> ImuSamples | None:

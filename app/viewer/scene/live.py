@@ -57,6 +57,8 @@ class LiveGraph:
             case StageChanged():
                 self._turn_to(event.stage, running=event.state == "running")
             case PosesAdded():
+                if self._poses and event.t_ns and event.t_ns[0] <= self._poses[-1][0]:
+                    self._poses = []  # the odometry runs again without moving objects
                 with contextlib.suppress(ValueError):
                     self._poses += zip(event.t_ns, event.t_m, event.quat_xyzw, strict=True)
             case NodesPlaced():

@@ -1,0 +1,123 @@
+"""Kernels of free space: what a scan sees through, as an image of ranges around its sensor."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+NO_SURFACE = np.float32(np.inf)
+"""Value of a cell without a return."""
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _cell(
+    p: NDArray[np.float64], R: NDArray[np.float64], t: NDArray[np.float64], shape: tuple[int, int]
+) -> tuple[int, int, float]:
+    """Row (elevation), column (azimuth) and range of a point in the image of a sensor at R, t."""
+    dx, dy, dz = p[0] - t[0], p[1] - t[1], p[2] - t[2]
+    x = R[0, 0] * dx + R[1, 0] * dy + R[2, 0] * dz
+    y = R[0, 1] * dx + R[1, 1] * dy + R[2, 1] * dz
+    z = R[0, 2] * dx + R[1, 2] * dy + R[2, 2] * dz
+    flat = math.sqrt(x * x + y * y)
+    row = int((math.atan2(z, flat) / math.pi + 0.5) * shape[0])
+    column = int((math.atan2(y, x) / (2.0 * math.pi) + 0.5) * shape[1])
+    range_m = math.sqrt(flat * flat + z * z)
+    return min(max(row, 0), shape[0] - 1), column % shape[1], range_m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def nearest_ranges(
+    points: NDArray[np.float64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    image: NDArray[np.float32],
+) -> None:
+    """Write the range of the nearest point in each direction into an image.
+
+    Args:
+        points: In the frame of the trajectory [m], (N, 3).
+        R: Rotation of the sensor in that frame, (3, 3).
+        t: Its place [m], (3,).
+        image: Elevation from straight down to straight up by azimuth [m], `NO_SURFACE` at first,
+            (rows, columns).
+    """
+    for n in range(len(points)):
+        row, column, range_m = _cell(points[n], R, t, image.shape)
+        if range_m < image[row, column]:
+            image[row, column] = range_m
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def _seen(
+    image: NDArray[np.float32], row: int, column: int, range_m: float, margin_m: float
+) -> int:
+    """1 = a scan sees through a point, -1 = it meets a surface there, 0 = neither.
+
+    It sees through if everything in its direction, and in all directions around, lies behind: what
+    stands beside the point, or lies a little lower, keeps it. There must be returns on all four
+    sides: the lowest beam passes above the ground before the feet, and hits it farther away.
+    """
+    rows, columns = image.shape
+    nearest_m, near = np.inf, False
+    below = above = left = right = False
+    for i in range(max(row - 1, 0), min(row + 2, rows)):
+        for j in range(column - 1, column + 2):
+            seen_m = image[i, j % columns]
+            if seen_m == np.inf:
+                continue
+            below, above = below or i < row, above or i > row
+            left, right = left or j < column, right or j > column
+            nearest_m = min(nearest_m, seen_m)
+            near = near or abs(seen_m - range_m) < margin_m
+    if below and above and left and right and nearest_m > range_m + margin_m:
+        return 1
+    return -1 if near else 0
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def find_moving_points(
+    points: NDArray[np.float64],
+    R: NDArray[np.float64],
+    t: NDArray[np.float64],
+    images: NDArray[np.float32],
+    rules: NDArray[np.float64],
+    moving: NDArray[np.bool_],
+) -> None:
+    """Which points move: more scans see through them than meet a surface there.
+
+    A scan meets a surface if one of its sensors does. The scans are asked in their order, until
+    enough of them agree.
+
+    Args:
+        points: In the frame of the trajectory [m], (N, 3).
+        R: Rotations of the S sensors of each scan in that frame, (V, S, 3, 3).
+        t: Their places [m], (V, S, 3).
+        images: Of `nearest_ranges`, (V, S, rows, columns).
+        rules: Margin [m], margin per range, nearest and farthest range [m] of a point that is
+            compared, fewest scans that see through a moving point, and by how many more than the
+            others scans agree, (6,).
+        moving: Filled, (N,).
+    """
+    shape = images.shape[2:]
+    for n in range(len(points)):
+        passes = meets = 0
+        for v in range(len(images)):
+            vote = 0
+            for s in range(images.shape[1]):
+                row, column, range_m = _cell(points[n], R[v, s], t[v, s], shape)
+                if range_m < rules[2] or range_m > rules[3]:
+                    continue
+                margin_m = rules[0] + rules[1] * range_m
+                seen = _seen(images[v, s], row, column, range_m, margin_m)
+                if seen < 0:
+                    vote = -1
+                    break
+                vote = max(vote, seen)
+            passes += vote > 0
+            meets += vote < 0
+            if abs(passes - meets) >= rules[5]:
+                break
+        moving[n] = passes >= rules[4] and passes > meets

@@ -1,0 +1,252 @@
+"""Moving objects: people and vehicles that stand where other scans of the walk see through.
+
+Who walks with the carrier seems to stand in the body while the world moves past. A registration
+that matches such points estimates less motion than there was, sure of itself. What gives them away
+is free space: some seconds before or after, a scan from another place sees through where they were.
+A surface that stands is met there by all scans that look at it.
+
+Scans of the walk at regular times become images of ranges. A point is moving if several of them see
+through it, and more than meet a surface there. Grass, leaves and the edges of surfaces are safe: a
+scan sees through a point only if it does so in all directions around it, too.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.kernels.free_space import NO_SURFACE, find_moving_points, nearest_ranges
+from recon4.kernels.imu import place_points
+from recon4.model.figures import MovingFigures, MovingOutcome
+from recon4.model.frames import RecordedFrames
+from recon4.model.hidden import HiddenPoints
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+
+_VIEW_NS = 1_000_000_000
+"""Time between two scans that are compared [ns]."""
+_APART_NS, _REACH_NS = 400_000_000, 10_500_000_000
+"""Points are compared with scans at least and at most this far away in time [ns]: trajectories
+drift, and who walks along has left his place after seconds."""
+_ROWS, _COLUMNS = 90, 180
+"""Of an image of ranges: cells of 2°, as far apart as the rings of a VLP-16."""
+_MARGIN_M, _MARGIN_PER_M = 0.3, 0.05
+"""How far behind a point everything lies if a scan sees through it; the same by its range."""
+_NEAREST_M, _FARTHEST_M = 0.3, 30.0
+"""Range of points that are compared: farther away a person is smaller than the cells around."""
+_MIN_PASSES, _AGREED = 2, 4
+"""Scans that see through a moving point; by so many more than the others they agree, and no more
+are asked."""
+_RULES: Array = np.array(
+    [_MARGIN_M, _MARGIN_PER_M, _NEAREST_M, _FARTHEST_M, _MIN_PASSES, _AGREED], np.float64
+)
+_SAMPLED = 3000
+"""Points of a scan of which the ratio of moving ones is worked out."""
+_CLEARED, _CLEARED_NS = 0.04, 2_000_000_000
+"""They are left out near scans [ns] with at least this ratio of them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _View:
+    """One scan as images of ranges, an image a sensor."""
+
+    t_ns: int
+    piece: int
+    T_odom_sensor: SE3
+    """Of each sensor, (S,)."""
+    images: NDArray[np.float32]
+    """Ranges [m], (S, rows, columns)."""
+
+
+class FreeSpace:
+    """Scans of a walk at regular times, which tell whether points of others stand still.
+
+    A scan is read when it is needed and forgotten when it is too far away in time: some twenty
+    images are in memory.
+    """
+
+    def __init__(self, frames: RecordedFrames, trajectory: Trajectory, piece: Times) -> None:
+        """Nothing is read yet.
+
+        Args:
+            frames: The multiframes.
+            trajectory: ``T_odom_body``, dense.
+            piece: Number of the piece of each multiframe, -1 = tracking was lost, (N,).
+        """
+        self._frames, self._trajectory, self._piece = frames, trajectory, piece
+        self.rows = _regular(frames.t_mid_ns, piece >= 0)
+        self._t_ns: Times = frames.t_mid_ns[self.rows]
+        self._views: dict[int, _View] = {}
+
+    def moving(self, frame: Multiframe, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+        """Which of some points of a multiframe move, (M,).
+
+        Args:
+            frame: The multiframe.
+            rows: Numbers of its points, (M,).
+        """
+        p_odom = _placed(frame.take(rows), self._trajectory, self._frames.rig)
+        moving = np.zeros(len(rows), np.bool_)
+        if views := self._near(frame):
+            find_moving_points(
+                p_odom,
+                np.stack([view.T_odom_sensor.R for view in views]),
+                np.stack([view.T_odom_sensor.t for view in views]),
+                np.stack([view.images for view in views]),
+                _RULES,
+                moving,
+            )
+        return moving
+
+    def _near(self, frame: Multiframe) -> list[_View]:
+        """The scans with which points of a multiframe are compared, nearest in time first."""
+        away_ns = np.abs(self._t_ns - frame.t_mid_ns)
+        near = np.flatnonzero((away_ns >= _APART_NS) & (away_ns <= _REACH_NS))
+        near = near[np.argsort(away_ns[near], kind="stable")]
+        for old in [k for k in self._views if away_ns[k] > _REACH_NS + _VIEW_NS]:
+            del self._views[old]
+        for k in near.tolist():
+            if k not in self._views:
+                self._views[k] = self._view(int(self.rows[k]))
+        piece = self._piece[frame.frame_id]
+        return [view for k in near.tolist() if (view := self._views[k]).piece == piece]
+
+    def _view(self, row: int) -> _View:
+        frame, rig = self._frames[row], self._frames.rig
+        T_odom_body = self._trajectory.at(np.array([frame.t_mid_ns]))
+        T_odom_sensor = T_odom_body @ rig.T_body_sensor
+        images = np.full((len(rig.sensors), _ROWS, _COLUMNS), NO_SURFACE, np.float32)
+        p_odom = _placed(frame, self._trajectory, rig)
+        for sensor, image in enumerate(images):
+            T = T_odom_sensor[sensor]
+            nearest_ranges(p_odom[frame.sensor == sensor], T.R, T.t, image)
+        return _View(frame.t_mid_ns, int(self._piece[row]), T_odom_sensor, images)
+
+
+def find_moving(frames: RecordedFrames, trajectory: Trajectory, piece: Times) -> MovingFigures:
+    """How much of the view moving objects fill in the course of a walk.
+
+    Args:
+        frames: The multiframes.
+        trajectory: ``T_odom_body``, dense.
+        piece: Number of the piece of each multiframe, -1 = tracking was lost, (N,).
+    """
+    if len(frames) < 2:
+        return MovingFigures(t_s=(), ratio=())
+    space = FreeSpace(frames, trajectory, piece)
+    ratios = []
+    for row in space.rows:
+        frame = frames[int(row)]
+        rows = np.arange(0, len(frame), 1 + len(frame) // _SAMPLED)
+        ratios.append(float(space.moving(frame, rows).mean()) if len(rows) else 0.0)
+    since_s = (frames.t_mid_ns[space.rows] - frames.t_mid_ns[0]) / 1e9
+    return MovingFigures(
+        t_s=tuple(np.round(since_s, 2).tolist()), ratio=tuple(np.round(ratios, 4).tolist())
+    )
+
+
+_BECAME = {
+    MovingOutcome.KEPT: "Their points are in the map, and may have pulled the trajectory along.",
+    MovingOutcome.LEFT_OUT: "Most of their points are left out: the rest holds the trajectory.",
+    MovingOutcome.NOT_SETTLED: (
+        "Without their points the trajectory still changes with every pass of the odometry."
+    ),
+    MovingOutcome.NOT_HELD: (
+        "The rest does not hold the trajectory, so they stay in and pull it along. Record again "
+        "without people around the carrier."
+    ),
+}
+
+
+def crowd_text(found: MovingFigures) -> tuple[str, ...]:
+    """A sentence for the operator, if moving objects fill much of the view."""
+    if not found.is_crowded:
+        return ()
+    ratio, t_s = np.array(found.ratio), np.array(found.t_s)
+    crowded = t_s[ratio >= found.CROWDED]
+    most, when_s = 100 * ratio.max(), t_s[ratio.argmax()]
+    return (
+        f"Between {crowded[0]:.0f} s and {crowded[-1]:.0f} s moving objects (people, vehicles) "
+        f"fill up to {most:.0f} % of the view, most at {when_s:.0f} s. {_BECAME[found.outcome]}",
+    )
+
+
+def hide_moving(
+    frames: RecordedFrames, trajectory: Trajectory, piece: Times, *, found: MovingFigures
+) -> HiddenPoints:
+    """The moving points of all multiframes near scans that have some.
+
+    Args:
+        frames: The multiframes.
+        trajectory: ``T_odom_body``, dense.
+        piece: Number of the piece of each multiframe, -1 = tracking was lost, (N,).
+        found: Of `find_moving`.
+    """
+    space = FreeSpace(frames, trajectory, piece)
+    t_ns = frames.t_mid_ns
+    crowded_ns = t_ns[space.rows][np.array(found.ratio) >= _CLEARED]
+    masks: list[NDArray[np.bool_] | None] = []
+    for row in range(len(frames)):
+        crowded = piece[row] >= 0 and (np.abs(crowded_ns - t_ns[row]) <= _CLEARED_NS).any()
+        frame = frames[row] if crowded else None
+        masks.append(space.moving(frame, np.arange(len(frame))) if frame is not None else None)
+    return HiddenPoints.of(masks)
+
+
+def _regular(t_ns: Times, usable: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """Numbers of usable multiframes, the first of each `_VIEW_NS`."""
+    rows = np.flatnonzero(usable)
+    slots = (t_ns[rows] - t_ns[0]) // _VIEW_NS
+    return np.asarray(rows[np.unique(slots, return_index=True)[1]], np.intp)
+
+
+def _placed(frame: Multiframe, trajectory: Trajectory, rig: Rig) -> Array:
+    """Points of a multiframe, each by the pose at its time [m], (N, 3)."""
+    first, last = np.searchsorted(trajectory.t_ns, [frame.t_ns, frame.t_ns + frame.duration_ns])
+    first = min(max(int(first) - 1, 0), len(trajectory) - 2)
+    part = trajectory[slice(first, max(int(last) + 1, first + 2))]
+    body = np.empty((len(frame), 3))
+    for number, sensor in enumerate(rig.sensors):
+        mine = frame.sensor == number
+        body[mine] = sensor.T_body_sensor @ frame.xyz[mine].astype(np.float64)
+    t_s = (part.t_ns - frame.t_ns).astype(np.float64) * 1e-9
+    s = frame.dt_ns.astype(np.float64) * 1e-9
+    return np.asarray(place_points(t_s, part.T_a_b.R, part.T_a_b.t, s, body))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class StandingFrames:
+    """Multiframes of a recording without their moving points."""
+
+    frames: RecordedFrames
+    hidden: HiddenPoints
+
+    @property
+    def rig(self) -> Rig:
+        """The sensors and their poses."""
+        return self.frames.rig
+
+    @property
+    def imu(self) -> ImuSamples | None:
+        """IMU samples, if there are any."""
+        return self.frames.imu
+
+    @property
+    def t_mid_ns(self) -> Times:
+        """Middle of each multiframe [ns], (N,)."""
+        return self.frames.t_mid_ns
+
+    def __len__(self) -> int:
+        return len(self.frames)
+
+    def __getitem__(self, k: int) -> Multiframe:
+        return self.hidden.seen(self.frames[k])
+
+    def __iter__(self) -> Iterator[Multiframe]:
+        return (self[k] for k in range(len(self)))

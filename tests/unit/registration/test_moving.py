@@ -1,0 +1,225 @@
+"""People and vehicles that stand where other scans see through."""
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.figures import MovingFigures, MovingOutcome
+from recon4.model.frames import RecordedFrames
+from recon4.model.hidden import HiddenPoints
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig, Sensor
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Silent
+from recon4.registration.moving import StandingFrames, crowd_text, find_moving, hide_moving
+from recon4.registration.stage import run_odometry
+from recon4.settings import OdometrySettings, Settings
+from recon4.store.arrays import load_record
+
+FRAME_NS = 100_000_000
+SPEED_M_S, STRIDE_S = 1.2, 4.0
+"""The carrier goes and stops by turns, so that an IMU knows of its motion."""
+RIG = Rig(
+    name="one",
+    sensors=(Sensor(name="lidar", model="VLP-16", T_body_sensor=SE3.identity()),),
+    T_body_imu=SE3.identity(),
+    imu_time_offset_s=0.0,
+    p_body_antenna=np.zeros(3),
+    gnss_time_offset_s=0.0,
+)
+RINGS_DEG = np.arange(-29.0, 30.0, 2.0)
+
+
+def rays() -> Array:
+    """Unit directions of a scan, (N, 3)."""
+    azimuth, elevation = np.meshgrid(np.deg2rad(np.arange(360.0) + 0.3), np.deg2rad(RINGS_DEG))
+    flat = np.cos(elevation)
+    directions = [flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)]
+    return np.stack(directions, axis=-1).reshape(-1, 3)
+
+
+def room_ranges(origin: Array, d: Array) -> Array:
+    """To the walls of a hall of 60 m x 20 m x 6 m, (N,)."""
+    low, high = np.array([-30.0, -10.0, -1.5]), np.array([30.0, 10.0, 4.5])
+    with np.errstate(divide="ignore"):
+        return np.where(d > 0, (high - origin) / d, (low - origin) / d).min(axis=1)
+
+
+def pillar_ranges(origin: Array, d: Array, center: Array) -> Array:
+    """To a pillar of 0.6 m x 1.7 m, inf = beside it, (N,)."""
+    to = center[:2] - origin[:2]
+    flat2 = (d[:, :2] ** 2).sum(axis=1)
+    nearest = d[:, :2] @ to
+    miss2 = (to @ to) * flat2 - nearest**2
+    entry = (nearest - np.sqrt(np.maximum(0.09 * flat2 - miss2, 0.0))) / flat2
+    z = origin[2] + entry * d[:, 2]
+    return np.where((miss2 < 0.09 * flat2) & (entry > 0) & (abs(z + 0.65) < 0.85), entry, np.inf)
+
+
+NONE = np.empty((0, 2))
+
+
+class Walk:
+    """Multiframes of a walk along the hall, with pillars that walk along and others that stand."""
+
+    rig = RIG
+
+    def __init__(
+        self, walking: Array = NONE, standing: Array = NONE, *, seconds: float = 8.0
+    ) -> None:
+        """Places of pillars by where the carrier is, and by where it begins [m], (M, 2)."""
+        self._walking, self._standing = walking, standing
+        t_s = np.arange(0.0, seconds + 0.1, 0.005)
+        omega = 2.0 * np.pi / STRIDE_S
+        accel = np.zeros((len(t_s), 3))
+        accel[:, 0], accel[:, 2] = SPEED_M_S * omega * np.sin(omega * t_s), STANDARD_GRAVITY_M_S2
+        self.imu = ImuSamples((1e9 * t_s).astype(np.int64), np.zeros_like(accel), accel)
+        self.t_mid_ns = FRAME_NS * np.arange(int(10 * seconds), dtype=np.int64) + FRAME_NS // 2
+
+    def __len__(self) -> int:
+        return len(self.t_mid_ns)
+
+    def place(self, t_ns: float) -> Array:
+        t_s, omega = 1e-9 * t_ns, 2.0 * np.pi / STRIDE_S
+        return np.array([-5.0 + SPEED_M_S * (t_s - np.sin(omega * t_s) / omega), 0.3, 0.0])
+
+    def __getitem__(self, k: int) -> Multiframe:
+        origin, d = self.place(self.t_mid_ns[k]), rays()
+        room = room_ranges(origin, d)
+        begin = self.place(0.0)
+        stands = [pillar_ranges(origin, d, begin + np.append(p, 0.0)) for p in self._standing]
+        walks = [pillar_ranges(origin, d, origin + np.append(p, 0.0)) for p in self._walking]
+        behind = np.minimum.reduce([room, *stands])
+        ranges = np.minimum.reduce([behind, *walks])
+        n = len(d)
+        return Multiframe(
+            frame_id=k,
+            t_ns=int(self.t_mid_ns[k]) - FRAME_NS // 2,
+            duration_ns=FRAME_NS,
+            xyz=(ranges[:, None] * d).astype(np.float32),
+            intensity=(100 * (ranges < behind)).astype(np.uint16),
+            ring=np.repeat(np.arange(len(RINGS_DEG)), 360).astype(np.uint8),
+            sensor=np.zeros(n, np.uint8),
+            echo=np.zeros(n, np.uint8),
+            dt_ns=np.full(n, FRAME_NS // 2, np.int32),
+        )
+
+    def __iter__(self):
+        return (self[k] for k in range(len(self)))
+
+    @property
+    def trajectory(self) -> Trajectory:
+        t_ns = np.append(self.t_mid_ns - FRAME_NS // 2, len(self) * FRAME_NS)
+        places = np.stack([self.place(t) for t in t_ns])
+        return Trajectory(t_ns, SE3(np.tile(np.eye(3), (len(t_ns), 1, 1)), places))
+
+
+GROUP = np.array([[1.3, 0.0], [0.2, 1.3], [-0.2, -1.3], [-0.9, 0.8]])
+"""None of them comes to where another one was."""
+ROWS = np.array([[x, y] for x in range(-12, 20, 3) for y in (-5.0, -3.0, 3.5, 5.5)], np.float64)
+"""Pillars that hold a trajectory along the hall."""
+ON_PILLAR = 100
+"""Intensity of points on pillars that walk along."""
+
+
+def ratios(walk: Walk) -> Array:
+    piece = np.zeros(len(walk), np.int64)
+    return np.array(find_moving(walk, walk.trajectory, piece).ratio)
+
+
+def test_people_who_walk_along_are_found_with_their_share_of_the_view() -> None:
+    walk = Walk(GROUP)
+    true = np.mean([np.mean(walk[k].intensity == ON_PILLAR) for k in range(20, 60, 10)])
+
+    found = ratios(walk)[2:6].mean()
+
+    assert true > 0.15
+    assert 0.7 * true < found < 1.05 * true
+
+
+def test_pillars_that_stand_are_none() -> None:
+    walk = Walk(standing=np.array([[3.0, 1.2], [5.0, -1.0], [7.0, 1.3], [2.0, -1.2]]))
+
+    assert ratios(walk).max() < 0.005
+
+
+def test_an_empty_hall_has_none() -> None:
+    assert ratios(Walk()).max() == 0.0
+
+
+def test_moving_points_are_hidden_and_others_are_not() -> None:
+    walk = Walk(GROUP)
+    piece = np.zeros(len(walk), np.int64)
+    found = find_moving(walk, walk.trajectory, piece)
+
+    seen: RecordedFrames = StandingFrames(
+        walk, hide_moving(walk, walk.trajectory, piece, found=found)
+    )
+
+    before, after = walk[40].intensity == ON_PILLAR, seen[40].intensity == ON_PILLAR
+    assert after.sum() < 0.3 * before.sum()
+    assert (~after).sum() > 0.99 * (~before).sum()
+
+
+def test_multiframes_that_lost_tracking_are_not_compared() -> None:
+    walk = Walk(GROUP)
+
+    found = find_moving(walk, walk.trajectory, np.full(len(walk), -1))
+
+    assert found.ratio == () and crowd_text(found) == ()
+
+
+def test_pieces_are_not_compared_with_each_other() -> None:
+    walk = Walk(GROUP, seconds=4.0)
+    every_second_its_own = np.arange(len(walk)) // 10
+
+    found = find_moving(walk, walk.trajectory, every_second_its_own)
+
+    assert max(found.ratio) == 0.0
+
+
+def test_a_crowd_is_announced_with_times_and_share() -> None:
+    found = MovingFigures(
+        t_s=(0.0, 1.0, 2.0, 3.0), ratio=(0.02, 0.11, 0.27, 0.05), outcome=MovingOutcome.LEFT_OUT
+    )
+
+    (text,) = crowd_text(found)
+
+    assert text.startswith(
+        "Between 1 s and 2 s moving objects (people, vehicles) fill up to 27 % of the view, most "
+        "at 2 s."
+    )
+    assert not found.is_severe
+
+
+def test_few_moving_objects_are_not_announced() -> None:
+    assert crowd_text(MovingFigures(t_s=(0.0, 1.0), ratio=(0.02, 0.09))) == ()
+
+
+def test_what_does_not_hold_the_trajectory_is_severe() -> None:
+    found = MovingFigures(t_s=(0.0,), ratio=(0.6,), outcome=MovingOutcome.NOT_HELD)
+
+    assert found.is_severe and "does not hold the trajectory" in crowd_text(found)[0]
+
+
+def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
+    walk = Walk(GROUP, ROWS, seconds=6.0)
+
+    figures = run_odometry(walk, tmp_path, settings=Settings(), progress=Silent())
+
+    assert figures.moving is not None and figures.moving.outcome == MovingOutcome.LEFT_OUT
+    assert any("moving objects" in text for text in figures.warnings) and not figures.severe
+    hidden = load_record(tmp_path / "moving.npz", HiddenPoints)
+    assert min(len(hidden.seen(frame)) / len(frame) for frame in walk) < 0.9
+
+
+def test_odometry_keeps_them_if_it_is_told_to(tmp_path: Path) -> None:
+    walk, told = Walk(GROUP, ROWS, seconds=6.0), OdometrySettings(leave_out_moving=False)
+
+    figures = run_odometry(walk, tmp_path, settings=Settings(odometry=told), progress=Silent())
+
+    assert figures.moving is not None and figures.moving.outcome == MovingOutcome.KEPT
+    assert any("Their points are in the map" in text for text in figures.warnings)
+    assert not (tmp_path / "moving.npz").exists()
