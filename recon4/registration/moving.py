@@ -41,7 +41,7 @@ _MARGIN_M, _MARGIN_PER_M = 0.3, 0.05
 _NEAREST_M, _FARTHEST_M = 0.3, 30.0
 """Range of points that are compared: farther away a person is smaller than the cells around."""
 _MIN_PASSES, _AGREED = 2, 4
-"""Scans that see through a moving point; by so many more than the others they agree, and no more
+"""Scans that see through a moving point; if this many more do than not, they agree, and no more
 are asked."""
 _RULES: Array = np.array(
     [_MARGIN_M, _MARGIN_PER_M, _NEAREST_M, _FARTHEST_M, _MIN_PASSES, _AGREED], np.float64

@@ -1,6 +1,6 @@
 """Vehicles that move while the carrier walks: surfaces that do not stand still.
 
-Three kinds, in this order: a car that keeps beside the carrier, a bus that stands beside the way
+Three kinds, in this order: a car that keeps beside the carrier, a bus that stands beside the path
 and drives off, a car that overtakes. Each is a box on the ground.
 """
 

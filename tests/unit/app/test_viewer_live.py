@@ -53,6 +53,14 @@ def loops(live):
     return [e for e in live.graph.edges if e.kind is EdgeKind.LOOP]
 
 
+def test_an_odometry_that_runs_again_replaces_the_walk():
+    before, again = {**POSES, "t_ns": [300, 400]}, {**POSES, "t_ns": [150, 250]}
+
+    live = fed(running("odometry"), POSES, before, again)
+
+    assert live.trajectory.t_ns.tolist() == [150, 250]
+
+
 def test_the_walk_grows_with_the_poses_reported():
     later = {**POSES, "t_ns": [300, 400]}
 

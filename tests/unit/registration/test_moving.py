@@ -129,7 +129,7 @@ def ratios(walk: Walk) -> Array:
     return np.array(find_moving(walk, walk.trajectory, piece).ratio)
 
 
-def test_people_who_walk_along_are_found_with_their_share_of_the_view() -> None:
+def test_people_who_walk_along_are_found_with_their_part_of_the_view() -> None:
     walk = Walk(GROUP)
     true = np.mean([np.mean(walk[k].intensity == ON_PILLAR) for k in range(20, 60, 10)])
 
@@ -180,7 +180,7 @@ def test_pieces_are_not_compared_with_each_other() -> None:
     assert max(found.ratio) == 0.0
 
 
-def test_a_crowd_is_announced_with_times_and_share() -> None:
+def test_a_crowd_is_announced_with_times_and_ratio() -> None:
     found = MovingFigures(
         t_s=(0.0, 1.0, 2.0, 3.0), ratio=(0.02, 0.11, 0.27, 0.05), outcome=MovingOutcome.LEFT_OUT
     )
@@ -215,10 +215,10 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
     assert min(len(hidden.seen(frame)) / len(frame) for frame in walk) < 0.9
 
 
-def test_odometry_keeps_them_if_it_is_told_to(tmp_path: Path) -> None:
-    walk, told = Walk(GROUP, ROWS, seconds=6.0), OdometrySettings(leave_out_moving=False)
+def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
+    walk, kept = Walk(GROUP, ROWS, seconds=6.0), OdometrySettings(leave_out_moving=False)
 
-    figures = run_odometry(walk, tmp_path, settings=Settings(odometry=told), progress=Silent())
+    figures = run_odometry(walk, tmp_path, settings=Settings(odometry=kept), progress=Silent())
 
     assert figures.moving is not None and figures.moving.outcome == MovingOutcome.KEPT
     assert any("Their points are in the map" in text for text in figures.warnings)

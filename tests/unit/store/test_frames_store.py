@@ -10,10 +10,12 @@ import numpy as np
 import pytest
 
 from recon4.errors import NoSpace, StoreError
+from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
-from recon4.store.frames import FrameStore, FrameWriter
+from recon4.store.arrays import save_record
+from recon4.store.frames import FrameStore, FrameWriter, open_frames
 
 
 def multiframe(frame_id, count, rng):
@@ -117,6 +119,7 @@ import numpy as np
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 from recon4.errors import NoSpace
+from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import load_rig
 from recon4.store.frames import FrameWriter
@@ -160,3 +163,21 @@ def test_memory_does_not_depend_on_the_length_of_the_walk(tmp_path):
 
     assert total > 0
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 20_000
+
+
+def test_points_that_a_stage_hides_are_not_there_in_other_processes_either(written, tmp_path):
+    folder, frames = written
+    mask = np.array([True, False, False, False, True])
+    (tmp_path / "odometry").mkdir()
+    hidden = HiddenPoints.of([mask, None, None])
+    save_record(tmp_path / "odometry" / "moving.npz", hidden)
+
+    opened = open_frames(folder, None, tmp_path / "odometry")
+
+    for store in (opened, pickle.loads(pickle.dumps(opened))):
+        np.testing.assert_array_equal(store[0].xyz, frames[0].xyz[~mask])
+        assert len(store[2]) == 7
+
+
+def test_an_odometry_that_hides_nothing_changes_nothing(written, tmp_path):
+    assert len(open_frames(written[0], None, tmp_path)[0]) == 5
