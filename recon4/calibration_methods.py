@@ -19,7 +19,12 @@ from recon4.calibration.line_entropy import (
 )
 from recon4.calibration.map_alignment import align_maps, with_mount
 from recon4.calibration.parameters import Parameter
-from recon4.calibration.pose_pairs import average_pairs, hand_eye, read_pose_pairs
+from recon4.calibration.pose_pairs import (
+    PairAlignment,
+    average_pairs,
+    hand_eye,
+    read_pose_pairs,
+)
 from recon4.calibration.slices import slice_points
 from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
@@ -256,15 +261,30 @@ def _pairs(task: _Task) -> CalibratedRig:
         raise ConfigError(f"expected a sensor of the rig ({', '.join(names)}), got {name!r:.80}")
     found = average_pairs(pairs)
     if found.contradictory:
-        found = hand_eye(pairs)  # poses of two worlds: only their motions compare
+        # Poses of two worlds: only their motions compare.
+        found = hand_eye(pairs, before_m=rig.sensors[names[name]].T_body_sensor.t)
     lines = tuple(
         f"pair {k + 1}: residual {np.rad2deg(turn):.3f}° {1e3 * shift:.1f} mm"
         for k, (turn, shift) in enumerate(zip(found.residual_rad, found.residual_m, strict=True))
     )
     if found.contradictory:
         return CalibratedRig(None, "the pairs of poses contradict each other", lines)
+    lines += _known_to(found)
     mounted = with_mount(rig, names[name], found.T_marker_sensor)
-    return CalibratedRig(mounted, f"mount of {name!r} from {len(lines)} pairs of poses", lines)
+    return CalibratedRig(mounted, f"mount of {name!r} from {len(found.residual_m)} pairs", lines)
+
+
+def _known_to(found: PairAlignment) -> tuple[str, ...]:
+    """What the pairs show of a mount, and what they do not."""
+    x, y, z = 1e3 * found.sd_m
+    known = (
+        f"known to ± {np.rad2deg(found.sd_rad):.3f}° and ± {x:.1f}, {y:.1f}, {z:.1f} mm (x, y, z)"
+    )
+    along = (", ".join(f"{part:+.2f}" for part in direction) for direction in found.unknown)
+    return known, *(
+        f"not observable: the position along ({direction}) stays as in the rig file"
+        for direction in along
+    )
 
 
 _METHODS: dict[str, Callable[[_Task], CalibratedRig]] = {

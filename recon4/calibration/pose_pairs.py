@@ -22,6 +22,7 @@ _OUTLIER_RAD, _OUTLIER_M = 0.1, 0.2
 _MIN_AXES = 2e-3
 """Of the mean of rotations: the second singular value, 1 if all are alike."""
 _LEAST_NOISE_RAD, _VAGUE_RAD = float(np.deg2rad(0.05)), float(np.deg2rad(0.5))
+_LEAST_NOISE_M, _VAGUE_M = 0.001, 0.01
 """No tracking is better; a rotation that is known no better is refused."""
 
 
@@ -44,6 +45,12 @@ class PairAlignment:
     """Angle of each pair from it, (N,)."""
     residual_m: Array
     """Distance of each pair from it [m], (N,)."""
+    sd_rad: float
+    """Standard deviation of its rotation about the least known axis [rad]."""
+    sd_m: Array
+    """Standard deviations of its position along x, y, z of the marker [m], (3,)."""
+    unknown: Array
+    """Directions in the marker's frame along which the motions do not show the position, (K, 3)."""
 
     @property
     def contradictory(self) -> bool:
@@ -108,11 +115,16 @@ def average_pairs(pairs: MarkerPosePairs) -> PairAlignment:
     return _with_residuals(SE3(R, each.t.mean(axis=0)), each)
 
 
-def hand_eye(pairs: MarkerPosePairs) -> PairAlignment:
+def hand_eye(pairs: MarkerPosePairs, *, before_m: Array) -> PairAlignment:
     """The transformation where the two worlds differ: ``A X = X B`` (Park & Martin 1994).
 
     ``A`` and ``B`` are the motions of marker and sensor from the first pose on, so the worlds in
     which they were measured do not matter.
+
+    Args:
+        pairs: The poses.
+        before_m: Position by the rig file [m], (3,): kept along directions that the motions do not
+            show to 1 cm, as the vertical of a walk on a level floor.
 
     Raises:
         CalibrationError: If the motions turn too little about a second axis to show the rotation.
@@ -124,12 +136,19 @@ def hand_eye(pairs: MarkerPosePairs) -> PairAlignment:
     R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
     left = (of_marker.R - np.eye(3)).reshape(-1, 3)
     right = (np.einsum("ij,nj->ni", R, of_sensor.t) - of_marker.t).ravel()
-    T_marker_sensor = SE3(R, np.linalg.lstsq(left, right, rcond=None)[0])
-    apart = (of_marker @ T_marker_sensor).inverse() @ (T_marker_sensor @ of_sensor)
-    found = PairAlignment(
-        T_marker_sensor, np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1)
-    )
-    if not found.contradictory and not _rotation_sd_rad(b, found.residual_rad) < _VAGUE_RAD:
+    t_m = np.linalg.lstsq(left, right, rcond=None)[0]
+    apart = (of_marker @ SE3(R, t_m)).inverse() @ (SE3(R, t_m) @ of_sensor)
+    residual_rad, residual_m = np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1)
+    sd_rad = _rotation_sd_rad(b, residual_rad)
+    # Whole distances in place of components: errors of the rotation move many pairs alike.
+    noise_m = max(_LEAST_NOISE_M, float(np.sqrt(np.mean(residual_m**2))))
+    weight, axes = np.linalg.eigh(left.T @ left)
+    sd_along_m = noise_m / np.sqrt(np.maximum(weight, 1e-300))
+    unknown = axes.T[sd_along_m > _VAGUE_M]
+    t_m = t_m + unknown.T @ (unknown @ (before_m - t_m))
+    sd_m = np.sqrt(axes**2 @ np.minimum(sd_along_m, 1e3) ** 2)
+    found = PairAlignment(SE3(R, t_m), residual_rad, residual_m, sd_rad, sd_m, unknown)
+    if not found.contradictory and not sd_rad < _VAGUE_RAD:
         raise CalibrationError(
             "hand-eye: expected motions that turn about two different axes, got fewer"
         )
@@ -145,4 +164,8 @@ def _rotation_sd_rad(turns: Array, residual_rad: Array) -> float:
 
 def _with_residuals(mean: SE3, each: SE3) -> PairAlignment:
     apart = mean.inverse() @ each
-    return PairAlignment(mean, np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1))
+    residual_rad, residual_m = np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1)
+    count = np.sqrt(len(each.t))
+    sd_rad = float(np.sqrt(np.mean(residual_rad**2)) / count)
+    sd_m = np.sqrt(np.mean(apart.t**2, axis=0)) / count
+    return PairAlignment(mean, residual_rad, residual_m, sd_rad, sd_m, np.empty((0, 3)))

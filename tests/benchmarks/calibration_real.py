@@ -64,9 +64,8 @@ def lidar_ins() -> None:
         f"the drawing is {apart(reference, INS_DRAWN)} away"
     )
     try:
-        print(
-            f"hand-eye: {apart(reference, hand_eye(MarkerPosePairs(ins, lidar)).T_marker_sensor)}"
-        )
+        found = hand_eye(MarkerPosePairs(ins, lidar), before_m=INS_DRAWN.t)
+        print(f"hand-eye: {apart(reference, found.T_marker_sensor)}")
     except CalibrationError as refused:
         print(f"hand-eye refuses: {refused}")
     up = poses("top_center_lidar-enu.txt").R[:, 2]

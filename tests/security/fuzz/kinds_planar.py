@@ -108,7 +108,7 @@ def _pose_pairs() -> tuple[bytes, ...]:
 def _read_pose_pairs(path: Path) -> Reading:
     pairs = read_pose_pairs(path)
     average_pairs(pairs)
-    hand_eye(pairs)
+    hand_eye(pairs, before_m=np.zeros(3))
     return Reading(len(pairs.T_world_marker))
 
 

@@ -54,7 +54,7 @@ def test_pose_pairs_average_to_the_mount():
 def test_hand_eye_needs_no_common_world():
     marker = poses()
     other_world = SE3(so3_exp([0.0, 0.0, 2.0]), np.array([50.0, -20.0, 3.0]))
-    found = hand_eye(MarkerPosePairs(marker, other_world @ (marker @ MOUNT)))
+    found = hand_eye(MarkerPosePairs(marker, other_world @ (marker @ MOUNT)), before_m=np.zeros(3))
 
     np.testing.assert_allclose(found.T_marker_sensor.R, MOUNT.R, atol=1e-6)
     np.testing.assert_allclose(found.T_marker_sensor.t, MOUNT.t, atol=1e-6)
@@ -65,9 +65,25 @@ def test_hand_eye_is_content_with_small_turns_about_other_axes():
     rng = np.random.default_rng(3)
     turn = np.deg2rad([2.0, 2.0, 120.0]) * rng.uniform(-1, 1, (100, 3))
     marker = SE3(so3_exp(turn), rng.uniform(-5, 5, (100, 3)))
-    found = hand_eye(MarkerPosePairs(marker, marker @ MOUNT))
+    found = hand_eye(MarkerPosePairs(marker, marker @ MOUNT), before_m=np.zeros(3))
 
     np.testing.assert_allclose(found.T_marker_sensor.R, MOUNT.R, atol=1e-6)
+
+
+def test_hand_eye_keeps_the_height_that_a_level_walk_does_not_show():
+    rng = np.random.default_rng(3)
+    turn = np.deg2rad([2.0, 2.0, 120.0]) * rng.uniform(-1, 1, (60, 3))
+    marker = SE3(so3_exp(turn), rng.uniform(-5, 5, (60, 3)))
+    noise = SE3(so3_exp(np.deg2rad(0.02) * rng.normal(size=(60, 3))), np.zeros((60, 3)))
+    before_m = MOUNT.t + np.array([0.05, -0.05, 0.2])
+
+    found = hand_eye(MarkerPosePairs(marker, marker @ MOUNT @ noise), before_m=before_m)
+
+    ((*_, up),) = found.unknown
+    assert abs(up) > 0.999
+    np.testing.assert_allclose(found.T_marker_sensor.t[:2], MOUNT.t[:2], atol=0.003)
+    assert abs(found.T_marker_sensor.t[2] - before_m[2]) < 0.005
+    assert found.sd_m[2] > 0.01 > found.sd_m[:2].max()
 
 
 def test_hand_eye_refuses_what_noise_hides():
@@ -77,14 +93,14 @@ def test_hand_eye_refuses_what_noise_hides():
     noise = SE3(so3_exp(np.deg2rad(0.3) * rng.normal(size=(100, 3))), np.zeros((100, 3)))
 
     with pytest.raises(CalibrationError, match="two different axes"):
-        hand_eye(MarkerPosePairs(marker, marker @ MOUNT @ noise))
+        hand_eye(MarkerPosePairs(marker, marker @ MOUNT @ noise), before_m=np.zeros(3))
 
 
 def test_hand_eye_refuses_turns_about_one_axis():
     turns = SE3(so3_exp(np.outer(np.arange(6), [0, 0, 0.2])), np.zeros((6, 3)))
 
     with pytest.raises(CalibrationError, match="two different axes"):
-        hand_eye(MarkerPosePairs(turns, turns @ MOUNT))
+        hand_eye(MarkerPosePairs(turns, turns @ MOUNT), before_m=np.zeros(3))
 
 
 @pytest.mark.parametrize(
