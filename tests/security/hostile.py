@@ -29,6 +29,7 @@ from recon4.live.confinement import confine_mapper, confine_recorder
 from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig
 from recon4.sandbox import confine, refuse_new_sockets
+from recon4.sandbox.private_cache import is_compiled
 
 PTRACE_SEIZE = 0x4206
 MAX_FORKS = 64
@@ -171,6 +172,7 @@ def become(user: int) -> None:
 
 def main(kind: str, path: Path, user: int | None) -> None:
     facts = json.loads(path.read_text())
+    is_compiled()  # imports what the other user may not read
     if user is not None:
         become(user)
     confine_as(kind, facts)
