@@ -208,7 +208,9 @@ def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     page.goto(server.url)
 
     expect(page.get_by_role("listitem").filter(has_text="empty")).to_be_visible()
-    page.get_by_label("Or a recording on the server").focus()
+    field = page.get_by_label("Or a recording on the server")
+    expect(field).to_be_visible()  # what is hidden, until the role is known, takes no focus
+    field.focus()
     page.keyboard.type(str(tmp_path / "empty.pcap"))
     page.keyboard.press("Tab")
     expect(page.get_by_label("Project name")).to_have_value("empty-2")  # the other one stays

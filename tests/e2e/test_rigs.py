@@ -9,7 +9,7 @@ from recon4.model.rig import load_rig
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
 from tests.rig_projects import TOML, calibrated_project, tilted
-from tests.service.running import SLOW, recording_with_gate, server_thread
+from tests.service.running import SLOW, recording_with_gate, server_thread, wait_for
 
 pytestmark = pytest.mark.e2e
 
@@ -214,11 +214,11 @@ def test_a_project_is_mapped_again_with_calibration(server, page, tmp_path):
     page.goto(f"{server.url}/projects/walk/")
 
     page.get_by_role("button", name="Calibrate and map again").click()
-    page.wait_for_function(
-        "async () => (await (await fetch('/api/projects/walk/jobs')).json()).length === 2"
+    jobs = wait_for(
+        lambda: len(jobs := server.get("/api/projects/walk/jobs").json()) == 2 and jobs, "no job"
     )
 
-    newest = server.get("/api/projects/walk/jobs").json()[0]["job"]["inputs"]
+    newest = jobs[0]["job"]["inputs"]
     assert newest["recordings"] == [str(recording)]
     assert newest["settings"] == ["map.voxel_m=0.02", "calibration.mode=auto"]
 

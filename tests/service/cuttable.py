@@ -56,8 +56,12 @@ class Cuttable:
         if self._cut:
             writer.transport.abort()
             return
+        self._writers.add(writer)
         there_reader, there_writer = await asyncio.open_connection("127.0.0.1", self._to)
-        self._writers |= {writer, there_writer}
+        if self._cut:  # meanwhile
+            there_writer.transport.abort()
+            return
+        self._writers.add(there_writer)
         with contextlib.suppress(ConnectionError):
             await asyncio.gather(
                 self._pump(reader, there_writer, counted=False),
