@@ -65,5 +65,4 @@ def compile_kernels_once(heartbeat: Path) -> None:
 
 def _start() -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "recon4", "compile"]
-    silent = subprocess.DEVNULL
-    return subprocess.Popen(command, stdin=silent, stdout=silent, stderr=silent)
+    return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)

@@ -127,6 +127,35 @@ def test_a_command_leaves_nothing_that_the_next_does_not_remove(place, monkeypat
     assert not list((place / "tmp").glob("*/*"))
 
 
+NOT_COMPILED = """
+import sys
+from recon4.sandbox import private_cache
+private_cache.is_compiled = lambda: False
+from recon4.__main__ import main
+main()
+"""
+
+
+def test_the_first_command_has_another_process_compile_and_is_confined(place):
+    """Here the other process finds them compiled."""
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": str(ROOT)}
+
+    ended = subprocess.run(
+        [sys.executable, "-c", NOT_COMPILED, "process", "in/a.pcap", "--out", "new/place"],
+        cwd=place,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+    first, *others = ended.stderr.splitlines()
+    assert first.startswith("compiling the kernels: once after an installation")
+    assert "no reader recognizes it" in others[-1]
+    assert not any("not compiled" in line for line in others)
+    assert not (place / "new").exists()
+
+
 def test_a_failed_command_leaves_no_folder_that_it_made(place):
     """A confined process cannot remove the folder that it was given to write."""
     environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": str(ROOT)}
