@@ -205,7 +205,7 @@ def _map(
     odometry: Path,
     level: Path,
     intensity: Path,
-    **rig: Path | None,
+    calibration: Path | None = None,
 ) -> MapFigures:
     from recon4.evaluation.thickness import plane_thickness
     from recon4.export.laz import export_laz
@@ -218,7 +218,7 @@ def _map(
     from recon4.store.frames import open_frames
 
     return_freed_memory()
-    store = open_frames(frames, rig.get("calibration"), odometry)
+    store = open_frames(frames, calibration, odometry)
     covariances_at = covariances_of(level)
     inputs = MapInputs(
         store,

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 from recon4.model.multiframe import Multiframe
 
+MOVING_POINTS = "moving.npz"
+"""In the folder of the stage ``odometry``: points on moving objects, if they are left out."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HiddenPoints:

@@ -15,7 +15,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
 from recon4.model.figures import MovingFigures, MovingOutcome, OdometryFigures
 from recon4.model.frames import RecordedFrames
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden import MOVING_POINTS, HiddenPoints
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -69,7 +69,7 @@ def run_odometry(
     if settings.odometry.leave_out_moving and moving.is_crowded:
         made, moving, hidden = _without_moving(frames, made, moving, track=register)
         if hidden is not None:
-            save_record(out / "moving.npz", hidden)
+            save_record(out / MOVING_POINTS, hidden)
     save_trajectory(out / "trajectory.npz", made.trajectory)
     _save_steps(out / "steps.npz", made.steps)
     figures = _judged(made, frames.rig, moving=moving)

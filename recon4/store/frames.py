@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.beams import beam_change
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden import MOVING_POINTS, HiddenPoints
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
@@ -46,8 +46,6 @@ INDEX = np.dtype(
 
 CALIBRATED_RIG = "rig.toml"
 """In the folder of the stage ``calibration``: the calibrated rig, if it is used."""
-MOVING_POINTS = "moving.npz"
-"""In the folder of the stage ``odometry``: points on moving objects, if they are left out."""
 CALIBRATION_SLICES = "slices.json"
 """There, too: what the LiDARs see with the rig file and with the calibrated rig."""
 _HEADER_BYTES = 128
