@@ -31,6 +31,7 @@ def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
     head = BUFFER * np.arange(runs)
     stop, keys, state = head.copy(), np.full(runs, -1), np.array([0, -1])
     buffer = np.empty(runs * BUFFER, RECORD)
+    memory = buffer.view(np.uint8).data
     views, out = Views.of(buffer), np.empty(max(BUFFER, int(left.max())), RECORD)
     cells = grid.voxel_m, grid.cell_voxels, grid.side_cells, grid.halo_cells
     with path.open("rb") as file:
@@ -51,7 +52,7 @@ def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
             file.seek(int(at[run]) * RECORD.itemsize)
             head[run] = run * BUFFER
             stop[run] = head[run] + count
-            buffer[head[run] : stop[run]] = np.fromfile(file, RECORD, count)
+            file.readinto(memory[head[run] * RECORD.itemsize : stop[run] * RECORD.itemsize])
             at[run] += count
             left[run] -= count
     del into
