@@ -20,6 +20,8 @@ PLANE = 11
 planarity, middle of its returns x y z [m] (NaN = not known), offset at the cell itself [m]."""
 SLOTS = 3
 """Planes of a cell: a surface, an edge of two, a corner of three."""
+_SEARCH = 16
+"""Points searched first for the next row."""
 OWN_COLUMN = 4
 """Of the nine columns of 3 x 3 x 3 cells along an axis, the one in the middle."""
 
@@ -93,16 +95,24 @@ def find_cells(
         Number of cells.
     """
     count = 0
-    last = -1
+    low, high = np.empty(3), np.empty(3)
+    high[:] = -np.inf
     for p in range(len(xyz)):
+        x, y, z = xyz[p, 0], xyz[p, 1], xyz[p, 2]
+        if low[0] <= x < high[0] and low[1] <= y < high[1] and low[2] <= z < high[2]:
+            continue
         cell = _cell_at(xyz, p, cell_m, side, halo)
         # Rounding can put a point on a border into the next cell; it stays in its run.
-        if cell != last and where[cell] < 0:
-            where[cell] = count
-            cells[count] = cell
-            starts[count] = p
-            count += 1
-            last = cell
+        if where[cell] >= 0:
+            continue
+        where[cell] = count
+        cells[count] = cell
+        starts[count] = p
+        count += 1
+        for d in range(3):
+            low[d] = (cell % side - halo) * cell_m
+            high[d] = low[d] + cell_m
+            cell //= side
     starts[count] = len(xyz)
     return count
 
@@ -145,6 +155,19 @@ def find_rings(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def _row_of(
+    xyz: NDArray[np.float32], p: int, voxel_m: float, cell_voxels: int, side: int, halo: int
+) -> np.int64:
+    """Row of cells of a point, j + side k: each coordinate within tile and halo."""
+    row: Any = np.int64(0)
+    for d in range(2, 0, -1):
+        # As the voxels were numbered.
+        v: Any = np.int64(np.floor(xyz[p, d] / voxel_m)) + halo * cell_voxels
+        row = row * side + min(max(v, 0), side * cell_voxels - 1) // cell_voxels
+    return np.int64(row)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def first_of_rows(
     xyz: NDArray[np.float32],
     voxel_m: float,
@@ -163,19 +186,19 @@ def first_of_rows(
         halo: Cells of the halo.
         out: Receives the points, row j + side k, and N after the last, (side**2 + 1,).
     """
-    next_row = 0
-    for p in range(len(xyz)):
-        row: Any = np.int64(0)
-        for d in range(2, 0, -1):
-            # As the voxels were numbered: each coordinate within tile and halo.
-            v: Any = np.int64(np.floor(xyz[p, d] / voxel_m)) + halo * cell_voxels
-            row = row * side + min(max(v, 0), side * cell_voxels - 1) // cell_voxels
-        while next_row <= row:
-            out[next_row] = p
-            next_row += 1
-    while next_row < len(out):
-        out[next_row] = len(xyz)
-        next_row += 1
+    out[0] = 0
+    for row in range(1, len(out)):
+        low, high = out[row - 1], out[row - 1] + _SEARCH
+        while high < len(xyz) and _row_of(xyz, high, voxel_m, cell_voxels, side, halo) < row:
+            low, high = high, 2 * high - out[row - 1]
+        high = min(high, len(xyz))
+        while low < high:
+            middle = (low + high) // 2
+            if _row_of(xyz, middle, voxel_m, cell_voxels, side, halo) < row:
+                low = middle + 1
+            else:
+                high = middle
+        out[row] = low
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.moments import MOMENTS
 from recon4.kernels.surface_cells import PLANE, SLOTS, center_of, distance_in_front
 from recon4.kernels.surface_slots import refit_plane
 
@@ -34,6 +35,7 @@ def planes_at(
     moments: NDArray[np.float64],
     sums: NDArray[np.float64],
     limits: NDArray[np.float64],
+    found: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> tuple[int, int]:
     """Planes of a cell, fitted again, and after them those that only its neighbors have.
@@ -49,6 +51,7 @@ def planes_at(
         moments: As in `refit_plane`.
         sums: As in `refit_plane`.
         limits: As in `refit_plane`.
+        found: As in `refit_plane`.
         out: Receives the planes, (L, PLANE).
 
     Returns:
@@ -62,23 +65,24 @@ def planes_at(
     begin, near, at = neighbors
     count = 0
     center = center_of(cells[c], *grid)
-    first, last = begin[c], begin[c + 1]
+    run = begin[c], begin[c + 1]
     while count < SLOTS and slots[c, count] >= 0:
         refit_plane(
-            planes[slots[c, count]], center, grid[2], near[first:last], at[first:last],
-            planes, slots, other, moments, sums, limits, out[count],
+            slots[c, count], center, grid[2], run, near, at,
+            planes, slots, other, moments, sums, limits, found, out[count],
         )  # fmt: skip
         count += 1
     every = count
-    for k in range(first, last):
+    for k in range(run[0], run[1]):
+        o = near[k]
         for t in range(SLOTS):
-            row = slots[near[k], t]
+            row = slots[o, t]
             if row < 0:
                 break
+            u, v, w = planes[row, 0], planes[row, 1], planes[row, 2]
             known = count == 0
             for q in range(every):
-                a, b = out[q], planes[row]
-                known |= a[0] * b[0] + a[1] * b[1] + a[2] * b[2] > _ALIKE
+                known |= out[q, 0] * u + out[q, 1] * v + out[q, 2] * w > _ALIKE
             if not known and every < len(out):
                 out[every] = planes[row]
                 every += 1
@@ -134,15 +138,16 @@ def onto_planes(
         How many surfaces there are.
     """
     mine_of, side_of = np.zeros((_MOST_EDGES, PLANE)), np.zeros((_MOST_EDGES, _MOST_EDGES))
-    rows, shift = np.empty(SLOTS + 1, np.int32), np.zeros(3)
+    rows, shift, found = np.empty(SLOTS + 1, np.int32), np.zeros(3), np.empty(MOMENTS + 11)
     made = 0
     for c in range(len(cells)):
         count = every = 0
         rows[:] = -1
         if rings[c] > 0 and (other[c] < 0 or slots[c, 0] >= 0):
             count, every = planes_at(
-                c, cells, grid, neighbors, planes, slots, other, moments, sums, limits, mine_of
-            )
+                c, cells, grid, neighbors, planes, slots, other, moments, sums, limits, found,
+                mine_of,
+            )  # fmt: skip
         if every > 1:
             edge_sides(mine_of, count, every, side_of)
         for p in range(starts[c], starts[c + 1]):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -259,9 +261,10 @@ def choose_planes(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def refit_plane(
-    mine: NDArray[np.float64],
+    row: int,
     center: tuple[float, float, float],
     cell_m: float,
+    run: tuple[int, int],
     near: NDArray[np.int32],
     at: NDArray[np.uint8],
     planes: NDArray[np.float64],
@@ -270,16 +273,18 @@ def refit_plane(
     moments: NDArray[np.float64],
     sums: NDArray[np.float64],
     limits: NDArray[np.float64],
+    found: NDArray[np.float64],
     new: NDArray[np.float64],
 ) -> None:
     """Fit a plane of a cell again, to the points that support it in the 3 x 3 x 3 cells around.
 
     Args:
-        mine: The plane so far, (PLANE,).
+        row: Of the plane so far.
         center: Of the cell [m].
         cell_m: Edge of a cell [m].
-        near: Its neighbors of `list_neighbors`, itself included.
-        at: Where they lie.
+        run: First of its neighbors of `list_neighbors`, itself included, and the first beyond.
+        near: Of `list_neighbors`.
+        at: Of `list_neighbors`.
         planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
         slots: Of `choose_planes`, (C, SLOTS).
         other: Of `only_plane`, (C,).
@@ -287,35 +292,53 @@ def refit_plane(
         sums: Of `choose_planes`, (K, SLOTS, MOMENTS).
         limits: Least weight, least standard deviation along [m], standard deviation of a cell's
             own offset [m], (3,).
+        found: Scratch, (MOMENTS + 11,).
         new: Receives the plane, (PLANE,).
     """
-    total, column, found = np.zeros(MOMENTS), np.zeros(4), np.zeros(7)
-    new[:] = mine
+    total, column, fitted = found[:MOMENTS], found[MOMENTS : MOMENTS + 4], found[MOMENTS + 4 :]
+    mine = planes[row]
     along = main_axis(mine)
-    for k in range(len(near)):
+    nx, ny, nz, reach = mine[0], mine[1], mine[2], 0.7 * mine[4]
+    middle = nx * center[0] + ny * center[1] + nz * center[2] - mine[3]
+    total[:] = 0.0
+    column[:] = 0.0
+    for k in range(run[0], run[1]):
         o = near[k]
-        x = center[0] + 0.5 * cell_m * (at[k] % 3 - 1)
-        y = center[1] + 0.5 * cell_m * (at[k] // 3 % 3 - 1)
-        z = center[2] + 0.5 * cell_m * (at[k] // 9 - 1)
-        away = mine[0] * x + mine[1] * y + mine[2] * z - mine[3]
+        cell: Any = np.int64(at[k])
+        x = 0.5 * cell_m * (cell % 3 - 1)
+        y = 0.5 * cell_m * (cell // 3 % 3 - 1)
+        z = 0.5 * cell_m * (cell // 9 - 1)
+        away = middle + nx * x + ny * y + nz * z
+        x, y, z = center[0] + x, center[1] + y, center[2] + z
         for t in range(SLOTS):
-            if slots[o, t] < 0:
+            s = slots[o, t]
+            if s < 0:
                 break
-            q = planes[slots[o, t]]
+            u, v, w = planes[s, 0], planes[s, 1], planes[s, 2]
             if (
-                mine[0] * q[0] + mine[1] * q[1] + mine[2] * q[2] > 0.96
-                and abs(q[0] * x + q[1] * y + q[2] * z - q[3] - away) < 0.7 * mine[4]
+                nx * u + ny * v + nz * w <= 0.96
+                or abs(u * x + v * y + w * z - planes[s, 3] - away) >= reach
             ):
-                m = moments[slots[o, t]] if other[o] < 0 else sums[other[o], t]
+                continue
+            own = column_of(cell, along) == OWN_COLUMN
+            if other[o] < 0:
                 for d in range(MOMENTS):
-                    total[d] += m[d]
-                if column_of(at[k], along) == OWN_COLUMN:
+                    total[d] += moments[s, d]
+                if own:
                     for d in range(4):
-                        column[d] += m[d]
-    if total[0] < limits[0] or not plane_of(total, found):
+                        column[d] += moments[s, d]
+            else:
+                j = other[o]
+                for d in range(MOMENTS):
+                    total[d] += sums[j, t, d]
+                if own:
+                    for d in range(4):
+                        column[d] += sums[j, t, d]
+    new[:] = mine
+    if total[0] < limits[0] or not plane_of(total, fitted):
         return
-    dot = found[0] * mine[0] + found[1] * mine[1] + found[2] * mine[2]
-    if found[5] < limits[1] ** 2 or abs(dot) < 0.94:
+    dot = fitted[0] * nx + fitted[1] * ny + fitted[2] * nz
+    if fitted[5] < limits[1] ** 2 or abs(dot) < 0.94:
         return
-    write_plane(new, found, 1.0 if dot > 0.0 else -1.0, total)
+    write_plane(new, fitted, 1.0 if dot > 0.0 else -1.0, total)
     new[3] = own_offset(new, column, limits[2])

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from recon4.kernels import surface_cells
 from recon4.kernels.surface_points import SURFACE
 from recon4.mapping.grid import Grid
-from recon4.mapping.records import Records, Views, joined
+from recon4.mapping.records import RECORD, Records, Views, joined
 from recon4.mapping.scratch import Scratch
 from recon4.mapping.surface_fit import FittedSurfaces, Noise, fit_rows
 
-SLAB = 200_000
-"""Records fitted at once: what is known of their cells is four times as large as themselves."""
+SLAB = 600_000
+"""Records fitted at once: what is known of their cells is four times as large as themselves. The
+margins of slabs of a third of that are a third of the work."""
 _MARGIN = 2
 """Rows of cells beyond a slab that its surfaces depend on, as many as in the halo of a tile."""
 
@@ -46,13 +47,11 @@ def fit_surfaces(
         own = _runs(firsts, grid, (low, high))
         rows = max(low - _MARGIN, 0), min(high + _MARGIN, grid.side_cells)
         runs = _runs(firsts, grid, rows)
-        part = fit_rows(
-            joined([records[run] for run in runs]),
-            grid,
-            rows,
-            noise=Noise(noise_m, noise_m),
-            array=array,
-        )
+        slab = records
+        if rows != (0, grid.side_cells):
+            slab = array("slab", (sum(run.stop - run.start for run in runs),), RECORD)
+            joined([records[run] for run in runs], slab)
+        part = fit_rows(slab, grid, rows, noise=Noise(noise_m, noise_m), array=array)
         begin = 0
         for run, mine in zip(runs, own, strict=True):
             at = begin + mine.start - run.start
