@@ -288,7 +288,8 @@ def window_planes(
         least_cos: Cells whose normals differ more are left out.
         limits: Least weight, largest standard deviation across [m], least along [m], the limit of
             `is_bent` [m], ratio of the variance that does not depend on the incidence angle,
-            standard deviation of a cell's own offset [m], (6,).
+            standard deviation of a cell's own offset [m], least weight beside all returns of the
+            window, (7,).
         todo: Cells to compute; the others keep their planes, (C,).
         planes: Receives the planes; 0 as standard deviation = none, (C, 2, PLANE).
         calm: Receives whether all cells of the window have similar normals, (C,).
@@ -305,9 +306,11 @@ def window_planes(
             if moments[c, s, 0] <= 0.0:
                 continue
             m0 = m1 = m2 = m3 = m4 = m5 = m6 = m7 = m8 = m9 = vx = vy = vz = vw = 0.0
+            every = 0.0
             columns[:] = 0.0
             for q in range(begin[c], begin[c + 1]):
                 o = near[q]
+                every += moments[o, 0, 0] + moments[o, 1, 0]
                 j = column_of(at[q], along)
                 dot = nx * normals[o, 0] + ny * normals[o, 1] + nz * normals[o, 2]
                 quiet &= abs(dot) > _CALM_COS
@@ -337,7 +340,8 @@ def window_planes(
                 columns[j, 2] += m[2]
                 columns[j, 3] += m[3]
             total[:] = (m0, m1, m2, m3, m4, m5, m6, m7, m8, m9)
-            if m0 < limits[0] or not plane_of(total, found):
+            # A chance plane through the tail of another surface's noise has few of the returns.
+            if m0 < max(limits[0], limits[6] * every) or not plane_of(total, found):
                 continue
             if is_bent(columns, found, limits[3]):
                 continue

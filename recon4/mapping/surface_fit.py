@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import DTypeLike, NDArray
+from numpy.typing import NDArray
 
 from recon4.kernels import (
     surface_cells,
@@ -23,9 +21,7 @@ from recon4.kernels.surface_points import SURFACE
 from recon4.mapping.grid import Grid
 from recon4.mapping.normals import MIN_POINTS
 from recon4.mapping.records import Records, Views
-
-ScratchArray = Callable[[str, tuple[int, ...], DTypeLike], NDArray[Any]]
-"""`Scratch.array`"""
+from recon4.mapping.scratch import ScratchArray
 
 ROUND_GATE = 2.5
 """While planes are fitted, farther returns do not count [standard deviations]."""
@@ -40,9 +36,10 @@ MIN_SUPPORT = 0.5
 """Least support of a second plane of a cell [returns]."""
 MIN_LOOSE = 3.0
 """A cell with more returns off its only plane is looked at for others."""
-LOOSE, STRICT = (1.5, 1.0, 1.0), (SPREAD, 0.3, 0.05)
-"""Rounds of fitting windows: largest deviation across [noise], largest bend [noise], and the part
-of the noise's variance that is the same in all directions: poses and voxels."""
+LOOSE, STRICT = (1.5, 1.0, 1.0, 0.0), (SPREAD, 0.3, 0.05, 0.02)
+"""Rounds of fitting windows: largest deviation across [noise], largest bend [noise], the part of
+the noise's variance that is the same in all directions (poses and voxels), and the least part of
+the returns of the window: noise beyond an edge has chance planes of a dozen returns."""
 STRAY_RATIO = 0.015
 """Largest ratio of stray returns among those around them."""
 ALONE = 1.0
@@ -153,6 +150,7 @@ def fit_rows(
     windows = fit.windows()
     made = fit.moved(views.f4, windows, fit.slots(windows))
     support = np.repeat(windows.support, np.diff(found.starts))
+    found.where[found.cells] = -1
     return FittedSurfaces(made.shift_m, made.surface_of, made.surfaces, made.stray, support)
 
 
@@ -161,8 +159,7 @@ def _cells(
 ) -> _Cells:
     n, side = len(xyz), grid.side_cells
     starts, cells = array("starts", (n + 1,), np.int32), array("cells", (n,), np.int32)
-    where = array("where", (side**3,), np.int32)
-    where.fill(-1)
+    where = array(f"where-{side}", (side**3,), np.int32, fresh=0xFF)
     count = surface_cells.find_cells(xyz, grid.cell_m, side, grid.halo_cells, starts, cells, where)
     starts, cells = starts[: count + 1], cells[:count]
     begin, near = array("begin", (count + 1,), np.int32), array("near", (27 * count,), np.int32)
@@ -251,12 +248,12 @@ class _Fit:
         self,
         made: _Windows,
         sides: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-        shape: tuple[float, float, float],
+        shape: tuple[float, float, float, float],
         *,
         todo: NDArray[np.bool_],
     ) -> None:
-        (spread, bend, same), cell_m, noise_m = shape, self.grid.cell_m, self.noise.all_m
-        limits = (MIN_RETURNS, spread * noise_m, 0.3 * cell_m, bend * noise_m, same, BEND_M)
+        (spread, bend, same, share), cell_m, noise_m = shape, self.grid.cell_m, self.noise.all_m
+        limits = (MIN_RETURNS, spread * noise_m, 0.3 * cell_m, bend * noise_m, same, BEND_M, share)
         found = self.found
         surface_windows.window_planes(
             found.begin, found.near, found.at, *sides, 0.5,

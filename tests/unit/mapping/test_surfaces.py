@@ -3,10 +3,14 @@
 import numpy as np
 import pytest
 
+from recon4.kernels.moments import MOMENTS, add_point
+from recon4.kernels.surface_cells import PLANE
+from recon4.kernels.surface_windows import window_planes
 from recon4.mapping import surfaces as surfaces_module
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, in_voxel_order, to_sensor_m
 from recon4.mapping.sparse_surfaces import with_sparse_places
+from recon4.mapping.surface_fit import STRICT
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.settings import MapSettings
 
@@ -174,6 +178,31 @@ def test_a_narrow_reveal_is_not_drawn_onto_the_plane_of_its_wall(rng, edge_m):
 
     assert in_doorway(raw) > 50
     assert in_doorway(p) < 1.5 * in_doorway(raw)
+
+
+@pytest.mark.parametrize(("returns_beside", "is_plane"), [(500, True), (5000, False)])
+def test_few_of_the_returns_of_a_window_are_no_plane(rng, returns_beside, is_plane):
+    """A cell with thirty returns on a plane, beside a cell of a wall across it."""
+    patch = rng.random((30, 3)) * [0.002, 0.05, 0.05]
+    beside = rng.random((returns_beside, 3)) * [0.05, -0.002, 0.05]
+    moments, views = np.zeros((2, 2, MOMENTS)), np.zeros((2, 2, 4))
+    normals = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+    for c, points in enumerate((patch, beside)):
+        for p in points:
+            add_point.py_func(moments[c, 0], 1.0, *p)
+        views[c, 0] = [*(len(points) * normals[c]), len(points)]
+    planes, calm = np.zeros((2, 2, PLANE)), np.zeros(2, np.bool_)
+    spread, bend, same, share = STRICT
+    limits = [12.0, spread * NOISE_M, 0.01, bend * NOISE_M, same, 0.002, share]
+
+    window_planes(
+        np.array([0, 2, 4], np.int32), np.array([0, 1, 0, 1], np.int32),
+        np.array([13, 10, 16, 13], np.uint8), normals, moments, views, 0.5,
+        np.array(limits), np.ones(2, np.bool_), planes, calm,
+    )  # fmt: skip
+
+    assert (planes[0, 0, 4] > 0.0) == is_plane
+    assert planes[1, 0, 4] > 0.0
 
 
 def test_a_few_returns_before_a_wall_are_strays_and_keep_their_place(rng):
