@@ -4,10 +4,18 @@ from __future__ import annotations
 
 import math
 import threading
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
+
+
+class ScratchArray(Protocol):
+    """`Scratch.array`"""
+
+    def __call__(
+        self, name: str, shape: tuple[int, ...], dtype: DTypeLike, *, fresh: int | None = None
+    ) -> NDArray[Any]: ...
 
 
 class Scratch(threading.local):
@@ -20,10 +28,21 @@ class Scratch(threading.local):
     def __init__(self) -> None:
         self._held: dict[str, NDArray[np.uint8]] = {}
 
-    def array(self, name: str, shape: tuple[int, ...], dtype: DTypeLike) -> NDArray[Any]:
-        """An array with any content."""
+    def array(
+        self, name: str, shape: tuple[int, ...], dtype: DTypeLike, *, fresh: int | None = None
+    ) -> NDArray[Any]:
+        """An array with any content.
+
+        Args:
+            name: Its name.
+            shape: Its shape.
+            dtype: Its type.
+            fresh: Bytes of fresh memory; the caller restores them after use.
+        """
         size = math.prod(shape) * np.dtype(dtype).itemsize
         held = self._held.get(name)
         if held is None or len(held) < size:
             held = self._held[name] = np.empty(size + size // 4, np.uint8)
+            if fresh is not None:
+                held.fill(fresh)
         return held[:size].view(dtype).reshape(shape)

@@ -41,17 +41,21 @@ def fit_surfaces(
         array("stray", (n,), np.bool_),
         array("support", (n,), np.int32),
     )
+    noise = Noise(noise_m, noise_m)
+    if n < SLAB + SLAB // 2:
+        every = slice(0, n)
+        part = fit_rows(records, grid, (0, grid.side_cells), noise=noise, array=array)
+        part.copy(every, found, every, first=0)
+        return replace(found, surfaces=part.surfaces.copy())
     firsts = _first_of_rows(records, grid)
     surfaces, count = [], 0
     for low, high in _slabs(np.diff(firsts).reshape(-1, grid.side_cells).sum(axis=0)):
         own = _runs(firsts, grid, (low, high))
         rows = max(low - _MARGIN, 0), min(high + _MARGIN, grid.side_cells)
         runs = _runs(firsts, grid, rows)
-        slab = records
-        if rows != (0, grid.side_cells):
-            slab = array("slab", (sum(run.stop - run.start for run in runs),), RECORD)
-            joined([records[run] for run in runs], slab)
-        part = fit_rows(slab, grid, rows, noise=Noise(noise_m, noise_m), array=array)
+        slab = array("slab", (sum(run.stop - run.start for run in runs),), RECORD)
+        joined([records[run] for run in runs], slab)
+        part = fit_rows(slab, grid, rows, noise=noise, array=array)
         begin = 0
         for run, mine in zip(runs, own, strict=True):
             at = begin + mine.start - run.start
@@ -59,7 +63,7 @@ def fit_surfaces(
             begin += run.stop - run.start
         surfaces.append(part.surfaces.copy())
         count += len(part.surfaces)
-    return replace(found, surfaces=np.concatenate(surfaces)) if surfaces else found
+    return replace(found, surfaces=np.concatenate(surfaces))
 
 
 def _first_of_rows(records: Records, grid: Grid) -> NDArray[np.int64]:
