@@ -14,8 +14,9 @@ SHELL := /bin/sh
 VENV := .venv
 BIN := $(VENV)/bin
 TOOLS := .venv-tools
-# Only files whose hash is in the lock; the build of recon4 itself fetches nothing.
-LOCKED := -m pip install -q --require-hashes -r
+# Only files whose hash is in the lock, which is complete: nothing is left to resolve. The build of
+# recon4 itself fetches nothing.
+LOCKED := -m pip install -q --no-deps --require-hashes -r
 OURSELVES := -m pip install -q --no-deps --no-build-isolation -e .
 COMPILE := $(TOOLS)/bin/uv pip compile -q --universal --python-version 3.11 --generate-hashes \
 	--no-emit-index-url --no-annotate --no-header -c constraints.txt
@@ -37,6 +38,7 @@ demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
+# Those start servers and wait for them, too: three at a time keep two processors busy.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
 	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint types bytecode
@@ -52,7 +54,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev
-	nice -n 5 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
+	nice -n 5 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
 e2e: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m e2e --durations=10

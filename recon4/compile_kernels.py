@@ -21,7 +21,7 @@ from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
 from recon4.runtime_folder import runtime_folder
 from recon4.sandbox.private_cache import is_compiled, mark_compiled
-from recon4.settings import preset
+from recon4.settings import override, preset
 from recon4.simulation.backpack import measured_seconds, prepare_backpack, simulate_backpack
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
@@ -36,6 +36,7 @@ from recon4.store.locks import open_lock_file, wait_for_lock
 from recon4.store.project import read_artifacts
 
 _LIDAR_S, _PROFILER_S = 5.0, 8.0
+_FEW = ["map.voxel_m=0.1", "graph.node_stride=10", "segments.preserved=2"]
 _FRAMES = 20
 _PIXEL_M = 0.05
 
@@ -58,7 +59,7 @@ def compile_kernels(progress: Progress) -> bool:
         if is_compiled():
             return False
         with tempfile.TemporaryDirectory(prefix="recon4-compile-") as folder:
-            for work in track((_lidars, _profiler, _laser2d), progress, what="Compile", unit=""):
+            for work in track((_lidars, _backpack), progress, what="Compile", unit=""):
                 work(Path(folder))
         mark_compiled()
         return True
@@ -70,7 +71,8 @@ def _lidars(folder: Path) -> None:
     """A map of LiDARs, its slices, a live map, and odometry without an IMU."""
     walk, project = folder / "walk", folder / "map"
     simulate(prepare("office", seconds=_LIDAR_S, seed=1), walk, bag=False, progress=Silent())
-    process(Sources((walk / "recording.pcap",), None, walk / "imu.csv", None), project)
+    sources = Sources((walk / "recording.pcap",), None, walk / "imu.csv", None)
+    process(sources, project, settings=override(preset("indoor"), _FEW))
     made = read_artifacts(project)
     tiles = TileSet.open(made["map"])
     find_double_walls(tiles)
@@ -88,16 +90,12 @@ def _lidars(folder: Path) -> None:
         without_imu.push(frame)
 
 
-def _profiler(folder: Path) -> None:
-    """A map of line scans."""
+def _backpack(folder: Path) -> None:
+    """A map of line scans; the loop closure of 2-D maps, which a walk of seconds has none of."""
     setup = prepare_backpack("hall", figure="circle", seconds=_PROFILER_S, seed=3)
     simulate_backpack(setup, folder / "lines", progress=Silent())
-    process(Sources((folder / "lines" / "rosbag2",), setup.rig), folder / "lines-map")
-
-
-def _laser2d(_: Path) -> None:
-    """The loop closure of 2-D maps, which a walk of seconds has none of."""
-    setup = prepare_backpack("hall", figure="circle", seconds=_PROFILER_S, seed=3)
+    sources = Sources((folder / "lines" / "rosbag2",), setup.rig)
+    process(sources, folder / "lines-map", settings=override(preset("indoor"), _FEW))
     scans = next(scans for _, scans in measured_seconds(setup) if scans is not None)
     points, at = scans.points(0), np.zeros(2)
     field = LikelihoodField.of(points)

@@ -26,7 +26,7 @@ from recon4.progress import Progress, Silent
 from recon4.results import publish
 from recon4.review.journal import read_decided
 from recon4.run_summary import About
-from recon4.settings import MapSettings, Settings
+from recon4.settings import MapSettings, RefineSettings, Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore, FrameWriter
@@ -37,7 +37,7 @@ from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import RIG, scan
 
 NODES = 120
-SETTINGS = Settings(map=MapSettings(voxel_m=0.05))
+SETTINGS = Settings(map=MapSettings(voxel_m=0.05), refine=RefineSettings(rounds=1))
 WRONG = {(20, 90): (0.6, 0.0, 0.0), (41, 70): (0.0, 0.5, 0.0)}
 """Loop closures with wrong relative poses."""
 LOST = "Tracking was lost in 70 of 120 multiframes (58 %), first 2.0 s after the start."
