@@ -16,7 +16,7 @@ import pytest
 from tests.service.killing import QUICK
 from tests.service.running import ROOT
 
-STOPS = 6
+STOPS = 4
 """Random moments in one run."""
 
 SWALLOWED = """
