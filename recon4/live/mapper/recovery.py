@@ -12,8 +12,12 @@ from recon4.live.mapper.place_index import PlaceIndex
 _PLACES_TRIED, _PLACES_APART_M = 16, 1.5
 """Number and spacing of the nearest places that are tried in turn, one per search."""
 _SAME_M, _SAME_RAD = 0.3, 0.1
-_MAX_SCORE, _SURE_SCORE, _LEAD = 4.0, 2.0, 1.5
-"""Rooms may look alike: a hypothesis is accepted with this score and this lead over the next."""
+_MAX_SCORE, _LEAD = 4.0, 1.5
+"""Rooms may look alike: a hypothesis is accepted with a sure score and this lead over the next."""
+_SURE_EXPECTED, _SURE_SCORE = 2.0, 3.0
+"""A place that was not expected must fit for longer: the true one may not be in the map at all."""
+_MISSED = 0.4
+"""Loss of score of the expected place by a view that is not registered, as from behind a door."""
 
 
 @dataclass(slots=True)
@@ -64,7 +68,10 @@ class Recovery:
     def _examine(self, hypothesis: _Hypothesis, source: Array, T_odom_body: SE3) -> None:
         expected = hypothesis.T_map_odom @ T_odom_body
         found = self._places.locate(source, expected, self._places.near(expected.t, most=1)[0])
-        if found is None or not _same(found.T_target_source, expected):
+        if found is None:
+            hypothesis.score -= _MISSED if hypothesis is self._expected else 1.0
+            return
+        if not _same(found.T_target_source, expected):
             hypothesis.score -= 1.0
             return
         hypothesis.score = min(hypothesis.score + found.match_ratio, _MAX_SCORE)
@@ -72,9 +79,12 @@ class Recovery:
 
     def _decide(self) -> SE3 | None:
         ranked = sorted(self._hypotheses, key=lambda one: -one.score)
-        if not ranked or ranked[0].score < _SURE_SCORE:
+        if not ranked:
             return None
-        if self._tried < len(self._to_try) and ranked[0] is not self._expected:
+        is_expected = ranked[0] is self._expected
+        if ranked[0].score < (_SURE_EXPECTED if is_expected else _SURE_SCORE):
+            return None
+        if self._tried < len(self._to_try) and not is_expected:
             return None
         rival = ranked[1].score if len(ranked) > 1 else 0.0
         return ranked[0].T_map_odom if ranked[0].score - rival >= _LEAD else None

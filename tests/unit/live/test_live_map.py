@@ -170,6 +170,17 @@ def test_after_a_pause_the_walk_goes_on_where_it_stopped(walk):
     assert max(error for pose, error in later if not pose.lost) < 0.1
 
 
+def test_a_pause_during_a_turn_is_not_mistaken_for_a_place_that_looks_alike(walk):
+    """The corridor looks the same from its other end; the next view is through another door."""
+    follower = Follower(walk)
+    for row in range(76):
+        follower.push(row)
+    later = [follower.push(row, 60_000_000_000) for row in range(76, 110)]
+
+    assert later[0][0].lost and not later[-1][0].lost
+    assert max(error for pose, error in later if not pose.lost) < 0.1
+
+
 def test_who_was_carried_elsewhere_in_a_pause_is_found_before_anything_is_drawn(walk):
     follower = Follower(walk)
     for row in range(130):
