@@ -17,18 +17,20 @@ from recon4.calibration.held_out import (
     with_known_errors,
 )
 from recon4.calibration.joint import (
+    DENSE_ROUNDS,
     LAST_ROUNDS,
     NEAR_ROUNDS,
     ROUNDS,
     JointEstimate,
     calibrate_jointly,
     explain,
+    thinned_rounds,
 )
 from recon4.calibration.judgment import judge
 from recon4.calibration.mount_search import search_mounts, without_others
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.walk import RecordedWalk
-from recon4.calibration.window import Window, points_of_frame
+from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.model.figures import GNSS, IMU, ParameterFigures
@@ -167,22 +169,25 @@ def calibrate(
     """
     recorded, s = walk.frames.rig, settings.calibration
     rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
-    moved = walk.with_rig(start)
+    moved, few = walk.with_rig(start), few_points(len(rows))
+    revolutions = max(1, sum(map(len, rows)) * len(_enabled(recorded)))
     windows = moved.tracked_windows(
         rows, start, settings,
-        imu=moved.frames.imu, points=points_of_frame(len(rows), beams=s.beams),
+        imu=moved.frames.imu, points=max(few, s.points // revolutions),
     )  # fmt: skip
     used, others = windows[::2], windows[1::2]
-    estimator = _Estimator(settings, progress)
-    first = estimator.estimate(used, start, parameters, rounds=NEAR_ROUNDS)
+    estimator = _Estimator(settings, progress, every=thinning(windows, few * revolutions))
+    first = estimator.estimate(used, start, parameters, rounds=estimator.of_half)
     if first is None:
         return None
     first = _counted_from(first, recorded)
     second = estimator.second(others, first)
     unknown = not_observable(first, second)
     table = judge(first, not_observable=unknown)
-    before = Agreement.of(explain(others, recorded, settings=settings))
-    after = Agreement.of(explain(others, first.rig, settings=settings))
+    before, after = (
+        Agreement.of(explain(others, rig, every=estimator.every, settings=settings))
+        for rig in (recorded, first.rig)
+    )
     why_not = refusal(table, first, second) or unexplained(before, after)
     if why_not:
         return Calibration(first, table, before, after, why_not)
@@ -244,6 +249,14 @@ class _Estimator:
     settings: Settings
     progress: Progress
     """Counts their rounds."""
+    every: int = 1
+    """Every so-many-th point leads near the solution."""
+
+    @property
+    def of_half(self) -> Sequence[RoundBounds]:
+        """Rounds of one half of the windows: only beams need all points for a comparison."""
+        dense = DENSE_ROUNDS if self.settings.calibration.beams else 0
+        return thinned_rounds(NEAR_ROUNDS, self.every, dense=dense)
 
     def estimate(
         self,
@@ -265,7 +278,7 @@ class _Estimator:
         if len(windows) < _MIN_WINDOWS:
             return None
         wrong = with_known_errors(first.rig, first.parameters)
-        return self.estimate(windows, wrong, first.parameters, rounds=NEAR_ROUNDS)
+        return self.estimate(windows, wrong, first.parameters, rounds=self.of_half)
 
     def of_all(
         self,
@@ -278,5 +291,6 @@ class _Estimator:
         """From all windows; the parameters that are unknown, (P,) bool, keep their values."""
         begin = first.parameters.keeping(unknown, recorded, first.rig)
         fixed = first.parameters.fixing(unknown) if unknown.any() else first.parameters
-        found = self.estimate(windows, begin, fixed, rounds=LAST_ROUNDS)
+        rounds = thinned_rounds(LAST_ROUNDS, self.every, dense=DENSE_ROUNDS)
+        found = self.estimate(windows, begin, fixed, rounds=rounds)
         return _counted_from(found or first, recorded)

@@ -10,9 +10,15 @@ from numpy.typing import NDArray
 from recon4.calibration.imu_rows import BIASES, WindowBiases, imu_rows
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.surfaces import SharedSurfaces, find_surfaces
-from recon4.calibration.window import PlacedPoints, Window, place
+from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import Array
-from recon4.kernels.calibration import accumulate_point_rows
+from recon4.kernels.calibration import (
+    PlacedPoints,
+    PlanesOfPoints,
+    PointSums,
+    RigColumns,
+    add_points,
+)
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.settings import OdometrySettings
@@ -20,8 +26,6 @@ from recon4.settings import OdometrySettings
 _POINT_SD_M = 0.015
 _GRAZING = 0.15
 """Cosine of the incidence below which a range hardly tells the distance from a plane."""
-_COLUMNS = 19
-"""What a point depends on: two knots, mount and clock of its LiDAR."""
 _KNOT_SD = np.repeat([0.05, 0.3], 3)
 """Of a knot's step in one round: rotation [rad], position [m]."""
 _CHAIN_SD = np.repeat([3e-4, 1e-3], 3)
@@ -46,6 +50,8 @@ class RoundBounds:
     """Largest distance between the planes of two LiDARs in a cube."""
     kernel_m: float
     """Scale of the Cauchy kernel on the distance of a point."""
+    every: int = 1
+    """Only every so-many-th point is used: fewer are enough on the way to the solution."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -110,18 +116,6 @@ class _NormalEquations:
     """Current mounts and clocks."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class _OnPlanes:
-    """Points that lie on planes."""
-
-    row: NDArray[np.intp]
-    """Among the points of the window, (M,)."""
-    normal: Array
-    """Of the plane of each, (M, 3)."""
-    back_m: Array
-    """How much farther the plane is along the beam [m], (M,)."""
-
-
 def reduce_window(
     state: WindowState,
     rig: Rig,
@@ -139,7 +133,7 @@ def reduce_window(
         settings: Noise of the IMU.
         bounds: Of this round.
     """
-    window = state.window
+    window = state.window.thinned(bounds.every)
     placed = place(window, rig)
     surfaces = find_surfaces(
         placed.odom, window.sensor,
@@ -178,95 +172,37 @@ def _add_points(
 ) -> tuple[Array, Array]:
     """Add the points, the planes eliminated; returns their distances and weights, (M,) each."""
     H, g = equations.H, equations.g
-    rows, plane = surfaces.point, surfaces.plane
-    normal = surfaces.normal[plane]
-    away = placed.odom[rows] - surfaces.center[plane]
-    r: Array = np.sum(normal * away, axis=1)
-    back = _onto_planes(placed, rows, normal=normal, r=r)
-    away = away + back[:, None] * placed.beam_odom[rows]
-    on_planes = _OnPlanes(rows, normal, back)
-    columns, values = _derivatives(window, placed, on_planes, equations=equations)
-    weight = 1.0 / (_POINT_SD_M**2 * (1.0 + (r / kernel_m) ** 2))
-    tangents = _tangents(surfaces.normal)[plane]
-    plane_values = np.column_stack([np.einsum("nij,ni->nj", tangents, away), -np.ones(len(rows))])
     mixed = np.zeros((len(surfaces), 3, len(H)))
     of_planes, pull = np.zeros((len(surfaces), 3, 3)), np.zeros((len(surfaces), 3))
-    accumulate_point_rows(
-        columns, values, weight, r, plane, plane_values, H, g, mixed, of_planes, pull
-    )
+    r, weight = add_points(
+        placed,
+        PlanesOfPoints(
+            surfaces.point, surfaces.plane,
+            surfaces.center, surfaces.normal, _tangents(surfaces.normal),
+        ),
+        _columns(equations, window),
+        PointSums(H, g, mixed, of_planes, pull),
+        _POINT_SD_M, kernel_m, _GRAZING,
+    )  # fmt: skip
     H += np.triu(H, 1).T
-    solved = np.linalg.solve(
-        of_planes + _PLANE_PRIOR * np.eye(3), np.concatenate([mixed, pull[:, :, None]], axis=2)
-    )
-    flat = mixed.reshape(-1, len(H))
-    H -= flat.T @ solved[:, :, :-1].reshape(-1, len(H))
-    g -= flat.T @ solved[:, :, -1].ravel()
+    inverse = np.linalg.inv(of_planes + _PLANE_PRIOR * np.eye(3))
+    flat, solved = mixed.reshape(-1, len(H)), inverse @ mixed
+    H -= flat.T @ solved.reshape(-1, len(H))
+    g -= flat.T @ (inverse @ pull[:, :, None]).ravel()
     return r, weight
 
 
-def _onto_planes(placed: PlacedPoints, rows: NDArray[np.intp], *, normal: Array, r: Array) -> Array:
-    """By how much each range would have to grow for the point to lie on its plane [m], (M,).
-
-    Derivatives at the measured points would depend on their noise, which biases the estimate.
-    """
-    along = np.sum(placed.beam_odom[rows] * normal, axis=1)
-    along = np.where(np.abs(along) < _GRAZING, np.copysign(_GRAZING, along), along)
-    return np.asarray(-r / along)
-
-
-def _unit(v: Array) -> Array:
-    return np.asarray(v / np.linalg.norm(v, axis=1, keepdims=True))
-
-
-def _derivatives(
-    window: Window, placed: PlacedPoints, on: _OnPlanes, *, equations: _NormalEquations
-) -> tuple[NDArray[np.int64], Array]:
-    """Columns and derivatives of the distances of points from fixed planes, (M, K) each.
-
-    K = 19, and 22 with the beams.
-    """
-    parameters, rows, normal, back = equations.parameters, on.row, on.normal, on.back_m
-    knot, s = placed.knot[rows], placed.fraction[rows, None]
-    beam_body = _unit(placed.sensor_arm_body[rows])
-    arm_odom = placed.arm_odom[rows] + back[:, None] * placed.beam_odom[rows]
-    of_pose = np.concatenate([np.cross(arm_odom, normal), normal], axis=1)
-    six = np.arange(6)
-    size = _COLUMNS + 3 * bool(parameters.beams)
-    columns = np.full((len(rows), size), -1, np.int64)
-    values = np.zeros((len(rows), size))
-    columns[:, :6], values[:, :6] = 6 * knot[:, None] + six, (1.0 - s) * of_pose
-    columns[:, 6:12], values[:, 6:12] = 6 * (knot[:, None] + 1) + six, s * of_pose
-    normal_body = np.einsum("nij,ni->nj", placed.R_odom_body[rows], normal)
-    values[:, 12:15] = np.cross(
-        placed.sensor_arm_body[rows] + back[:, None] * beam_body, normal_body
-    )
-    values[:, 15:18] = normal_body
-    values[:, 18] = np.sum(placed.velocity_odom[rows] * normal, axis=1)
+def _columns(equations: _NormalEquations, window: Window) -> RigColumns:
+    """Where the parameters of each LiDAR stand."""
+    parameters, mounts = equations.parameters, equations.rig.T_body_sensor.R
     first = 6 * window.knots + BIASES
+    mount = np.full(len(mounts), -1)
+    beams, beam_count = np.zeros(len(mounts), np.int64), np.zeros(len(mounts), np.int64)
     for row in parameters.lidars:
-        part = parameters.of_lidar(row)
-        columns[window.sensor[rows] == row, 12:19] = first + np.arange(part.start, part.stop)
+        mount[row] = first + parameters.of_lidar(row).start
     for row, count in parameters.beams:
-        mine = (window.sensor[rows] == row) & (window.ring[rows] < count)
-        ring = window.ring[rows[mine]].astype(np.int64)
-        beam = first + parameters.of_beams(row).start + ring
-        columns[mine, _COLUMNS:] = beam[:, None] + count * np.arange(3)
-        R_odom_sensor = placed.R_odom_body[rows[mine]] @ equations.rig.sensors[row].T_body_sensor.R
-        normal_sensor = np.einsum("nij,ni->nj", R_odom_sensor, normal[mine])
-        p_sensor = placed.p_sensor[rows[mine]]
-        p_sensor = p_sensor + back[mine, None] * _unit(p_sensor)
-        values[mine, _COLUMNS:] = _of_beams(p_sensor, normal_sensor)
-    return columns, values
-
-
-def _of_beams(p_sensor: Array, normal_sensor: Array) -> Array:
-    """Derivatives of the distance by range, elevation and azimuth of the beam, (M, 3)."""
-    x, y, z = p_sensor.T
-    flat = np.hypot(x, y)
-    upwards = np.stack([-z * x / flat, -z * y / flat, flat], axis=1)
-    sideways = np.stack([-y, x, np.zeros_like(x)], axis=1)
-    directions = np.stack([_unit(p_sensor), upwards, sideways], axis=1)
-    return np.asarray(np.einsum("nij,nj->ni", directions, normal_sensor))
+        beams[row], beam_count[row] = first + parameters.of_beams(row).start, count
+    return RigColumns(window.sensor, window.ring, mount, beams, beam_count, mounts)
 
 
 def _tangents(normal: Array) -> Array:

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from recon4.calibration.equations import Fit, Reduced, RoundBounds, WindowState, reduce_window
 from recon4.calibration.imu_rows import WindowBiases, measured_noise
-from recon4.calibration.parameters import Parameters
+from recon4.calibration.parameters import Parameters, Unit
 from recon4.calibration.window import Window, with_trajectory
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
@@ -38,11 +38,15 @@ NEAR_ROUNDS = (*ROUNDS[2:], _TIGHT, _TIGHT)
 of flights of stairs, and a window that is bent so far does not come back."""
 LAST_ROUNDS = (_TIGHT,) * 4
 """The same at a rig that others confirm."""
+DENSE_ROUNDS = 2
+"""So many of the last rounds use all points; before them a part leads near the solution."""
 EXPLAIN = (
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
 )
 """Wide bounds that are the same for a good and a bad rig, to compare how well they explain."""
+_VAGUE: dict[Unit, float] = {"rad": float(np.deg2rad(0.5)), "m": 0.05, "s": 5e-3}
+"""With a larger formal standard deviation a direction counts as not shown by the walk."""
 _MIN_WINDOWS = 3
 """Fewer windows do not show how much their estimates scatter."""
 
@@ -94,7 +98,7 @@ def calibrate_jointly(
             found = list(pool.map(_reducer(rig, parameters, noise, bounds=bounds), states))
             H, g = _total(found, len(parameters))
             pull = g + prior @ parameters.between(first, rig)
-            delta = np.asarray(-np.linalg.solve(H + prior, pull), np.float64)
+            delta = _step(H + prior, pull, parameters)
             rig = parameters.changed(rig, delta)
             states = [_moved(state, part, delta) for state, part in zip(states, found, strict=True)]
     usable = [part for part in found if part is not None]
@@ -109,18 +113,51 @@ def calibrate_jointly(
     )
 
 
-def explain(windows: Sequence[Window], rig: Rig, *, settings: Settings) -> list[Fit | None]:
-    """How well a rig explains windows, with the best trajectory for each; None = no planes."""
+def thinned_rounds(
+    rounds: Sequence[RoundBounds], every: int, *, dense: int = 0
+) -> tuple[RoundBounds, ...]:
+    """Rounds with every so-many-th point, of which the last ``dense`` ones use all."""
+    few = len(rounds) - dense
+    return (*(replace(bounds, every=every) for bounds in rounds[:few]), *rounds[few:])
+
+
+def explain(
+    windows: Sequence[Window], rig: Rig, *, every: int, settings: Settings
+) -> list[Fit | None]:
+    """How well a rig explains windows, with the best trajectory for each; None = no planes.
+
+    Args:
+        windows: Of the walk.
+        rig: With which mounts and clocks.
+        every: Only every so-many-th point is used.
+        settings: Noise of the IMU, number of threads.
+    """
     nothing = Parameters.none()
     states = [_first_state(window) for window in windows]
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
-        for bounds in EXPLAIN:
+        for bounds in thinned_rounds(EXPLAIN, every):
             found = list(pool.map(_reducer(rig, nothing, settings.odometry, bounds=bounds), states))
             states = [
                 _moved(state, part, np.empty(0)) for state, part in zip(states, found, strict=True)
             ]
     return [part.fit if part else None for part in found]
+
+
+def _step(H: Array, g: Array, parameters: Parameters) -> Array:
+    """The step of the rig, (P,); along what the walk does not show the rig stays as it is.
+
+    Such directions join several parameters: at a constant turn rate a late clock is a turned mount.
+    What noise says of them would add up over the rounds to degrees and tenths of a second.
+    """
+    delta = np.zeros(len(g))
+    free = np.flatnonzero(~parameters.fixed)
+    limit = np.array([_VAGUE[parameters.listed[k].unit] for k in free])
+    information, directions = np.linalg.eigh(limit[:, None] * H[np.ix_(free, free)] * limit)
+    shown = information > 1.0
+    along = directions[:, shown]
+    delta[free] = -limit * (along @ (along.T @ (limit * g[free]) / information[shown]))
+    return delta
 
 
 def _reducer(

@@ -146,6 +146,11 @@ class Parameters:
         first = 7 * len(self.lidars)
         return slice(first, first + 7)
 
+    @property
+    def fixed(self) -> NDArray[np.bool_]:
+        """Parameters that keep their values, (P,)."""
+        return np.asarray(self.prior_sd <= _KNOWN_SD)
+
     def fixing(self, known: NDArray[np.bool_]) -> Parameters:
         """The same parameters, of which some, (P,) bool, keep their values."""
         return replace(self, prior_sd=np.where(known, _KNOWN_SD, self.prior_sd))

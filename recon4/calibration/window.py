@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.kernels.imu import place_points
+from recon4.kernels.calibration import PlacedPoints, place_with_velocity
 from recon4.model.beams import beam_change
 from recon4.model.frames import RecordedFrames
 from recon4.model.rig import Rig
@@ -19,11 +20,9 @@ KNOT_S = 0.05
 """Distance in time of the knots of the trajectory's correction [s]."""
 _KNOT_NS = round(1e9 * KNOT_S)
 POINTS_OF_FRAME = 600
-"""Largest number of points of one sensor in one multiframe."""
-_MOST_POINTS, _BEAM_POINTS = 1200, 2400
-"""The same where there are few windows, and for single beams."""
-_ENOUGH_WINDOWS = 24
-"""From this number on the windows say enough with the fewest points."""
+"""Points of one sensor in one multiframe that lead near the solution."""
+_MOST, _ENOUGH_WINDOWS = 1200, 24
+"""The same where there are few windows; from how many windows on the fewest are enough."""
 _MARGIN_NS = 100_000_000
 """Samples of the IMU are kept this much longer than the window on both sides [ns]."""
 _VELOCITY_S = 1e-3
@@ -59,42 +58,15 @@ class Window:
         """Number of knots."""
         return len(self.knot_ns)
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PlacedPoints:
-    """Points of a window, placed with a rig."""
-
-    odom: Array
-    """In the odometry frame [m], (N, 3)."""
-    arm_odom: Array
-    """From the body to the point, in odometry axes [m], (N, 3)."""
-    R_odom_body: Array
-    """Rotation at the time of the point, (N, 3, 3)."""
-    p_sensor: Array
-    """In the frame of the sensor, beams corrected [m], (N, 3)."""
-    beam_odom: Array
-    """Unit vectors from the sensor to the point, in odometry axes, (N, 3)."""
-    sensor_arm_body: Array
-    """From the sensor to the point, in body axes [m], (N, 3)."""
-    velocity_odom: Array
-    """Of a point fixed to the body [m/s], (N, 3): how a late clock moves it."""
-    knot: NDArray[np.int64]
-    """The knot before, (N,)."""
-    fraction: Array
-    """Time since that knot as a part of the interval, 0..1, (N,)."""
-
-
-def points_of_frame(windows: int, *, beams: bool) -> int:
-    """Largest number of points of one sensor in one multiframe for a calibration.
-
-    Args:
-        windows: Their number: of few windows more points are used.
-        beams: Whether single beams are calibrated, which need more.
-    """
-    if beams:
-        return _BEAM_POINTS
-    many = POINTS_OF_FRAME * _ENOUGH_WINDOWS // max(windows, 1)
-    return min(max(many, POINTS_OF_FRAME), _MOST_POINTS)
+    def thinned(self, every: int) -> Window:
+        """The same window with every so-many-th of its points, an odd number."""
+        if every == 1:
+            return self
+        kept = np.arange(0, len(self.t_s), every)
+        return replace(
+            self, p_sensor=self.p_sensor[kept], sensor=self.sensor[kept],
+            ring=self.ring[kept], t_s=self.t_s[kept],
+        )  # fmt: skip
 
 
 def cut_window(
@@ -127,6 +99,20 @@ def cut_window(
     )
 
 
+def few_points(windows: int) -> int:
+    """Points of one sensor in one multiframe that lead near the solution: more of few windows."""
+    return min(max(POINTS_OF_FRAME * _ENOUGH_WINDOWS // max(windows, 1), POINTS_OF_FRAME), _MOST)
+
+
+def thinning(windows: Sequence[Window], wanted: int) -> int:
+    """The odd number of which every so-many-th point leaves about ``wanted`` of all windows.
+
+    An odd one so that all beams are met.
+    """
+    total = sum(len(window.t_s) for window in windows)
+    return max(0, total // max(wanted, 1) - 1) | 1
+
+
 def place(window: Window, rig: Rig) -> PlacedPoints:
     """Place the points of a window with a rig that may differ from the recorded one."""
     t_s = window.t_s + _clock_change_s(window.recorded_rig, rig)[window.sensor]
@@ -136,17 +122,11 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
     p_body = arm_body + T.t[window.sensor]
     part = window.trajectory
     dense_s = np.asarray((part.t_ns - window.start_ns) * 1e-9, np.float64)
-    R, t = part.T_a_b.R, part.T_a_b.t
-    odom = place_points(dense_s, R, t, t_s, p_body)
-    later = place_points(dense_s, R, t, t_s + _VELOCITY_S, p_body)
-    earlier = place_points(dense_s, R, t, t_s - _VELOCITY_S, p_body)
-    axes = [
-        place_points(dense_s, R, np.zeros_like(t), t_s, np.tile(axis, (len(t_s), 1)))
-        for axis in np.eye(3)
-    ]
+    odom, R_odom_body, velocity_odom = place_with_velocity(
+        dense_s, part.T_a_b.R, part.T_a_b.t, t_s, p_body, _VELOCITY_S
+    )
     at = t_s / KNOT_S
     knot = np.clip(np.floor(at).astype(np.int64), 0, window.knots - 2)
-    R_odom_body = np.stack(axes, axis=2)
     length = np.maximum(np.linalg.norm(arm_body, axis=1), _NEAREST_M)
     return PlacedPoints(
         odom=odom,
@@ -155,7 +135,7 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
         p_sensor=p_sensor,
         beam_odom=np.einsum("nij,nj->ni", R_odom_body, arm_body / length[:, None]),
         sensor_arm_body=arm_body,
-        velocity_odom=(later - earlier) / (2.0 * _VELOCITY_S),
+        velocity_odom=velocity_odom,
         knot=knot,
         fraction=np.clip(at - knot, 0.0, 1.0),
     )

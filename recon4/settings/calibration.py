@@ -25,15 +25,18 @@ class CalibrationSettings:
     """Largest number of windows of the walk that are compared in an audit."""
     audit_window_s: float = 4.0
     """Length of each [s]."""
-    windows: int = 12
+    windows: int = 8
     """Largest number of windows for a calibration; as many others confirm it."""
     window_s: float = 6.0
     """Length of each [s]."""
+    points: int = 6_000_000
+    """Largest number of points in all windows together, for the last rounds of a calibration."""
 
     def __post_init__(self) -> None:
         for name in ("audit_windows", "windows"):
             value = getattr(self, name)
             require(1 <= value <= 100, f"{name} must be 1 to 100", value)
+        require(10_000 <= self.points <= 100_000_000, "points must be 1e4 to 1e8", self.points)
         for name in ("audit_window_s", "window_s"):
             seconds = getattr(self, name)
             require(1.0 <= seconds <= 20.0, f"{name} must be 1 to 20", seconds)

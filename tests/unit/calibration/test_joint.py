@@ -182,13 +182,34 @@ def test_turns_about_the_vertical_leave_axes_unobservable(tmp_path):
     assert not found.figures.applied
 
 
-def test_heading_and_clock_that_look_alike_on_a_circle_keep_their_values(tmp_path):
-    """The estimate is 3.6° and 127 ms off there, in all windows alike."""
-    walk = scanned_room.walk(circle, 120, noise_m=0.01, columns=COLUMNS)
+@pytest.fixture(scope="module")
+def on_a_circle():
+    """At a constant turn rate, where heading and clock of a LiDAR look alike."""
+    return scanned_room.walk(circle, 90, noise_m=0.01, columns=COLUMNS)
+
+
+def test_on_a_circle_a_right_rig_file_raises_no_alarm(on_a_circle, tmp_path, monkeypatch):
+    """Noise added up to 0.28 s in the direction that is not shown, and other mounts were tried."""
+
+    def never(*_args, **_named):
+        raise AssertionError("mounts are searched")
+
+    monkeypatch.setattr("recon4.calibration.calibrate.search_mounts", never)
+    found = run(store(tmp_path, on_a_circle, on_a_circle.rig, on_a_circle.imu))
+
+    assert found.figures.warnings == ()
+    clock = {row.quantity: row for row in rows_of(found, "s1")}["clock"]
+    assert clock.status == "not observable"
+    assert abs(clock.change) < 1e-3
+
+
+def test_heading_and_clock_that_look_alike_on_a_circle_keep_their_values(on_a_circle, tmp_path):
+    walk = on_a_circle
     turn_deg, shift_m = np.array([0.866, -0.866, 0.866]), np.array([0.0115, -0.0115, 0.0115])
     rig = mounted(walk.rig, 1, turn_deg=turn_deg, shift_m=shift_m, late_s=0.005)
     rig = imu_mounted(rig, turn_deg=-turn_deg, late_s=-0.005)
-    found = run(store(tmp_path, walk, rig, walk.imu), AUTO)
+    short = replace(AUTO, calibration=replace(AUTO.calibration, window_s=1.5))
+    found = run(store(tmp_path, walk, rig, walk.imu), short)
 
     parameters = Parameters.of(rig, reference=0, lidars=(1,), imu=True)
     before = np.abs(parameters.between(walk.rig, rig))
@@ -200,7 +221,7 @@ def test_heading_and_clock_that_look_alike_on_a_circle_keep_their_values(tmp_pat
 
 def test_only_the_sensors_that_are_named_are_calibrated(wrong):
     only = replace(CALIBRATION, sensors="s1")
-    found = run(wrong, Settings(calibration=only))
+    found = run(wrong, replace(SETTINGS, calibration=only))
 
     assert {row.sensor for row in found.figures.parameters} == {"s1"}
 
@@ -210,12 +231,12 @@ def test_only_the_sensors_that_are_named_are_calibrated(wrong):
 )
 def test_a_sensor_that_is_not_in_the_rig_is_refused(right, change):
     with pytest.raises(ConfigError, match=r"expected .* got '(camera|imu)'"):
-        run(right, Settings(calibration=replace(CALIBRATION, **change)))
+        run(right, replace(SETTINGS, calibration=replace(CALIBRATION, **change)))
 
 
 def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong, audited):
     short = replace(CALIBRATION, mode="auto", windows=2)
-    found = run(wrong, Settings(calibration=short))
+    found = run(wrong, replace(SETTINGS, calibration=short))
 
     assert not found.figures.applied
     assert found.figures.outcome == (
@@ -233,7 +254,7 @@ def test_a_few_multiframes_are_too_few(dance, tmp_path):
 
 
 def test_off_is_off(right):
-    found = run(right, Settings(calibration=replace(CALIBRATION, mode="off")))
+    found = run(right, replace(SETTINGS, calibration=replace(CALIBRATION, mode="off")))
 
     assert found.figures.outcome == "switched off"
 
