@@ -10,7 +10,6 @@ from recon4.calibration.stage import run_calibration
 from recon4.errors import ConfigError, StoreError
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
-from recon4.settings import Settings
 from recon4.store.frames import FrameStore, open_frames
 from tests import scanned_room
 from tests.unit.calibration.conftest import (
