@@ -39,7 +39,7 @@ of flights of stairs, and a window that is bent so far does not come back."""
 LAST_ROUNDS = (_TIGHT,) * 4
 """The same at a rig that others confirm."""
 DENSE_ROUNDS = 2
-"""So many of the last rounds use all points; before them a part leads near the solution."""
+"""Number of the last rounds that use all points; before them a part leads near the solution."""
 EXPLAIN = (
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
