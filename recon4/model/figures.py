@@ -67,6 +67,8 @@ class MovingFigures(msgspec.Struct, frozen=True, kw_only=True):
     ratio: tuple[float, ...]
     """Ratio of the points that lie on moving objects at these times, 0..1."""
     outcome: MovingOutcome = MovingOutcome.KEPT
+    points_left_out: int = 0
+    """How many points on them no later stage sees."""
 
     @property
     def is_crowded(self) -> bool:

@@ -31,6 +31,11 @@ class HiddenPoints:
         start = np.cumsum([0, *map(len, packed)], dtype=np.int64)
         return HiddenPoints(np.concatenate([np.empty(0, np.uint8), *packed]), start)
 
+    @property
+    def count(self) -> int:
+        """How many points are left out in all."""
+        return int(np.bitwise_count(self.bits).sum())
+
     def seen(self, frame: Multiframe) -> Multiframe:
         """A multiframe without its hidden points."""
         first, last = self.start[frame.frame_id : frame.frame_id + 2]

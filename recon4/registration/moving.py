@@ -170,10 +170,12 @@ def crowd_text(found: MovingFigures) -> tuple[str, ...]:
         return ()
     ratio, t_s = np.array(found.ratio), np.array(found.t_s)
     crowded = t_s[ratio >= found.CROWDED]
+    left_out = f"{found.points_left_out:,}".replace(",", "\u202f")
     most, when_s = 100 * ratio.max(), t_s[ratio.argmax()]
     return (
         f"Between {crowded[0]:.0f} s and {crowded[-1]:.0f} s moving objects (people, vehicles) "
-        f"fill up to {most:.0f} % of the view, most at {when_s:.0f} s. {_BECAME[found.outcome]}",
+        f"fill up to {most:.0f} % of the view, most at {when_s:.0f} s. {_BECAME[found.outcome]}"
+        + (f" {left_out} points are left out of the map." if found.points_left_out else ""),
     )
 
 

@@ -136,7 +136,7 @@ def _without_moving(
         if _moved_m(before.steps, now.steps) < _SETTLED_M:
             outcome = MovingOutcome.LEFT_OUT
             break
-    return now, replace(moving, outcome=outcome), hidden
+    return now, replace(moving, outcome=outcome, points_left_out=hidden.count), hidden
 
 
 def _moved_m(before: list[OdometryStep], after: list[OdometryStep]) -> float:

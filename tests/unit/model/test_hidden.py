@@ -32,6 +32,7 @@ def test_each_multiframe_is_seen_without_its_own_hidden_points() -> None:
     assert hidden.seen(frame(0, 11)).intensity.tolist() == list(range(1, 10))
     assert hidden.seen(frame(1, 5)).intensity.tolist() == [0, 1, 2, 3, 4]
     assert hidden.seen(frame(2, 3)).intensity.tolist() == [0, 2]
+    assert hidden.count == 3
 
 
 def test_a_multiframe_without_mask_is_the_same_object() -> None:

@@ -212,7 +212,12 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
     assert figures.moving is not None and figures.moving.outcome == MovingOutcome.LEFT_OUT
     assert any("moving objects" in text for text in figures.warnings) and not figures.severe
     hidden = load_record(tmp_path / "moving.npz", HiddenPoints)
-    assert min(len(hidden.seen(frame)) / len(frame) for frame in walk) < 0.9
+    seen = np.array([len(hidden.seen(frame)) / len(frame) for frame in walk])
+    assert seen.min() < 0.9
+    left_out = sum(len(frame) - len(hidden.seen(frame)) for frame in walk)
+    assert figures.moving.points_left_out == left_out > 0
+    count = f"{left_out:,}".replace(",", "\u202f")
+    assert any(f"{count} points are left out" in text for text in figures.warnings)
 
 
 def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
