@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -118,6 +118,19 @@ class FrameFitter:
                 break
         P = np.asarray(np.linalg.inv(H), np.float64)
         return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged, stationary)
+
+    def as_expected(self, tried: FrameFit, prediction: Prediction) -> FrameFit:
+        """The motion through the expected pose, where the local map says too little of it.
+
+        Args:
+            tried: The fit to the local map, for its figures.
+            prediction: With an expected pose.
+        """
+        information, g_prior = _prior(prediction, stationary=False)
+        P = np.asarray(np.linalg.inv(information), np.float64)
+        delta = np.asarray(-P @ g_prior, np.float64)
+        T_dense = _correct(prediction, delta, prediction.T_odom_body.t[-1])
+        return replace(tried, T_dense=T_dense, delta=delta, P=P, converged=False)
 
     def _add_aiding(self, H: Array, g: Array, T_odom_body: SE3, *, t_ns: int) -> None:
         """Add what GNSS knows of the pose at the end to the normal equations, in place."""

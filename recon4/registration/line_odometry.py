@@ -15,11 +15,11 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.collar_lines import LineTarget, register_lines
 from recon4.registration.motion import ImuMotion
-from recon4.registration.odometry import OdometryStep
 from recon4.registration.overlap import RangeImage, make_range_image, overlap
 from recon4.registration.result import Registration
 from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
+from recon4.registration.step import OdometryStep
 from recon4.settings import Settings
 
 _PREDICTOR = 3

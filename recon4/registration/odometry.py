@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import dataclass, field, replace
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -13,9 +14,9 @@ from recon4.kernels.imu import place_points
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.frame_fit import FrameFit, FrameFitter, motion_cov
+from recon4.registration.bridge import bridge_cov
+from recon4.registration.frame_fit import FrameFit, FrameFitter
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import (
@@ -24,14 +25,14 @@ from recon4.registration.motion import (
     Motion,
     MotionState,
     Prediction,
-    middle_of,
 )
 from recon4.registration.moving_start import set_moving, starting_velocity
 from recon4.registration.plane_map import PlaneMap
-from recon4.registration.point_map import PointMap, WeakDirections, frame_points
+from recon4.registration.point_map import FramePoints, PointMap, WeakDirections, frame_points
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.state import END, STATE, VECTOR
+from recon4.registration.step import OdometryStep, make_step
 from recon4.registration.weak_motion import unknown_speed_sd, weak_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
@@ -46,38 +47,12 @@ _INTERRUPTED_NS = 2_000_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class OdometryStep:
-    """Result of odometry for one multiframe. Lost tracking is a result, not an error."""
+class _Try:
+    """A frame at the pose where it fits best."""
 
-    frame_id: int
-    t_mid_ns: int
-    T_odom_body: SE3
-    """Pose at the middle of the frame."""
-    t_ns: Times
-    """Times of the dense poses [ns], after the last of the frame before, (K,)."""
-    T_dense: SE3
-    """Poses at these times, a batch of K."""
-    error_m: float
-    """Mean distance of the matched segments from the local map [m]; NaN without a match."""
-    match_ratio: float
-    """Part of the segments that found a plane, 0..1."""
-    rounds: int
-    converged: bool
-    degeneracy: float
-    """See `Match.degeneracy`."""
-    prediction_offset_m: float
-    """How far the LiDAR moved the prediction [m]."""
+    prediction: Prediction
+    fit: FrameFit
     lost: bool
-    motion_cov: Array
-    """Covariance of the motion over the frame, turn and shift in odom axes, (6, 6)."""
-    weak_direction: Array = field(default_factory=lambda: np.full(3, np.nan))
-    """See `Match.weak_direction`, in odom axes; NaN where it is unknown."""
-    weak_sd_m: float = float("nan")
-    """Standard deviation of the position along it by the LiDARs of this frame alone [m]."""
-    stationary: bool = False
-    """Whether the IMU says that the body stands."""
-    piece: int = 0
-    """Number of the piece of the walk; the motion from one piece to the next is not known."""
 
 
 class Odometry:
@@ -152,13 +127,39 @@ class Odometry:
         """Register the next multiframe; frames come in the order of their time."""
         segments = sample_segments(frame, self._rig, self._settings.segments)
         self._begin_moving(frame)
+        across = None
         if self._is_interrupted(frame):
-            self._begin_piece(frame.t_ns)
+            across = self._across(frame)
+            if across is None:
+                self._begin_piece(frame.t_ns)
         first = not self._keyframes
-        expected = self._place(frame)
+        points = cache(lambda: frame_points(frame, self._rig))
+        tried = self._try(frame, segments, points, across=across)
+        if tried.lost and across is None:
+            across = self._across(frame)
+            if across is not None:
+                tried = self._try(frame, segments, points, across=across)
+        step = self._keep(frame, tried, first=first, bridged=across is not None)
+        if not step.lost and self._is_keyframe(step.T_dense[-1]):
+            self._extend_map(segments, tried.prediction.t_s, step.T_dense)
+            self._points.add(points(), tried.prediction.t_s, step.T_dense)
+        self._follow_lost(frame, step)
+        self._end_ns = frame.t_ns + frame.duration_ns
+        return step
+
+    def _try(
+        self,
+        frame: Multiframe,
+        segments: Segments,
+        points: Callable[[], FramePoints],
+        *,
+        across: SE3 | None,
+    ) -> _Try:
+        """Fit a frame to the local map, at the pose across a gap or from that of the last scan."""
+        first = not self._keyframes
+        expected = self._place(frame) if across is None else across
         found = self._chain is None or first or expected is not None
         prediction = replace(self._predict(frame), expected=expected)
-        points = cache(lambda: frame_points(frame, self._rig))
         weak = WeakDirections(
             self._points,
             points,
@@ -168,26 +169,30 @@ class Odometry:
         stationary = self._motion.is_stationary(prediction.end)
         fit = self._fitter.fit(self._map, segments, prediction, weak=weak, stationary=stationary)
         lost = not first and (not found or self._is_lost(fit, prediction))
-        if not lost and not first:
+        if lost and across is not None:
+            # So much is new that the local map says little.
+            return _Try(prediction, self._fitter.as_expected(fit, prediction), lost=False)
+        return _Try(prediction, fit, lost=lost)
+
+    def _keep(self, frame: Multiframe, tried: _Try, *, first: bool, bridged: bool) -> OdometryStep:
+        """Take over the state after a frame, and report it."""
+        prediction, fit, lost = tried.prediction, tried.fit, tried.lost
+        if not lost and not first and not bridged:
             self._limits.learn(fit.match.match_ratio)
-        if self._chain and not lost and is_stationary(self._chain.located):
+        if self._chain and not lost and not bridged and is_stationary(self._chain.located):
             fit = zero_velocity_update(fit, prediction, self._chain.last[0])
         self._state = _updated(prediction, fit, lost=lost, first=first)
         if not lost:
             self._good = self._state
         self._count_lost(prediction.end.t_ns, lost=lost)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
-        step = _step(frame, prediction, fit, T_dense=T_dense, lost=lost)
+        step = make_step(frame, prediction, fit, T_dense=T_dense, lost=lost)
         cov = step.motion_cov + self._unknown(frame, fit)
-        step = replace(step, motion_cov=cov, piece=self._piece)
-        if not lost:
-            if self._is_keyframe(T_dense[-1]):
-                self._extend_map(segments, prediction.t_s, T_dense)
-                self._points.add(points(), prediction.t_s, T_dense)
-            if self._chain:
-                self._chain.keep(step.T_odom_body, frame.t_mid_ns)
-        self._follow_lost(frame, step)
-        self._end_ns = frame.t_ns + frame.duration_ns
+        if bridged:
+            cov = cov + bridge_cov()
+        step = replace(step, motion_cov=cov, piece=self._piece, bridged=bridged)
+        if self._chain and not lost:
+            self._chain.keep(step.T_odom_body, frame.t_mid_ns)
         return step
 
     def _begin_moving(self, frame: Multiframe) -> None:
@@ -285,6 +290,18 @@ class Odometry:
                 self._clear_map()
             self._tracked_frames, self._resets = 0, self._resets + 1
 
+    def _across(self, frame: Multiframe) -> SE3 | None:
+        """Without an IMU: pose at the middle of a frame that only the scans before a gap tell."""
+        if self._chain is None or self._state is None:
+            return None
+        found = self._chain.bridge(body_points(frame, self._rig), frame.t_mid_ns)
+        if found is None:
+            return None
+        before, before_ns = self._chain.last
+        T = SE3.stack([before, before @ found])
+        self._state = self._free.between(T, (before_ns, frame.t_mid_ns), frame.t_ns)
+        return T[1]
+
     def _place(self, frame: Multiframe) -> SE3 | None:
         """Without an IMU: pose at the middle of a frame by registration to the last good scan."""
         if self._chain is None:
@@ -373,28 +390,3 @@ def _updated(prediction: Prediction, fit: FrameFit, *, lost: bool, first: bool) 
     if lost or first:
         return prediction.end
     return prediction.end.corrected(fit.delta[END], fit.P[END, END])
-
-
-def _step(
-    frame: Multiframe, prediction: Prediction, fit: FrameFit, *, T_dense: SE3, lost: bool
-) -> OdometryStep:
-    end = prediction.T_odom_body[-1]
-    t_ns = frame.t_ns + np.round(prediction.t_s * 1e9).astype(np.int64)
-    return OdometryStep(
-        frame.frame_id,
-        frame.t_mid_ns,
-        middle_of(prediction.t_s, T_dense),
-        t_ns,
-        T_dense,
-        fit.match.mean_m,
-        fit.match.match_ratio,
-        fit.rounds,
-        fit.converged,
-        fit.match.degeneracy,
-        float(np.linalg.norm(T_dense.t[-1] - end.t)),
-        lost,
-        motion_cov(prediction.prior if lost else fit.P),
-        fit.match.weak_direction,
-        fit.weak_sd_m,
-        fit.stationary,
-    )

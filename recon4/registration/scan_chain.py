@@ -9,9 +9,15 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
+from recon4.registration.bridge import (
+    TRIED_EVERY_NS,
+    RecentScans,
+    SeenScan,
+    sure_pose,
+)
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.result import StopReason
-from recon4.registration.scans import Scan, make_scan, search_scans
+from recon4.registration.scans import make_scan, search_scans
 from recon4.settings import ScanSettings
 
 _SOURCE_POINTS = 3000
@@ -27,8 +33,10 @@ class ScanChain:
 
     def __init__(self, settings: ScanSettings) -> None:
         self._settings = replace(settings, source_points=_SOURCE_POINTS)
-        self._scan: Scan | None = None
-        self._now: Scan | None = None
+        self._last: SeenScan | None = None
+        self._now: SeenScan | None = None
+        self._recent = RecentScans(settings)
+        self._bridged, self._tried_ns = False, 0
         self._T_odom_body, self._t_ns = SE3.identity(), 0
         self._motion = self._located = SE3.identity()
         self.is_sure = False
@@ -59,26 +67,65 @@ class ScanChain:
             points: In the body [m], (N, 3).
             t_ns: Middle of the scan [ns].
         """
-        self._now, self.is_sure = make_scan(points, self._settings), False
-        if self._scan is None:
+        self._see(points)
+        if self._last is None or self._now is None:
             return None
         prior = CarrierPrior.after(max((t_ns - self._t_ns) * 1e-9, 0.0), self._velocity_m_s)
         found = search_scans(
-            self._scan, self._now, initial=self._motion, settings=self._settings, prior=prior
+            self._last.scan,
+            self._now.scan,
+            initial=self._motion,
+            settings=self._settings,
+            prior=prior,
         )
         self._located = found.T_target_source
         self.is_sure = found.match_ratio >= self._settings.confident_inlier_ratio
         # With two distorted scans the matches may oscillate: the inlier ratio decides.
         return None if found.stop is StopReason.TOO_FEW else found.T_target_source
 
+    def bridge(self, points: Array, t_ns: int) -> SE3 | None:
+        """Pose of a new scan in the last good one, however far away; None = not surely known.
+
+        Args:
+            points: In the body [m], (N, 3).
+            t_ns: Middle of the scan [ns].
+        """
+        since_ns = t_ns - self._t_ns
+        if self._last is None or not 0 < since_ns <= 1e9 * self._settings.bridge_s:
+            return None
+        if self._tried_ns > self._t_ns and t_ns - self._tried_ns < TRIED_EVERY_NS:
+            return None
+        self._tried_ns = t_ns
+        now = self._see(points)
+        found = sure_pose(
+            self._recent.joined(self._last.scan, self._T_odom_body),
+            now,
+            self._last,
+            initial=[SE3.identity(), self._motion],
+            settings=self._settings,
+        )
+        self._bridged = self.is_sure = found is not None
+        self._located = found or SE3.identity()
+        return found
+
+    def _see(self, points: Array) -> SeenScan:
+        """Make a scan the newest one."""
+        self._now = SeenScan(make_scan(points, self._settings), points)
+        self.is_sure = self._bridged = False
+        return self._now
+
     def keep(self, T_odom_body: SE3, t_ns: int) -> None:
         """Make the scan just located the last good one, with its pose and time [ns]."""
         self._sure_scans = self._sure_scans + 1 if self.is_sure else 0
-        if self._scan is not None:
+        if self._bridged:  # how the body moved meanwhile says nothing of how it moves on
+            self._motion, self._velocity_m_s = SE3.identity(), np.zeros(3)
+        elif self._last is not None:
             self._motion = self._T_odom_body.inverse() @ T_odom_body
             seconds = max((t_ns - self._t_ns) * 1e-9, 1e-3)
             self._velocity_m_s = self._motion.R.T @ self._motion.t / seconds
-        self._scan, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
+        if self._now is not None:
+            self._recent.keep(self._now.scan, T_odom_body)
+        self._last, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
 
 
 def body_points(frame: Multiframe, rig: Rig) -> Array:

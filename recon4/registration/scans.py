@@ -7,6 +7,7 @@ proves wrong, the ground plans of both scans are correlated over rotation and sh
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -29,6 +30,8 @@ _COARSE_POINTS = 1500
 _COARSE_ROUNDS = 10
 _WIDE = 3.0
 """The gate of the first rounds is larger by this factor."""
+_FITS = 6
+"""Coarse fits that are refined where others than the best count."""
 _YAWS = 120
 _PLAN = 160
 """Cells of a ground plan along each side."""
@@ -141,6 +144,33 @@ def search_scans(
         target, source, initial=best.T_target_source, settings=settings, prior=prior
     )
     return max(first, other, key=score)
+
+
+def lay_onto(
+    target: Scan, source: Scan, *, initial: Sequence[SE3], settings: ScanSettings
+) -> list[Registration]:
+    """Every pose that fits, best first: from the initial poses and the overlays of ground plans.
+
+    Unlike `search_scans` it expects nothing, and returns other poses beside the best. The stop
+    reasons mean nothing: the match ratio decides.
+
+    Args:
+        target: Scan to register to.
+        source: Scan to be moved.
+        initial: Poses to try beside the overlays.
+        settings: Gate, kernel, bounds.
+    """
+    settings = replace(settings, min_inlier_ratio=0.0)
+    coarse = replace(settings, rounds=_COARSE_ROUNDS)
+    some = _some(source, _COARSE_POINTS)
+    starts = [*initial, *overlay_plans(target, source, count=settings.starts, height_m=0.0)]
+    tries = [_descend(target, some, initial=start, settings=coarse, prior=None) for start in starts]
+    tries.sort(key=lambda one: -one.match_ratio)
+    fits = [
+        register_scans(target, source, initial=one.T_target_source, settings=settings)
+        for one in tries[:_FITS]
+    ]
+    return sorted(fits, key=lambda one: -one.match_ratio)
 
 
 def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) -> list[SE3]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from dataclasses import replace as with_fields
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -21,6 +22,7 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
+from recon4.registration.bridge import bridged_text
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.imu_gravity import wrong_gravity
@@ -28,7 +30,8 @@ from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.make import make_odometry
 from recon4.registration.moving import StandingFrames, crowd_text, find_moving, hide_moving
 from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
-from recon4.registration.odometry import Odometry, OdometryStep
+from recon4.registration.odometry import Odometry
+from recon4.registration.step import OdometryStep
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.settings import Settings
 from recon4.store.arrays import save_record, save_trajectory
@@ -154,6 +157,7 @@ def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures) -> OdometryFigures:
         *(wrong_gravity(made.trajectory, made.imu, rig) if made.imu else ()),
         *(made.estimate.texts if made.estimate else ()),
         *crowd,
+        *_bridges(made.steps),
     )
     severe = tuple(ride.text for ride in rides if ride.is_severe)
     return OdometryFigures(
@@ -165,6 +169,17 @@ def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures) -> OdometryFigures:
         heights=tuple(ride.doubt for ride in rides),
         moving=moving,
     )
+
+
+def _bridges(steps: list[OdometryStep]) -> tuple[str, ...]:
+    """What is to be checked where single registrations joined what no scan chain joins."""
+    bridged = [
+        (1e-9 * (b.t_mid_ns - steps[0].t_mid_ns), a.T_odom_body, b.T_odom_body)
+        for a, b in pairwise([step for step in steps if not step.lost])
+        if b.bridged
+    ]
+    found = [(t_s, float(np.linalg.norm(b.t - a.t))) for t_s, a, b in bridged]
+    return (bridged_text(found),) if found else ()
 
 
 def _register(
@@ -259,6 +274,7 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         prediction_offset_m=np.array([s.prediction_offset_m for s in steps]),
         lost=np.array([s.lost for s in steps]),
         piece=np.array([s.piece for s in steps], np.int64),
+        bridged=np.array([s.bridged for s in steps]),
         motion_cov=np.array([s.motion_cov for s in steps]).reshape(-1, 6, 6),
         weak_direction=np.array([s.weak_direction for s in steps]).reshape(-1, 3),
         stationary=np.array([s.stationary for s in steps]),

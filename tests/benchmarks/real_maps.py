@@ -24,6 +24,7 @@ from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.kitti import official_drift
 from recon4.evaluation.sharpness import draw_places, sharpness
 from recon4.evaluation.table import number, text_table
+from recon4.geometry.se3 import Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
@@ -46,6 +47,8 @@ from tests.builders import write_pcd
 
 _DRIFT_M = (5.0, 10.0, 20.0, 40.0)
 _CRISP_FRAMES = 60
+_LEAST_STEP_S = 0.1
+_LONGEST_GAP_NS = 10**10
 
 
 @dataclass(frozen=True)
@@ -61,12 +64,18 @@ class Sequence:
     voxel_m: float
     """Of KISS-ICP."""
     period_s: float = 0.0
-    """Between scans without times [s]: they were kept every 0.6 m or so of a walk."""
+    """Between scans without times [s]: they were kept every 0.6 m or so of a walk …"""
+    pace_m_s: float = 0.0
+    """… or, with a truth, the speed of the carrier: key scans have gaps of several meters."""
 
 
 SEQUENCES = {
-    "nclt-hdl32": Sequence(nclt, one_sensor("HDL-32E"), nclt_truth, "outdoor", True, 0.6, 1.0),
-    "vlp16-corridor": Sequence(corridor, one_sensor("VLP-16"), None, "indoor", True, 0.25, 0.5),
+    "nclt-hdl32": Sequence(
+        nclt, one_sensor("HDL-32E"), nclt_truth, "outdoor", True, 0.6, pace_m_s=1.2
+    ),
+    "vlp16-corridor": Sequence(
+        corridor, one_sensor("VLP-16"), None, "indoor", True, 0.25, period_s=0.5
+    ),
     "hdl64-muehlburg": Sequence(muehlburg, one_sensor("HDL-64E"), None, "outdoor", False, 0.6),
     "hdl64-durlacher": Sequence(durlacher, one_sensor("HDL-64E"), None, "outdoor", False, 0.6),
 }
@@ -83,10 +92,18 @@ def write_scans(sequence: Sequence, name: str, folder: Path) -> None:
         write_pcd(folder / f"{k:06d}.pcd", table)
         t_ns.append(frame.t_ns)
     t_s = (np.array(t_ns) - t_ns[0]) / 1e9
-    if sequence.deskewed:
+    if sequence.pace_m_s and sequence.truth:
+        t_s = times_of_carrier(sequence.truth(DATA / name), sequence.pace_m_s)
+    elif sequence.deskewed:
         t_s = np.arange(len(t_ns)) * sequence.period_s
     lines = [f"{stamp:.9f}\n" for stamp in t_s]
     (folder / "times.txt").write_text("".join(lines))
+
+
+def times_of_carrier(truth: Trajectory, pace_m_s: float) -> Array:
+    """Times at which a carrier of constant speed is at the true poses, 0.1 s apart or more [s]."""
+    steps_m = np.linalg.norm(np.diff(truth.T_a_b.t, axis=0), axis=1)
+    return np.append(0.0, np.cumsum(np.maximum(steps_m / pace_m_s, _LEAST_STEP_S)))
 
 
 def finished(name: str, sequence: Sequence, out: Path) -> tuple[list[PeerRun], FrameStore, str]:
@@ -140,7 +157,8 @@ def row(one: PeerRun, frames: FrameStore, truth: Trajectory | None) -> tuple[str
     length_m = float(np.linalg.norm(np.diff(t_m, axis=0), axis=1).sum())
     ate = drift = float("nan")
     if truth is not None:
-        pairs = pair_poses(one.trajectory, truth)
+        at = Trajectory(truth.t_ns, one.trajectory.at(truth.t_ns))
+        pairs = pair_poses(at, truth, max_gap_ns=_LONGEST_GAP_NS)
         ate = absolute_error(pairs).position_m.rmse
         drift = official_drift(pairs, lengths_m=_DRIFT_M).translation
     last = [frames[k] for k in range(max(0, len(frames) - _CRISP_FRAMES), len(frames) - 1)]

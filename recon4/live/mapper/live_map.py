@@ -28,8 +28,8 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.plain import finite_or_none
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.registration.odometry import OdometryStep
 from recon4.registration.segments import sample_segments
+from recon4.registration.step import OdometryStep
 from recon4.settings import Settings
 
 PREVIEW_POINTS = 6000

@@ -11,7 +11,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array, skew, so3_log
 from recon4.live.protocol import Axis, Motion
-from recon4.registration.odometry import OdometryStep
+from recon4.registration.step import OdometryStep
 
 _SD_RAD_S, _SD_M_S2, _SD_RAD_S2 = 0.008, 0.15, 0.004
 """Rate [rad/s], acceleration [m/s²] and change of rate [rad/s²] that a multiframe is known to, as

@@ -12,7 +12,8 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.samples.clean import join
-from recon4.registration.odometry import Odometry, OdometryStep
+from recon4.registration.odometry import Odometry
+from recon4.registration.step import OdometryStep
 from recon4.settings import Settings
 
 _TRIED_FRAMES = 20

@@ -45,16 +45,19 @@ def test_before_anything_is_usual_the_scan_before_decides():
     assert first.is_lost(match_of(0.25, mean_m=0.2), sure=True)
 
 
-@pytest.mark.parametrize("with_imu", [True, False])
-def test_a_gap_that_no_imu_covers_begins_a_new_piece_at_the_last_pose(stroll, with_imu):
-    gap_ns = 3_000_000_000
-    frames = [
+def paused(stroll, gap_s):
+    """The same way with a break after twelve multiframes in which the body stood."""
+    gap_ns = round(gap_s * 1e9)
+    return [
         frame if k < 12 else replace(frame, t_ns=frame.t_ns + gap_ns)
         for k, frame in enumerate(stroll)
     ]
-    imu = stroll.imu
+
+
+def test_a_gap_that_an_imu_does_not_cover_begins_a_new_piece_at_the_last_pose(stroll):
+    frames, imu = paused(stroll, 3.0), stroll.imu
     late = imu.t_ns > frames[11].t_ns + frames[11].duration_ns
-    imu = replace(imu, t_ns=np.where(late, imu.t_ns + gap_ns, imu.t_ns)) if with_imu else None
+    imu = replace(imu, t_ns=np.where(late, imu.t_ns + 3_000_000_000, imu.t_ns))
     odometry = Odometry(stroll.rig, Settings(), imu)
 
     steps = [odometry.push(frame) for frame in frames]
@@ -65,8 +68,35 @@ def test_a_gap_that_no_imu_covers_begins_a_new_piece_at_the_last_pose(stroll, wi
     assert jump_m < 0.1  # with the speed before the gap it would be 1.5 m
 
 
+def test_without_an_imu_a_sure_scan_carries_the_walk_across_a_gap(stroll):
+    odometry = Odometry(stroll.rig, Settings())
+
+    steps = [odometry.push(frame) for frame in paused(stroll, 3.0)[:16]]
+
+    assert not any(step.lost or step.piece for step in steps)
+    assert [step.bridged for step in steps] == [k == 12 for k in range(16)]
+    truth = stroll.true_poses()
+    moved = steps[11].T_odom_body.inverse() @ steps[15].T_odom_body
+    true = truth[11].inverse() @ truth[15]
+    assert np.linalg.norm(moved.t - true.t) < 0.03
+    sd_m = [np.sqrt(step.motion_cov[3, 3]) for step in steps[11:14]]
+    assert sd_m[1] > 0.1 > 10 * max(sd_m[0], sd_m[2])
+
+
+def test_without_an_imu_a_long_gap_begins_a_new_piece(stroll):
+    """In that time the body may be on a storey that looks the same."""
+    odometry = Odometry(stroll.rig, Settings())
+
+    steps = [odometry.push(frame) for frame in paused(stroll, 11.0)[9:15]]
+
+    assert [step.piece for step in steps] == [0, 0, 0, 1, 1, 1]
+    assert not any(step.lost or step.bridged for step in steps)
+
+
 def test_without_an_imu_sure_scans_begin_a_new_piece_after_tracking_was_lost(stroll):
-    settings = override(Settings(), ["scans.sure_scans=3", "odometry.lost_error_m=1e-9"])
+    settings = override(
+        Settings(), ["scans.sure_scans=3", "scans.bridge_s=0", "odometry.lost_error_m=1e-9"]
+    )
     odometry = Odometry(stroll.rig, settings)
 
     steps = [odometry.push(frame) for frame in list(stroll)[:8]]
