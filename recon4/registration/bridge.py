@@ -1,7 +1,7 @@
-"""The way across a gap: where a scan lies on the last ones, however far the body moved unseen.
+"""Across a gap: where a scan lies on the last ones, however far the body moved unseen.
 
 Consecutive scans of a walk overlap so far that the scan before decides. After a gap, or a step of
-meters between two scans, much of what is seen is new, and the share of matches says little. So the
+meters between two scans, much of what is seen is new, and the ratio of matches says little. So the
 last few scans are joined, the new one is laid onto them from many initial poses, and it counts only
 if nothing speaks against it: no other pose fits nearly as well (repeated doors, columns, rooms),
 no view sees through what the other one shows, and every direction is observed.

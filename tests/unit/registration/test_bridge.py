@@ -103,7 +103,7 @@ def test_another_place_is_not_sure():
     assert found(yard, world_now=lambda rng: yard(rng) @ np.diag([1.7, 1.7, 1.0])) is None
 
 
-def test_the_operator_is_told_where():
+def test_the_warning_says_where():
     assert "once (12 s after the start, 2.5 m long)" in bridged_text([(12.3, 2.5)])
     assert "3 times (first 1 s after the start, the longest of 8.2 m at 7 s)" in bridged_text(
         [(1.0, 2.0), (7.1, 8.2), (9.0, 1.0)]
