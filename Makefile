@@ -38,7 +38,6 @@ demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
-# Those start servers and wait for them, too: three at a time keep two processors busy.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
 	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint types bytecode
@@ -54,7 +53,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev
-	nice -n 5 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
+	nice -n 5 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
 e2e: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m e2e --durations=10
