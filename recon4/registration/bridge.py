@@ -63,20 +63,24 @@ class RecentScans:
 
     def __init__(self, settings: ScanSettings) -> None:
         self._settings = settings
-        self._kept: deque[tuple[SE3, Scan]] = deque(maxlen=_SCANS)
+        self._kept: deque[tuple[int, SE3, Scan]] = deque(maxlen=_SCANS)
 
-    def keep(self, scan: Scan, T_odom_body: SE3) -> None:
-        """Add a scan, unless the last one was taken at nearly the same pose."""
+    def keep(self, scan: Scan, T_odom_body: SE3, t_ns: int) -> None:
+        """Add a scan and its time [ns], unless the last one was taken at nearly the same pose."""
         if self._kept:
-            step = self._kept[-1][0].inverse() @ T_odom_body
+            step = self._kept[-1][1].inverse() @ T_odom_body
             if np.linalg.norm(step.t) < _APART_M and step.angle() < _APART_RAD:
                 return
-        self._kept.append((T_odom_body, scan))
+        self._kept.append((t_ns, T_odom_body, scan))
 
-    def joined(self, last: Scan, T_odom_body: SE3) -> Scan:
-        """All of them and the last scan, in the body at this pose."""
+    def joined(self, last: Scan, T_odom_body: SE3, *, since_ns: int) -> Scan:
+        """The last scan and those since a time, in the body at this pose.
+
+        Who steps out of an elevator sees again what he saw before the ride: older scans would say
+        that he is still there.
+        """
         T_body_odom = T_odom_body.inverse()
-        placed = [T_body_odom @ T @ scan.points for T, scan in self._kept]
+        placed = [T_body_odom @ T @ scan.points for t_ns, T, scan in self._kept if t_ns >= since_ns]
         return make_scan(np.concatenate([*placed, last.points]), self._settings)
 
 

@@ -43,7 +43,10 @@ _AS_PREDICTED_M = 0.03
 """While it is not known how much usually matches, a frame is sure of its pose if the LiDARs move
 what the IMU predicts by less, and what matches lies as near [m]."""
 _INTERRUPTED_NS = 2_000_000_000
-"""Longest gap between two frames that is bridged without an IMU [ns]."""
+"""Longest gap between two frames that is predicted across without an IMU [ns]."""
+_UNSEEN_NS = 200_000_000
+"""Least time without a frame in which the body moved unseen [ns]. Without such a gap a scan that is
+lost shows a change of what stands around: the doors of an elevator that opened elsewhere."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -292,7 +295,9 @@ class Odometry:
 
     def _across(self, frame: Multiframe) -> SE3 | None:
         """Without an IMU: pose at the middle of a frame that only the scans before a gap tell."""
-        if self._chain is None or self._state is None:
+        if self._chain is None or self._state is None or self._end_ns is None:
+            return None
+        if frame.t_ns - self._end_ns < _UNSEEN_NS:
             return None
         found = self._chain.bridge(body_points(frame, self._rig), frame.t_mid_ns)
         if found is None:

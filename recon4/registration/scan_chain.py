@@ -98,7 +98,11 @@ class ScanChain:
         self._tried_ns = t_ns
         now = self._see(points)
         found = sure_pose(
-            self._recent.joined(self._last.scan, self._T_odom_body),
+            self._recent.joined(
+                self._last.scan,
+                self._T_odom_body,
+                since_ns=t_ns - round(1e9 * self._settings.bridge_s),
+            ),
             now,
             self._last,
             initial=[SE3.identity(), self._motion],
@@ -124,7 +128,7 @@ class ScanChain:
             seconds = max((t_ns - self._t_ns) * 1e-9, 1e-3)
             self._velocity_m_s = self._motion.R.T @ self._motion.t / seconds
         if self._now is not None:
-            self._recent.keep(self._now.scan, T_odom_body)
+            self._recent.keep(self._now.scan, T_odom_body, t_ns)
         self._last, self._T_odom_body, self._t_ns = self._now, T_odom_body, t_ns
 
 

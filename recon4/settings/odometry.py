@@ -105,7 +105,7 @@ class ScanSettings:
     sure_scans: int = 10
     """After tracking was lost a new map begins when this many scans in a row fit each other."""
     bridge_s: float = 10.0
-    """After a gap or a lost scan the walk goes on if a scan surely lies on the last ones, up to
-    this much later [s]; then the body may be on a storey that looks the same. 0 = never."""
+    """After a gap the walk goes on if a scan surely lies on those of the last this many seconds
+    [s]; later the body may be on a storey that looks the same. 0 = never."""
     starts: int = 10
     """Number of overlays of the ground plans that are tried."""

@@ -46,8 +46,8 @@ def bridge(seen: list[SeenScan], truth: SE3, k: int, j: int) -> Tried:
     """Look for scan ``j`` on the scans up to ``k``, which lie at their true poses."""
     recent = RecentScans(SCANS)
     for row in range(max(0, k - _BEFORE), k + 1):
-        recent.keep(seen[row].scan, truth[row])
-    target = recent.joined(seen[k].scan, truth[k])
+        recent.keep(seen[row].scan, truth[row], row)
+    target = recent.joined(seen[k].scan, truth[k], since_ns=0)
     T = sure_pose(target, seen[j], seen[k], initial=[SE3.identity()], settings=SCANS)
     if T is None:
         return Tried(found=False)

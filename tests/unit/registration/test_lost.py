@@ -94,9 +94,7 @@ def test_without_an_imu_a_long_gap_begins_a_new_piece(stroll):
 
 
 def test_without_an_imu_sure_scans_begin_a_new_piece_after_tracking_was_lost(stroll):
-    settings = override(
-        Settings(), ["scans.sure_scans=3", "scans.bridge_s=0", "odometry.lost_error_m=1e-9"]
-    )
+    settings = override(Settings(), ["scans.sure_scans=3", "odometry.lost_error_m=1e-9"])
     odometry = Odometry(stroll.rig, settings)
 
     steps = [odometry.push(frame) for frame in list(stroll)[:8]]
