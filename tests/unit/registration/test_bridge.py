@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.registration.bridge import SeenScan, bridged_text, sure_pose
+from recon4.registration.bridge import RecentScans, SeenScan, bridged_text, sure_pose
 from recon4.registration.scans import lay_onto, make_scan
 from recon4.settings import ScanSettings
 
@@ -101,6 +101,21 @@ def test_a_direction_that_nothing_observes_is_not_sure():
 
 def test_another_place_is_not_sure():
     assert found(yard, world_now=lambda rng: yard(rng) @ np.diag([1.7, 1.7, 1.0])) is None
+
+
+def test_scans_from_before_are_not_joined():
+    """On another storey that looks the same they would say that the body is still there."""
+    rng = np.random.default_rng(1)
+    old, last = seen(yard(rng), SE3.identity(), rng).scan, seen(yard(rng), MOVED, rng).scan
+    recent = RecentScans(SCANS)
+    recent.keep(old, SE3.identity(), 1_000)
+    recent.keep(last, MOVED, 2_000)
+
+    both = recent.joined(last, MOVED, since_ns=1_000)
+    only_last = recent.joined(last, MOVED, since_ns=2_000)
+
+    assert len(only_last) == pytest.approx(len(last), rel=0.02)
+    assert len(both) > 1.1 * len(last)
 
 
 def test_the_warning_says_where():
