@@ -8,6 +8,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.imu import turns_between
+
 _COLUMNS = 22
 """What a point depends on: two knots (6 each), mount and clock of its LiDAR (7), its beam (3)."""
 
@@ -237,7 +239,7 @@ def place_with_velocity(
         Placed points [m], (N, 3), rotations of the body, (N, 3, 3), velocities of points that are
         fixed to the body [m/s], (N, 3).
     """
-    turns = _turns(R)
+    turns = turns_between(R)
     count = len(points)
     placed, velocity = np.empty((count, 3)), np.empty((count, 3))
     rotations = np.empty((count, 3, 3))
@@ -250,21 +252,6 @@ def place_with_velocity(
         for i in range(3):
             velocity[n, i] = (after[i] - before[i]) / (2.0 * half_s)
     return placed, rotations, velocity
-
-
-@njit(cache=True, nogil=True, error_model="numpy")
-def _turns(R):  # type: ignore[no-untyped-def]
-    """Rotation vectors from pose to pose, (K - 1, 3)."""
-    turns = np.empty((len(R) - 1, 3))
-    for k in range(len(turns)):
-        D = R[k].T @ R[k + 1]
-        trace = min(3.0, max(-1.0, D[0, 0] + D[1, 1] + D[2, 2]))
-        angle = np.arccos(0.5 * (trace - 1.0))
-        scale = 0.5 if angle < 1e-6 else 0.5 * angle / np.sin(angle)
-        turns[k, 0] = scale * (D[2, 1] - D[1, 2])
-        turns[k, 1] = scale * (D[0, 2] - D[2, 0])
-        turns[k, 2] = scale * (D[1, 0] - D[0, 1])
-    return turns
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

@@ -187,6 +187,21 @@ def propagate(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
+def turns_between(R: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Rotation vectors from pose to pose [rad], (K - 1, 3), of rotations, (K, 3, 3)."""
+    turns = np.empty((len(R) - 1, 3))
+    for k in range(len(turns)):
+        D = R[k].T @ R[k + 1]
+        trace = min(3.0, max(-1.0, D[0, 0] + D[1, 1] + D[2, 2]))
+        angle = np.arccos(0.5 * (trace - 1.0))
+        scale = 0.5 if angle < 1e-6 else 0.5 * angle / np.sin(angle)
+        turns[k, 0] = scale * (D[2, 1] - D[1, 2])
+        turns[k, 1] = scale * (D[0, 2] - D[2, 0])
+        turns[k, 2] = scale * (D[1, 0] - D[0, 1])
+    return turns
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
 def place_points(
     t_s: NDArray[np.float64],
     R: NDArray[np.float64],
@@ -207,15 +222,7 @@ def place_points(
         (N, 3): between two poses the position is interpolated and the rotation is SLERP.
     """
     count = len(t_s)
-    w = np.empty((count - 1, 3))
-    for k in range(count - 1):
-        D = R[k].T @ R[k + 1]
-        trace = min(3.0, max(-1.0, D[0, 0] + D[1, 1] + D[2, 2]))
-        angle = np.arccos(0.5 * (trace - 1.0))
-        scale = 0.5 if angle < 1e-6 else 0.5 * angle / np.sin(angle)
-        w[k, 0] = scale * (D[2, 1] - D[1, 2])
-        w[k, 1] = scale * (D[0, 2] - D[2, 0])
-        w[k, 2] = scale * (D[1, 0] - D[0, 1])
+    w = turns_between(R)
     out = np.empty((len(points), 3))
     for n in range(len(points)):
         k = min(max(np.searchsorted(t_s, t_points[n], side="right") - 1, 0), count - 2)
