@@ -142,7 +142,8 @@ class ComputePool:
         whole = False
         try:
             child = await self._child(permission, background=background)
-            answer = await asyncio.wait_for(child.call(call, terms.access), limit_s)
+            async with asyncio.timeout(limit_s):
+                answer = await child.call(call, terms.access)
             await asyncio.to_thread(child.keep, terms.outputs)
             whole = True
             return answer

@@ -152,7 +152,8 @@ class ChildProcess:
     async def _death_message(self) -> str:
         """Why the child did not respond."""
         try:
-            await asyncio.wait_for(self._process.wait(), 5.0)
+            async with asyncio.timeout(5.0):
+                await self._process.wait()
         except TimeoutError:
             return "the helper process does not respond; try again"
         code = self._process.returncode or 0

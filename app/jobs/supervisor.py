@@ -118,7 +118,8 @@ class Supervisor:
         """Wait for a later version than this, at most ``timeout_s``."""
         if version == self.version:
             with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._news.wait(), timeout_s)
+                async with asyncio.timeout(timeout_s):
+                    await self._news.wait()
 
     def cancel(self, job: Job) -> Job:
         """Remove a job from the queue, or request its worker to stop.
@@ -153,7 +154,8 @@ class Supervisor:
                 changed = set()
             self._publish(changed | asked)
             with contextlib.suppress(TimeoutError):
-                await asyncio.wait_for(self._wake.wait(), LOOK_EVERY_S)
+                async with asyncio.timeout(LOOK_EVERY_S):
+                    await self._wake.wait()
 
     def _publish(self, jobs: set[str]) -> None:
         if jobs:

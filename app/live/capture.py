@@ -78,7 +78,8 @@ class Capture:
             asyncio.create_task(self._follow_recorder(connected)),
             asyncio.create_task(self._follow_mapper()),
         ]
-        await asyncio.wait_for(connected.wait(), STARTS_WITHIN_S)
+        async with asyncio.timeout(STARTS_WITHIN_S):
+            await connected.wait()
 
     async def request(self, request: Request) -> None:
         """Send a request to the recorder: stop, pause, resume or mark.

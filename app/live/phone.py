@@ -80,7 +80,8 @@ class Phone:
     async def _greeting(self) -> Greeting | None:
         """The first message of the page; None if it is not a JSON object."""
         try:
-            said = await asyncio.wait_for(self._socket.receive_text(), STALLED_S)
+            async with asyncio.timeout(STALLED_S):
+                said = await self._socket.receive_text()
             return msgspec.json.decode(said, type=Greeting)
         except (
             KeyError,
@@ -107,7 +108,8 @@ class Phone:
             self._state = state
             await self._send(message)
             if points:
-                await asyncio.wait_for(self._socket.send_bytes(points), STALLED_S)
+                async with asyncio.timeout(STALLED_S):
+                    await self._socket.send_bytes(points)
             await self._rest(SHOWN_EVERY_S)
             if stream.complete(cursor):
                 await stream.news(version, timeout_s=STILL_HERE_S)
@@ -120,7 +122,8 @@ class Phone:
     async def _send(self, message: PhoneMessage | NoCapture) -> None:
         data = msgspec.json.encode(message)
         self._allowance -= len(data)
-        await asyncio.wait_for(self._socket.send_text(data.decode()), STALLED_S)
+        async with asyncio.timeout(STALLED_S):
+            await self._socket.send_text(data.decode())
 
     async def _wait_for_disconnect(self) -> None:
         """Wait until the phone disconnects; its messages are ignored."""

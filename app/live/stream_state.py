@@ -98,7 +98,8 @@ class StreamState:
         if self.version != version:
             return
         try:
-            await asyncio.wait_for(self._changed.wait(), timeout_s)
+            async with asyncio.timeout(timeout_s):
+                await self._changed.wait()
         except TimeoutError:
             return
 

@@ -131,9 +131,11 @@ class _Sink:
 async def _in_time(pieces: AsyncIterator[bytes]) -> AsyncIterator[bytes]:
     while True:
         try:
-            yield await asyncio.wait_for(anext(pieces), SILENT_S)
+            async with asyncio.timeout(SILENT_S):
+                piece = await anext(pieces)
         except StopAsyncIteration:
             return
+        yield piece
 
 
 def _cut(descriptor: int, length: int) -> None:

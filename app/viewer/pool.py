@@ -99,8 +99,9 @@ class ViewerPool:
         self._children.add(process.pid)
         assert process.stdout is not None
         with contextlib.suppress(TimeoutError):
-            if await asyncio.wait_for(process.stdout.readline(), STARTS_WITHIN_S) == READY:
-                return process, socket
+            async with asyncio.timeout(STARTS_WITHIN_S):
+                if await process.stdout.readline() == READY:
+                    return process, socket
         await self._end(process, socket)
         raise ViewerFailed(
             f"the viewer of {project.name} does not start; its log is in "
@@ -112,7 +113,8 @@ class ViewerPool:
         if process.returncode is None:
             process.terminate()
             try:
-                await asyncio.wait_for(process.wait(), ENDS_WITHIN_S)
+                async with asyncio.timeout(ENDS_WITHIN_S):
+                    await process.wait()
             except TimeoutError:
                 process.kill()
         await process.wait()

@@ -147,7 +147,8 @@ async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
     try:
         async for data in viewer:
             whole = data if isinstance(data, bytes) else data.encode()
-            await asyncio.wait_for(browser.send_bytes(whole), STALLED_S)
+            async with asyncio.timeout(STALLED_S):
+                await browser.send_bytes(whole)
     except WebSocketDisconnect:
         return
     except TimeoutError:
@@ -156,7 +157,8 @@ async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
     except ConnectionClosed:
         log.info("viewer connection lost")
     with contextlib.suppress(TimeoutError):
-        await asyncio.wait_for(browser.close(code), 1.0)
+        async with asyncio.timeout(1.0):
+            await browser.close(code)
 
 
 class Rate:

@@ -80,7 +80,8 @@ class Headless:
         self, seconds: float | None, recorder: asyncio.subprocess.Process
     ) -> None:
         with suppress(TimeoutError):
-            await asyncio.wait_for(self._stopping.wait(), seconds)
+            async with asyncio.timeout(seconds):
+                await self._stopping.wait()
         with suppress(ProcessLookupError):
             recorder.terminate()
         await recorder.wait()

@@ -81,7 +81,7 @@ export class LiveScene {
     const socket = this.#socket;
     if (!socket) return;
     socket.close();
-    this.#lost();
+    this.#lost({});
   }
 
   #checkLink() {

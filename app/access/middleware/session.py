@@ -29,6 +29,7 @@ SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 LOOK_AGAIN_S = 2.0
 """An open WebSocket or stream ends at most this long after its session [s]."""
+CANCEL_AGAIN_S = 1.0
 TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
 
 
@@ -105,8 +106,7 @@ class SessionMonitor:
         try:
             while not (await asyncio.wait({running}, timeout=LOOK_AGAIN_S))[0]:
                 if self._begun and not await asyncio.to_thread(self._still):
-                    running.cancel()
-                    await asyncio.wait({running})
+                    await cancelled(running)
                     await self._end(send)
                     return
         finally:
@@ -140,6 +140,13 @@ class SessionMonitor:
             await send({"type": "websocket.close", "code": 1008, "reason": "signed out"})
         elif not self._sized:  # else the server closes the connection: the file is incomplete
             await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+
+async def cancelled(running: asyncio.Future[None]) -> None:
+    """Cancel a task until it has ended: a library may lose a cancellation."""
+    while not running.done():
+        running.cancel()
+        await asyncio.wait({running}, timeout=CANCEL_AGAIN_S)
 
 
 async def find(access: Access, token: str) -> AuthenticatedSession | None:

@@ -105,8 +105,9 @@ async def started(
         )
     assert process.stdout is not None
     with suppress(TimeoutError):
-        if await asyncio.wait_for(process.stdout.readline(), STARTS_WITHIN_S) == b"ready\n":
-            return process
+        async with asyncio.timeout(STARTS_WITHIN_S):
+            if await process.stdout.readline() == b"ready\n":
+                return process
     with suppress(ProcessLookupError):
         process.kill()
     await process.wait()

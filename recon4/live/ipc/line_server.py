@@ -70,7 +70,8 @@ class LineServer:
         """Stop; messages already sent are still delivered."""
         for writer in list(self._writers):
             with suppress(ConnectionError, TimeoutError):
-                await asyncio.wait_for(writer.drain(), 2.0)
+                async with asyncio.timeout(2.0):
+                    await writer.drain()
             writer.close()
         if self._server is not None:
             self._server.close()

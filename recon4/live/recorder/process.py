@@ -110,7 +110,8 @@ class Recorder:
         on_ready()
         while not self._over.is_set():
             try:
-                await asyncio.wait_for(self._over.wait(), STATUS_EVERY_S)
+                async with asyncio.timeout(STATUS_EVERY_S):
+                    await self._over.wait()
             except TimeoutError:
                 self._report_status()
         await self._finish()

@@ -1,5 +1,6 @@
 """People, sessions and throttling, with a clock in hand."""
 
+import asyncio
 import contextlib
 import threading
 
@@ -7,6 +8,7 @@ import pytest
 
 from app.access.login.login_service import LoginOrigin
 from app.access.login.sessions import LIVES, form_token
+from app.access.middleware import session as session_middleware
 from app.access.people import Role
 from app.errors import Conflict, NotFound, Refused, WeakPassword, WrongPassword
 
@@ -43,6 +45,33 @@ def test_a_session_in_use_ends_at_last(access, clock, role):
 
     assert LIVES[role].whole_s < clock.now_s - began_s <= LIVES[role].whole_s * 1.5
     assert access.sessions.all() == []
+
+
+def test_a_socket_outlives_no_session_even_if_a_cancellation_is_lost(access, clock, monkeypatch):
+    monkeypatch.setattr(session_middleware, "LOOK_AGAIN_S", 0.01)
+    monkeypatch.setattr(session_middleware, "CANCEL_AGAIN_S", 0.01)
+    access.accounts.add("Anna", Role.VIEWER, PASSWORD)
+    session = access.sessions.find(access.sessions.begin("Anna", address="?", agent="")).session
+    sent = []
+
+    async def loses_one(scope, receive, send):
+        await send({"type": "websocket.accept"})
+        access.sessions.end(session.id)
+        with contextlib.suppress(asyncio.CancelledError):
+            await asyncio.Event().wait()
+        await asyncio.Event().wait()
+
+    async def send(message):
+        sent.append(message["type"])
+
+    async def open_socket():
+        monitor = session_middleware.SessionMonitor(access, session, {"type": "websocket"})
+        async with asyncio.timeout(10.0):
+            await monitor.run(loses_one, asyncio.Event().wait, send)
+
+    asyncio.run(open_socket())
+
+    assert sent == ["websocket.accept", "websocket.close"]
 
 
 def test_the_lives_of_sessions_are_as_documented():

@@ -108,3 +108,19 @@ def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabi
     assert 300_000 < client.bytes < phones.BYTES_AT_FIRST + 2e6 / 8 * seconds
     poses = [one["pose"]["p"][0] for one in client.received if "pose" in one]
     assert poses[-1] == 19.0
+
+
+def test_a_stream_cancelled_while_it_sends_ends(captures):
+    class SignedOut(Client):
+        async def _receive(self, message):
+            await super()._receive(message)
+            if "text" in message and len(self.received) == 1:
+                self.running.cancel()
+
+    async def one_phone():
+        client = SignedOut(captures)
+        client.running = asyncio.create_task(client.run())
+        await asyncio.wait({client.running}, timeout=5.0)
+        return client.running.cancelled(), len(client.received)
+
+    assert asyncio.run(one_phone()) == (True, 1)
