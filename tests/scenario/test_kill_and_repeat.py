@@ -1,4 +1,4 @@
-"""A killed and resumed run gives the same bytes, as does any other run of the same input."""
+"""A run that was stopped or killed and resumed gives the same bytes, as does any other run."""
 
 import json
 import os
@@ -17,8 +17,16 @@ FEW = [
     *("--set", "map.voxel_m=0.1", "--set", "graph.node_stride=4"),
     *("--set", "segments.preserved=2"),
 ]
+UNFINISHED = (".tmp-", "buckets-")
+"""Beginnings of the names of unfinished files and folders."""
 RESULTS = sorted({*ALL_RESULTS} - {"report.html"})  # it says when it was made
-KILLED_AFTER = ("hash", "odometry:", "graph:", "refine:", "intensity:")
+ENDED_AFTER = {
+    "hash": signal.SIGTERM,
+    "odometry:": signal.SIGKILL,
+    "graph:": signal.SIGINT,
+    "refine:": signal.SIGKILL,
+    "intensity:": signal.SIGTERM,
+}
 """Every stage of a job, by a gate: ``tests/service/test_killing.py``."""
 
 
@@ -60,38 +68,59 @@ def test_one_thread_gives_the_bytes_of_two(short_recording, unbroken, tmp_path):
     assert_same(results(tmp_path / "one"), results(unbroken))
 
 
-def test_a_run_killed_in_five_stages_resumes_to_the_same_bytes(short_recording, unbroken, tmp_path):
-    """Each run is killed a random while after a stage ended, so that the next one is hit.
+def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(short_recording, unbroken, tmp_path):
+    """Each run is ended a random while after a stage ended, so that the next one is hit.
 
-    SIGKILL goes to a real process: no cleaning up, no last word.
+    The signals go to a real process. SIGKILL: no cleaning up, no last word. The others: one line,
+    no traceback, no unfinished file.
     """
     rng = np.random.default_rng(5)
-    out = tmp_path / "killed"
+    out = tmp_path / "ended"
     finished = []
-    for stage in KILLED_AFTER:
-        run_and_kill(command(short_recording, out), news=stage, seconds=rng.uniform(0.0, 0.3))
+    for stage, sign in ENDED_AFTER.items():
+        run = command(short_recording, out)
+        code, said = run_and_end(run, news=stage, seconds=rng.uniform(0.0, 0.3), sign=sign)
         finished.append(len([*(out / "artifacts").glob("[!.]*")]))
+        if sign == signal.SIGKILL:
+            assert code == -sign
+            continue
+        assert code == 128 + sign, said
+        stopped = f"recon4: stopped by {sign.name}; the same command goes on"
+        assert stopped in said and said.count("recon4:") == 1, said
+        assert "Traceback" not in said
+        assert not [path for path in out.rglob("*") if path.name.startswith(UNFINISHED)]
 
     assert main(command(short_recording, out)) == 0
 
     assert_same(results(out), results(unbroken))
-    assert len(set(finished)) >= 4, f"kills should fall into different stages: {finished}"
+    assert len(set(finished)) >= 4, f"signals should fall into different stages: {finished}"
     assert not list(out.glob("**/.tmp-*"))
     assert main(["verify", str(out)]) == 0
 
 
-def run_and_kill(arguments, *, news, seconds):
-    """Start a run, wait for a line that begins with ``news``, and some time more; kill it."""
+def run_and_end(arguments, *, news, seconds, sign):
+    """Start a run, wait for a line that begins with ``news``, and some time more; send a signal.
+
+    Returns:
+        Exit code, and what it said after that line.
+    """
     run = subprocess.Popen(
         [sys.executable, "-m", "recon4", *arguments],
         stderr=subprocess.PIPE,
         text=True,
         env=os.environ | {"OMP_NUM_THREADS": "1"},
+        preexec_fn=obey_sigint,
     )
     with run:
         assert run.stderr is not None
         said = next((line for line in run.stderr if line.startswith(news)), "")
         time.sleep(seconds)
-        run.send_signal(signal.SIGKILL)
-    assert said, f"ended before it said {news!r}"
-    assert run.returncode == -signal.SIGKILL
+        run.send_signal(sign)
+        rest = run.stderr.read()
+    assert said, f"ended before it said {news!r}: {rest}"
+    return run.returncode, rest
+
+
+def obey_sigint():
+    """In the child: a shell that runs the tests in the background had it ignored."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)

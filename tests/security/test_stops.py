@@ -1,23 +1,17 @@
 """A stopped command prints one line and exits with 128 + n, wherever the signal arrives.
 
-Figures to hold: 0 tracebacks, 0 unfinished files, exit code 143 (SIGTERM) or 130 (SIGINT).
+Runs that are stopped and resumed: ``tests/scenario/test_kill_and_repeat.py``.
 """
 
 from __future__ import annotations
 
-import shutil
 import signal
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 
-from tests.service.killing import QUICK
 from tests.service.running import ROOT
-
-STOPS = 4
-"""Random moments in one run."""
 
 SWALLOWED = """
 import ctypes, os, signal, sys, weakref
@@ -76,52 +70,6 @@ def test_a_signal_is_obeyed_where_python_throws_exceptions_away(where, name):
     assert ended.returncode == 128 + signal.Signals[name]
 
 
-@pytest.mark.slow
-def test_processing_stopped_at_random_moments_leaves_nothing_and_goes_on(tmp_path, short_recording):
-    """Each command goes on where the last one was stopped."""
-    shutil.copytree(short_recording, tmp_path / "walk")
-    rng = np.random.default_rng(4)
-    stopped = 0
-    for _ in range(STOPS):
-        sign = rng.choice([signal.SIGTERM, signal.SIGINT])
-        code, err = stop_after(tmp_path, lines=int(rng.integers(1, 6)), sign=sign)
-        if code != 0:
-            stopped += 1
-            assert code == 128 + sign, err
-            assert err.count("recon4:") == 1, err
-            assert (
-                f"recon4: stopped by {signal.Signals(sign).name}; the same command goes on" in err
-            )
-        assert "Traceback" not in err
-        left = [p for p in (tmp_path / "out").rglob("*") if p.name.startswith((".tmp", "bu"))]
-        assert left == []
-
-    assert stopped
-    assert subprocess.run(command(tmp_path), check=False, capture_output=True).returncode == 0
-
-
 def obey_sigint():
     """In the child: a shell that runs this in the background had it ignored."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
-def stop_after(folder, *, lines, sign):
-    """Send a signal after some lines of progress; returns exit code and standard error."""
-    with subprocess.Popen(
-        command(folder),
-        stderr=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        text=True,
-        cwd=ROOT,
-        preexec_fn=obey_sigint,
-    ) as process:
-        said = "".join(process.stderr.readline() for _ in range(lines))
-        process.send_signal(sign)
-        said += process.stderr.read()
-    return process.returncode, said
-
-
-def command(folder):
-    walk, sets = folder / "walk", [word for one in QUICK for word in ("--set", one)]
-    given = [str(walk / "recording.pcap"), "--rig", "4recon", "--imu", str(walk / "imu.csv")]
-    return [sys.executable, "-m", "recon4", "process", *given, "--out", str(folder / "out"), *sets]
