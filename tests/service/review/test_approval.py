@@ -16,13 +16,24 @@ from recon4.review.journal import NAME, append
 from recon4.store.hashing import hash_file
 from tests.g2o_reader import read_g2o
 from tests.review_project import LOST, judge, make
-from tests.service.review.reviewing import RIGHT, decide, keys_of, make_a_new_map
+from tests.service.review.reviewing import RIGHT, Reviewing, decide, keys_of, make_a_new_map
 
 # -- approval
 
 
 def approve(server, **more):
     return server.post("/approve", json={"why": "checked against the plan", **more})
+
+
+@pytest.fixture(scope="module")
+def approved(made, running):
+    """A project with an approved version, for tests that do not change it; and its hash."""
+    root = running.root / "approved"
+    shutil.copytree(made, root)
+    server = Reviewing(running, root)
+    decide(server, "reject", RIGHT)
+    server.post("/undo", json={})
+    return root, approve(server).json()["approval"]["hash"]
 
 
 def test_an_approval_is_signed_and_every_export_carries_it(server, root):
@@ -104,8 +115,8 @@ def test_points_of_an_approved_map_are_those_of_the_draft(server, root):
 
 
 @pytest.mark.parametrize("name", ["map.laz", "map.ply"])
-def test_an_export_of_an_approved_map_carries_the_approval(server, root, tmp_path, name):
-    sha = approve(server).json()["approval"]["hash"]
+def test_an_export_of_an_approved_map_carries_the_approval(approved, tmp_path, name):
+    root, sha = approved
 
     assert main(["export", str(root), str(tmp_path / name)]) == 0
 
@@ -113,8 +124,8 @@ def test_an_export_of_an_approved_map_carries_the_approval(server, root, tmp_pat
 
 
 @pytest.mark.parametrize("name", ["s.svg", "s.laz", "s.csv", "s.dxf", "s.tif"])
-def test_a_slice_cut_by_command_carries_the_approval(server, root, tmp_path, name):
-    sha = approve(server).json()["approval"]["hash"]
+def test_a_slice_cut_by_command_carries_the_approval(approved, tmp_path, name):
+    root, sha = approved
 
     assert main(["slice", str(root), str(tmp_path / name), "--z", "0.5"]) == 0
 
@@ -203,6 +214,11 @@ def test_undoing_everything_finds_the_approved_results_again(server, root):
     assert main(["verify", str(root)]) == 0
 
 
+def test_verify_finds_nothing_where_nothing_was_changed(approved, capsys):
+    assert main(["verify", str(approved[0])]) == 0
+    assert "version 1, approved by local" in capsys.readouterr().out
+
+
 def forge_row(root):
     db = sqlite3.connect(root / NAME)
     db.execute("DROP TRIGGER no_change")
@@ -250,11 +266,8 @@ def overwrite(path, data):
         (add_version, "versions/2 is in no row of the journal"),
     ],
 )
-def test_verify_finds_every_change(server, root, capsys, forge, words):
-    decide(server, "reject", RIGHT)
-    server.post("/undo", json={})
-    approve(server)
-    assert main(["verify", str(root)]) == 0
+def test_verify_finds_every_change(approved, tmp_path, capsys, forge, words):
+    root = shutil.copytree(approved[0], tmp_path / "forged")
 
     forge(root)
 
