@@ -9,18 +9,23 @@ from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 from urllib.parse import urlsplit
 
 import httpx
 from anyio.from_thread import BlockingPortal, start_blocking_portal
+from argon2 import PasswordHasher
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from app.access.login import passwords
 from app.access.login.login_service import open_access
 from app.access.people import Role
 from tests.service.running import Running, server_thread
 
 PASSWORD = "three green owls dance"
+CHEAP = PasswordHasher(time_cost=1, memory_cost=8, parallelism=1)
+"""What a hash costs is tested in ``tests/unit/app/test_access_passwords.py``."""
 ROLES = {"vera": Role.VIEWER, "otto": Role.OPERATOR, "rita": Role.REVIEWER, "anna": Role.ADMIN}
 """Name -> role of all people on the servers of tests."""
 
@@ -108,13 +113,14 @@ class Secure:
 
 @contextmanager
 def secure_server(root: Path, **settings: Any) -> Iterator[Secure]:
-    """A server with TLS, login, and the accounts of `ROLES`."""
+    """A server with TLS, login, and the accounts of `ROLES`; its passwords are hashed cheaply."""
     state = root / ".recon4"
     state.mkdir(exist_ok=True)
-    access = open_access(state, login=True)
-    if not access.accounts.all():
-        for name, role in ROLES.items():
-            access.accounts.add(name, role, PASSWORD)
-    access.close()
-    with server_thread(root, lan=True, **settings) as running:
-        yield Secure(running)
+    with patch.object(passwords, "HASHER", CHEAP):
+        access = open_access(state, login=True)
+        if not access.accounts.all():
+            for name, role in ROLES.items():
+                access.accounts.add(name, role, PASSWORD)
+        access.close()
+        with server_thread(root, lan=True, **settings) as running:
+            yield Secure(running)
