@@ -53,7 +53,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev
-	nice -n 5 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
+	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
 e2e: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -m e2e --durations=10
