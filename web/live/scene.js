@@ -66,7 +66,8 @@ export class LiveScene {
     }));
   }
 
-  #lost({ code, reason }) {
+  /** @param {{ code?: number, reason?: string }} closed what the server gave as its reason, if it did */
+  #lost({ code, reason = "" }) {
     this.#socket = null;
     this.#announced = null;
     this.#on.link(false, code === TOO_MANY ? reason : "");
