@@ -66,7 +66,7 @@ export class LiveScene {
     }));
   }
 
-  /** @param {{ code?: number, reason?: string }} closed what the server gave as its reason, if it did */
+  /** @param {{ code?: number, reason?: string }} closed why the server closed, if it did */
   #lost({ code, reason = "" }) {
     this.#socket = null;
     this.#announced = null;
