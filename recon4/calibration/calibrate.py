@@ -21,6 +21,7 @@ from recon4.calibration.joint import (
     LAST_ROUNDS,
     NEAR_ROUNDS,
     ROUNDS,
+    SIGMAS,
     JointEstimate,
     calibrate_jointly,
     explain,
@@ -38,7 +39,6 @@ from recon4.model.rig import Rig
 from recon4.progress import Progress, track
 from recon4.settings import CalibrationSettings, Settings
 
-_SIGMAS = 3.0
 _MIN_WINDOWS = 3
 _FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
 """With a larger change from the rig file other mounts are tried too."""
@@ -202,7 +202,7 @@ def _is_near(found: JointEstimate, recorded: Rig) -> bool:
     turns about the vertical hardly shows its position.
     """
     change = np.abs(found.parameters.between(recorded, found.rig))
-    noise = _SIGMAS * np.where(np.isfinite(found.sd), found.sd, 0.0)
+    noise = SIGMAS * np.where(np.isfinite(found.sd), found.sd, 0.0)
     of_lidars = np.array([parameter.sensor != IMU for parameter in found.parameters.listed])
     near = change < np.maximum(_far(found.parameters), noise)
     return bool(np.all(near[of_lidars]))

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.calibration.equations import Fit
-from recon4.calibration.joint import JointEstimate
+from recon4.calibration.joint import SIGMAS, JointEstimate
 from recon4.calibration.parameters import Parameters, Unit
 from recon4.geometry.se3 import Array
 from recon4.model.figures import ParameterFigures
@@ -19,7 +19,6 @@ _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s"
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
 _KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
 """The same of single beams."""
-_SIGMAS = 3.0
 _NOT_WORSE, _BETTER = 1.01, 0.99
 """Ratio of figures of fit, after against before."""
 
@@ -72,9 +71,9 @@ def not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArra
     if second is None:
         return np.zeros(len(first.parameters), dtype=bool)
     limit = np.abs(_known_errors(first.parameters))
-    undetected = _SIGMAS * np.hypot(first.sd, second.sd) > limit
+    undetected = SIGMAS * np.hypot(first.sd, second.sd) > limit
     vague = np.maximum(first.sd, second.sd) > limit
-    return np.asarray(vague | (undetected & (np.abs(first.change) <= _SIGMAS * first.sd)))
+    return np.asarray(vague | (undetected & (np.abs(first.change) <= SIGMAS * first.sd)))
 
 
 def refusal(
@@ -94,7 +93,7 @@ def refusal(
             return "nothing is corrected: mounts, clocks and beams agree with the rig file"
         return "inconclusive: longer windows do not confirm what the audit found"
     apart = np.abs(first.parameters.between(first.rig, second.rig))
-    scatter = _SIGMAS * np.hypot(first.sd, second.sd)
+    scatter = SIGMAS * np.hypot(first.sd, second.sd)
     limit = np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters)))
     checked = np.array([row.status != "not observable" for row in rows])
     wrong = np.flatnonzero(checked & (apart > limit))

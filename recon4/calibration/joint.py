@@ -13,6 +13,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.special import ndtr, stdtrit
 
 from recon4.calibration.equations import Fit, Reduced, RoundBounds, WindowState, reduce_window
 from recon4.calibration.imu_rows import WindowBiases, measured_noise
@@ -49,6 +50,9 @@ _VAGUE: dict[Unit, float] = {"rad": float(np.deg2rad(0.5)), "m": 0.05, "s": 5e-3
 """With a larger formal standard deviation a direction counts as not shown by the walk."""
 _MIN_WINDOWS = 3
 """Fewer windows do not show how much their estimates scatter."""
+SIGMAS = 3.0
+"""A change of more standard deviations is no noise."""
+_QUANTILE = float(ndtr(SIGMAS))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -59,11 +63,29 @@ class JointEstimate:
     parameters: Parameters
     change: Array
     """From the rig it began with, (P,)."""
-    sd: Array
-    """Standard deviation of each parameter, (P,): by the scatter of the windows, at least formal;
-    infinite with too few windows."""
+    formal_sd: Array
+    """Standard deviation of each parameter by the normal equations, (P,)."""
+    scatter_sd: Array
+    """The same by the scatter of the windows, (P,); infinite with too few windows."""
     fits: tuple[Fit, ...]
     """How well each window is explained in the end; windows without planes are left out."""
+
+    @property
+    def sd(self) -> Array:
+        """Standard deviation of each parameter, the larger of both, (P,)."""
+        return np.maximum(self.formal_sd, self.scatter_sd)
+
+    @property
+    def noise(self) -> Array:
+        """Changes up to this may be noise, (P,): three standard deviations.
+
+        How much a few windows scatter is itself uncertain: four of them show a standard deviation
+        whose true value may well be three times as large (Student's t).
+        """
+        if len(self.fits) < _MIN_WINDOWS:
+            return np.full(len(self.change), np.inf)
+        of_scatter = float(stdtrit(len(self.fits) - 1, _QUANTILE))
+        return np.maximum(SIGMAS * self.formal_sd, of_scatter * self.scatter_sd)
 
     @property
     def rms_m(self) -> float:
@@ -108,7 +130,8 @@ def calibrate_jointly(
         rig,
         parameters,
         parameters.between(first, rig),
-        np.maximum(formal, _scatter(usable, prior)),
+        formal,
+        _scatter(usable, prior),
         tuple(part.fit for part in usable),
     )
 

@@ -8,12 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.calibration.joint import JointEstimate
+from recon4.calibration.joint import SIGMAS, JointEstimate
 from recon4.calibration.parameters import Parameter, Unit
 from recon4.model.figures import GNSS, IMU, ParameterFigures, ParameterStatus
 from recon4.model.plain import finite_or_none
-
-_SIGMAS = 3.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +51,8 @@ def judge(
         not_observable: Parameters that kept their values because the walk does not show them, (P,).
     """
     kept = np.zeros(len(estimate.sd), bool) if not_observable is None else not_observable
-    sd = np.where(kept, np.inf, estimate.sd)
-    rows = zip(estimate.parameters.listed, estimate.change, sd, strict=True)
+    sd, noises = (np.where(kept, np.inf, known) for known in (estimate.sd, estimate.noise))
+    rows = zip(estimate.parameters.listed, estimate.change, sd, noises, strict=True)
     return tuple(
         ParameterFigures(
             sensor=parameter.sensor,
@@ -63,17 +61,20 @@ def judge(
             unit=parameter.unit,
             change=float(change),
             sd=finite_or_none(sd_of_row),
-            status=_status(float(change), float(sd_of_row), parameter),
+            status=_status(
+                float(change), parameter, sd=float(sd_of_row), noise=float(noise_of_row)
+            ),
         )
-        for parameter, change, sd_of_row in rows
+        for parameter, change, sd_of_row, noise_of_row in rows
     )
 
 
-def _status(change: float, sd: float, parameter: Parameter) -> ParameterStatus:
+def _status(change: float, parameter: Parameter, *, sd: float, noise: float) -> ParameterStatus:
     limits = (_BEAM_LIMITS if parameter.of_beam else _LIMITS)[parameter.unit]
-    if abs(change) > max(_SIGMAS * sd, limits.tolerance):
+    if abs(change) > max(noise, limits.tolerance):
         return "off"
-    return "consistent" if sd <= limits.observable_sd else "not observable"
+    agrees = sd <= limits.observable_sd and abs(change) <= max(SIGMAS * sd, limits.tolerance)
+    return "consistent" if agrees else "not observable"
 
 
 def split_beams(

@@ -1,0 +1,50 @@
+"""What an estimate says of a parameter depends on how many windows it comes from."""
+
+import numpy as np
+import pytest
+
+from recon4.calibration.equations import Fit
+from recon4.calibration.joint import JointEstimate
+from recon4.calibration.judgment import contradictions, judge
+from recon4.calibration.parameters import Parameters
+from recon4.geometry.se3 import SE3
+from tests.room_walks import rig_of
+
+FIT = Fit(points=1000, shared_points=500, rms_m=0.01, offset_m=0.001, imu_rms=1.0)
+
+
+def estimate(turn_deg, sd_deg, *, windows, formal_deg=0.001):
+    """A LiDAR that is turned about y, known by the scatter of some windows."""
+    rig = rig_of(SE3.identity(), SE3.identity())
+    parameters = Parameters.of(rig, reference=0, lidars=(1,), imu=False)
+    change = np.deg2rad([0.0, turn_deg, 0.0, 0.0, 0.0, 0.0, 0.0])
+    formal, scatter = (np.full(7, np.deg2rad(value)) for value in (formal_deg, sd_deg))
+    return JointEstimate(rig, parameters, change, formal, scatter, (FIT,) * windows)
+
+
+@pytest.mark.parametrize(("windows", "status"), [(4, "not observable"), (24, "off")])
+def test_few_windows_show_their_own_scatter_only_roughly(windows, status):
+    rows = judge(estimate(0.91, 0.22, windows=windows))
+
+    assert rows[1].status == status
+    assert bool(contradictions(rows)) == (status == "off")
+
+
+def test_a_large_error_is_found_by_few_windows():
+    rows = judge(estimate(1.4, 0.04, windows=4))
+
+    assert rows[1].status == "off"
+    assert "1.40° ± 0.04° (rotation, mostly about y)" in contradictions(rows)[0]
+
+
+def test_formal_deviations_are_known():
+    rows = judge(estimate(0.5, 0.01, windows=4, formal_deg=0.15))
+
+    assert rows[1].status == "off"
+
+
+def test_a_change_that_may_be_noise_does_not_confirm_the_rig_file():
+    rows = judge(estimate(0.39, 0.09, windows=4))
+
+    assert rows[1].status == "not observable"
+    assert rows[0].status == "consistent"
