@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import time
 from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 
@@ -50,21 +51,27 @@ class Upload:
     finished: bool = False
     announced: dict[str, UploadedFile] = field(default_factory=dict)
     """Name at the sender -> file."""
+    changed_s: float = field(default_factory=time.time)
+    """When a file was announced or bytes arrived [s since 1970]; not stored, files have times."""
+
+    @property
+    def listed(self) -> list[UploadedFile]:
+        """The announced files; a copy, because other threads announce more meanwhile."""
+        return list(self.announced.values())
 
     @property
     def received(self) -> int:
         """Bytes that are durably on disk, of all files."""
-        return self.bytes if self.finished else sum(file.offset for file in self.announced.values())
+        return self.bytes if self.finished else sum(file.offset for file in self.listed)
 
     @property
     def whole(self) -> bool:
         """Whether every announced file is complete."""
-        return len(self.announced) == self.files and all(
-            file.whole for file in self.announced.values()
-        )
+        files = self.listed
+        return len(files) == self.files and all(file.whole for file in files)
 
     def recording(self, recordings: Path) -> Path:
         """The path for a job: the file itself if there is only one, else the folder."""
         folder = recordings / self.folder
-        only = next(iter(self.announced.values())) if self.files == 1 else None
+        only = self.listed[0] if self.files == 1 else None
         return folder / only.path if only else folder

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import time
 from datetime import UTC, datetime
 from email.utils import formatdate
 from typing import Annotated
@@ -146,7 +147,7 @@ def list_files(upload_id: str, server: Server) -> list[FileView]:
     upload = server.uploads.get(upload_id)
     return [
         FileView(name=file.name, bytes=file.bytes, offset=file.offset, url=_url(upload, file))
-        for file in upload.announced.values()
+        for file in upload.listed
     ]
 
 
@@ -300,6 +301,7 @@ async def _take(
         finally:
             if path.exists():  # not if the upload was removed meanwhile
                 file.offset = path.stat().st_size
+            upload.changed_s = time.time()
 
 
 def _offset_headers(server: ServerParts, upload: Upload, file: UploadedFile) -> dict[str, str]:

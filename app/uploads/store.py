@@ -18,7 +18,6 @@ import secrets
 import shutil
 import threading
 import time
-from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import fields
 from datetime import UTC, datetime
@@ -37,6 +36,7 @@ from recon4.store.json_files import read_object
 log = logging.getLogger(__name__)
 
 _PLAIN = {"str": str, "int": int, "bool": bool}
+_NOT_STORED = ("announced", "changed_s")
 UPLOAD_ID = re.compile(r"[0-9a-f]{12}")
 
 
@@ -90,7 +90,7 @@ class UploadStore:
         """
         upload_id, _, number = file_id.partition("-")
         upload = self.get(upload_id)
-        for file in upload.announced.values():
+        for file in upload.listed:
             if str(file.number) == number:
                 return upload, file
         raise NotFound(f"no file {number[:16]!r} in upload {upload_id}")
@@ -148,6 +148,7 @@ class UploadStore:
             except (FileExistsError, NotADirectoryError) as error:
                 raise BadRequest(f"a file and a folder are both called {name[:100]!r}") from error
             upload.announced[name] = file
+            upload.changed_s = time.time()
             return file
 
     def data(self, upload: Upload, file: UploadedFile) -> Path:
@@ -166,7 +167,7 @@ class UploadStore:
                     path.chmod(0o755 if path.is_dir() else 0o444)  # a recording is never changed
                 data.rename(target)
                 fsync(self.recordings)
-            upload.finished = True
+            upload.finished, upload.changed_s = True, time.time()
             self._note(upload)
 
     def remove(self, upload: Upload) -> None:
@@ -182,8 +183,7 @@ class UploadStore:
 
     def expires(self, upload: Upload) -> float:
         """When an upload is removed unless more data arrive [s since 1970]."""
-        newest = max((p.stat().st_mtime for p in self._files(upload)), default=time.time())
-        return newest + self._settings.upload_stale_s
+        return upload.changed_s + self._settings.upload_stale_s
 
     def sweep(self, now_s: float) -> list[str]:
         """Remove uploads without new data for a long time.
@@ -248,15 +248,10 @@ class UploadStore:
     def _data(self, upload: Upload, file: UploadedFile) -> Path:
         return self._folder / upload.id / "data" / file.path
 
-    def _files(self, upload: Upload) -> Iterator[Path]:
-        yield self._folder / upload.id / "upload.json"
-        if not upload.finished:
-            yield from (
-                p for file in upload.announced.values() if (p := self._data(upload, file)).exists()
-            )
-
     def _note(self, upload: Upload) -> None:
-        facts = {f.name: getattr(upload, f.name) for f in fields(upload) if f.name != "announced"}
+        facts = {
+            f.name: getattr(upload, f.name) for f in fields(upload) if f.name not in _NOT_STORED
+        }
         write_json(self._folder / upload.id / "upload.json", facts)
 
     def _read(self) -> None:
@@ -285,6 +280,7 @@ class UploadStore:
             )
             file.offset = file.bytes if moved else self._data(upload, file).stat().st_size
             upload.announced[file.name] = file
+        upload.changed_s = _newest_s(folder)
         return upload
 
 

@@ -4,13 +4,15 @@ import hashlib
 import os
 import random
 import signal
+import threading
 import time
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 import httpx
 import pytest
 
 from app.settings import ServerSettings
+from app.uploads.model import UploadedFile
 from app.uploads.store import UploadStore
 from tests.service.running import server_process, server_thread
 from tests.service.tus_client import CHUNK, TUS, create, offset, patch, patch_and_break_off
@@ -245,6 +247,40 @@ def test_an_upload_nothing_comes_for_is_given_up_and_a_recording_is_not(tmp_path
     assert set(swept) == {stale.id, whole.id}
     assert list((tmp_path / ".recon4" / "uploads").iterdir()) == []
     assert whole.recording(store.recordings).exists()
+
+
+def test_what_a_server_that_ended_had_received_long_ago_is_given_up(tmp_path):
+    store = UploadStore(ServerSettings(root=tmp_path))
+    upload = store.begin("stale", files=1, total=3, fingerprint="", by="me")
+    store.add(upload, "a.bag", length=3)
+    folder = tmp_path / ".recon4" / "uploads" / upload.id
+    for path in (*folder.rglob("*"), folder):
+        os.utime(path, (0, time.time() - 8 * 86400.0))
+
+    assert UploadStore(ServerSettings(root=tmp_path)).sweep(time.time()) == [upload.id]
+
+
+def test_files_are_counted_while_others_are_announced(tmp_path):
+    upload = UploadStore(ServerSettings(root=tmp_path)).begin(
+        "walk", files=100_000, total=100_000, fingerprint="", by="me"
+    )
+
+    def announce():
+        for n in range(upload.files):
+            path = PurePosixPath(f"{n}.bin")
+            upload.announced[str(path)] = UploadedFile(
+                number=n, name=str(path), path=path, bytes=1, offset=1
+            )
+
+    sender = threading.Thread(target=announce)
+    sender.start()
+    while sender.is_alive():
+        assert upload.received <= upload.files
+        assert not upload.whole or len(upload.announced) == upload.files
+    sender.join()
+
+    assert upload.received == upload.files
+    assert upload.whole
 
 
 def test_a_damaged_upload_is_reported_until_it_expires(tmp_path):
