@@ -63,10 +63,12 @@ class UploadStore:
 
     def notices(self) -> list[str]:
         """For users: the uploads that cannot be resumed, because their files are damaged."""
+        with self._lock:
+            damaged = list(self._damaged.items())
         return [
             f"Upload {name} cannot be resumed, its files are damaged ({why}). Send the recording "
             f"again. What was received is kept for a while in {self._folder / name}."
-            for name, why in self._damaged.items()
+            for name, why in damaged
         ]
 
     def get(self, upload_id: str) -> Upload:
