@@ -106,7 +106,8 @@ class Supervisor:
 
     def touched_since(self, version: int) -> list[str]:
         """Jobs that changed after that version."""
-        return [job_id for job_id, touched in self._touched.items() if touched > version]
+        touched = list(self._touched.items())  # a copy: the event loop adds meanwhile
+        return [job_id for job_id, since in touched if since > version]
 
     def wake(self, job: Job) -> None:
         """Process the queue now, because a job was added or changed. Thread-safe."""
