@@ -55,7 +55,7 @@ def replay(
             progress=progress,
             target=to,
             speed=speed,
-            times=times,
+            repetitions=times,
             rig=load_rig(rig) if rig else None,
         )
     _write(f"{sent} datagrams sent")

@@ -43,7 +43,7 @@ _AHEAD_NS = 500_000
 
 
 @dataclass(frozen=True, slots=True)
-class Shipment:
+class ReplayDatagram:
     """A datagram to be sent."""
 
     t_ns: int
@@ -51,11 +51,11 @@ class Shipment:
     source: str
     port: int
     payload: bytes
-    stamped: bool = False
+    is_json: bool = False
     """The payload is JSON with an absolute ``t_ns``."""
 
 
-Alter = Callable[[Shipment], Iterable[Shipment]]
+Alter = Callable[[ReplayDatagram], Iterable[ReplayDatagram]]
 """Datagrams that are sent in place of one; simulates bad networks in tests."""
 
 
@@ -65,8 +65,8 @@ def replay(
     progress: Progress,
     target: str = "127.0.0.1",
     speed: float = 1.0,
-    times: int = 1,
-    alter: Alter = lambda shipment: (shipment,),
+    repetitions: int = 1,
+    alter: Alter = lambda datagram: (datagram,),
     rig: Rig | None = None,
 ) -> int:
     """Send a recording at the recorded speed, as the datagrams of its sensors.
@@ -77,8 +77,8 @@ def replay(
         progress: Receives the seconds of the recording.
         target: Address to send to.
         speed: Speed factor; the recorder must be started with the same one.
-        times: Number of rounds, one after the other with increasing time; for walks that end
-            where they began.
+        repetitions: Number of rounds, one after the other with increasing time; for walks that
+            end where they began.
         alter: May drop, change or multiply datagrams.
         rig: Topics and ports of scans; None = the shipped rig and default ports.
 
@@ -89,7 +89,7 @@ def replay(
         RecordingError: If there is nothing to send.
         ConfigError: If the address is invalid or cannot be reached.
     """
-    rounds = _rounds(recording, times, rig)
+    rounds = _rounds(recording, repetitions, rig)
     first = next(rounds, None)
     if first is None:
         raise EmptyRecording(f"{recording.name}: no UDP datagram found")
@@ -99,11 +99,11 @@ def replay(
     sent = 0
     progress.start("replay", 0, "s")
     with _Senders(target) as senders:
-        for shipment, later_ns in chain((first,), rounds):
-            t_ns = shipment.t_ns + later_ns
+        for datagram, later_ns in chain((first,), rounds):
+            t_ns = datagram.t_ns + later_ns
             _wait_until(began_ns + round((t_ns - first_ns) / speed))
-            for altered in alter(shipment):
-                senders.send(moved(altered, shift_ns + later_ns))
+            for altered in alter(datagram):
+                senders.send(shifted_in_time(altered, shift_ns + later_ns))
                 sent += 1
             if t_ns - second_ns >= 1_000_000_000:
                 second_ns = t_ns
@@ -111,7 +111,7 @@ def replay(
     return sent
 
 
-def shipments_of(recording: Path, rig: Rig | None = None) -> Iterator[Shipment]:
+def datagrams_of(recording: Path, rig: Rig | None = None) -> Iterator[ReplayDatagram]:
     """All datagrams of a recording in order of time.
 
     Args:
@@ -120,12 +120,12 @@ def shipments_of(recording: Path, rig: Rig | None = None) -> Iterator[Shipment]:
     """
     if has_scans(recording, rig):
         for sent in datagrams_of_scans(recording, rig):
-            yield Shipment(sent.t_ns, "127.0.0.1", sent.port, sent.payload, stamped=True)
+            yield ReplayDatagram(sent.t_ns, "127.0.0.1", sent.port, sent.payload, is_json=True)
         return
     yield from _captured(recording)
 
 
-def _captured(recording: Path) -> Iterator[Shipment]:
+def _captured(recording: Path) -> Iterator[ReplayDatagram]:
     """Datagrams of capture files, and samples of the CSV files beside them."""
     files = pcap_files(recording)
     folder = recording if recording.is_dir() else recording.parent
@@ -133,35 +133,37 @@ def _captured(recording: Path) -> Iterator[Shipment]:
     for name, port in (("imu.csv", IMU_PORT), ("gnss.csv", GNSS_PORT)):
         if (folder / name).exists():
             parts.append(_samples(folder / name, port))
-    return heapq.merge(*parts, key=lambda shipment: shipment.t_ns)
+    return heapq.merge(*parts, key=lambda datagram: datagram.t_ns)
 
 
-def _rounds(recording: Path, times: int, rig: Rig | None) -> Iterator[tuple[Shipment, int]]:
+def _rounds(
+    recording: Path, repetitions: int, rig: Rig | None
+) -> Iterator[tuple[ReplayDatagram, int]]:
     """Every datagram of every round, with the time offset of the round [ns]."""
     later_ns = 0
-    for _ in range(times):
+    for _ in range(repetitions):
         first_ns = last_ns = None
-        for shipment in shipments_of(recording, rig):
-            first_ns = shipment.t_ns if first_ns is None else first_ns
-            last_ns = shipment.t_ns
-            yield shipment, later_ns
+        for datagram in datagrams_of(recording, rig):
+            first_ns = datagram.t_ns if first_ns is None else first_ns
+            last_ns = datagram.t_ns
+            yield datagram, later_ns
         if first_ns is None or last_ns is None:
             return
         later_ns += (last_ns - first_ns) // 1000 * 1000 + _BETWEEN_NS
 
 
-def moved(shipment: Shipment, shift_ns: int) -> Shipment:
+def shifted_in_time(datagram: ReplayDatagram, shift_ns: int) -> ReplayDatagram:
     """The datagram with all its timestamps shifted by ``shift_ns``."""
-    payload = shipment.payload
+    payload = datagram.payload
     at = _STAMP_AT.get(len(payload))
-    if shipment.stamped:
+    if datagram.is_json:
         payload = b"\n".join(_later(line, shift_ns) for line in payload.splitlines())
     elif at is not None:
         stamp_us = int.from_bytes(payload[at : at + 4], "little")
         if stamp_us < HOUR_US:
             later = ((stamp_us + shift_ns // 1000) % HOUR_US).to_bytes(4, "little")
             payload = payload[:at] + later + payload[at + 4 :]
-    return Shipment(shipment.t_ns + shift_ns, shipment.source, shipment.port, payload)
+    return ReplayDatagram(datagram.t_ns + shift_ns, datagram.source, datagram.port, payload)
 
 
 def _later(line: bytes, shift_ns: int) -> bytes:
@@ -169,24 +171,25 @@ def _later(line: bytes, shift_ns: int) -> bytes:
     return _STAMP.sub(lambda found: found[1] + b"%d" % (int(found[2]) + shift_ns), line, count=1)
 
 
-def _datagrams(file: Path) -> Iterator[Shipment]:
+def _datagrams(file: Path) -> Iterator[ReplayDatagram]:
     for batch in read_pcap(file, ImportReport()):
         columns = (batch.t_ns, batch.source, batch.port, batch.start, batch.length)
         rows = zip(*(column.tolist() for column in columns), strict=True)
         for t_ns, source, port, start, length in rows:
             payload = batch.buffer[start : start + length].tobytes()
-            stamped = length not in _STAMP_AT and payload.startswith(b"{")
-            yield Shipment(t_ns, address_text(source), port, payload, stamped)
+            is_json = length not in _STAMP_AT and payload.startswith(b"{")
+            yield ReplayDatagram(t_ns, address_text(source), port, payload, is_json)
 
 
-def _samples(path: Path, port: int) -> Iterator[Shipment]:
+def _samples(path: Path, port: int) -> Iterator[ReplayDatagram]:
     delay_ns = _SAMPLE_DELAY_NS[path.name]
     with path.open(encoding="utf-8-sig", newline="") as file:
         for row in csv.DictReader(file):
             known = {name: float(cell) for name, cell in row.items() if cell and name != "t_ns"}
             finite = {name: value for name, value in known.items() if np.isfinite(value)}
-            payload = json.dumps({"t_ns": int(row["t_ns"]), **finite}).encode()
-            yield Shipment(int(row["t_ns"]) + delay_ns, "127.0.0.1", port, payload, stamped=True)
+            t_ns = int(row["t_ns"])
+            payload = json.dumps({"t_ns": t_ns, **finite}).encode()
+            yield ReplayDatagram(t_ns + delay_ns, "127.0.0.1", port, payload, is_json=True)
 
 
 def _wait_until(t_ns: int) -> None:
@@ -209,12 +212,12 @@ class _Senders:
     def __exit__(self, *_: object) -> None:
         self._closing.close()
 
-    def send(self, shipment: Shipment) -> None:
+    def send(self, datagram: ReplayDatagram) -> None:
         """Send a datagram."""
-        if shipment.source not in self._sockets:
-            self._sockets[shipment.source] = self._open(shipment.source)
+        if datagram.source not in self._sockets:
+            self._sockets[datagram.source] = self._open(datagram.source)
         try:
-            self._sockets[shipment.source].sendto(shipment.payload, (self._target, shipment.port))
+            self._sockets[datagram.source].sendto(datagram.payload, (self._target, datagram.port))
         except OSError as error:
             what = error.strerror or str(error)
             raise ConfigError(f"cannot send to {self._target}: {what}") from error

@@ -130,10 +130,10 @@ def measure(url: str, process: psutil.Process, given: argparse.Namespace) -> Non
     answer.raise_for_status()
     end_s = time.monotonic() + given.after + 2 * given.seconds + 2.0
 
-    def while_it_lasts(shipment: Any) -> tuple[Any]:
+    def while_it_lasts(datagram: Any) -> tuple[Any]:
         if time.monotonic() > end_s:
             raise Ended
-        return (shipment,)
+        return (datagram,)
 
     def send() -> None:
         try:

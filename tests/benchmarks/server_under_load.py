@@ -238,10 +238,10 @@ def send(recording: Path, address: str, seconds: float, ready: Barrier) -> None:
     ready.wait()
     until_s = time.monotonic() + seconds
 
-    def while_it_lasts(shipment: Any) -> tuple[Any]:
+    def while_it_lasts(datagram: Any) -> tuple[Any]:
         if time.monotonic() > until_s:
             raise Ended
-        return (shipment,)
+        return (datagram,)
 
     with contextlib.suppress(Ended):
         while time.monotonic() < until_s:

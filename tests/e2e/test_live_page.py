@@ -17,7 +17,7 @@ from playwright.sync_api import expect
 
 from app.live.stream_state import BYTES_A_POINT
 from recon4.errors import Cancelled
-from recon4.live.replay import replay, shipments_of
+from recon4.live.replay import datagrams_of, replay
 from recon4.model.rig import format_rig, load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
@@ -107,12 +107,12 @@ class Enough(Exception):
 @contextmanager
 def sending(server, walk):
     target, enough = server.app.state.parts.settings.live_address, threading.Event()
-    began_ns = next(shipments_of(walk)).t_ns
+    began_ns = next(datagrams_of(walk)).t_ns
 
-    def until_enough(shipment):
-        if enough.is_set() and shipment.t_ns - began_ns > LEAST_S * 1e9:
+    def until_enough(datagram):
+        if enough.is_set() and datagram.t_ns - began_ns > LEAST_S * 1e9:
             raise Enough
-        return (shipment,)
+        return (datagram,)
 
     def send():
         with contextlib.suppress(Enough):

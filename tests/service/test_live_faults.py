@@ -27,7 +27,7 @@ import pytest
 from app.errors import Conflict
 from app.live.store import Captures
 from recon4.errors import StoreError
-from recon4.live.replay import Shipment, replay
+from recon4.live.replay import ReplayDatagram, replay
 from recon4.live.session import load_session
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
@@ -162,10 +162,10 @@ class FaultyNetwork:
 
     rng: np.random.Generator = field(default_factory=lambda: np.random.default_rng(7))
     first_ns: int = 0
-    held: list[Shipment] = field(default_factory=list)
+    held: list[ReplayDatagram] = field(default_factory=list)
     fixes: int = 0
 
-    def __call__(self, one: Shipment) -> Iterator[Shipment]:
+    def __call__(self, one: ReplayDatagram) -> Iterator[ReplayDatagram]:
         self.first_ns = self.first_ns or one.t_ns
         at_s = (one.t_ns - self.first_ns) / 1e9
         yield from self.packets(one, at_s) if one.port in (2368, 2369) else (one,)
@@ -173,7 +173,7 @@ class FaultyNetwork:
             self.fixes += 1
             yield from self.others(one, at_s)
 
-    def packets(self, one: Shipment, at_s: float) -> Iterator[Shipment]:
+    def packets(self, one: ReplayDatagram, at_s: float) -> Iterator[ReplayDatagram]:
         silent = 5.5 <= at_s < 8.0 or (one.port == 2369 and at_s < 5.0)
         lost = 8.0 <= at_s < 9.5 and self.rng.random() < 0.3
         if silent or lost:
@@ -190,20 +190,20 @@ class FaultyNetwork:
         if 9.5 <= at_s < 11.0:
             yield one
 
-    def without_pps(self, one: Shipment) -> Shipment:
+    def without_pps(self, one: ReplayDatagram) -> ReplayDatagram:
         """The stamp of a sensor that counts from when it was switched on."""
         stamp_us = int.from_bytes(one.payload[1200:1204], "little") + 1_234_500_000
         stamp = (stamp_us % HOUR_US).to_bytes(4, "little")
         return replace(one, payload=one.payload[:1200] + stamp + one.payload[1204:])
 
-    def others(self, one: Shipment, at_s: float) -> Iterator[Shipment]:
+    def others(self, one: ReplayDatagram, at_s: float) -> Iterator[ReplayDatagram]:
         """A receiver whose position jumps by 50 m, and foreign devices."""
         lat_deg = 49.2 + (50.0 / 111_195.0 if at_s > 6.0 else 0.0)
         fix = json.dumps({"lat_deg": lat_deg, "lon_deg": 16.6, "quality": 4}).encode()
-        yield Shipment(one.t_ns, "127.0.0.1", 8310, fix)
+        yield ReplayDatagram(one.t_ns, "127.0.0.1", 8310, fix)
         if at_s > 12.0:
             for size in (DATA_SIZE, 300):
-                yield Shipment(one.t_ns, "127.9.9.9", 2368, self.rng.bytes(size))
+                yield ReplayDatagram(one.t_ns, "127.9.9.9", 2368, self.rng.bytes(size))
 
 
 def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk, project):

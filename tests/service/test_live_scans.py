@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.live.replay import Shipment
+from recon4.live.replay import ReplayDatagram
 from recon4.model.rig import LASER2D_PORT, load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
@@ -82,18 +82,18 @@ def test_bad_scans_are_said_on_the_phone_and_recorded(server, log, tmp_path):
     start(server, str(tmp_path / "projects" / "rigs" / "robot.toml"))
     sent, seen = [], set()
 
-    def alter(shipment):
-        sent.append(shipment)
+    def alter(datagram):
+        sent.append(datagram)
         k = len(sent)
         if k > 50:  # an hour ahead
-            stamp, rest = shipment.payload.split(b",", 1)
+            stamp, rest = datagram.payload.split(b",", 1)
             t_ns = int(stamp.removeprefix(b'{"t_ns": ')) + 3_600_000_000_000
-            shipment = replace(shipment, payload=b'{"t_ns": %d,' % t_ns + rest)
-        yield shipment
+            datagram = replace(datagram, payload=b'{"t_ns": %d,' % t_ns + rest)
+        yield datagram
         if k % 5 == 0:
-            yield shipment
+            yield datagram
         if k % 7 == 0:
-            yield replace(shipment, payload=b'{"ranges": [1.0, 2')
+            yield replace(datagram, payload=b'{"ranges": [1.0, 2')
 
     def heard(phone, message):
         seen.update(texts(message))
@@ -116,9 +116,9 @@ def test_a_laser_that_falls_silent_is_said(server, log, tmp_path):
     start(server, str(tmp_path / "projects" / "rigs" / "robot.toml"))
     began = []
 
-    def for_three_seconds(shipment: Shipment):
-        began.append(shipment.t_ns)
-        return (shipment,) if shipment.t_ns - began[0] < 3e9 else ()
+    def for_three_seconds(datagram: ReplayDatagram):
+        began.append(datagram.t_ns)
+        return (datagram,) if datagram.t_ns - began[0] < 3e9 else ()
 
     phone = Phone()
     with sending(server, log, alter=for_three_seconds):
