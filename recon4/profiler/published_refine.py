@@ -21,11 +21,11 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import TimedPoints, joined, line_points
 from recon4.progress import Progress
 from recon4.registration.scans import thinned
-from recon4.semi_rigid.knots import KnotSystem, apply_knots, solve_knots
+from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
 from recon4.settings import LineSettings
 from recon4.store.frames import FrameStore
 
-_STEP_SD = np.repeat([0.01, 0.03], 3)
+_NEIGHBOR_SD = np.repeat([0.01, 0.03], 3)
 """Of the difference of two consecutive corrections [rad], [m]."""
 _TOTAL_SD = np.repeat([0.2, 1.0], 3)
 _PAIR_SD_M = 0.05
@@ -45,14 +45,14 @@ class PublishedRefiner:
     def refine(self, start: Trajectory) -> tuple[Trajectory, list[RefineRound]]:
         """Search pairs and correct all groups of lines, until the steps are small."""
         knot_ns = self._knots()
-        done = np.zeros((len(knot_ns), 6))
+        applied = np.zeros((len(knot_ns), 6))
         trajectory, rounds = start, []
         for _ in range(self.settings.outer_rounds):
             system, mean_m, ratio = self._match(trajectory, knot_ns)
             if ratio == 0.0:
                 break
-            step = solve_knots(system, done, step_sd=_STEP_SD, total_sd=_TOTAL_SD)
-            done = done + step
+            step = solve_knots(system, applied, neighbor_sd=_NEIGHBOR_SD, total_sd=_TOTAL_SD)
+            applied = applied + step
             trajectory = apply_knots(trajectory, knot_ns, step)
             largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
             figures = RefineRound(mean_m=mean_m, match_ratio=ratio, largest_step_m=largest_m)
@@ -69,7 +69,9 @@ class PublishedRefiner:
         rows = np.arange(0, len(self.lines), self.settings.group_lines)
         return np.append(self.lines.t_ns[rows], self.lines.t_ns[-1] + 20_000_000)
 
-    def _match(self, trajectory: Trajectory, knot_ns: Times) -> tuple[KnotSystem, float, float]:
+    def _match(
+        self, trajectory: Trajectory, knot_ns: Times
+    ) -> tuple[IntervalEquations, float, float]:
         """Normal equations of all pairs, their mean distance [m] and the part of matched points."""
         turns = self._turns(trajectory)
         clouds = [
@@ -95,7 +97,7 @@ class PublishedRefiner:
             total += float(distance.sum())
             matches, tried = matches + len(p), tried + len(some)
         scale = _INDEPENDENT / _PAIR_SD_M**2
-        system = KnotSystem(scale * H, scale * g)
+        system = IntervalEquations(scale * H, scale * g)
         return system, total / max(matches, 1), matches / max(tried, 1)
 
     def _turns(self, trajectory: Trajectory) -> list[TimedPoints]:

@@ -13,16 +13,18 @@ from recon4.registration.state import END_POSE, START
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class KnotSystem:
-    """Normal equations of corrections at N + 1 knots; frame k lies between knots k and k + 1."""
+class IntervalEquations:
+    """Normal equations by interval; interval k of N lies between knots k and k + 1."""
 
     H: Array
-    """Information of the correction at start and end of each frame, (N, 12, 12)."""
+    """Information of the corrections at start and end of each interval, (N, 12, 12)."""
     g: Array
     """Its gradient, (N, 12)."""
 
 
-def solve_knots(system: KnotSystem, done: Array, *, step_sd: Array, total_sd: Array) -> Array:
+def solve_knots(
+    system: IntervalEquations, applied: Array, *, neighbor_sd: Array, total_sd: Array
+) -> Array:
     """Steps of the corrections at all knots.
 
     A strong prior binds neighboring knots, because odometry determines the motion between them
@@ -30,22 +32,22 @@ def solve_knots(system: KnotSystem, done: Array, *, step_sd: Array, total_sd: Ar
 
     Args:
         system: Normal equations of the matches.
-        done: Corrections applied in earlier rounds, (N + 1, 6).
-        step_sd: Standard deviation of the difference of neighboring corrections, (6,).
+        applied: Corrections applied in earlier rounds, (N + 1, 6).
+        neighbor_sd: Standard deviation of the difference of neighboring corrections, (6,).
         total_sd: Standard deviation of a correction, (6,).
 
     Returns:
         (N + 1, 6), rotation first.
     """
     knots = len(system.H) + 1
-    chain, anchor = step_sd**-2.0, total_sd**-2.0
+    chain, anchor = neighbor_sd**-2.0, total_sd**-2.0
     diagonal = np.tile(np.diag(anchor), (knots, 1, 1))
     diagonal[:-1] += system.H[:, START, START] + np.diag(chain)
     diagonal[1:] += system.H[:, END_POSE, END_POSE] + np.diag(chain)
     lower = system.H[:, END_POSE, START] - np.diag(chain)
-    gradient = anchor * done
-    gradient[:-1] += system.g[:, START] - chain * np.diff(done, axis=0)
-    gradient[1:] += system.g[:, END_POSE] + chain * np.diff(done, axis=0)
+    gradient = anchor * applied
+    gradient[:-1] += system.g[:, START] - chain * np.diff(applied, axis=0)
+    gradient[1:] += system.g[:, END_POSE] + chain * np.diff(applied, axis=0)
     banded = _lower_band(diagonal, lower)
     return -solveh_banded(banded, gradient.ravel(), lower=True).reshape(knots, 6)
 

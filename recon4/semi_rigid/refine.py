@@ -30,7 +30,7 @@ from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
-from recon4.semi_rigid.knots import KnotSystem, apply_knots, solve_knots
+from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
 from recon4.settings import Settings
 from recon4.store.arrays import load_arrays, load_trajectory, save_record, save_trajectory
 from recon4.store.frames import FrameStore
@@ -111,7 +111,7 @@ def refine_trajectory(
     knot_ns = _knots(frames)
     correction = np.zeros((len(knot_ns), 6))
     trajectory, rounds = start, []
-    step_sd = np.repeat([r.step_sd_rad, r.step_sd_m], 3)
+    neighbor_sd = np.repeat([r.step_sd_rad, r.step_sd_m], 3)
     total_sd = np.repeat([r.total_sd_rad, r.total_sd_m], 3)
     for _ in range(r.rounds):
         progress.start("refine", len(frames) // r.map_stride + len(frames), "multiframe")
@@ -119,7 +119,7 @@ def refine_trajectory(
         system, mean_m, match_ratio = sweep.match(sweep.build())
         if match_ratio == 0.0:
             break
-        step = solve_knots(system, correction, step_sd=step_sd, total_sd=total_sd)
+        step = solve_knots(system, correction, neighbor_sd=neighbor_sd, total_sd=total_sd)
         correction = correction + step
         trajectory = apply_knots(trajectory, knot_ns, step)
         largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
@@ -156,7 +156,7 @@ class _Sweep:
         planes.fit()
         return planes
 
-    def match(self, planes: PlaneMap) -> tuple[KnotSystem, float, float]:
+    def match(self, planes: PlaneMap) -> tuple[IntervalEquations, float, float]:
         """Normal equations of every multiframe, mean distance [m] and match ratio.
 
         With ``refine.min_gap_s`` multiframes nearer in time than that to those being matched are
@@ -178,8 +178,8 @@ class _Sweep:
                 distances.append(mean_m)
                 ratios.append(match_ratio)
         if not ratios:
-            return KnotSystem(H, g), float("nan"), 0.0
-        return KnotSystem(H, g), float(np.mean(distances)), float(np.mean(ratios))
+            return IntervalEquations(H, g), float("nan"), 0.0
+        return IntervalEquations(H, g), float(np.mean(distances)), float(np.mean(ratios))
 
     def _ends(self, row: int) -> tuple[Array, Array] | None:
         """Ends of the segments of a multiframe, (N, 3), and from where they were seen, (3,)."""

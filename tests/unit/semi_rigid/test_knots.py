@@ -3,9 +3,9 @@ import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.trajectory import Trajectory
-from recon4.semi_rigid.knots import KnotSystem, apply_knots, solve_knots
+from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
 
-STEP_SD = np.repeat([2e-4, 1e-3], 3)
+NEIGHBOR_SD = np.repeat([2e-4, 1e-3], 3)
 TOTAL_SD = np.repeat([5e-3, 2e-2], 3)
 
 
@@ -13,15 +13,15 @@ def system_of(frames, *, seed=1):
     J = np.random.default_rng(seed).normal(0, 100, (frames, 30, 12))
     r = np.random.default_rng(seed + 1).normal(0, 0.01, (frames, 30))
     H = np.einsum("fki,fkj->fij", J, J)
-    return KnotSystem(H, np.einsum("fki,fk->fi", J, r))
+    return IntervalEquations(H, np.einsum("fki,fk->fi", J, r))
 
 
-def energy_gradient(system, done, step):
+def energy_gradient(system, applied, step):
     """Gradient of matches, chain and anchor at ``step``, spelled out with a dense matrix."""
     knots = len(system.H) + 1
-    chain, anchor = np.diag(STEP_SD**-2), np.diag(TOTAL_SD**-2)
+    chain, anchor = np.diag(NEIGHBOR_SD**-2), np.diag(TOTAL_SD**-2)
     A, b = np.zeros((6 * knots, 6 * knots)), np.zeros(6 * knots)
-    total = done.ravel()
+    total = applied.ravel()
     for k in range(knots):
         rows = slice(6 * k, 6 * k + 6)
         A[rows, rows] += anchor
@@ -37,12 +37,12 @@ def energy_gradient(system, done, step):
 @pytest.mark.parametrize("frames", [1, 2, 7, 30])
 def test_the_banded_solution_is_the_dense_one(frames):
     system = system_of(frames)
-    done = np.random.default_rng(3).normal(0, 1e-3, (frames + 1, 6))
+    applied = np.random.default_rng(3).normal(0, 1e-3, (frames + 1, 6))
 
-    step = solve_knots(system, done, step_sd=STEP_SD, total_sd=TOTAL_SD)
+    step = solve_knots(system, applied, neighbor_sd=NEIGHBOR_SD, total_sd=TOTAL_SD)
 
-    gradient, A = energy_gradient(system, done, step)
-    start, _ = energy_gradient(system, done, np.zeros_like(done))
+    gradient, A = energy_gradient(system, applied, step)
+    start, _ = energy_gradient(system, applied, np.zeros_like(applied))
     assert step.shape == (frames + 1, 6)
     assert np.abs(gradient).max() < 1e-8 * np.abs(start).max()
     np.testing.assert_allclose(step.ravel(), -np.linalg.solve(A, start), rtol=1e-6, atol=1e-12)
@@ -50,21 +50,21 @@ def test_the_banded_solution_is_the_dense_one(frames):
 
 def test_without_information_nothing_moves():
     frames = 5
-    nothing = KnotSystem(np.zeros((frames, 12, 12)), np.zeros((frames, 12)))
+    nothing = IntervalEquations(np.zeros((frames, 12, 12)), np.zeros((frames, 12)))
 
-    step = solve_knots(nothing, np.zeros((6, 6)), step_sd=STEP_SD, total_sd=TOTAL_SD)
+    step = solve_knots(nothing, np.zeros((6, 6)), neighbor_sd=NEIGHBOR_SD, total_sd=TOTAL_SD)
 
     np.testing.assert_array_equal(step, 0.0)
 
 
 def test_without_information_a_correction_decays_to_zero():
     frames = 3
-    nothing = KnotSystem(np.zeros((frames, 12, 12)), np.zeros((frames, 12)))
-    done = np.full((4, 6), 1e-3)
+    nothing = IntervalEquations(np.zeros((frames, 12, 12)), np.zeros((frames, 12)))
+    applied = np.full((4, 6), 1e-3)
 
-    step = solve_knots(nothing, done, step_sd=STEP_SD, total_sd=TOTAL_SD)
+    step = solve_knots(nothing, applied, neighbor_sd=NEIGHBOR_SD, total_sd=TOTAL_SD)
 
-    np.testing.assert_allclose(step, -done, rtol=1e-9)
+    np.testing.assert_allclose(step, -applied, rtol=1e-9)
 
 
 def test_the_influence_of_a_single_frame_decays_with_distance():
@@ -74,15 +74,17 @@ def test_the_influence_of_a_single_frame_decays_with_distance():
         H[200, end, end] = 1e12
         g[200, end] = -1e12 * wanted_m
 
-    up = solve_knots(KnotSystem(H, g), np.zeros((401, 6)), step_sd=STEP_SD, total_sd=TOTAL_SD)[:, 5]
+    up = solve_knots(
+        IntervalEquations(H, g), np.zeros((401, 6)), neighbor_sd=NEIGHBOR_SD, total_sd=TOTAL_SD
+    )[:, 5]
 
     assert up[200] == pytest.approx(wanted_m, rel=1e-3)
     assert up[201] == pytest.approx(wanted_m, rel=1e-3)
-    # A chain on an anchor decays by exp(-step_sd / total_sd) a knot: 5 % here.
+    # A chain on an anchor decays by exp(-neighbor_sd / total_sd) a knot: 5 % here.
     ratio = up[203:230] / up[202:229]
     np.testing.assert_allclose(ratio, np.exp(-1e-3 / 2e-2), rtol=0.002)
     assert not solve_knots(
-        KnotSystem(H, g), np.zeros((401, 6)), step_sd=STEP_SD, total_sd=TOTAL_SD
+        IntervalEquations(H, g), np.zeros((401, 6)), neighbor_sd=NEIGHBOR_SD, total_sd=TOTAL_SD
     )[:, :5].any()
 
 
