@@ -99,7 +99,9 @@ def _backpack(folder: Path) -> None:
     scans = next(scans for _, scans in measured_seconds(setup) if scans is not None)
     points, at = scans.points(0), np.zeros(2)
     field = LikelihoodField.of(points)
-    field.search(points, center=np.zeros(3), window_m=1.0, window_rad=0.1, least=0.5)
+    field.search(
+        points, initial_pose=np.zeros(3), half_window_m=1.0, half_window_rad=0.1, min_score=0.5
+    )
     grid = OccupancyGrid(0.1, 0.4, 0.6)
     grid.add_scan(points, at)
     crossing_ratio(grid, [(points, at)])

@@ -41,7 +41,7 @@ def likelihood_field(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def largest_around(field: NDArray[np.uint8], levels: int) -> NDArray[np.uint8]:
+def max_filter(field: NDArray[np.uint8], levels: int) -> NDArray[np.uint8]:
     """Largest values of squares of 2^h cells, for h = 0 … levels.
 
     Args:
@@ -69,37 +69,37 @@ def largest_around(field: NDArray[np.uint8], levels: int) -> NDArray[np.uint8]:
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _bound(
-    squares: NDArray[np.uint8], cells: NDArray[np.int32], dx: int, dy: int, margin: int
+    level: NDArray[np.uint8], cells: NDArray[np.int32], dx: int, dy: int, margin: int
 ) -> float:
     """Mean value at cells moved by (dx, dy), 0 to 1; outside of the array it is 0."""
     total = 0
-    rows, columns = squares.shape
+    rows, columns = level.shape
     for k in range(len(cells)):
         a, b = cells[k, 0] + dx + margin, cells[k, 1] + dy + margin
         if 0 <= a < rows and 0 <= b < columns:
-            total += squares[a, b]
+            total += level[a, b]
     return total / (255.0 * max(len(cells), 1))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def branch_and_bound(
-    squares: NDArray[np.uint8],
+    pyramid: NDArray[np.uint8],
     cells: NDArray[np.int32],
     window: int,
-    least: float,
+    min_score: float,
 ) -> tuple[float, int, int, int]:
     """Find the rotation and shift with the largest mean likelihood in a window.
 
     Args:
-        squares: Of `largest_around`, (levels + 1, X, Y).
+        pyramid: Of `max_filter`, (levels + 1, X, Y).
         cells: Cells of the points for each rotation, (A, P, 2).
         window: Largest shift along x and y [cells].
-        least: Smaller scores are not searched for.
+        min_score: Smaller scores are not searched for.
 
     Returns:
-        Score (``least`` = nothing better was found), row of the rotation, shift x, y [cells].
+        Score (``min_score`` = nothing better was found), row of the rotation, shift x, y [cells].
     """
-    levels = len(squares) - 1
+    levels = len(pyramid) - 1
     margin, stride = 1 << levels, 1 << levels
     across = (2 * window) // stride + 1
     first = np.zeros((len(cells) * across * across, 4))
@@ -108,11 +108,11 @@ def branch_and_bound(
         for a in range(across):
             for b in range(across):
                 dx, dy = a * stride - window, b * stride - window
-                first[count, 0] = _bound(squares[levels], cells[r], dx, dy, margin)
+                first[count, 0] = _bound(pyramid[levels], cells[r], dx, dy, margin)
                 first[count, 1], first[count, 2], first[count, 3] = r, dx, dy
                 count += 1
     order = np.argsort(-first[:, 0])
-    best, at_r, at_x, at_y = least, 0, 0, 0
+    best, at_r, at_x, at_y = min_score, 0, 0, 0
     stack = np.zeros((4 * levels + 8, 5))
     for k in order:
         if first[k, 0] <= best:
@@ -129,13 +129,13 @@ def branch_and_bound(
             if h == 0:
                 best, at_r, at_x, at_y = bound, r, dx, dy
                 continue
-            filled = _push_children(squares, cells[r], stack, filled, window)
+            filled = _push_children(pyramid, cells[r], stack, filled, window)
     return best, at_r, at_x, at_y
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _push_children(
-    squares: NDArray[np.uint8],
+    pyramid: NDArray[np.uint8],
     cells: NDArray[np.int32],
     stack: NDArray[np.float64],
     filled: int,
@@ -144,13 +144,13 @@ def _push_children(
     """Replace the entry at ``filled`` by its four quarters, the best one last."""
     r, dx, dy = stack[filled, 1], int(stack[filled, 2]), int(stack[filled, 3])
     h = int(stack[filled, 4]) - 1
-    margin, half = 1 << (len(squares) - 1), 1 << h
+    margin, half = 1 << (len(pyramid) - 1), 1 << h
     start = filled
     for quarter in range(4):
         x, y = dx + half * (quarter // 2), dy + half * (quarter % 2)
         if x > window or y > window:
             continue
-        bound = _bound(squares[h], cells, x, y, margin)
+        bound = _bound(pyramid[h], cells, x, y, margin)
         at = filled
         while at > start and stack[at - 1, 0] > bound:
             stack[at] = stack[at - 1]

@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se2 import transform
 from recon4.geometry.se3 import Array
-from recon4.kernels.correlation2d import branch_and_bound, largest_around, likelihood_field
+from recon4.kernels.correlation2d import branch_and_bound, likelihood_field, max_filter
 
 _CELL_M = 0.1
 _BLUR_M = 0.1
 """Standard deviation of a return around the points of the map [m]."""
 _LEVELS = 5
-_FARTHEST_M = 25.0
+_ANGLE_STEP_RANGE_M = 25.0
 """Points farther from the laser do not limit the step of the rotation [m]."""
 _MAX_POINTS = 400
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found2d:
-    """The best pose of a search."""
+class ScanMatch2d:
+    """The best pose of a correlative search."""
 
     pose: Array
     """x [m], y [m], yaw [rad], (3,)."""
@@ -34,8 +34,8 @@ class Found2d:
 class LikelihoodField:
     """Likelihood of returns around the points of a map, for `search`."""
 
-    squares: NDArray[np.uint8]
-    """Of `recon4.kernels.correlation2d.largest_around`."""
+    pyramid: NDArray[np.uint8]
+    """Of `recon4.kernels.correlation2d.max_filter`."""
     origin: Array
     """Corner of the first cell [m], (2,)."""
 
@@ -50,53 +50,53 @@ class LikelihoodField:
         squared = offsets[:, None] ** 2 + offsets[None, :] ** 2
         stamp = np.round(255.0 * np.exp(-0.5 * squared / _BLUR_M**2)).astype(np.uint8)
         field = likelihood_field(points, origin, (int(rows), int(columns)), _CELL_M, stamp)
-        return LikelihoodField(largest_around(field, _LEVELS), origin)
+        return LikelihoodField(max_filter(field, _LEVELS), origin)
 
     def search(
         self,
         points: Array,
         *,
-        center: Array,
-        window_m: float,
-        window_rad: float,
-        least: float,
-    ) -> Found2d | None:
+        initial_pose: Array,
+        half_window_m: float,
+        half_window_rad: float,
+        min_score: float,
+    ) -> ScanMatch2d | None:
         """The pose with the largest mean likelihood of the points.
 
         Args:
             points: In the frame of the laser [m], (P, 2).
-            center: Middle of the window: x [m], y [m], yaw [rad], (3,).
-            window_m: Largest shift along x and y [m].
-            window_rad: Largest rotation [rad].
-            least: Smallest score that counts.
+            initial_pose: Middle of the window: x [m], y [m], yaw [rad], (3,).
+            half_window_m: Largest shift along x and y [m].
+            half_window_rad: Largest rotation [rad].
+            min_score: Smallest score that counts.
 
         Returns:
             The best pose, to about a cell; None = none with that score.
         """
-        points = thinned(points, _CELL_M, most=_MAX_POINTS)
+        points = thinned(points, _CELL_M, max_points=_MAX_POINTS)
         if not len(points):
             return None
-        farthest = min(float(np.hypot(points[:, 0], points[:, 1]).max()), _FARTHEST_M)
+        farthest = min(float(np.hypot(points[:, 0], points[:, 1]).max()), _ANGLE_STEP_RANGE_M)
         # One step of the rotation moves the farthest point by a cell (Hess 2016, eq. 7).
-        count = int(np.ceil(window_rad / (_CELL_M / max(farthest, 1.0))))
-        angles = np.linspace(-window_rad, window_rad, 2 * count + 1)
-        poses = np.repeat(center[None], len(angles), axis=0)
+        count = int(np.ceil(half_window_rad / (_CELL_M / max(farthest, 1.0))))
+        angles = np.linspace(-half_window_rad, half_window_rad, 2 * count + 1)
+        poses = np.repeat(initial_pose[None], len(angles), axis=0)
         poses[:, 2] += angles
         moved = transform(poses[:, None], points[None])
         cells = np.floor((moved - self.origin) / _CELL_M).astype(np.int32)
-        window = int(np.ceil(window_m / _CELL_M))
-        score, row, dx, dy = branch_and_bound(self.squares, cells, window, least)
-        if score <= least:
+        window = int(np.ceil(half_window_m / _CELL_M))
+        score, row, dx, dy = branch_and_bound(self.pyramid, cells, window, min_score)
+        if score <= min_score:
             return None
         pose = poses[row] + np.array([dx * _CELL_M, dy * _CELL_M, 0.0])
-        return Found2d(pose, score)
+        return ScanMatch2d(pose, score)
 
 
-def thinned(points: Array, cell_m: float, *, most: int) -> Array:
-    """One point per cell, and an even sample of at most ``most`` of them, (Q, 2)."""
+def thinned(points: Array, cell_m: float, *, max_points: int) -> Array:
+    """One point per cell, and an even sample of at most ``max_points`` of them, (Q, 2)."""
     cells = np.floor(points / cell_m).astype(np.int64)
     _, rows = np.unique(cells[:, 0] * (1 << 32) + cells[:, 1], return_index=True)
     rows.sort()
-    if len(rows) > most:
-        rows = rows[np.linspace(0, len(rows) - 1, most).astype(np.intp)]
+    if len(rows) > max_points:
+        rows = rows[np.linspace(0, len(rows) - 1, max_points).astype(np.intp)]
     return points[rows]

@@ -146,10 +146,10 @@ class Odometry2d:
         reach = 3.0 * (1 + self._lost_in_a_row)
         found = self._field.search(
             scan.points,
-            center=start,
-            window_m=min(0.1 + reach * predicted.sd_m, _WIDEST_SEARCH_M),
-            window_rad=min(0.05 + reach * predicted.sd_rad, np.pi),
-            least=_SEARCH_SCORE,
+            initial_pose=start,
+            half_window_m=min(0.1 + reach * predicted.sd_m, _WIDEST_SEARCH_M),
+            half_window_rad=min(0.05 + reach * predicted.sd_rad, np.pi),
+            min_score=_SEARCH_SCORE,
         )
         if found is None:
             return match

@@ -82,10 +82,10 @@ class SubmapRegistrar:
             return _rejected(pair, predicted, Reason.OVERLAP)
         found = field.search(
             points,
-            center=predicted,
-            window_m=0.3 + pair.drift_m,
-            window_rad=min(0.05 + pair.drift_rad, np.pi),
-            least=self._loops.min_score,
+            initial_pose=predicted,
+            half_window_m=0.3 + pair.drift_m,
+            half_window_rad=min(0.05 + pair.drift_rad, np.pi),
+            min_score=self._loops.min_score,
         )
         if found is None:
             return _rejected(pair, predicted, Reason.OVERLAP)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se2 import inverse, transform
-from recon4.kernels.correlation2d import branch_and_bound, largest_around
+from recon4.kernels.correlation2d import branch_and_bound, max_filter
 from recon4.slam2d.correlative import LikelihoodField, thinned
 from tests.planar_walks import furnished_room
 from tests.unit.slam2d.test_line_map import wall_points
@@ -18,10 +18,10 @@ def test_the_pose_is_found_from_far_away():
 
     found = LikelihoodField.of(points).search(
         scan,
-        center=START + np.array([1.9, -1.4, -0.4]),
-        window_m=2.5,
-        window_rad=0.6,
-        least=0.3,
+        initial_pose=START + np.array([1.9, -1.4, -0.4]),
+        half_window_m=2.5,
+        half_window_rad=0.6,
+        min_score=0.3,
     )
 
     assert found is not None
@@ -35,7 +35,11 @@ def test_nothing_is_found_outside_of_the_window():
     scan = transform(inverse(START), points)
 
     found = LikelihoodField.of(points).search(
-        scan, center=START + np.array([3.0, 0.0, 0.0]), window_m=0.5, window_rad=0.1, least=0.6
+        scan,
+        initial_pose=START + np.array([3.0, 0.0, 0.0]),
+        half_window_m=0.5,
+        half_window_rad=0.1,
+        min_score=0.6,
     )
 
     assert found is None
@@ -45,9 +49,9 @@ def test_branch_and_bound_equals_trying_everything():
     rng = np.random.default_rng(4)
     field = rng.integers(0, 255, (60, 50)).astype(np.uint8)
     cells = rng.integers(10, 45, (3, 12, 2)).astype(np.int32)
-    window, squares = 9, largest_around(field, 3)
+    window, pyramid = 9, max_filter(field, 3)
 
-    score, row, dx, dy = branch_and_bound(squares, cells, window, 0.0)
+    score, row, dx, dy = branch_and_bound(pyramid, cells, window, 0.0)
 
     def score_of(r, x, y):
         at = cells[r] + [x, y]
@@ -63,5 +67,5 @@ def test_branch_and_bound_equals_trying_everything():
 def test_thinning_keeps_one_point_a_cell():
     points = np.array([[0.01, 0.01], [0.05, 0.09], [0.15, 0.01], [-0.05, 0.01]])
 
-    np.testing.assert_array_equal(thinned(points, 0.1, most=10), points[[0, 2, 3]])
-    assert len(thinned(points, 0.01, most=2)) == 2
+    np.testing.assert_array_equal(thinned(points, 0.1, max_points=10), points[[0, 2, 3]])
+    assert len(thinned(points, 0.01, max_points=2)) == 2
