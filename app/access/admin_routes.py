@@ -8,7 +8,7 @@ from typing import Annotated
 from fastapi import APIRouter, Depends, Query, Request
 from pydantic import Field
 
-from app.access.audit import Chain, Entry, audit
+from app.access.audit import Entry, audit
 from app.access.login.accounts import Account
 from app.access.login.routes import SessionView, Text, Wire, views
 from app.access.people import Permission, Role, needs, recent_login
@@ -46,12 +46,24 @@ class Changes(Wire):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class ChainView:
+    """Result of verifying the hash chain."""
+
+    entries: int
+    """Number of the newest entry."""
+    broken_at: int | None
+    """Number of the first entry whose hash does not match; null = the chain is whole."""
+    newest: str
+    """Hash of the newest entry."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Log:
     """A page of the audit log."""
 
     entries: list[Entry]
     """The newest first."""
-    chain: Chain
+    chain: ChainView
 
 
 @router.get("/people")
@@ -107,4 +119,6 @@ def read_audit(
 ) -> Log:
     """Read the audit log, and verify its hash chain."""
     log = server.access.log
-    return Log(entries=log.newest(most, before=before), chain=log.check())
+    entries, found = log.newest(most, before_number=before), log.verify()
+    chain = ChainView(entries=found.last_number, broken_at=found.broken_at, newest=found.head_hash)
+    return Log(entries=entries, chain=chain)

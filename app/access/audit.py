@@ -22,10 +22,10 @@ from starlette.requests import HTTPConnection
 from app.access.database import AUDIT, writing
 from recon4.store.hashing import CHAIN_START
 
-LONGEST = 300
+MAX_TEXT_CHARS = 300
 """Longer texts are cut [characters]."""
-REFUSALS_A_MINUTE = 60
-"""Further refusals are counted, not written, so that a stranger cannot fill the disk."""
+MAX_FAILURES_PER_MINUTE = 60
+"""More refusals and failures are only counted, so that a stranger cannot fill the disk."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,13 +47,14 @@ class Entry:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Chain:
+class ChainCheck:
     """Result of verifying the hash chain."""
 
-    entries: int
+    last_number: int
+    """Number of the newest row; 0 = the log is empty."""
     broken_at: int | None
     """Number of the first row whose hash does not match; None = the chain is whole."""
-    newest: str
+    head_hash: str
     """Hash of the newest row."""
 
 
@@ -64,7 +65,7 @@ class AuditLog:
         self._engine = engine
         self._clock = clock
         self._lock = threading.Lock()
-        self._minute, self._refusals, self._unwritten = 0, 0, 0
+        self._minute, self._failures, self._unwritten = 0, 0, 0
 
     def add(
         self, person: str, address: str, *, action: str, what: str, outcome: str = "done"
@@ -77,33 +78,33 @@ class AuditLog:
         texts = {name: printable(text) for name, text in texts.items()}
         newest = sa.select(AUDIT.c.number, AUDIT.c.hash).order_by(AUDIT.c.number.desc()).limit(1)
         with writing(self._engine) as connection:
-            number, before = connection.execute(newest).one_or_none() or (0, CHAIN_START)
+            number, previous_hash = connection.execute(newest).one_or_none() or (0, CHAIN_START)
             entry = Entry(number=number + 1, time=timestamp, **texts, hash="")
-            entry = replace(entry, hash=link(before, entry))
+            entry = replace(entry, hash=entry_hash(previous_hash, entry))
             connection.execute(AUDIT.insert().values(**asdict(entry)))
 
-    def newest(self, most: int, *, before: int | None = None) -> list[Entry]:
-        """The newest rows, newest first; with ``before`` those older than that row."""
-        query = AUDIT.select().order_by(AUDIT.c.number.desc()).limit(most)
-        if before is not None:
-            query = query.where(AUDIT.c.number < before)
+    def newest(self, limit: int, *, before_number: int | None = None) -> list[Entry]:
+        """The newest rows, newest first; with ``before_number`` those older than that row."""
+        query = AUDIT.select().order_by(AUDIT.c.number.desc()).limit(limit)
+        if before_number is not None:
+            query = query.where(AUDIT.c.number < before_number)
         with self._engine.connect() as connection:
             return [Entry(**row) for row in connection.execute(query).mappings()]
 
-    def check(self) -> Chain:
-        """Compute every hash again."""
+    def verify(self) -> ChainCheck:
+        """Verify the hash chain: compute every hash again."""
         with self._engine.connect() as connection:
             rows = connection.execute(AUDIT.select().order_by(AUDIT.c.number)).mappings()
-            return follow(Entry(**row) for row in rows)
+            return verify_chain(Entry(**row) for row in rows)
 
     def _counted(self, what: str) -> str:
-        """The object of a refusal with the number left out before it; empty = leave it out."""
+        """The object of a failure with the number left out before it; empty = leave it out."""
         with self._lock:
             minute = int(self._clock() // 60)
             if minute != self._minute:
-                self._minute, self._refusals = minute, 0
-            self._refusals += 1
-            if self._refusals > REFUSALS_A_MINUTE:
+                self._minute, self._failures = minute, 0
+            self._failures += 1
+            if self._failures > MAX_FAILURES_PER_MINUTE:
                 self._unwritten += 1
                 return ""
             left_out, self._unwritten = self._unwritten, 0
@@ -129,27 +130,28 @@ def address(connection: HTTPConnection) -> str:
     return connection.client.host if connection.client else "?"
 
 
-def link(before: str, entry: Entry) -> str:
+def entry_hash(previous_hash: str, entry: Entry) -> str:
     """The hash of a row, given that of the row before."""
     fields = {name: value for name, value in asdict(entry).items() if name != "hash"}
-    text = json.dumps([before, fields], sort_keys=True)
+    text = json.dumps([previous_hash, fields], sort_keys=True)
     return hashlib.sha256(text.encode()).hexdigest()
 
 
-def follow(rows: Iterable[Entry]) -> Chain:
-    """Verify the chain from its beginning."""
-    before, number, broken = CHAIN_START, 0, None
+def verify_chain(rows: Iterable[Entry]) -> ChainCheck:
+    """Verify the hash chain from its beginning."""
+    previous_hash, number, broken = CHAIN_START, 0, None
     for row in rows:
-        whole = row.number == number + 1 and row.hash == link(before, row)
+        whole = row.number == number + 1 and row.hash == entry_hash(previous_hash, row)
         if broken is None and not whole:
             broken = row.number
-        before, number = row.hash, row.number
-    return Chain(entries=number, broken_at=broken, newest=before)
+        previous_hash, number = row.hash, row.number
+    return ChainCheck(last_number=number, broken_at=broken, head_hash=previous_hash)
 
 
 def printable(text: str) -> str:
-    """The text without control characters, which could forge lines, cut at `LONGEST`."""
-    shown = "".join("\N{REPLACEMENT CHARACTER}" if _hidden(one) else one for one in text[:LONGEST])
+    """The text without control characters, which could forge lines, cut at `MAX_TEXT_CHARS`."""
+    kept = text[:MAX_TEXT_CHARS]
+    shown = "".join("\N{REPLACEMENT CHARACTER}" if _hidden(one) else one for one in kept)
     return shown.encode("utf-8", "replace").decode()
 
 

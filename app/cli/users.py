@@ -91,11 +91,11 @@ def audit(
         for one in reversed(access.log.newest(last)):
             what = f"{one.person} ({one.address}) {one.action}: {one.object}"
             write(f"{one.number:>6} {one.time} {one.outcome:<8} {what}")
-        chain = access.log.check()
+        chain = access.log.verify()
     if chain.broken_at is not None:
         write(f"entry {chain.broken_at} does not follow from the one before: tampered with")
         raise typer.Exit(1)
-    write(f"{chain.entries} entries, chain whole; newest hash {chain.newest}")
+    write(f"{chain.last_number} entries, chain whole; newest hash {chain.head_hash}")
 
 
 @users.command("metrics-token")

@@ -121,7 +121,7 @@ export interface CaptureView {
   may_capture: boolean;
 }
 
-export interface Chain {
+export interface ChainView {
   entries: number;
   broken_at: number | null;
   newest: string;
@@ -413,7 +413,7 @@ export interface ListedReference {
 
 export interface Log {
   entries: Array<Entry>;
-  chain: Chain;
+  chain: ChainView;
 }
 
 export interface LogPiece {

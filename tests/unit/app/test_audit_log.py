@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.access.audit import link
+from app.access.audit import entry_hash
 from app.access.login.login_service import LoginOrigin, open_access
 from app.access.people import LOCAL
 
@@ -17,15 +17,15 @@ HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")
 def test_the_log_is_a_chain_that_shows_what_was_changed(access, tmp_path):
     for k in range(5):
         access.log.add("Anna", "192.0.2.1", action="start job", what=f"office {k}")
-    whole = access.log.check()
+    whole = access.log.verify()
 
     with sqlite3.connect(tmp_path / "access.sqlite") as file:
         file.execute("DROP TRIGGER audit_no_update")
         file.execute("UPDATE audit SET person = 'Bert' WHERE number = 3")
     file.close()
 
-    assert (whole.entries, whole.broken_at) == (5, None)
-    assert access.log.check().broken_at == 3
+    assert (whole.last_number, whole.broken_at) == (5, None)
+    assert access.log.verify().broken_at == 3
 
 
 def test_a_row_forged_together_with_its_hash_shows_at_the_next(access, tmp_path):
@@ -33,7 +33,7 @@ def test_a_row_forged_together_with_its_hash_shows_at_the_next(access, tmp_path)
         access.log.add("Anna", "?", action="start job", what=f"office {k}")
     newest = access.log.newest(5)
     forged = replace(newest[2], person="Bert")
-    forged = replace(forged, hash=link(newest[3].hash, forged))
+    forged = replace(forged, hash=entry_hash(newest[3].hash, forged))
 
     with sqlite3.connect(tmp_path / "access.sqlite") as file:
         file.execute("DROP TRIGGER audit_no_update")
@@ -41,7 +41,7 @@ def test_a_row_forged_together_with_its_hash_shows_at_the_next(access, tmp_path)
         file.execute("UPDATE audit SET person = ?, hash = ? WHERE number = 3", values)
     file.close()
 
-    assert access.log.check().broken_at == 4
+    assert access.log.verify().broken_at == 4
 
 
 def test_a_row_taken_out_shows(access, tmp_path):
@@ -53,7 +53,7 @@ def test_a_row_taken_out_shows(access, tmp_path):
         file.execute("DELETE FROM audit WHERE number = 2")
     file.close()
 
-    assert access.log.check().broken_at == 3
+    assert access.log.verify().broken_at == 3
 
 
 @pytest.mark.parametrize("statement", ["UPDATE audit SET person = 'x'", "DELETE FROM audit"])
@@ -80,7 +80,7 @@ def test_entries_of_several_threads_and_processes_make_one_chain(access, tmp_pat
         thread.join()
     other.close()
 
-    assert (access.log.check().entries, access.log.check().broken_at) == (20, None)
+    assert (access.log.verify().last_number, access.log.verify().broken_at) == (20, None)
 
 
 def test_forged_lines_and_endless_texts_do_not_get_into_the_log(access):
