@@ -11,7 +11,7 @@ from typing import Any
 from recon4.review.decisions import ApprovalFacts, DecisionKind
 from recon4.review.evidence import Evidence
 from recon4.review.journal import JournalRow, broken, read_rows
-from recon4.review.signature import fingerprint, is_signed
+from recon4.review.signature import fingerprint, has_valid_signature
 from recon4.review.stamp import Stamp
 from recon4.review.state import read_summary
 from recon4.store.checked import Altered, check_file
@@ -161,7 +161,7 @@ def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
         raise Altered(f"versions/{folder.name}/approval.json cannot be read: {error!r}") from error
     if hash_json(statement) != stamp.hash or found["hash"] != stamp.hash:
         raise Altered("the statement is not the one in the journal")
-    if not is_signed({"hash": stamp.hash, "issued": issued}, signature):
+    if not has_valid_signature({"hash": stamp.hash, "issued": issued}, signature):
         raise Altered("the signature is not valid")
     if signature.get("key") != key:
         raise Altered(f"it names the key {signature.get('key')}, its signature is by {key}")

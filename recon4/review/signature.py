@@ -47,8 +47,11 @@ def sign(value: object, key_file: Path) -> dict[str, str]:
     }
 
 
-def is_signed(value: object, signature: Mapping[str, str]) -> bool:
-    """Verify the signature of a value with the public key it contains."""
+def has_valid_signature(value: object, signature: Mapping[str, str]) -> bool:
+    """Verify the signature of a value with the public key inside the signature.
+
+    Whether that key is to be trusted is for the caller to decide.
+    """
     try:
         public = Ed25519PublicKey.from_public_bytes(bytes.fromhex(signature["public_key"]))
         public.verify(bytes.fromhex(signature["value"]), canonical(value))

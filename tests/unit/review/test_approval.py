@@ -17,7 +17,7 @@ from recon4.review.approved import approval_of_map, latest_approval
 from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import NAME, JournalChanged, append, read_rows
-from recon4.review.signature import is_signed, sign
+from recon4.review.signature import has_valid_signature, sign
 from recon4.store.atomic import write_json
 from recon4.store.hashing import FileDigest, hash_file
 from recon4.store.project import Project
@@ -339,6 +339,6 @@ def test_a_signature_is_of_this_value_by_this_key(tmp_path, key):
     signature = sign({"a": 1}, key)
     other = sign({"a": 1}, tmp_path / "other.key")
 
-    assert is_signed({"a": 1}, signature) and not is_signed({"a": 2}, signature)
+    assert has_valid_signature({"a": 1}, signature) and not has_valid_signature({"a": 2}, signature)
     assert sign({"a": 1}, key) == signature and other["key"] != signature["key"]
-    assert not is_signed({"a": 1}, signature | {"public_key": other["public_key"]})
+    assert not has_valid_signature({"a": 1}, signature | {"public_key": other["public_key"]})
