@@ -34,8 +34,8 @@ from recon4.model.rig import Rig
 from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
 from recon4.recording.sources import Sources
-from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, RigSlice
-from recon4.report.rig import SHOWN
+from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, CloudSlice
+from recon4.report.rig import DISPLAY_UNITS
 from recon4.settings import EntropySettings, Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -43,13 +43,13 @@ from recon4.store.project import is_project, read_artifacts
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class CalibratedRig:
-    """Result of a method."""
+class MethodResult:
+    """Result of a calibration method: a rig, or why there is none."""
 
     rig: Rig | None
     """None = nothing to write."""
     outcome: str
-    lines: tuple[str, ...] = ()
+    report_lines: tuple[str, ...] = ()
     """Table for the terminal."""
     figures: CalibrationFigures | None = None
     """Of the method joint."""
@@ -97,7 +97,7 @@ def check_choice(choice: CalibrationChoice) -> None:
 
 def calibrate_by(
     choice: CalibrationChoice, sources: Sources, folder: Path, *, progress: Progress
-) -> CalibratedRig:
+) -> MethodResult:
     """Calibrate a rig by one of the methods.
 
     Args:
@@ -122,8 +122,8 @@ def calibrate_by(
     return _METHODS[method](task)
 
 
-def page_of(
-    method: str, found: CalibratedRig, sources: Sources, *, folder: Path
+def calibration_report(
+    method: str, found: MethodResult, sources: Sources, *, folder: Path
 ) -> CalibrationPage:
     """The page about a result, with a slice before and after if there is a recording.
 
@@ -142,18 +142,18 @@ def page_of(
         walk = _recorded(folder)
         for name, rig in (("rig file", sources.rig), ("calibrated", found.rig)):
             points = slice_points(walk, rig, thickness_m=THICKNESS_M)
-            slices.append(RigSlice(name, tuple(points)))
+            slices.append(CloudSlice(name, tuple(points)))
     return CalibrationPage(
         title=sources.rig.name,
         method=method,
         outcome=found.outcome,
         figures=found.figures,
-        lines=() if found.figures else found.lines,
+        report_lines=() if found.figures else found.report_lines,
         slices=slices,
     )
 
 
-def _joint(task: _Task) -> CalibratedRig:
+def _joint(task: _Task) -> MethodResult:
     chosen = _settings(
         f"calibration.sensors={task.sensors}",
         "calibration.mode=auto",
@@ -162,18 +162,18 @@ def _joint(task: _Task) -> CalibratedRig:
     figures, rig = calibrate_recording(
         task.sources, task.folder, settings=chosen, progress=task.progress
     )
-    lines = (*_table(figures.parameters), *_table(figures.beams), *figures.warnings)
-    return CalibratedRig(rig, figures.outcome, lines, figures)
+    report_lines = (*_table(figures.parameters), *_table(figures.beams), *figures.warnings)
+    return MethodResult(rig, figures.outcome, report_lines, figures)
 
 
-def _maps(task: _Task) -> CalibratedRig:
+def _maps(task: _Task) -> MethodResult:
     walk, chosen = _walk(task)
     rig = walk.frames.rig
     reference = _reference(rig, chosen)
     parameters = calibrated_parameters(
         rig, reference=reference, with_imu=False, settings=chosen.calibration
     )
-    lines = []
+    report_lines = []
     for row in parameters.lidars:
         found = align_maps(walk, walk.frames.rig, row, reference=reference, settings=chosen)
         if found is None:
@@ -188,28 +188,30 @@ def _maps(task: _Task) -> CalibratedRig:
                 f"{np.rad2deg(found.scatter_rad):.1f}° and {100 * found.scatter_m:.0f} cm"
             )
         rig = with_mount(rig, row, found.T_body_sensor)
-        lines.append(
+        report_lines.append(
             f"{rig.sensors[row].name}: {found.windows} windows, scatter "
             f"{np.rad2deg(found.scatter_rad):.2f}° {1e3 * found.scatter_m:.0f} mm"
         )
     changed = parameters.between(walk.frames.rig, rig)
-    return CalibratedRig(rig, "calibrated by maps", (*_changes(parameters.listed, changed), *lines))
+    report_lines = _changes(parameters.listed, changed) + report_lines
+    return MethodResult(rig, "calibrated by maps", tuple(report_lines))
 
 
-def _profiler_entropy(task: _Task, walk: RecordedWalk) -> CalibratedRig:
+def _profiler_entropy(task: _Task, walk: RecordedWalk) -> MethodResult:
     parameters = profiler_parameters(walk.frames.rig)
     points = profiler_walk(walk.frames, walk.trajectory)
     task.progress.start("calibration", 0, "evaluations")
     found = calibrate_profiler(points, parameters, progress=task.progress.advance)
-    lines = _changes(parameters.listed, found.change)
+    report_lines = _changes(parameters.listed, found.change)
     note = (
-        f"{len(found.costs)} evaluations; {100.0 * (1.0 - found.costs[-1]):.1f} % fewer places "
-        "than in the step before; the height of the profiler is not observable on a level floor"
+        f"{len(found.costs)} evaluations; {100.0 * (1.0 - found.costs[-1]):.1f} % fewer occupied "
+        "cubes than in the step before; the height of the profiler is not observable on a level "
+        "floor"
     )
-    return CalibratedRig(found.rig, "calibrated by entropy", (*lines, note))
+    return MethodResult(found.rig, "calibrated by entropy", (*report_lines, note))
 
 
-def _entropy(task: _Task) -> CalibratedRig:
+def _entropy(task: _Task) -> MethodResult:
     walk, chosen = _walk(task)
     if walk.frames.rig.row_of("profiler") is not None:
         return _profiler_entropy(task, walk)
@@ -224,12 +226,12 @@ def _entropy(task: _Task) -> CalibratedRig:
     found = calibrate_by_entropy(
         windows, rig, parameters, settings=settings, progress=task.progress.advance
     )
-    lines = _changes(parameters.listed, found.change)
+    report_lines = _changes(parameters.listed, found.change)
     cost = f"cost {found.costs[0]:.4f} -> {found.costs[-1]:.4f} in {len(found.costs)} evaluations"
-    return CalibratedRig(found.rig, "calibrated by entropy", (*lines, cost))
+    return MethodResult(found.rig, "calibrated by entropy", (*report_lines, cost))
 
 
-def _gravity(task: _Task) -> CalibratedRig:
+def _gravity(task: _Task) -> MethodResult:
     assert task.sources.rig is not None
     if task.sources.recordings[0].suffix == ".csv":
         rig, pairs = task.sources.rig, read_inclinations(task.sources.recordings[0])
@@ -241,18 +243,18 @@ def _gravity(task: _Task) -> CalibratedRig:
             f"gravity: expected the backpack at rest at two inclinations or more, got {len(pairs)}"
         )
     found = align_gravity(pairs.normal_body, pairs.force_imu)
-    lines = [
+    report_lines = [
         f"inclination {k + 1}: residual {np.rad2deg(residual):.2f}°"
         for k, residual in enumerate(found.residual_rad)
     ]
     if not found.heading_observable:
         text = "the inclinations are all alike: the rotation about gravity is not observable"
-        return CalibratedRig(None, text, tuple(lines))
+        return MethodResult(None, text, tuple(report_lines))
     turned = replace(rig, T_body_imu=SE3(found.R_body_imu, rig.T_body_imu.t))
-    return CalibratedRig(turned, "calibrated by gravity", tuple(lines))
+    return MethodResult(turned, "calibrated by gravity", tuple(report_lines))
 
 
-def _pairs(task: _Task) -> CalibratedRig:
+def _pairs(task: _Task) -> MethodResult:
     assert task.sources.rig is not None
     rig, pairs = task.sources.rig, read_pose_pairs(task.sources.recordings[0])
     names = {sensor.name: row for row, sensor in enumerate(rig.sensors)}
@@ -263,15 +265,17 @@ def _pairs(task: _Task) -> CalibratedRig:
     if found.contradictory:
         # Poses of two worlds: only their motions compare.
         found = hand_eye(pairs, before_m=rig.sensors[names[name]].T_body_sensor.t)
-    lines = tuple(
+    report_lines = tuple(
         f"pair {k + 1}: residual {np.rad2deg(turn):.3f}° {1e3 * shift:.1f} mm"
         for k, (turn, shift) in enumerate(zip(found.residual_rad, found.residual_m, strict=True))
     )
     if found.contradictory:
-        return CalibratedRig(None, "the pairs of poses contradict each other", lines)
-    lines += _known_to(found)
+        return MethodResult(None, "the pairs of poses contradict each other", report_lines)
+    report_lines += _known_to(found)
+    # The tracked marker is the body frame of the rig: T_marker_sensor is T_body_sensor.
     mounted = with_mount(rig, names[name], found.T_marker_sensor)
-    return CalibratedRig(mounted, f"mount of {name!r} from {len(found.residual_m)} pairs", lines)
+    outcome = f"mount of {name!r} from {len(found.residual_m)} pairs"
+    return MethodResult(mounted, outcome, report_lines)
 
 
 def _known_to(found: PairAlignment) -> tuple[str, ...]:
@@ -287,7 +291,7 @@ def _known_to(found: PairAlignment) -> tuple[str, ...]:
     )
 
 
-_METHODS: dict[str, Callable[[_Task], CalibratedRig]] = {
+_METHODS: dict[str, Callable[[_Task], MethodResult]] = {
     "joint": _joint,
     "maps": _maps,
     "gravity": _gravity,
@@ -330,18 +334,19 @@ def _reference(rig: Rig, settings: Settings) -> int:
 
 
 def _table(rows: tuple[ParameterFigures, ...]) -> list[str]:
-    lines = []
+    report_lines = []
     for row in rows:
-        factor, unit = SHOWN[row.unit]
+        factor, unit = DISPLAY_UNITS[row.unit]
         sd = "" if row.sd is None else f" ± {factor * row.sd:.3f}"
         name = " ".join(part for part in (row.sensor, row.quantity, row.axis) if part)
-        lines.append(f"{name:<28} {factor * row.change:+9.3f}{sd:<10} {unit:<3} {row.status}")
-    return lines
+        change = f"{factor * row.change:+9.3f}{sd:<10} {unit:<3}"
+        report_lines.append(f"{name:<28} {change} {row.status}")
+    return report_lines
 
 
 def _changes(listed: tuple[Parameter, ...], change: Array) -> list[str]:
-    lines = []
+    report_lines = []
     for parameter, value in zip(listed, change, strict=True):
-        factor, unit = SHOWN[parameter.unit]
-        lines.append(f"{parameter.name:<28} {factor * value:+9.3f} {unit}")
-    return lines
+        factor, unit = DISPLAY_UNITS[parameter.unit]
+        report_lines.append(f"{parameter.name:<28} {factor * value:+9.3f} {unit}")
+    return report_lines

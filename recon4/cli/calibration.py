@@ -12,7 +12,7 @@ from recon4.errors import CalibrationError, ConfigError
 from recon4.terminal import write
 
 if TYPE_CHECKING:
-    from recon4.calibration_methods import CalibratedRig
+    from recon4.calibration_methods import MethodResult
 
 calibration = typer.Typer()
 
@@ -47,26 +47,27 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     compile_first()
     confine_command(write=[result_folder(folder), out.parent])
 
-    from recon4.calibration_methods import CalibrationChoice, calibrate_by, check_choice, page_of
+    from recon4 import calibration_methods as methods
     from recon4.model.rig import load_rig
     from recon4.recording.sources import Sources, require_files
     from recon4.report.calibration_page import write_calibration_page
     from recon4.terminal import watcher
 
-    choice = CalibrationChoice(method, sensors, beams)
-    check_choice(choice)
+    choice = methods.CalibrationChoice(method, sensors, beams)
+    methods.check_choice(choice)
     require_files([*recordings, *(path for path in (imu, gnss) if path)])
     sources = Sources(tuple(recordings), load_rig(rig), imu, gnss)
     with watcher() as progress:
-        found = calibrate_by(choice, sources, folder, progress=progress)
-    write("\n".join(found.lines))
+        found = methods.calibrate_by(choice, sources, folder, progress=progress)
+    write("\n".join(found.report_lines))
     page = out.with_suffix(".html")
-    write_calibration_page(page, page_of(method, found, sources, folder=folder))
+    report = methods.calibration_report(method, found, sources, folder=folder)
+    write_calibration_page(page, report)
     write(f"page    {page}")
     _write(found, out)
 
 
-def _write(found: CalibratedRig, out: Path) -> None:
+def _write(found: MethodResult, out: Path) -> None:
     from recon4.model.rig import format_rig
     from recon4.store.atomic import atomic_file
 

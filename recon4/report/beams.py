@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
-from recon4.report.rig import SHOWN
+from recon4.report.rig import DISPLAY_UNITS
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,8 +23,8 @@ class _Quantity:
 
 _QUANTITIES = (
     _Quantity("range", 1e3, " mm", 2),
-    _Quantity("elevation", *SHOWN["rad"], 4),
-    _Quantity("azimuth", *SHOWN["rad"], 4),
+    _Quantity("elevation", *DISPLAY_UNITS["rad"], 4),
+    _Quantity("azimuth", *DISPLAY_UNITS["rad"], 4),
 )
 _COLORS = (BLUE, ORANGE, GREEN, PINK)
 _WIDTH_SD = 2.0

@@ -22,8 +22,8 @@ _HEIGHT_IN = 4.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class RigSlice:
-    """Points of each LiDAR in a horizontal slice."""
+class CloudSlice:
+    """Points of each LiDAR in a horizontal slice, placed by one rig."""
 
     name: str
     """Of the rig, as ``rig file``."""
@@ -40,9 +40,9 @@ class CalibrationPage:
     outcome: str
     figures: CalibrationFigures | None = None
     """Of the method joint."""
-    lines: tuple[str, ...] = ()
+    report_lines: tuple[str, ...] = ()
     """Of the other methods."""
-    slices: Sequence[RigSlice] = ()
+    slices: Sequence[CloudSlice] = ()
 
 
 def write_calibration_page(path: Path, page: CalibrationPage) -> None:
@@ -64,13 +64,13 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
             beam_charts=framed(beam_charts(page.figures)),
             slices=framed([(_chart(one), one.name) for one in page.slices]),
             thickness_m=THICKNESS_M,
-            lines=page.lines,
+            report_lines=page.report_lines,
         )
     )
     write_text(path, text)
 
 
-def _chart(one: RigSlice) -> str:
+def _chart(one: CloudSlice) -> str:
     chart = Chart(f"slice-{one.name}", height=_HEIGHT_IN)
     for k, (name, p_m) in enumerate(one.p_m):
         color = _COLORS[k % len(_COLORS)]

@@ -11,7 +11,7 @@ from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
 from recon4.report.figures import BLUE, GRAY, ORANGE, Chart
 
-SHOWN = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
+DISPLAY_UNITS = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
 """Factor and unit in which parameters are shown."""
 _COLORS = {"consistent": BLUE, "off": ORANGE, "not observable": GRAY}
 _TITLES = {"rad": "rotation [°]", "m": "position [mm]", "s": "clock [ms]"}
@@ -77,7 +77,7 @@ def rig_charts(found: CalibrationFigures | None) -> list[tuple[str, str]]:
 
 
 def _row(one: ParameterFigures) -> RigRow:
-    factor, unit = SHOWN[one.unit]
+    factor, unit = DISPLAY_UNITS[one.unit]
     sd = "" if one.sd is None else f" ± {number(one.sd, 3, factor)}"
     return RigRow(_name(one), f"{factor * one.change:+.3f}{sd} {unit}", one.status)
 
@@ -87,7 +87,7 @@ def _name(one: ParameterFigures) -> str:
 
 
 def _chart(rows: Sequence[ParameterFigures], unit: str, title: str) -> str:
-    factor, _ = SHOWN[unit]
+    factor, _ = DISPLAY_UNITS[unit]
     chart = Chart(f"rig-{unit}", height=0.7 + 0.26 * len(rows))
     for at, one in enumerate(rows):
         if one.sd is None:

@@ -6,7 +6,7 @@ from scipy.spatial import cKDTree
 from recon4.calibration.slices import slice_points
 from recon4.calibration.walk import RecordedWalk
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.report.calibration_page import CalibrationPage, RigSlice, write_calibration_page
+from recon4.report.calibration_page import CalibrationPage, CloudSlice, write_calibration_page
 from recon4.store.frames import FrameStore, FrameWriter
 from tests.unit.calibration.conftest import mounted
 
@@ -49,7 +49,7 @@ def test_the_page_has_parameters_slices_and_escaped_texts(tmp_path):
         method="joint",
         outcome="written",
         figures=CalibrationFigures(parameters=(row,)),
-        slices=(RigSlice("rig file", points), RigSlice("calibrated", points)),
+        slices=(CloudSlice("rig file", points), CloudSlice("calibrated", points)),
     )
 
     write_calibration_page(tmp_path / "page.html", page)
