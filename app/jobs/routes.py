@@ -173,7 +173,7 @@ def retry_job(job_id: str, server: Server, request: Request) -> JobView:
     status_code=201,
     responses=REFUSALS,
     dependencies=START,
-    summary="Make a new map",
+    summary="Rebuild map",
 )
 def remake(project_id: str, server: Server, request: Request) -> JobView:
     """Apply the decisions about loop closures to the map: runs only the stages that depend on them.
@@ -186,7 +186,7 @@ def remake(project_id: str, server: Server, request: Request) -> JobView:
     inputs = replace(earlier[0].inputs if earlier else Inputs(recordings=()), remake=True)
     _refuse_if_full(server, project_id, inputs)
     added = _add(server, project_id, inputs)
-    audit(request, "make a new map", project_id)
+    audit(request, "rebuild map", project_id)
     return added
 
 

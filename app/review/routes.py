@@ -239,7 +239,7 @@ def read_journal(
     return [RowView(**{n: getattr(row, n) for n in names}) for row in reversed(rows[-most:])]
 
 
-@router.post("/approve", status_code=201, dependencies=SIGN, summary="Approve verification")
+@router.post("/approve", status_code=201, dependencies=SIGN, summary="Approve map")
 async def approve(
     project_id: str, asked: Approve, request: Request, *, server: Server, who: Who
 ) -> ReviewView:

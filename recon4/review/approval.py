@@ -228,7 +228,7 @@ def _asked(root: Path, signer: Mapping[str, str]) -> _ApprovalRequest:
     try:
         check_sealed(root, SUMMARY)
     except Altered as error:
-        raise NotApprovable(f"{error}: make a new map first") from error
+        raise NotApprovable(f"{error}: rebuild the map first") from error
     rows = read_rows(root)
     if record := broken(rows):
         raise NotApprovable(f"the journal was altered: {record[0]}")
@@ -247,7 +247,7 @@ def _verdict(summary: Mapping[str, object]) -> MapVerdict | None:
     try:
         return verdict_in(summary)
     except StoreError as error:
-        raise NotApprovable(f"{error}: make a new map first") from error
+        raise NotApprovable(f"{error}: rebuild the map first") from error
 
 
 def _conflicts(root: Path, summary: dict[str, Any]) -> int:
@@ -263,7 +263,7 @@ def _conflicts(root: Path, summary: dict[str, Any]) -> int:
 
 def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
     if decisions_in_map(root) != asked.decided.key:
-        raise NotApprovable("the last decisions are not in the map: make a new map first")
+        raise NotApprovable("the last decisions are not in the map: rebuild the map first")
     if asked.conflicts and not (confirmed and asked.signer["why"].strip()):
         raise NotApprovable(
             f"{asked.conflicts} accepted loop closures do not fit the graph: reject them, or "
@@ -278,12 +278,12 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
     for name, sha256 in asked.summary["hashes"]["results"].items():
         path = root / name
         if not path.is_file() or hash_file(path) != sha256:
-            raise NotApprovable(f"{name} is not what the run wrote: make a new map first")
+            raise NotApprovable(f"{name} is not what the run wrote: rebuild the map first")
     try:
         for key in asked.keys.values():
             CheckedArtifact.open(root / "artifacts" / key).check_all()
     except Altered as error:
-        raise NotApprovable(f"{error}: make a new map first") from error
+        raise NotApprovable(f"{error}: rebuild the map first") from error
 
 
 def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path) -> Approval:

@@ -160,7 +160,7 @@ def decide(page, root, screenshot):
     before, after = (float(x) for x in chi2.inner_text().split("→"))
     assert after < before
     expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
-    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+    expect(page.get_by_role("button", name="Approve map…")).to_be_disabled()
     rows = read_rows(root)
     assert [row.kind for row in rows] == ["accept", "undo", "reject"]
     assert broken(rows) == []
@@ -174,7 +174,7 @@ def decided(page, key, count):
 
 def make_a_new_map(page):
     """The decisions are a stage of the next run; stages that do not depend on them are reused."""
-    page.get_by_role("button", name="Make a new map").click()
+    page.get_by_role("button", name="Rebuild map").click()
     expect(page.locator("#signing")).to_contain_text("A job waits or runs")
     page.get_by_role("link", name="Map", exact=True).click()
     row = page.get_by_role("row")
@@ -208,7 +208,7 @@ def cut(page, screenshot):
 
 def approve(page):
     expect(page.locator("#signing")).to_contain_text("was made with these decisions")
-    page.get_by_role("button", name="Approve verification…").click()
+    page.get_by_role("button", name="Approve map…").click()
     page.get_by_label("Remark").fill("walked through it, all walls single")
     page.get_by_role("button", name="Sign").click()
     expect(page.locator("#signing")).to_contain_text("✓ Approved: version 1 by local")
@@ -246,7 +246,7 @@ def decide_again(page):
     select_next(page)
     page.keyboard.press("r")
     expect(page.locator("#signing")).to_contain_text("Draft: decisions were made after")
-    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+    expect(page.get_by_role("button", name="Approve map…")).to_be_disabled()
 
 
 def hashes(folder):

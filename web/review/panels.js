@@ -258,7 +258,7 @@ export function showSigning(panel, state, { remake, approve }) {
           id: "remake",
           disabled: state.busy || state.in_map || !state.may_process,
         },
-        "Make a new map",
+        "Rebuild map",
       ),
       make(
         "button",
@@ -268,7 +268,7 @@ export function showSigning(panel, state, { remake, approve }) {
           disabled: Boolean(obstacle) || !state.may_review,
           title: obstacle,
         },
-        "Approve verification…",
+        "Approve map…",
       ),
     ),
     obstacle && !state.busy && !(approval?.current && state.in_map)

@@ -70,7 +70,7 @@ export function askToSign(map, conflicts, sign) {
     message,
     make("div", { className: "buttons" }, cancel, button),
   );
-  const dialog = open("Approve verification", form);
+  const dialog = open("Approve map", form);
   dialog.classList.add("wide");
   allow();
 }

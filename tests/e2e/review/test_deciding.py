@@ -164,7 +164,7 @@ def test_the_page_shows_the_effect_of_a_decision(opened, look, screenshot):
     expect(page.locator("#effect")).to_contain_text("Accepted, but does not fit")
     expect(page.locator("#effect")).to_contain_text("Largest moves of the last decision")
     expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
-    expect(page.get_by_role("button", name="Approve verification…")).to_be_disabled()
+    expect(page.get_by_role("button", name="Approve map…")).to_be_disabled()
     fits(page)
     screenshot(page, "review-effect")
 
@@ -200,10 +200,10 @@ def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
     page.keyboard.press("r")
     expect(page.locator("#signing")).to_contain_text("decisions are not in the map")
 
-    page.get_by_role("button", name="Make a new map").click()
+    page.get_by_role("button", name="Rebuild map").click()
     signing = page.locator("#signing")
     expect(signing).to_contain_text("was made with these decisions", timeout=120_000)
-    page.get_by_role("button", name="Approve verification…").click()
+    page.get_by_role("button", name="Approve map…").click()
     page.get_by_label("Remark").fill("compared with the plan")
     page.get_by_role("button", name="Sign").click()
 

@@ -32,7 +32,7 @@ def test_an_unusable_map_looks_so_and_is_signed_only_with_a_reason(unusable, ope
     fits(page)
     screenshot(page, "review-unusable")
 
-    page.get_by_role("button", name="Approve verification…").click()
+    page.get_by_role("button", name="Approve map…").click()
     dialog, sign = page.get_by_role("dialog"), page.get_by_role("button", name="Sign", exact=True)
     for text in ("Do not use this map", LOST, "2 s to 10 s: a horizontal direction", "Multiframes"):
         expect(dialog).to_contain_text(text)

@@ -139,7 +139,7 @@ def test_an_approval_is_not_given_while_decisions_are_not_in_the_map(server):
     answer = approve(server)
 
     assert answer.status_code == 409
-    assert "make a new map first" in answer.json()["detail"]
+    assert "rebuild the map first" in answer.json()["detail"]
 
 
 def test_an_approval_is_not_given_while_a_job_waits(server, root):

@@ -137,7 +137,7 @@ def forge_journal(root):
         (lambda root: append(root, reject(9)), "the last decisions are not in the map"),
         (
             lambda root: (root / "artifacts/ab/points.txt").write_text("points of AB\n"),
-            "artifacts/ab/points.txt: expected .* make a new map first",
+            "artifacts/ab/points.txt: expected .* rebuild the map first",
         ),
         (lambda root: (root / "artifacts/ab/manifest.json").unlink(), "manifest.json cannot be"),
     ],
