@@ -1,5 +1,7 @@
 // Captions and units of the review page, and its keys. No DOM, no network.
 
+import { when } from "../shared/format.js";
+
 export const VERDICTS = {
   accepted: { mark: "✓", word: "Accepted" },
   rejected: { mark: "✕", word: "Rejected" },
@@ -63,3 +65,58 @@ export const percent = (v) => (v === null || v === undefined ? "–" : `${Math.r
 export const plain = (v, digits = 3) =>
   v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString();
 export const keyOf = ([i, j]) => `${i}-${j}`;
+
+const CONTRADICTED = "verification median > limit"; // a reason as the server stores it
+
+/** How the program or a person came to the edge, with the figure that decided it. */
+export function decisionText(row, path_limit_m) {
+  if (row.kind === "manual") return "Created by a person";
+  if (!row.reason) return "Accepted automatically";
+  const reason =
+    row.reason === CONTRADICTED && row.verification_m !== null
+      ? `path discrepancy ${length(row.verification_m)} > ${length(path_limit_m)}`
+      : row.reason;
+  return `Rejected automatically: ${reason}`;
+}
+
+/** The verdict that a map was approved in spite of, with the signer's reason. */
+const inSpiteOf = ({ verdict, why }) =>
+  !verdict || verdict === "good"
+    ? ""
+    : `, in spite of the verdict “${verdict}”${why ? `: “${why}”` : ""}`;
+
+/** Who approved which version; a decision after the approval makes the map a draft again. */
+export function approvalText({ approval, in_map }) {
+  if (!approval) return "Draft, not approved";
+  const signed = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
+  const version = signed + inSpiteOf(approval);
+  if (approval.check === "altered") return `✗ Altered since the approval: ${approval.altered}`;
+  if (!approval.current) return `Draft. An earlier map was approved: ${version}`;
+  if (!in_map) return `Draft: decisions were made after the approval of ${version}`;
+  if (approval.check === "checked") return `✓ Approved: ${version}`;
+  return approval.check === "checking"
+    ? `Approved: ${version}; the bytes are being compared with the signature`
+    : `Approved: ${version}; not compared with the signature`;
+}
+
+/** Whether the map was made with the decisions in force. */
+export function mapText({ busy, finished, in_map, standing: activeDecisions }) {
+  if (busy) return "▶ A job waits or runs";
+  if (!finished) return "◌ There is no finished map yet";
+  if (!in_map) return "◌ The last decisions are not in the map yet";
+  return activeDecisions.length
+    ? "✓ The map was made with these decisions"
+    : "✓ The map was made without decisions of people";
+}
+
+export const permissionMissing = (permission) =>
+  `Requires the permission to ${permission}, which you do not have`;
+
+/** Why the map cannot be approved now; empty if it can. */
+export function approvalObstacle({ busy, finished, in_map, may_review, approval }) {
+  if (!may_review) return permissionMissing("review");
+  if (busy) return "A job waits or runs";
+  if (!finished) return "There is no finished map yet";
+  if (!in_map) return "The last decisions are not in the map";
+  return approval?.current && approval.check !== "altered" ? "This map is approved" : "";
+}

@@ -2,11 +2,23 @@
 
 import { fill, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
-import { KINDS, degrees, length, plain, seconds, percent } from "./captions.js";
+import {
+  KINDS,
+  approvalObstacle,
+  approvalText,
+  decisionText,
+  degrees,
+  length,
+  mapText,
+  percent,
+  permissionMissing,
+  plain,
+  seconds,
+} from "./captions.js";
 
 const put = (panel, ...children) => panel.replaceChildren(...children.filter(Boolean));
 /** A row of a list of figures; `note` stands beside the value, `title` explains the term. */
-const fact = (term, value, note = "", title = "") =>
+const figureRow = (term, value, note = "", title = "") =>
   make(
     "div",
     { title },
@@ -14,86 +26,74 @@ const fact = (term, value, note = "", title = "") =>
     make("dd", {}, value, note ? make("small", {}, ` ${note}`) : null),
   );
 const over = (row) => row.error_m !== null && row.limit_m !== null && row.error_m > row.limit_m;
-const CONTRADICTED = "verification median > limit"; // a reason as the server stores it
-
-/** How the program or a person came to the edge, with the figure that decided it. */
-function verdict(row, limit_m) {
-  if (row.kind === "manual") return "Created by a person";
-  if (!row.reason) return "Accepted automatically";
-  const reason =
-    row.reason === CONTRADICTED && row.verification_m !== null
-      ? `path discrepancy ${length(row.verification_m)} > ${length(limit_m)}`
-      : row.reason;
-  return `Rejected automatically: ${reason}`;
-}
 
 /** The selected pair: figures of the program, and of a registration made on this page. */
-export function showPair(panel, row, facts, found, limit_m) {
+export function showPair(panel, row, details, registration, path_limit_m) {
   if (!row)
     return put(
       panel,
       make("h2", {}, "No pair selected"),
-      make("p", { className: "quiet" }, "J shows the first one"),
+      make("p", { className: "quiet" }, "Press J for the first one"),
     );
   const checked = (bad, text) => (bad ? make("span", { className: "bad" }, "✕ ", text) : text);
-  const figures = found ?? row;
-  const contradicted = row.verification_m !== null && row.verification_m > limit_m;
+  const figures = registration ?? row;
+  const contradicted = row.verification_m !== null && row.verification_m > path_limit_m;
   put(
     panel,
     make("h2", {}, row.title),
-    make("p", {}, verdict(row, limit_m)),
+    make("p", {}, decisionText(row, path_limit_m)),
     make(
       "dl",
       {},
-      fact(
+      figureRow(
         "Influence on the map",
         length(row.influence_m),
         "",
         "How far the map moves if this edge is rejected instead of accepted, or the reverse",
       ),
-      fact(
+      figureRow(
         "Overlap",
         percent(figures.overlap),
         "",
         "Part of the view volume of the first place that the second one sees too",
       ),
-      fact(
+      figureRow(
         "Registration error",
         checked(over(figures), length(figures.error_m)),
         figures.limit_m === null ? "" : `limit ${length(figures.limit_m)}`,
         "Mean distance of the matched features",
       ),
-      fact(
+      figureRow(
         "Degeneracy",
         plain(figures.degeneracy, 2),
         "0 unobservable, 0.33 isotropic",
         "Smallest eigenvalue of the normalized information; near 0 the places can slide",
       ),
-      fact(
+      figureRow(
         "Path discrepancy",
         checked(contradicted, length(row.verification_m)),
         `median of ${row.paths ?? 0} alternative paths`,
         "Distance between this edge and the other paths through the graph between its ends",
       ),
-      fact(
+      figureRow(
         "Chi-square contribution",
         plain(row.chi2),
         "",
         "Squared residual of this edge, weighted by its information",
       ),
-      fact(
+      figureRow(
         "Residual to the graph",
-        facts ? length(facts.apart_m) : "…",
-        facts ? degrees(facts.apart_rad, 2) : "",
+        details ? length(details.apart_m) : "…",
+        details ? degrees(details.apart_rad, 2) : "",
         "Difference between this edge and the relative pose in the optimized graph",
       ),
-      fact("Decided by", row.who || "program", row.why),
+      figureRow("Decided by", row.who || "program", row.why),
     ),
-    facts?.paths.length ? paths(facts) : null,
+    details?.paths.length ? pathList(details) : null,
   );
 }
 
-function paths(facts) {
+function pathList({ paths, path_count }) {
   const line = (path) =>
     make(
       "li",
@@ -104,8 +104,8 @@ function paths(facts) {
   return make(
     "details",
     {},
-    make("summary", {}, `Alternative paths (${facts.path_count})`),
-    make("ul", { className: "paths" }, ...facts.paths.slice(0, 20).map(line)),
+    make("summary", {}, `Alternative paths (${path_count})`),
+    make("ul", { className: "paths" }, ...paths.slice(0, 20).map(line)),
   );
 }
 
@@ -117,7 +117,7 @@ export function showEffect(panel, effect, { working, choose }) {
       make("h2", {}, "Effect"),
       make("p", { className: "quiet" }, working ? "Solving the graph…" : "No decisions yet"),
     );
-  const { last, all } = effect;
+  const { last, all, missing: ineffective, changed: reregistered } = effect;
   const pair = (p) =>
     make(
       "button",
@@ -144,16 +144,16 @@ export function showEffect(panel, effect, { working, choose }) {
     make(
       "dl",
       {},
-      fact(
+      figureRow(
         "Chi-square, last decision",
         `${plain(last.chi2_before, 4)} → ${plain(last.chi2_after, 4)}`,
       ),
-      fact("Edges in the graph", `${last.edges_before} → ${last.edges_after}`),
-      fact(
+      figureRow("Edges in the graph", `${last.edges_before} → ${last.edges_after}`),
+      figureRow(
         "Chi-square, all decisions",
         `${plain(all.chi2_before, 4)} → ${plain(all.chi2_after, 4)}`,
       ),
-      fact("Largest move, all decisions", length(all.moves[0]?.moved_m ?? 0)),
+      figureRow("Largest move, all decisions", length(all.moves[0]?.moved_m ?? 0)),
     ),
     list(
       "✕ Accepted, but does not fit the graph",
@@ -165,11 +165,11 @@ export function showEffect(panel, effect, { working, choose }) {
     ),
     list(
       "Without effect: not in this graph, or not registered",
-      effect.missing.map((p) => [pair(p)]),
+      ineffective.map((p) => [pair(p)]),
     ),
     list(
-      "Measured again since the decision",
-      effect.changed.map((p) => [pair(p)]),
+      "Registered again since the decision",
+      reregistered.map((p) => [pair(p)]),
     ),
     list(
       "Rejected automatically as a consequence",
@@ -190,47 +190,10 @@ export function showEffect(panel, effect, { working, choose }) {
   );
 }
 
-/** The verdict that a map was approved in spite of, with the signer's reason. */
-const inSpiteOf = ({ verdict, why }) =>
-  !verdict || verdict === "good"
-    ? ""
-    : `, in spite of the verdict “${verdict}”${why ? `: “${why}”` : ""}`;
-
-/** Who approved which version; a decision after the approval makes the map a draft again. */
-function approvalText({ approval, in_map }) {
-  if (!approval) return "Draft, not approved";
-  const signed = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
-  const version = signed + inSpiteOf(approval);
-  if (approval.check === "altered") return `✗ Altered since the approval: ${approval.altered}`;
-  if (!approval.current) return `Draft. An earlier map was approved: ${version}`;
-  if (in_map && approval.check === "checking")
-    return `Approved: ${version}; the bytes are being compared with the signature`;
-  return in_map
-    ? `✓ Approved: ${version}`
-    : `Draft: decisions were made after the approval of ${version}`;
-}
-
-function mapText({ busy, finished, in_map, standing }) {
-  if (busy) return "▶ A job waits or runs";
-  if (!finished) return "◌ There is no finished map yet";
-  if (!in_map) return "◌ The last decisions are not in the map yet";
-  return standing.length
-    ? "✓ The map was made with these decisions"
-    : "✓ The map was made without decisions of people";
-}
-
 /** Whether the decisions are in the map, and who approved it. */
-export function showSigning(panel, state, { remake, approve }) {
+export function showApproval(panel, state, { remake, approve }) {
   const { approval } = state;
-  const obstacle = state.busy
-    ? "A job waits or runs"
-    : !state.finished
-      ? "There is no finished map yet"
-      : !state.in_map
-        ? "The last decisions are not in the map"
-        : approval?.current && approval.check !== "altered"
-          ? "This map is approved"
-          : "";
+  const obstacle = approvalObstacle(state);
   fill(
     panel,
     make("h2", {}, "Map"),
@@ -257,6 +220,7 @@ export function showSigning(panel, state, { remake, approve }) {
           type: "button",
           id: "remake",
           disabled: state.busy || state.in_map || !state.may_process,
+          title: state.may_process ? "" : permissionMissing("process"),
         },
         "Rebuild map",
       ),
@@ -265,14 +229,18 @@ export function showSigning(panel, state, { remake, approve }) {
         {
           type: "button",
           id: "approve",
-          disabled: Boolean(obstacle) || !state.may_review,
+          disabled: Boolean(obstacle),
           title: obstacle,
         },
         "Approve map…",
       ),
     ),
     obstacle && !state.busy && !(approval?.current && state.in_map)
-      ? make("p", { className: "quiet" }, `Approval: ${obstacle.toLowerCase()}`)
+      ? make(
+          "p",
+          { className: "quiet" },
+          `Approval: ${obstacle[0].toLowerCase()}${obstacle.slice(1)}`,
+        )
       : null,
     make("p", { className: "error", role: "alert" }),
   );

@@ -17,7 +17,7 @@ import {
 } from "../shared/api.js";
 import { attempt, byId } from "../shared/dom.js";
 import { askForFrames, showKeys } from "./dialogs.js";
-import { journalNews, showEffect, showJournal, showPair, showSigning } from "./panels.js";
+import { journalNews, showApproval, showEffect, showJournal, showPair } from "./panels.js";
 import { keyOf } from "./captions.js";
 import { PairLoader } from "./loader.js";
 import { askToSign } from "./signing.js";
@@ -70,7 +70,7 @@ async function select(pair) {
 
 function drawSelected() {
   const { selected } = state;
-  showPair(byId("pair"), selected?.row, selected?.facts, selected?.found, state.limit_m);
+  showPair(byId("pair"), selected?.row, selected?.facts, selected?.found, state.path_limit_m);
   for (const [name, able] of Object.entries(state.enabled(queue.length)))
     buttons[name].disabled = !able;
   buttons.refine.firstChild.textContent = state.refineText;
@@ -94,7 +94,7 @@ function update(server) {
   for (const row of state.update(server)) queue.add(row);
   queue.refresh(state.refreshRows());
   document.querySelector("map-verdict").facts = server.map;
-  showSigning(byId("signing"), server, { remake, approve });
+  showApproval(byId("signing"), server, { remake, approve });
   drawSelected();
   if (seqBefore !== server.seq) updateEffect();
   if (byId("journal", HTMLDetailsElement).open) drawJournal();
@@ -124,7 +124,7 @@ function send(kind, more = {}) {
   if (!selected || !state.server?.may_review) return undefined;
   const { pair, row, facts } = selected;
   const blocked =
-    kind === "restore" ? !state.standingOf(pair) : !selected.drawn || selected.decided;
+    kind === "restore" ? !state.activeDecisionOf(pair) : !selected.drawn || selected.decided;
   if (blocked) return undefined;
   if (kind === "accept" && !state.isMeasured) {
     message.textContent = "This pair is not registered: align it and refine it first";
@@ -287,13 +287,13 @@ async function begin() {
   view.clear("Sorting the loop closures…");
   const server = await readReview(id);
   loader.clear();
-  const empty = { rows: [], columns: [], began_ns: 0, limit_m: state.limit_m };
+  const empty = { rows: [], columns: [], began_ns: 0, limit_m: state.path_limit_m };
   state.reset(server, server.graph ? await readQueue(id) : empty);
   queue.rows = state.rows;
   const searched = server.graph
     ? "This walk has no pair to decide about"
     : "Nothing to review until loop closures have been searched and verified";
-  view.clear(state.rows.length ? "J shows the first pair" : searched);
+  view.clear(state.rows.length ? "Press J for the first pair" : searched);
   update(server);
 }
 

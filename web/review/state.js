@@ -27,7 +27,7 @@ export class ReviewState {
   selected = null;
   rows = [];
   graph = ""; // that the rows are made of
-  limit_m = 0.1; // largest path discrepancy
+  path_limit_m = 0.1; // largest path discrepancy
   began_ns = 0;
 
   /** Starts again with the state and the queue of the server. */
@@ -37,7 +37,7 @@ export class ReviewState {
     this.graph = server.graph;
     this.selected = this.effect = null;
     this.began_ns = queue.began_ns;
-    this.limit_m = queue.limit_m;
+    this.path_limit_m = queue.limit_m;
     this.rows = queue.rows.map((row) =>
       this.#described(Object.fromEntries(queue.columns.map((name, k) => [name, row[k]]))),
     );
@@ -93,26 +93,26 @@ export class ReviewState {
     return this.selected;
   }
 
-  /** The decision of a person that stands for a pair. */
-  standingOf([i, j]) {
+  /** The decision of a person that is in force for a pair. */
+  activeDecisionOf([i, j]) {
     return this.server?.standing.find((one) => one.frame_i === i && one.frame_j === j);
   }
 
   /** The measured pose of the selected pair; the graph's prediction if it was never registered. */
   poseOf({ pair, facts }) {
-    const standing = this.standingOf(pair);
-    return standing?.measured ? standing.T_i_j : (facts.measured ?? facts.predicted);
+    const decision = this.activeDecisionOf(pair);
+    return decision?.measured ? decision.T_i_j : (facts.measured ?? facts.predicted);
   }
 
   /** Whether the selected pair was registered, by the program or by a person. */
   get isMeasured() {
     const { row, pair } = this.selected;
-    return Boolean(row.measured || this.standingOf(pair)?.measured);
+    return Boolean(row.measured || this.activeDecisionOf(pair)?.measured);
   }
 
   get hasDecisions() {
-    const { standing, undoable, redoable } = this.server;
-    return Boolean(this.graph && (standing.length || undoable || redoable));
+    const { standing: activeDecisions, undoable, redoable } = this.server;
+    return Boolean(this.graph && (activeDecisions.length || undoable || redoable));
   }
 
   /** A row for a pair the program never tried. */
@@ -134,7 +134,7 @@ export class ReviewState {
       kind: "manual",
       verdict: "rejected",
       reason: "",
-      measured: Boolean(this.standingOf(pair)?.measured),
+      measured: Boolean(this.activeDecisionOf(pair)?.measured),
       paths: 0,
       ...unknown,
     });
@@ -151,7 +151,7 @@ export class ReviewState {
       next: pairs > 0,
       accept: open && this.isMeasured,
       reject: open,
-      restore: may && Boolean(selected && this.standingOf(selected.pair)),
+      restore: may && Boolean(selected && this.activeDecisionOf(selected.pair)),
       refine: drawn && !selected.busy,
       pick: drawn,
       undo: may && this.server.undoable > 0,
@@ -181,7 +181,7 @@ export class ReviewState {
   }
 
   #isMeasuredByPerson(row) {
-    return Boolean(this.standingOf([row.frame_i, row.frame_j])?.measured);
+    return Boolean(this.activeDecisionOf([row.frame_i, row.frame_j])?.measured);
   }
 
   #described(row) {
@@ -192,9 +192,9 @@ export class ReviewState {
 
   /** A person's decision, else the program's after the decisions, else its first verdict. */
   #decisionOf(row) {
-    const standing = this.standingOf([row.frame_i, row.frame_j]);
-    if (standing) {
-      const { accepted, who, why } = standing;
+    const decision = this.activeDecisionOf([row.frame_i, row.frame_j]);
+    if (decision) {
+      const { accepted, who, why } = decision;
       return { state: accepted ? "accepted" : "rejected", who, why };
     }
     const isIn = (pairs) => pairs?.some(([i, j]) => i === row.frame_i && j === row.frame_j);
