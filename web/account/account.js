@@ -1,6 +1,6 @@
 // The account of the signed-in person: sessions and password.
 
-import { changePassword, endMySession, listMySessions, readMe } from "../shared/api.js";
+import { changePassword, endMySession, listMySessions, readCurrentUser } from "../shared/api.js";
 import { attempt, byId, fields } from "../shared/dom.js";
 import "../shared/page_head.js";
 import "./session_list.js";
@@ -8,7 +8,7 @@ import "./session_list.js";
 const list = document.querySelector("session-list");
 const form = byId("password", HTMLFormElement);
 
-const me = await attempt(byId("message"), readMe);
+const me = await attempt(byId("message"), readCurrentUser);
 if (me)
   byId("title").textContent = me.login ? `${me.name}, ${me.role}` : "This server has no login";
 for (const section of document.querySelectorAll("section")) section.hidden = !me?.login;

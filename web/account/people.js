@@ -7,7 +7,7 @@ import {
   listPeople,
   listSessions,
   readAudit,
-  readMe,
+  readCurrentUser,
 } from "../shared/api.js";
 import { attempt, byId, fields, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
@@ -122,5 +122,5 @@ form.addEventListener("submit", async (event) => {
 });
 byId("older").addEventListener("click", () => readLog(oldest));
 sessions.source = { read: listSessions, end: endSession };
-byId("without").hidden = (await attempt(byId("message"), readMe))?.login ?? true;
+byId("without").hidden = (await attempt(byId("message"), readCurrentUser))?.login ?? true;
 await reload();

@@ -1,6 +1,6 @@
 // The operator's page of a live capture: map, coverage, warnings, controls.
 
-import { readMe } from "../shared/api.js";
+import { readCurrentUser } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
 import { attempt, byId, targetOf } from "../shared/dom.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
@@ -35,7 +35,7 @@ const scene = new LiveScene(cloud, {
     if (yes) byId("message").textContent = ""; // errors of requests without a link
     drawTexts();
     if (yes && !me)
-      readMe(true).then(
+      readCurrentUser(true).then(
         (found) => ((me = found), drawTexts()),
         () => {},
       );
@@ -306,5 +306,5 @@ dark.addEventListener("change", repaint);
 setInterval(() => linked || drawTexts(), 1000); // updates the duration of a lost link
 if (localStorage.getItem(SUN)) setSun(true);
 
-me = (await attempt(byId("message"), readMe)) ?? null;
+me = (await attempt(byId("message"), readCurrentUser)) ?? null;
 drawTexts();

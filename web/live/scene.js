@@ -1,6 +1,6 @@
 // State of the capture on this page, kept when the link is lost: a new link sends what is missing.
 
-import { openLiveStream, readMe } from "../shared/api.js";
+import { openLiveStream, readCurrentUser } from "../shared/api.js";
 
 const SILENT_MS = 5000;
 const CONNECT_MS = 3000;
@@ -71,7 +71,7 @@ export class LiveScene {
     this.#socket = null;
     this.#announced = null;
     this.#on.link(false, code === TOO_MANY ? reason : "");
-    readMe(true).catch(() => {}); // leads to the login if the session has ended
+    readCurrentUser(true).catch(() => {}); // leads to the login if the session has ended
     setTimeout(
       () => this.#socket ?? this.#connect(),
       code === TOO_MANY ? RETRY_WHEN_FULL_MS : RETRY_MS,

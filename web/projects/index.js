@@ -5,7 +5,7 @@ import {
   listTrash,
   thumbnailUrl,
   projectUrl,
-  readMe,
+  readCurrentUser,
   readServer,
   removeProject,
   restoreProject,
@@ -141,7 +141,7 @@ async function showTrash() {
 }
 
 async function begin() {
-  const { may } = await readMe();
+  const { may } = await readCurrentUser();
   const processes = may.includes("process");
   byId("new").hidden = byId("to-new").hidden = !processes;
   document.querySelector("main").classList.toggle("alone", !processes);

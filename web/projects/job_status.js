@@ -1,6 +1,6 @@
 // <job-status>: state, progress, reason and buttons of one job.
 
-import { cancelJob, readMe, retryJob } from "../shared/api.js";
+import { cancelJob, readCurrentUser, retryJob } from "../shared/api.js";
 import { badge } from "../shared/badge.js";
 import { attempt, fill, make } from "../shared/dom.js";
 import { runProgressText, progressText } from "../shared/format.js";
@@ -52,7 +52,7 @@ export class JobStatus extends HTMLElement {
         text,
       );
     const open = job.state === "queued" || job.state === "running";
-    const { may } = await readMe();
+    const { may } = await readCurrentUser();
     if (this.#view.job.state !== job.state || !may.includes("process")) return;
     this.#buttons.replaceChildren(
       ...(open ? [button("Cancel", cancelJob)] : []),

@@ -5,7 +5,7 @@ import {
   listJobsOf,
   logUrl,
   readLog,
-  readMe,
+  readCurrentUser,
   renameProject,
 } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
@@ -21,7 +21,7 @@ export class ProjectTools extends HTMLElement {
   #dialog = make("dialog", { ariaLabel: "Delete the project" });
 
   async connectedCallback() {
-    const { may } = await readMe();
+    const { may } = await readCurrentUser();
     this.hidden = !may.includes("process");
     if (this.hidden) return;
     this.#again.addEventListener("toggle", () => this.#again.open && this.#form());

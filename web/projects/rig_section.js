@@ -7,7 +7,7 @@ import {
   projectUrl,
   readCalibration,
   readCalibrationSlices,
-  readMe,
+  readCurrentUser,
   rigUrl,
   saveCalibratedRig,
 } from "../shared/api.js";
@@ -37,7 +37,7 @@ export class RigSection extends HTMLElement {
     const found = await attempt(this.#message, async () => ({
       audit: await readCalibration(this.#id),
       slices: await readCalibrationSlices(this.#id),
-      me: await readMe(),
+      me: await readCurrentUser(),
     }));
     if (number !== this.#read) return;
     this.hidden = !found?.audit && !this.#message.textContent;

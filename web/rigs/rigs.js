@@ -5,7 +5,7 @@ import {
   checkRig,
   listRigs,
   listSensorModels,
-  readMe,
+  readCurrentUser,
   readRig,
   rigFileUrl,
   rigUrl,
@@ -176,7 +176,7 @@ file.addEventListener("change", () => {
   file.value = "";
 });
 
-const me = await attempt(message, readMe);
+const me = await attempt(message, readCurrentUser);
 mayChange = me?.may.includes("process") ?? false;
 byId("import").hidden = !mayChange;
 models = (await attempt(message, listSensorModels)) ?? [];

@@ -2,7 +2,13 @@
 
 import { ApiError, NO_RESPONSE, become, name, request, tus, urlOf } from "./http.js";
 
-export { ApiError, LIVE_URL as liveUrl, changeHeaders, isSignedIn, readMe } from "./http.js";
+export {
+  ApiError,
+  LIVE_URL as liveUrl,
+  changeHeaders,
+  isSignedIn,
+  readCurrentUser,
+} from "./http.js";
 
 // -- people and sessions
 

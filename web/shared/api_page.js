@@ -1,12 +1,12 @@
 // The API as a page, made from openapi.json: works without internet.
 
-import { readMe, readOpenApi } from "./api.js";
+import { readCurrentUser, readOpenApi } from "./api.js";
 import { attempt, byId, make } from "./dom.js";
 import { example, limits, typeText } from "../projects/schema.js";
 import "./page_head.js";
 
 const api = await attempt(byId("message"), readOpenApi);
-const me = await readMe();
+const me = await readCurrentUser();
 const schemas = api?.components?.schemas ?? {};
 const EXAMPLES = {
   "Tus-Resumable": "1.0.0",
@@ -36,33 +36,23 @@ const row = (name, ...cells) =>
     ...cells.map((cell) => make("td", {}, cell)),
   );
 
-/** A type, linked to its record. */
+/** A type, linked to its schema. */
 function typeLink(schema) {
   const text = typeText(schema);
-  const record = text.split(" ").find((word) => schemas[word]);
-  return record ? make("a", { href: `#record-${record}` }, text) : text;
+  const named = text.split(" ").find((word) => schemas[word]);
+  return named ? make("a", { href: `#schema-${named}` }, text) : text;
 }
 
-/** The description as plain text. */
-const plain = (text = "") => text.replaceAll("`", "");
+/** A description as plain text. */
+const withoutBackticks = (text = "") => text.replaceAll("`", "");
 
-const RIGHTS = {
-  look: "",
-  process: "who may process",
-  capture: "who may record",
-  review: "who may review",
-  administer: "admins",
-};
-
-/** The permission an operation needs, and whether the signed-in person lacks it. */
-function rights(needed = []) {
-  const text = needed
-    .map((one) => RIGHTS[one] ?? one)
-    .filter(Boolean)
-    .join(" and ");
+/** The permission an operation requires, and whether the signed-in person lacks it. */
+function permissionNote(required = []) {
+  const text = required.filter((one) => one !== "look").join(", ");
   if (!text) return null;
-  const mine = needed.every((one) => me.may.includes(one));
-  return make("span", { className: "needs" }, mine ? text : `✕ ${text}, not you`);
+  const missing = required.some((one) => !me.may.includes(one));
+  const note = `Requires the permission: ${text}${missing ? ". You do not have it." : ""}`;
+  return make("span", { className: "needs" }, note);
 }
 
 const code = (text) => make("pre", { tabIndex: 0 }, text);
@@ -82,14 +72,14 @@ function copyable(text) {
   return make("div", { className: "copy" }, code(text), button);
 }
 
-function fields(record) {
-  const needed = new Set(record.required ?? []);
-  return Object.entries(record.properties ?? {}).map(([name, one]) =>
+function fieldRows(schema) {
+  const needed = new Set(schema.required ?? []);
+  return Object.entries(schema.properties ?? {}).map(([name, one]) =>
     row(
       name,
       typeLink(one),
       [needed.has(name) ? "required" : "", limits(one)].filter(Boolean).join(", "),
-      plain(one.description),
+      withoutBackticks(one.description),
     ),
   );
 }
@@ -129,16 +119,16 @@ function bodyOf({ requestBody }) {
   return binary ? { binary } : null;
 }
 
-function answers({ responses = {} }) {
+function responseTable({ responses = {} }) {
   const rows = Object.entries(responses).map(([status, one]) => {
     const [[kind, content] = []] = Object.entries(one.content ?? {});
     const text = content?.schema ? typeLink(content.schema) : (kind ?? "nothing");
     return row(status, text, one.description ?? "");
   });
-  return [make("h3", {}, "Answers"), table(["Status", "What", ""], rows)];
+  return [make("h3", {}, "Responses"), table(["Status", "What", ""], rows)];
 }
 
-function parts(path, method, operation) {
+function operationDetails(path, method, operation) {
   const body = bodyOf(operation);
   const given = operation.parameters ?? [];
   const inputs = given.map((one) =>
@@ -147,27 +137,27 @@ function parts(path, method, operation) {
       one.in,
       typeText(one.schema),
       [one.required ? "required" : "", limits(one.schema ?? {})].filter(Boolean).join(", "),
-      plain(one.description),
+      withoutBackticks(one.description),
     ),
   );
-  const record = body?.schema?.$ref && schemas[typeText(body.schema)];
+  const schema = body?.schema?.$ref && schemas[typeText(body.schema)];
   const ok = Object.entries(operation.responses ?? {}).find(([status]) =>
     status.startsWith("2"),
   )?.[1]?.content?.["application/json"]?.schema;
   return [
-    make("p", {}, plain(operation.description)),
+    make("p", {}, withoutBackticks(operation.description)),
     ...(inputs.length
-      ? [make("h3", {}, "Parameters"), table(["Name", "Where", "Type", "Limits", ""], inputs)]
+      ? [make("h3", {}, "Parameters"), table(["Name", "In", "Type", "Constraints", ""], inputs)]
       : []),
-    ...(record
+    ...(schema
       ? [
           make("h3", {}, "Body, JSON"),
-          table(["Field", "Type", "Limits", ""], fields(record)),
+          table(["Field", "Type", "Constraints", ""], fieldRows(schema)),
           code(JSON.stringify(body.json, null, 1)),
         ]
       : []),
     ...(body?.binary ? [make("h3", {}, "Body"), make("p", {}, make("code", {}, body.binary))] : []),
-    ...answers(operation),
+    ...responseTable(operation),
     ...(ok && Object.keys(ok).length
       ? [
           make("h3", {}, "Example of a response"),
@@ -187,7 +177,7 @@ function route(path, method, operation) {
     make("span", { className: `method ${method}` }, method.toUpperCase()),
     make("code", {}, path),
     make("span", { className: "quiet" }, operation.summary ?? ""),
-    rights(operation["x-needs"]),
+    permissionNote(operation["x-needs"]),
   );
   const details = make(
     "details",
@@ -196,7 +186,7 @@ function route(path, method, operation) {
     inside,
   );
   details.addEventListener("toggle", () => {
-    if (!inside.childElementCount) inside.append(...parts(path, method, operation));
+    if (!inside.childElementCount) inside.append(...operationDetails(path, method, operation));
   });
   return details;
 }
@@ -209,29 +199,29 @@ for (const [path, methods] of Object.entries(api?.paths ?? {})) {
   }
 }
 const title = (text) => text[0].toUpperCase() + text.slice(1);
-const records = Object.entries(schemas).map(([name, one]) =>
+const schemaSections = Object.entries(schemas).map(([name, one]) =>
   make(
     "details",
-    { className: "route", id: `record-${name}` },
+    { className: "route", id: `schema-${name}` },
     make("summary", {}, make("code", {}, name)),
     make(
       "div",
       {},
-      make("p", {}, plain(one.description)),
-      table(["Field", "Type", "Limits", ""], fields(one)),
+      make("p", {}, withoutBackticks(one.description)),
+      table(["Field", "Type", "Constraints", ""], fieldRows(one)),
     ),
   ),
 );
 byId("groups").append(
-  ...[...tags.keys(), "records"].map((tag) => make("a", { href: `#tag-${tag}` }, title(tag))),
+  ...[...tags.keys(), "schemas"].map((tag) => make("a", { href: `#tag-${tag}` }, title(tag))),
 );
 byId("paths").append(
   ...[...tags].flatMap(([tag, routes]) => [
     make("h2", { id: `tag-${tag}` }, title(tag)),
     ...routes,
   ]),
-  make("h2", { id: "tag-records" }, "Records"),
-  ...records,
+  make("h2", { id: "tag-schemas" }, "Schemas"),
+  ...schemaSections,
 );
 
 /** Opens the section that the # of the address names. */

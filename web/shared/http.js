@@ -74,7 +74,7 @@ export function urlOf(template, path, query = {}) {
 let whoami = null;
 
 /** Who is signed in, requested once a page, or `again`. */
-export const readMe = (again = false) =>
+export const readCurrentUser = (again = false) =>
   again ? request("GET /api/me") : (whoami ??= request("GET /api/me"));
 
 /** Whether this browser is signed in already; for the login page. */
@@ -86,7 +86,7 @@ const BEFORE_LOGIN = ["/login", "/pair"];
 /** Headers of a request that changes something; exported for requests made elsewhere. */
 export async function changeHeaders(method = "POST") {
   if (method === "GET" || BEFORE_LOGIN.includes(location.pathname)) return {};
-  const { token } = await readMe();
+  const { token } = await readCurrentUser();
   return token ? { "X-Recon4-Token": token } : {};
 }
 

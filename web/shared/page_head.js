@@ -1,6 +1,6 @@
 // <page-head>: the bar at the top of every page, with links to the other pages of a project.
 
-import { liveUrl, projectUrl, readCapture, readMe, signOut } from "./api.js";
+import { liveUrl, projectUrl, readCapture, readCurrentUser, signOut } from "./api.js";
 import { make } from "./dom.js";
 
 const PAGES = [
@@ -26,7 +26,7 @@ export class PageHead extends HTMLElement {
       this.#account,
     );
     if (inProject) this.name = decodeURIComponent(id);
-    readMe().then(
+    readCurrentUser().then(
       (me) => this.#greet(me),
       (error) => (this.#link.textContent = error.message),
     );
