@@ -44,7 +44,7 @@ class BackpackRecorder:
         self._imu = self._imu_samples()
         if self._imu is not None:
             write_imu(folder / "imu.csv", self._imu)
-        (folder / "rig.toml").write_text(format_rig(degradation.rig_file(setup.rig)), "utf-8")
+        (folder / "rig.toml").write_text(format_rig(degradation.nominal_rig(setup.rig)), "utf-8")
         self._open = ExitStack()
         self._bag: LineBag = self._open.enter_context(open_line_bag(folder / "rosbag2"))
         self._stuck_rad: float | None = None

@@ -146,7 +146,7 @@ class Degradation:
     """Unit vector of the shift of the antenna, in the body, (3,)."""
     dead: NDArray[np.int64]
     """Lasers that return nothing, in the order of firing, (sensors, K)."""
-    bias_m: Array
+    range_bias_m: Array
     """Range bias of each laser in the order of firing [m], (sensors, 16)."""
     seed: int
 
@@ -166,7 +166,7 @@ class Degradation:
         bias = values.get("beam-bias", 0.0) * rng.standard_normal((sensors, LASERS))
         return Degradation(dict(values), axes[0], axes[1], axes[2], dead, bias, seed)
 
-    def rig_file(self, true: Rig) -> Rig:
+    def nominal_rig(self, true: Rig) -> Rig:
         """What the rig file says of a rig."""
         sensors = list(true.sensors)
         last = sensors[-1]
@@ -208,22 +208,22 @@ class Degradation:
         """Times since the start of the walk by the clock of a LiDAR [ns], (N,)."""
         return self._stamps("lidar", t_ns, 0) if row == sensors - 1 else t_ns
 
-    def shots(self, shots: Firings, row: int, second: int) -> Firings:
-        """Shots of one sensor in one second that are recorded."""
-        distance, truth = shots.distance.copy(), shots.reflectivity.copy()
+    def degrade_firings(self, firings: Firings, row: int, second: int) -> Firings:
+        """What is recorded of the firings of one sensor in one second."""
+        distance, truth = firings.distance.copy(), firings.reflectivity.copy()
         distance[..., self.dead[row]] = 0
         truth[..., self.dead[row]] = 0
         if "beam-bias" in self.values:
             # Rounded at random, so that the mean is the bias and not a multiple of the resolution.
             rng = np.random.default_rng([self.seed, 9, row, second])
-            units = self.bias_m[row] / RESOLUTION_M + rng.uniform(-0.5, 0.5, distance.shape)
+            units = self.range_bias_m[row] / RESOLUTION_M + rng.uniform(-0.5, 0.5, distance.shape)
             distance = np.where(distance > 0, np.clip(np.rint(distance + units), 1, 65535), 0)
-        kept = self._kept(len(distance), row, second) & self.recorded(shots.t_ns[:, 0, 0])
+        kept = self._kept(len(distance), row, second) & self.recorded(firings.t_ns[:, 0, 0])
         return Firings(
-            shots.t_ns[kept],
-            shots.azimuth_rad[kept],
+            firings.t_ns[kept],
+            firings.azimuth_rad[kept],
             distance[kept].astype(np.uint16),
-            shots.intensity[kept],
+            firings.intensity[kept],
             truth[kept],
         )
 
@@ -250,7 +250,7 @@ class Degradation:
             "imu-rotation": {"axis_body": self.axis_imu.tolist()},
             "lever-arm": {"direction_body": self.direction_antenna.tolist()},
             "dead-beams": {"lasers_by_sensor": self.dead.tolist()},
-            "beam-bias": {"bias_m_by_sensor": self.bias_m.tolist()},
+            "beam-bias": {"bias_m_by_sensor": self.range_bias_m.tolist()},
         }
         return drawn.get(name, {})
 

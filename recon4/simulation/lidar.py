@@ -110,7 +110,7 @@ class Lidar:
     """Near 10 Hz; two sensors are not phase locked."""
     gain: Array
     """Gain of each laser, (16,)."""
-    turned_rad: Array
+    beam_angle_error_rad: Array
     """By which the elevation (upwards) and azimuth (clockwise) of each laser differ from the data
     sheet, (2, 16)."""
 
@@ -144,7 +144,8 @@ class Lidar:
         t_s = 1e-9 * t_ns.ravel()
         shot = np.empty((count, 5))
         stated = self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s
-        elevation, azimuth = np.stack([_VLP16.elevation_rad, np.zeros(LASERS)]) + self.turned_rad
+        nominal_rad = np.stack([_VLP16.elevation_rad, np.zeros(LASERS)])
+        elevation, azimuth = nominal_rad + self.beam_angle_error_rad
         shot[:, 0] = stated + np.tile(azimuth, count // LASERS)
         shot[:, 1] = np.tile(elevation, count // LASERS)
         shot[:, 2] = np.tile(_VLP16.height_m, count // LASERS)

@@ -82,7 +82,7 @@ def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup
         )
 
 
-def write_positions(file: PcapWriter, second: int, setup: SimulationSetup) -> None:
+def write_position_packets(file: PcapWriter, second: int, setup: SimulationSetup) -> None:
     """Append the position packets of a whole second: time always, a position outdoors.
 
     The position is that of a plain receiver, some meters off; RTK is in ``gnss.csv``.

@@ -22,7 +22,7 @@ from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
 from recon4.simulation.degradation import Degradation
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
-from recon4.simulation.packets import pack, write_packets, write_positions
+from recon4.simulation.packets import pack, write_packets, write_position_packets
 from recon4.simulation.reflectivity import ReflectivityWriter
 from recon4.simulation.setup import SimulationSetup, gnss_samples
 from recon4.simulation.truth import true_trajectory
@@ -43,7 +43,7 @@ class WalkRecorder:
             write_imu(folder / "imu.csv", self._imu)
         if self._gnss is not None:
             write_gnss(folder / "gnss.csv", self._gnss)
-        (folder / "rig.toml").write_text(format_rig(degradation.rig_file(setup.rig)), "utf-8")
+        (folder / "rig.toml").write_text(format_rig(degradation.nominal_rig(setup.rig)), "utf-8")
         self._open = ExitStack()
         self._pcap = self._open.enter_context(PcapWriter(folder / "recording.pcap"))
         self._reflectivity = self._open.enter_context(
@@ -61,24 +61,27 @@ class WalkRecorder:
         if kind is None:
             self._write_truth()
 
-    def write(self, second: int, parts: list[Firings]) -> None:
-        """Append one second of all sensors."""
+    def write(self, second_index: int, firings_by_lidar: list[Firings]) -> None:
+        """Append one second of all sensors; the first one has the index 0."""
         setup, degradation = self._setup, self._degradation
         if degradation.values:
-            parts = [degradation.shots(part, row, second) for row, part in enumerate(parts)]
+            firings_by_lidar = [
+                degradation.degrade_firings(firings, row, second_index)
+                for row, firings in enumerate(firings_by_lidar)
+            ]
         packets = [
-            pack(firings, row, setup, degradation=degradation, rng=setup.rng(4, row, second))
-            for row, firings in enumerate(parts)
+            pack(firings, row, setup, degradation=degradation, rng=setup.rng(4, row, second_index))
+            for row, firings in enumerate(firings_by_lidar)
         ]
-        if degradation.recorded(np.array([second * _SECOND_NS]))[0]:
-            write_positions(self._pcap, second, setup)
+        if degradation.recorded(np.array([second_index * _SECOND_NS]))[0]:
+            write_position_packets(self._pcap, second_index, setup)
         write_packets(self._pcap, packets, setup)
-        for row, firings in enumerate(parts):
+        for row, firings in enumerate(firings_by_lidar):
             self._reflectivity.append(row, firings.reflectivity)
         if self._bag is not None:
             for part in packets:
                 self._bag.packets(part.row, part.t_arrival_ns, part.payloads)
-            start_ns = setup.epoch_ns + second * _SECOND_NS
+            start_ns = setup.epoch_ns + second_index * _SECOND_NS
             if self._imu is not None:
                 self._bag.imu(_during(self._imu, start_ns))
             if self._gnss is not None:
@@ -101,10 +104,10 @@ def true_rig(setup: SimulationSetup, degradation: Degradation) -> Rig:
     """The rig that was simulated, with the errors of its beams as corrections."""
     ring = MODELS["VLP-16"].ring
     sensors = []
-    for lidar, bias_m in zip(setup.lidars, degradation.bias_m, strict=True):
+    for lidar, range_bias_m in zip(setup.lidars, degradation.range_bias_m, strict=True):
         rows = np.zeros((3, len(ring)))
-        elevation_rad, clockwise_rad = lidar.turned_rad
-        rows[:, ring] = [-bias_m, elevation_rad, -clockwise_rad]
+        elevation_rad, clockwise_rad = lidar.beam_angle_error_rad
+        rows[:, ring] = [-range_bias_m, elevation_rad, -clockwise_rad]
         beams = BeamCorrections.of(rows) if rows.any() else None
         sensors.append(replace(lidar.sensor, beams=beams))
     return replace(setup.rig, sensors=tuple(sensors))
@@ -151,7 +154,7 @@ def _parameters(setup: SimulationSetup) -> dict[str, object]:
                 "azimuth_rad": lidar.azimuth_rad,
                 "turn_rate_hz": lidar.turn_rate_hz,
                 "gain_by_laser": lidar.gain.tolist(),
-                "turned_rad_by_laser": lidar.turned_rad.tolist(),
+                "turned_rad_by_laser": lidar.beam_angle_error_rad.tolist(),
             }
             for lidar in setup.lidars
         ],

@@ -45,7 +45,7 @@ def sensor_at_rest(model, sensor=SENSOR, azimuth_rad=0.0):
     gain = np.ones(16) if model.gain_spread == 0.0 else None
     drawn = Lidar.drawn(sensor, model, np.random.default_rng(3))
     gain = drawn.gain if gain is None else gain
-    return Lidar(sensor, model, 0, azimuth_rad, 10.0, gain, drawn.turned_rad)
+    return Lidar(sensor, model, 0, azimuth_rad, 10.0, gain, drawn.beam_angle_error_rad)
 
 
 def fire(model, surroundings, walk, packets=76, azimuth_rad=0.0, sensor=SENSOR):

@@ -72,7 +72,7 @@ def test_a_wrong_degradation_is_refused(word, message):
 
 
 def test_the_rig_file_has_the_last_lidar_rotated():
-    rig = degraded("extrinsics=1.4", "mount-shift=0.05").rig_file(RIG)
+    rig = degraded("extrinsics=1.4", "mount-shift=0.05").nominal_rig(RIG)
 
     assert angle_deg(rig.sensors[1].T_body_sensor, RIG.sensors[1].T_body_sensor) == pytest.approx(
         1.4
@@ -83,10 +83,10 @@ def test_the_rig_file_has_the_last_lidar_rotated():
 
 
 def test_the_rig_file_is_wrong_in_one_thing_only():
-    swapped = degraded("swap-lidars").rig_file(RIG).sensors
-    named = degraded("wrong-model").rig_file(RIG).sensors
-    turned = degraded("imu-rotation=2").rig_file(RIG)
-    moved = degraded("lever-arm=0.15").rig_file(RIG)
+    swapped = degraded("swap-lidars").nominal_rig(RIG).sensors
+    named = degraded("wrong-model").nominal_rig(RIG).sensors
+    turned = degraded("imu-rotation=2").nominal_rig(RIG)
+    moved = degraded("lever-arm=0.15").nominal_rig(RIG)
 
     for one, other in ((0, 1), (1, 0)):
         difference = swapped[one].T_body_sensor.inverse() @ RIG.sensors[other].T_body_sensor
@@ -123,7 +123,7 @@ def test_a_cheaper_imu_has_larger_errors_of_every_kind():
 
 
 def test_dead_lasers_return_nothing_and_the_others_all():
-    found = degraded("dead-beams=6").shots(shots(), 0, 0)
+    found = degraded("dead-beams=6").degrade_firings(shots(), 0, 0)
 
     per_laser = (found.distance > 0).mean(axis=(0, 1))
     assert sorted(per_laser) == [0.0] * 6 + [1.0] * 10
@@ -132,14 +132,14 @@ def test_dead_lasers_return_nothing_and_the_others_all():
 
 def test_each_laser_has_a_range_bias_of_its_own():
     degradation = degraded("beam-bias=0.03")
-    found = degradation.shots(shots(), 1, 0)
+    found = degradation.degrade_firings(shots(), 1, 0)
 
     off_m = 0.002 * (found.distance.astype(float) - 2000.0)
-    np.testing.assert_allclose(off_m[0, 0], degradation.bias_m[1], atol=0.0021)
-    np.testing.assert_allclose(off_m.mean(axis=(0, 1)), degradation.bias_m[1], atol=1e-4)
-    assert np.std(degradation.bias_m) == pytest.approx(0.03, rel=0.4)
+    np.testing.assert_allclose(off_m[0, 0], degradation.range_bias_m[1], atol=0.0021)
+    np.testing.assert_allclose(off_m.mean(axis=(0, 1)), degradation.range_bias_m[1], atol=1e-4)
+    assert np.std(degradation.range_bias_m) == pytest.approx(0.03, rel=0.4)
     nothing = replace_distance(shots(), 0)
-    assert not degradation.shots(nothing, 1, 0).distance.any()
+    assert not degradation.degrade_firings(nothing, 1, 0).distance.any()
 
 
 def test_the_true_rig_corrects_what_the_beams_measure_wrong():
@@ -154,7 +154,7 @@ def test_the_true_rig_corrects_what_the_beams_measure_wrong():
         for row, sensor in enumerate(RIG.sensors)
     ]
     degradation = degraded(*words)
-    fired = degradation.shots(
+    fired = degradation.degrade_firings(
         lidars[0].fire(range(76), still(), surroundings, rng=np.random.default_rng(1)), 0, 0
     )
     xyz, ring = points_of(fired)
@@ -195,7 +195,8 @@ def replace_distance(firings, value):
 def test_packets_are_lost_in_runs():
     marked = replace(shots(), t_ns=np.broadcast_to(np.arange(400)[:, None, None], (400, 24, 16)))
     kept = [
-        degraded("packet-loss=0.25").shots(marked, 0, second).t_ns[:, 0, 0] for second in range(40)
+        degraded("packet-loss=0.25").degrade_firings(marked, 0, second).t_ns[:, 0, 0]
+        for second in range(40)
     ]
 
     assert sum(map(len, kept)) / (40 * 400) == pytest.approx(0.75, abs=0.03)
