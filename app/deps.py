@@ -12,7 +12,7 @@ from app.access.login.login_service import Access
 from app.compute_pool.pool import ComputePool
 from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
-from app.live.store import Captures
+from app.live.current_capture import CurrentCapture
 from app.network.streams import Streams
 from app.projects.store import ProjectStore
 from app.projects.thumbnail import Thumbnails
@@ -43,7 +43,7 @@ class ServerParts:
     viewers: ViewerPool
     compute_pool: ComputePool
     event_streams: Streams
-    captures: Captures
+    current_capture: CurrentCapture
     checks: ApprovalChecks
     reviews: Reviews
     slices: Slices

@@ -34,7 +34,7 @@ from app.jobs.store import JobStore
 from app.jobs.supervisor import Supervisor
 from app.leftovers import child_register, sweep_leftovers
 from app.live import routes as live_routes
-from app.live.store import Captures
+from app.live.current_capture import CurrentCapture
 from app.logs import Logs
 from app.maintenance import maintain, rotate_logs
 from app.metrics import Metrics, MetricsMiddleware
@@ -81,7 +81,9 @@ from recon4.verify import STATE, open_state, seal_state
 
 log = logging.getLogger(__name__)
 
-EVENT_STREAMS = StreamLimits(most=128, per_person=16, per_address=48, reserved=8)
+EVENT_STREAMS = StreamLimits(
+    max_streams=128, max_per_person=16, max_per_address=48, reserved_for_capture=8
+)
 REQUIRES_LOOK = [Depends(needs(Permission.LOOK))]
 
 
@@ -193,8 +195,8 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     watching = [
         asyncio.create_task(parts.supervisor.run()),
         asyncio.create_task(maintain(parts.jobs, parts.uploads, parts.trash, slices=parts.slices)),
-        asyncio.create_task(rotate_logs(settings.state, parts.jobs, parts.captures)),
-        asyncio.create_task(parts.captures.adopt()),
+        asyncio.create_task(rotate_logs(settings.state, parts.jobs, parts.current_capture)),
+        asyncio.create_task(parts.current_capture.adopt()),
     ]
     try:
         yield
@@ -232,7 +234,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         viewers=viewers,
         compute_pool=pool,
         event_streams=Streams("event streams", EVENT_STREAMS),
-        captures=Captures(settings.root),
+        current_capture=CurrentCapture(settings.root),
         checks=checks,
         reviews=Reviews(pool),
         slices=Slices(pool, projects, checks, settings=settings),
@@ -243,7 +245,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
 
 
 async def _close_parts(parts: ServerParts) -> None:
-    await parts.captures.leave()
+    await parts.current_capture.leave()
     await parts.compute_pool.close()
     parts.checks.close()
     parts.supervisor.close()
@@ -253,12 +255,12 @@ async def _close_parts(parts: ServerParts) -> None:
 
 
 def _viewer_limits(settings: ServerSettings) -> StreamLimits:
-    most = settings.viewer_sockets
+    max_streams = settings.viewer_sockets
     return StreamLimits(
-        most=most,
-        per_person=settings.viewer_sockets_a_person,
-        per_address=max(most // 2, settings.viewer_sockets_a_person),
-        reserved=most // 8,
+        max_streams=max_streams,
+        max_per_person=settings.viewer_sockets_a_person,
+        max_per_address=max(max_streams // 2, settings.viewer_sockets_a_person),
+        reserved_for_capture=max_streams // 8,
     )
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from app.jobs.model import JobState
 from app.jobs.store import JobStore
-from app.live.store import Captures
+from app.live.current_capture import CurrentCapture
 from app.logs import rotate_grown
 from app.projects.trash import Trash
 from app.slices.store import Slices
@@ -39,27 +39,28 @@ async def maintain(jobs: JobStore, uploads: UploadStore, trash: Trash, *, slices
         await asyncio.sleep(MAINTENANCE_INTERVAL_S)
 
 
-async def rotate_logs(state: Path, jobs: JobStore, captures: Captures) -> None:
+async def rotate_logs(state: Path, jobs: JobStore, current_capture: CurrentCapture) -> None:
     """Rotate the logs that other processes append to, until cancelled."""
     while True:
         try:
-            for path in await asyncio.to_thread(lambda: list(active_logs(state, jobs, captures))):
+            paths = await asyncio.to_thread(lambda: list(active_logs(state, jobs, current_capture)))
+            for path in paths:
                 await asyncio.to_thread(rotate_grown, path)
         except Exception:
             log.exception("could not rotate the logs; trying again")
         await asyncio.sleep(LOG_ROTATION_INTERVAL_S)
 
 
-def active_logs(state: Path, jobs: JobStore, captures: Captures) -> Iterator[Path]:
+def active_logs(state: Path, jobs: JobStore, current_capture: CurrentCapture) -> Iterator[Path]:
     """Logs of the processes that may be running.
 
     Args:
         state: The server's own folder.
         jobs: Its queue.
-        captures: Its live capture.
+        current_capture: Its live capture.
     """
     yield from (state / "viewers").glob("*.txt")
     for job in jobs.in_state(JobState.RUNNING):
         yield state / "jobs" / job.id / "log.txt"
-    if captures.newest is not None:
-        yield from captures.newest.session.folder.glob("*.txt")
+    if current_capture.newest is not None:
+        yield from current_capture.newest.session.folder.glob("*.txt")

@@ -222,14 +222,14 @@ class PartsCollector(Collector):
         disk = shutil.disk_usage(self._parts.settings.root)
         yield GaugeMetricFamily("recon4_disk_free_bytes", "Free disk space", value=disk.free)
         yield GaugeMetricFamily("recon4_disk_total_bytes", "Size of the disk", value=disk.total)
-        captures = self._parts.captures
+        current_capture = self._parts.current_capture
         yield GaugeMetricFamily(
-            "recon4_live_clients", "Clients of the live capture", value=captures.streams.open
+            "recon4_live_clients", "Clients of the live capture", value=current_capture.streams.open
         )
-        running = captures.newest is not None and not captures.newest.over
+        running = current_capture.newest is not None and not current_capture.newest.over
         yield GaugeMetricFamily("recon4_live_captures", "Live captures that run", value=running)
-        if captures.newest is not None:
-            yield from _capture(captures.newest)
+        if current_capture.newest is not None:
+            yield from _capture(current_capture.newest)
 
     def _stages(self) -> Iterator[Metric]:
         """Stages that ended since the server started, of the jobs something happened to."""

@@ -10,10 +10,10 @@ import msgspec
 from fastapi import WebSocket
 
 from app.live.capture import Capture, State
+from app.live.current_capture import CurrentCapture
 from app.live.health import lidars
 from app.live.phone_message import CaptureState, NoCapture, PhoneMessage
 from app.live.power import battery_findings
-from app.live.store import Captures
 from app.live.stream_state import BYTES_A_POINT, Cursor
 from recon4 import __version__
 from recon4.live.findings import findings, rates
@@ -42,8 +42,8 @@ class Greeting(msgspec.Struct, frozen=True):
 class Phone:
     """A WebSocket of a page, and the state the page has received."""
 
-    def __init__(self, socket: WebSocket, captures: Captures) -> None:
-        self._socket, self._captures = socket, captures
+    def __init__(self, socket: WebSocket, current_capture: CurrentCapture) -> None:
+        self._socket, self._current_capture = socket, current_capture
         self._disconnected: asyncio.Task[None] | None = None
         self._state: CaptureState | None = None
         self._allowance = float(BYTES_AT_FIRST)
@@ -65,7 +65,7 @@ class Phone:
         have = greeting.have
         self._disconnected = asyncio.create_task(self._wait_for_disconnect())
         try:
-            capture = self._captures.newest
+            capture = self._current_capture.newest
             while not self._disconnected.done():
                 if capture is None:
                     await self._send(NoCapture(t=time.time(), server=__version__))
@@ -73,7 +73,7 @@ class Phone:
                 else:
                     await self._stream(capture, cursor_of(have, capture))
                     have = None
-                capture = self._captures.newest
+                capture = self._current_capture.newest
         finally:
             self._disconnected.cancel()
 
@@ -96,14 +96,14 @@ class Phone:
         assert self._disconnected is not None
         stream = capture.stream
         before_s = time.monotonic()
-        while self._captures.newest is capture and not self._disconnected.done():
+        while self._current_capture.newest is capture and not self._disconnected.done():
             version, now_s = stream.version, time.monotonic()
             self._allowance += BYTES_A_SECOND * (now_s - before_s)
             self._allowance, before_s = min(self._allowance, BYTES_AT_FIRST), now_s
             most = max(0, int(self._allowance) // BYTES_A_POINT)
             message, points = stream.lacking(cursor, most=most)
             self._allowance -= len(points)
-            state = state_of(self._captures, capture)
+            state = state_of(self._current_capture, capture)
             message.add_changes(self._state, state)
             self._state = state
             await self._send(message)
@@ -142,20 +142,20 @@ def cursor_of(have: Any, capture: Capture) -> Cursor:
     return cursor
 
 
-def state_of(captures: Captures, capture: Capture) -> CaptureState:
+def state_of(current_capture: CurrentCapture, capture: Capture) -> CaptureState:
     """State of the capture; rates and warnings of the sensors only while it records."""
     records = capture.state in (State.RECORDING, State.PAUSED)
     newest = capture.stream.newest if records else Newest()
-    battery = captures.power.battery
-    found = findings(captures.rig, newest, capture.problem)
+    battery = current_capture.power.battery
+    found = findings(current_capture.rig, newest, capture.problem)
     found += capture.stream.so_far.findings(records=records)
     found = sorted([*found, *battery_findings(battery)], key=lambda one: URGENCY.index(one.level))
     return CaptureState(
         project=capture.project,
         state=capture.state,
         findings=found,
-        rates={} if newest.status is None else rates(captures.rig, newest.status),
-        lidars=lidars(captures.rig, newest),
+        rates={} if newest.status is None else rates(current_capture.rig, newest.status),
+        lidars=lidars(current_capture.rig, newest),
         battery=battery,
         server=__version__,
     )

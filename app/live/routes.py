@@ -20,7 +20,7 @@ from app.errors import Conflict, TooMany
 from app.jobs.routes import JobView, NewJob, add_job
 from app.live.phone import Phone, state_of
 from app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
-from app.live.store import Captures
+from app.live.current_capture import CurrentCapture
 from app.names import Name, Note
 from app.network.request_caller import CalledBy
 from app.network.streams import TOO_MANY
@@ -96,9 +96,9 @@ def live_page() -> HTMLResponse:
 @router.get("", dependencies=LOOK, summary="State of the capture")
 def read_capture(server: Server, who: Who) -> CaptureView | None:
     """The running or the last capture; null if there was none since the server started."""
-    if server.captures.newest is None:
+    if server.current_capture.newest is None:
         return None
-    return _view(server.captures, who.may(Permission.CAPTURE))
+    return _view(server.current_capture, who.may(Permission.CAPTURE))
 
 
 @router.get("/choices", dependencies=LOOK, summary="Rigs and presets")
@@ -125,36 +125,36 @@ async def start_capture(
         file = await run_in_threadpool(server.projects.importable, new.rig)
         await check_rig_file(server.compute_pool, caller, file)
         rig = str(file)
-    capture = await server.captures.start(
+    capture = await server.current_capture.start(
         new.project, rig, preset=new.preset, address=server.settings.live_address
     )
     if new.place:
         await capture.request(AddMark("place", new.place, who.name))
         await run_in_threadpool(server.projects.rename, new.project, new.place)
     audit(caller.request, "live.start", new.project)
-    return _view(server.captures, may_capture=True)
+    return _view(server.current_capture, may_capture=True)
 
 
 @router.post("/stop", dependencies=CAPTURE, summary="Stop recording")
 async def stop_capture(request: Request, server: Server) -> CaptureView:
     """Stop; the project is ready soon after."""
-    capture = await server.captures.stop()
+    capture = await server.current_capture.stop()
     audit(request, "live.stop", capture.project)
-    return _view(server.captures, may_capture=True)
+    return _view(server.current_capture, may_capture=True)
 
 
 @router.post("/pause", dependencies=CAPTURE, summary="Pause recording")
 async def pause_capture(server: Server) -> CaptureView:
     """Datagrams until `resume` are counted but not recorded."""
-    await server.captures.capture().request(Pause())
-    return _view(server.captures, may_capture=True)
+    await server.current_capture.capture().request(Pause())
+    return _view(server.current_capture, may_capture=True)
 
 
 @router.post("/resume", dependencies=CAPTURE, summary="Resume recording")
 async def resume_capture(server: Server) -> CaptureView:
     """End a pause. The operator should stand where the pause began."""
-    await server.captures.capture().request(Resume())
-    return _view(server.captures, may_capture=True)
+    await server.current_capture.capture().request(Resume())
+    return _view(server.current_capture, may_capture=True)
 
 
 @router.post(
@@ -165,8 +165,8 @@ async def resume_capture(server: Server) -> CaptureView:
 )
 def process_capture(request: Request, server: Server) -> JobView:
     """Start a processing job on the project; its frames are done already."""
-    session = server.captures.capture().session
-    if not server.captures.capture().over:
+    session = server.current_capture.capture().session
+    if not server.current_capture.capture().over:
         raise Conflict("the capture is still running: stop it first")
     new = NewJob(
         project=session.project.name,
@@ -180,7 +180,7 @@ def process_capture(request: Request, server: Server) -> JobView:
 @router.post("/marks", status_code=201, dependencies=CAPTURE, summary="Mark a point of interest")
 async def add_mark(mark: NewMark, server: Server, who: Who) -> dict[str, str]:
     """Save a mark; it is on the disk before it appears in the stream. A place names the project."""
-    capture = server.captures.capture()
+    capture = server.current_capture.capture()
     await capture.request(AddMark(mark.what, mark.text, who.name, mark.ago_s))
     if mark.what == "place" and mark.text:
         await run_in_threadpool(server.projects.rename, capture.project, _one_line(mark.text))
@@ -194,25 +194,25 @@ def _one_line(text: str) -> str:
 @router.websocket("/stream", dependencies=LOOK)
 async def stream(socket: WebSocket) -> None:
     """Stream the part of the map and state this phone lacks (``docs/live.md``)."""
-    captures = parts(socket).captures
+    current_capture = parts(socket).current_capture
     await socket.accept()  # a page receives the close code and reason of an accepted socket only
     try:
-        with captures.streams.place(socket):
-            await Phone(socket, captures).serve()
+        with current_capture.streams.place(socket):
+            await Phone(socket, current_capture).serve()
     except TooMany as error:
         await socket.close(TOO_MANY, str(error)[:120])
     except (WebSocketDisconnect, TimeoutError, RuntimeError):
         pass  # disconnected or stalled: it reconnects and reports what it has
 
 
-def _view(captures: Captures, may_capture: bool) -> CaptureView:
-    capture = captures.capture()
-    state = state_of(captures, capture)
+def _view(current_capture: CurrentCapture, may_capture: bool) -> CaptureView:
+    capture = current_capture.capture()
+    state = state_of(current_capture, capture)
     return CaptureView(
         project=capture.project,
         state=capture.state,
         findings=state.findings,
         rates=state.rates,
-        phones=captures.streams.open,
+        phones=current_capture.streams.open,
         may_capture=may_capture,
     )

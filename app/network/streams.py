@@ -26,14 +26,14 @@ RETRY_AFTER_S = 10.0
 class StreamLimits:
     """Limits of open streams of a kind."""
 
-    most: int
+    max_streams: int
     """Total."""
-    per_person: int
+    max_per_person: int
     """Per person; not without login, where all callers are the same person."""
-    per_address: int
+    max_per_address: int
     """Per address, of people who may not run a capture; not without login."""
-    reserved: int
-    """Part of ``most`` reserved for people who may run a capture."""
+    reserved_for_capture: int
+    """Part of ``max_streams`` reserved for people who may run a capture."""
 
 
 class Streams:
@@ -73,15 +73,17 @@ class Streams:
     def _rejection(self, connection: HTTPConnection, name: str, address: str) -> str | None:
         who, limits = person(connection), self._limits
         runs_captures = who.may(Permission.CAPTURE)
-        most = limits.most if runs_captures else limits.most - limits.reserved
-        if self.open >= most:
-            return f"{self.open} {self._what} are open, the limit is {most}: close one, try again"
+        available = limits.max_streams - (0 if runs_captures else limits.reserved_for_capture)
+        if self.open >= available:
+            opened = f"{self.open} {self._what} are open"
+            return f"{opened}, the limit is {available}: close one, try again"
         if who is LOCAL:
             return None
-        if self._people[name] >= limits.per_person:
-            return f"you have {limits.per_person} {self._what} open: close one and try again"
-        if not runs_captures and self._addresses[address] >= limits.per_address:
-            return f"your address has {limits.per_address} {self._what} open: close one, try again"
+        if self._people[name] >= limits.max_per_person:
+            return f"you have {limits.max_per_person} {self._what} open: close one and try again"
+        if not runs_captures and self._addresses[address] >= limits.max_per_address:
+            opened = f"{limits.max_per_address} {self._what} open"
+            return f"your address has {opened}: close one, try again"
         return None
 
 

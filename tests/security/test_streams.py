@@ -17,7 +17,7 @@ from app.errors import TooMany
 from app.network.streams import StreamLimits, Streams
 from tests.service.secure import secure_server
 
-LIMITS = StreamLimits(most=10, per_person=3, per_address=5, reserved=2)
+LIMITS = StreamLimits(max_streams=10, max_per_person=3, max_per_address=5, reserved_for_capture=2)
 
 
 def connection(name, *, role=Role.VIEWER, address="10.0.0.1", who=None):

@@ -25,7 +25,7 @@ import numpy as np
 import pytest
 
 from app.errors import Conflict
-from app.live.store import Captures
+from app.live.current_capture import CurrentCapture
 from recon4.errors import StoreError
 from recon4.live.replay import ReplayDatagram, replay
 from recon4.live.session import load_session
@@ -244,17 +244,19 @@ def test_a_capture_that_cannot_start_leaves_nothing_and_one_that_ends_reports_wh
     address = an_address()
 
     async def run():
-        captures = Captures(project.parent)
+        current_capture = CurrentCapture(project.parent)
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
             taken.bind((address, 2369))
             with pytest.raises(Conflict, match=r"vertical.*is another recorder"):
-                await captures.start("walk", "4recon", address=address)
+                await current_capture.start("walk", "4recon", address=address)
         left = project.exists()
-        capture = await captures.start("walk", "4recon", address=address, least_free_bytes=1 << 62)
+        capture = await current_capture.start(
+            "walk", "4recon", address=address, least_free_bytes=1 << 62
+        )
         while not capture.over:
             await capture.stream.news(capture.stream.version, timeout_s=0.5)
         with pytest.raises(StoreError, match="project walk exists already"):
-            await captures.start("walk", "4recon", address=address)
+            await current_capture.start("walk", "4recon", address=address)
         await capture.leave()
         for module in ("recon4.live.recorder.process", "recon4.live.mapper.process"):
             await asyncio.to_thread(wait_for, lambda m=module: not process_of(m, project), module)

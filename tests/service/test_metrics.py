@@ -198,9 +198,9 @@ def test_the_packets_of_a_live_capture_are_counted(server):
     file = FileState(dropped=5, datagrams=600)
     capture.stream.take(status(kernel_drops=3, skipped_in_pauses=4, file=file))
     capture.stream.take(notes(counts={"packets_missing": 7}))
-    server.app.state.parts.captures._capture = capture
+    server.app.state.parts.current_capture._capture = capture
     found = figures(server)
-    server.app.state.parts.captures._capture = None
+    server.app.state.parts.current_capture._capture = None
 
     assert found["recon4_live_captures",] == 1
     assert found["recon4_live_packets_dropped", ("reason", "kernel")] == 3

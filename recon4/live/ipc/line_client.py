@@ -68,7 +68,7 @@ async def linked(path: Path) -> AsyncIterator[LineClient]:
         writer.close()
 
 
-async def listens(path: Path) -> bool:
+async def is_listening(path: Path) -> bool:
     """Whether a process listens on a path."""
     try:
         async with linked(path):

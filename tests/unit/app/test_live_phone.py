@@ -10,8 +10,8 @@ from fastapi import WebSocket
 
 from app.live import phone as phones
 from app.live.capture import Capture
+from app.live.current_capture import CurrentCapture
 from app.live.phone import Phone
-from app.live.store import Captures
 from recon4.live.protocol import Points
 from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig
@@ -23,7 +23,7 @@ POINTS = 400_000
 class Client:
     """The client side of a WebSocket: receives everything, or stalls."""
 
-    def __init__(self, captures, *, stalls=False):
+    def __init__(self, current_capture, *, stalls=False):
         self.stalls = stalls
         self.received, self.bytes = [], 0
         self._incoming = asyncio.Queue()
@@ -31,11 +31,11 @@ class Client:
             self._incoming.put_nowait(message)
         scope = {"type": "websocket", "path": "/", "headers": []}
         self.socket = WebSocket(scope, self._incoming.get, self._receive)
-        self.captures = captures
+        self.current_capture = current_capture
 
     async def run(self):
         await self.socket.accept()
-        await Phone(self.socket, self.captures).serve()
+        await Phone(self.socket, self.current_capture).serve()
 
     def leave(self):
         self._incoming.put_nowait({"type": "websocket.disconnect", "code": 1000})
@@ -52,27 +52,27 @@ class Client:
 
 
 @pytest.fixture
-def captures(tmp_path):
-    captures = Captures(tmp_path)
-    captures._capture, captures._rig = (
+def current_capture(tmp_path):
+    current_capture = CurrentCapture(tmp_path)
+    current_capture._capture, current_capture._rig = (
         Capture(CaptureSession(project=tmp_path / "walk")),
         load_rig("4recon"),
     )
-    return captures
+    return current_capture
 
 
 def walk(stream, k):
     stream.take(pose(t_ns=k, p=[float(k), 0.0, 1.0]))
 
 
-def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(captures, monkeypatch):
+def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(current_capture, monkeypatch):
     monkeypatch.setattr(phones, "STALLED_S", 0.5)
 
     async def ten_phones():
-        clients = [Client(captures, stalls=k == 0) for k in range(10)]
+        clients = [Client(current_capture, stalls=k == 0) for k in range(10)]
         running = [asyncio.create_task(client.run()) for client in clients]
         for k in range(20):
-            walk(captures.newest.stream, k)
+            walk(current_capture.newest.stream, k)
             await asyncio.sleep(0.05)
         for client in clients[1:]:
             client.leave()
@@ -87,13 +87,13 @@ def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(captures, 
         assert client.received[0]["state"] == "recording" and len(client.received[0]["lidars"]) == 0
 
 
-def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabits(captures):
-    stream = captures.newest.stream
+def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabits(current_capture):
+    stream = current_capture.newest.stream
     voxels = np.zeros((POINTS, 3), np.int16)
     stream.take(Points(0, 0, POINTS, 0.1, voxels.tobytes(), bytes(POINTS)))
 
     async def one_phone():
-        client = Client(captures)
+        client = Client(current_capture)
         running = asyncio.create_task(client.run())
         began_s = time.monotonic()
         for k in range(20):
@@ -110,7 +110,7 @@ def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabi
     assert poses[-1] == 19.0
 
 
-def test_a_stream_cancelled_while_it_sends_ends(captures):
+def test_a_stream_cancelled_while_it_sends_ends(current_capture):
     class SignedOut(Client):
         async def _receive(self, message):
             await super()._receive(message)
@@ -118,7 +118,7 @@ def test_a_stream_cancelled_while_it_sends_ends(captures):
                 self.running.cancel()
 
     async def one_phone():
-        client = SignedOut(captures)
+        client = SignedOut(current_capture)
         client.running = asyncio.create_task(client.run())
         await asyncio.wait({client.running}, timeout=5.0)
         return client.running.cancelled(), len(client.received)

@@ -15,7 +15,7 @@ from app.live.power import Power, read_battery
 from app.network.streams import StreamLimits, Streams
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile, StoreError
-from recon4.live.ipc.line_client import listens
+from recon4.live.ipc.line_client import is_listening
 from recon4.live.project_files import begin
 from recon4.live.protocol import Mark, Stop
 from recon4.live.session import CaptureSession, load_session
@@ -25,18 +25,20 @@ from recon4.store.json_files import parse_object
 log = logging.getLogger(__name__)
 
 MAX_MARKS_BYTES = 16 << 20
-LIVE_STREAMS = StreamLimits(most=32, per_person=8, per_address=16, reserved=4)
+LIVE_STREAM_LIMITS = StreamLimits(
+    max_streams=32, max_per_person=8, max_per_address=16, reserved_for_capture=4
+)
 
 
-class Captures:
-    """Starts captures and keeps the last one."""
+class CurrentCapture:
+    """Starts captures and keeps the running or the last one."""
 
     def __init__(self, root: Path) -> None:
         self._root = root
         self._capture: Capture | None = None
         self._rig: Rig | None = None
         self._starting = asyncio.Lock()
-        self.streams = Streams("live streams", LIVE_STREAMS)
+        self.streams = Streams("live streams", LIVE_STREAM_LIMITS)
         """Streams of the connected phones."""
         self.power = Power(read_battery)
         """Battery of this computer."""
@@ -96,7 +98,7 @@ class Captures:
                 log.warning("%s", error)
                 continue
             began_s = session.rig.stat().st_mtime
-            found.append((await listens(session.socket("recorder")), began_s, session, rig))
+            found.append((await is_listening(session.socket("recorder")), began_s, session, rig))
         if not found:
             return
         alive, _, session, rig = max(found, key=lambda one: one[:2])
