@@ -44,7 +44,7 @@ SESSIONS = sa.Table(
 """``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is the
 role of a phone that the person paired, NULL for a login."""
 
-BROWSERS = sa.Table(
+KNOWN_BROWSERS = sa.Table(
     "browsers",
     METADATA,
     sa.Column("token_hash", sa.String, primary_key=True),

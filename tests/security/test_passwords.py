@@ -12,7 +12,7 @@ import pytest
 from zxcvbn.frequency_lists import FREQUENCY_LISTS
 
 from app.access.login import passwords
-from app.access.login.passwords import check
+from app.access.login.passwords import require_strong
 from app.errors import WeakPassword
 
 NAME = "Anna Kowalska"
@@ -42,7 +42,7 @@ def accepted(candidates):
 def refused(password):
     """Whether it is refused, with a reason that does not contain it."""
     try:
-        check(password, NAME)
+        require_strong(password, NAME)
     except WeakPassword as reason:
         return password.casefold() not in str(reason).casefold()
     return False
@@ -107,7 +107,7 @@ def test_rows_sentences_dates_and_few_characters_are_no_passwords(password):
 
 def test_the_reason_says_what_to_change():
     with pytest.raises(WeakPassword) as reason:
-        check("kowalska2026", NAME)
+        require_strong("kowalska2026", NAME)
 
     assert "your name" in str(reason.value)
     assert "date or year" in str(reason.value)
@@ -133,6 +133,6 @@ def test_one_estimate_at_a_time_as_the_estimator_keeps_its_words_in_a_global(mon
         return estimate(*args, **options)
 
     monkeypatch.setattr("app.access.login.passwords.zxcvbn", watched)
-    check("copper violin under seven hedges", NAME)
+    require_strong("copper violin under seven hedges", NAME)
 
     assert locked == [True, True]

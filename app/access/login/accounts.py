@@ -11,13 +11,15 @@ from typing import Any
 import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
-from app.access.database import BROWSERS, PEOPLE, SESSIONS, writing
+from app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
 from app.access.login import passwords
 from app.access.people import Role
 from app.errors import Conflict, NotFound, Refused
 
 NAME = re.compile(r"[^\W_](?:[\w .'@+-]{0,62}[\w.])?")
 """Letters and digits of any script, and what occurs in names and addresses."""
+RESERVED = ("local", "nobody")
+"""Names of people without an account."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,9 +57,10 @@ class Accounts:
             raise NotFound(f"no account is named {name[:64]!r}")
         return _account(row)
 
-    def password_hash(self, name: str) -> str | None:
+    def active_password_hash(self, name: str) -> str | None:
         """The hash of a person's password; None if there is no such account or it is disabled."""
-        query = sa.select(PEOPLE.c.password).where(PEOPLE.c.key == key(name), ~PEOPLE.c.disabled)
+        active = (PEOPLE.c.key == lookup_key(name)) & ~PEOPLE.c.disabled
+        query = sa.select(PEOPLE.c.password).where(active)
         with self._engine.connect() as connection:
             return connection.execute(query).scalar_one_or_none()
 
@@ -75,16 +78,21 @@ class Accounts:
             WeakPassword: If the password is too easy to find.
         """
         name = unicodedata.normalize("NFKC", name)
-        if not NAME.fullmatch(name) or key(name) in ("local", "nobody"):
-            raise Refused("a name has 1 to 64 letters, digits, spaces and . ' @ + -")
+        if not NAME.fullmatch(name):
+            raise Refused(
+                "a name has 1 to 64 letters, digits, spaces and . ' @ + - _; it begins with a "
+                "letter or digit, and ends with one of them or . _"
+            )
+        if lookup_key(name) in RESERVED:
+            raise Refused(f"the name {name!r} is reserved: choose another one")
         _assignable(role)
-        passwords.check(password, name)
+        passwords.require_strong(password, name)
         created = datetime.now(UTC).isoformat(timespec="seconds")
         row = dict(name=name, role=role, disabled=False, created=created)
         hashed = passwords.hashed(password)
         try:
             with writing(self._engine) as connection:
-                values = {**row, "key": key(name), "password": hashed}
+                values = {**row, "key": lookup_key(name), "password": hashed}
                 connection.execute(PEOPLE.insert().values(**values))
         except IntegrityError as error:
             raise Conflict(f"an account named {name} exists already") from error
@@ -115,27 +123,27 @@ class Accounts:
             NotFound: If no account has that name.
             WeakPassword: If the password is too easy to find.
         """
-        passwords.check(password, self.get(name).name)
+        passwords.require_strong(password, self.get(name).name)
         return self._change(name, password=passwords.hashed(password))
 
     def _change(self, name: str, **values: Any) -> Account:
-        before = self.get(name)
+        before, key = self.get(name), lookup_key(name)
         with writing(self._engine) as connection:
-            connection.execute(PEOPLE.update().where(PEOPLE.c.key == key(name)).values(**values))
+            connection.execute(PEOPLE.update().where(PEOPLE.c.key == key).values(**values))
             if before.role is Role.ADMIN and connection.execute(_admins()).scalar_one() == 0:
                 raise Conflict(f"{before.name} is the last admin; make another person admin first")
-            for table in (SESSIONS, BROWSERS):
-                connection.execute(table.delete().where(table.c.person == key(name)))
+            for table in (SESSIONS, KNOWN_BROWSERS):
+                connection.execute(table.delete().where(table.c.person == key))
         return self.get(name)
 
 
-def key(name: str) -> str:
+def lookup_key(name: str) -> str:
     """The lookup key of a name: the same for all spellings of the same letters."""
     return unicodedata.normalize("NFKC", name).casefold()
 
 
 def _of(name: str) -> sa.Select[Any]:
-    return PEOPLE.select().where(PEOPLE.c.key == key(name))
+    return PEOPLE.select().where(PEOPLE.c.key == lookup_key(name))
 
 
 def _admins() -> sa.Select[int]:

@@ -14,7 +14,7 @@ import sqlalchemy as sa
 from app.access.audit import AuditLog
 from app.access.database import open_database
 from app.access.login import passwords
-from app.access.login.accounts import Account, Accounts, key
+from app.access.login.accounts import Account, Accounts, lookup_key
 from app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
 from app.access.login.sessions import Sessions, hash_of, new_token
 from app.access.pairing.grants import Pairings
@@ -88,14 +88,14 @@ class LoginService:
         place = network(caller.address)
         known = bool(caller.browser) and self._sessions.knows_browser(caller.browser, name)
         source = hash_of(caller.browser) if known else place
-        wait_s = self._backoff.begin((key(name)[:64], source))
+        wait_s = self._backoff.begin((lookup_key(name)[:64], source))
         if not wait_s and not known:
             wait_s = self._addresses.take(place)
         if wait_s:
             raise TooMany("too many failed logins; wait a while", retry_after_s=wait_s)
         if not self._fits(name, password):
             raise WrongPassword(WRONG)
-        self._backoff.succeed((key(name)[:64], source))
+        self._backoff.succeed((lookup_key(name)[:64], source))
         if not known:
             self._addresses.give_back(place)
 
@@ -123,7 +123,7 @@ class LoginService:
         return self._begin_session(account, caller)
 
     def _fits(self, name: str, password: str) -> bool:
-        stored = self._accounts.password_hash(name)
+        stored = self._accounts.active_password_hash(name)
         with self._verifying:
             return passwords.fits(password[: passwords.LONGEST], stored)
 

@@ -67,8 +67,8 @@ _estimating = threading.Lock()
 """zxcvbn keeps the words it is given in a global dictionary."""
 
 
-def check(password: str, name: str) -> None:
-    """Check that a new password withstands an offline attack.
+def require_strong(password: str, name: str) -> None:
+    """Require that a new password withstands an offline attack.
 
     The estimate is that of zxcvbn (30 000 common passwords, words and names, repetitions, keyboard
     rows, sequences, dates, reversed and with substitutes), given what is known here: the person's

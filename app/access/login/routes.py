@@ -265,7 +265,7 @@ def _me(access: Access, name: str, *, role: Role, token: str) -> Me:
 
 def _note_failure(access: Access, request: Request, name: str, *, error: AppError) -> None:
     """Log a failed login without an unknown name: people type their password there by mistake."""
-    known = access.accounts.password_hash(name) is not None
+    known = access.accounts.active_password_hash(name) is not None
     outcome = "refused" if isinstance(error, TooMany) else "failed"
     who = access.accounts.get(name).name if known else "nobody"
     what = str(error) if known else f"an unknown name: {error}"

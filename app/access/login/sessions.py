@@ -17,8 +17,8 @@ from typing import Any
 import sqlalchemy as sa
 
 from app.access.audit import printable
-from app.access.database import BROWSERS, PEOPLE, SESSIONS, writing
-from app.access.login.accounts import key
+from app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
+from app.access.login.accounts import lookup_key
 from app.access.people import Person, Role
 from app.errors import NotFound
 
@@ -108,7 +108,7 @@ class Sessions:
         row = {
             "id": secrets.token_hex(8),
             "token_hash": hash_of(token),
-            "person": key(name),
+            "person": lookup_key(name),
             "address": address,
             "agent": printable(agent[:120]),
             "phone_role": phone_role,
@@ -172,7 +172,7 @@ class Sessions:
 
     def all(self, *, person: str | None = None) -> list[Session]:
         """Sessions that have not expired, the latest first; of one person, or of all."""
-        mine = SESSIONS.c.person == key(person) if person is not None else sa.true()
+        mine = SESSIONS.c.person == lookup_key(person) if person is not None else sa.true()
         now_s = self._clock()
         return [session for session in self._select(mine) if not session.over(now_s)]
 
@@ -184,7 +184,7 @@ class Sessions:
         """
         mine = SESSIONS.c.id == session_id
         if person is not None:
-            mine &= SESSIONS.c.person == key(person)
+            mine &= SESSIONS.c.person == lookup_key(person)
         if self._write(SESSIONS.delete().where(mine)) == 0:
             raise NotFound(f"no session {session_id[:32]!r}")
 
@@ -198,18 +198,19 @@ class Sessions:
     def know_browser(self, name: str) -> str:
         """A new token for a browser with which the person signed in."""
         token, now_s = new_token(), self._clock()
-        row = {"token_hash": hash_of(token), "person": key(name), "known_s": now_s}
+        row = {"token_hash": hash_of(token), "person": lookup_key(name), "known_s": now_s}
         with writing(self._engine) as connection:
-            old = BROWSERS.delete().where(BROWSERS.c.known_s < now_s - BROWSER_KNOWN_S)
+            old = KNOWN_BROWSERS.delete().where(KNOWN_BROWSERS.c.known_s < now_s - BROWSER_KNOWN_S)
             connection.execute(old)
-            connection.execute(BROWSERS.insert().values(**row))
+            connection.execute(KNOWN_BROWSERS.insert().values(**row))
         return token
 
     def knows_browser(self, token: str, name: str) -> bool:
         """Whether the person has signed in with this browser before."""
-        mine = (BROWSERS.c.token_hash == hash_of(token)) & (BROWSERS.c.person == key(name))
+        columns = KNOWN_BROWSERS.c
+        mine = (columns.token_hash == hash_of(token)) & (columns.person == lookup_key(name))
         with self._engine.connect() as connection:
-            known_s = connection.execute(sa.select(BROWSERS.c.known_s).where(mine)).scalar()
+            known_s = connection.execute(sa.select(columns.known_s).where(mine)).scalar()
         return known_s is not None and self._clock() - known_s < BROWSER_KNOWN_S
 
     def _select(self, condition: sa.ColumnElement[bool]) -> list[Session]:

@@ -2,6 +2,7 @@
 
 import asyncio
 import contextlib
+import re
 import threading
 
 import pytest
@@ -116,16 +117,23 @@ def test_two_sessions_have_two_form_tokens_that_do_not_tell_the_session(access):
         "a\x00b",
         "\u202eanna",
         "<b>x",
-        "local",
-        "LOCAL",
+        "_anna",
     ],
 )
 def test_unfit_names_are_refused(access, name):
-    with pytest.raises(Refused):
+    with pytest.raises(Refused, match=re.escape("letters, digits, spaces and . ' @ + - _;")):
         access.accounts.add(name, Role.VIEWER, PASSWORD)
 
 
-@pytest.mark.parametrize("name", ["Anna", "Žofie Nováková", "李小龙", "o'brien", "a.b@example.org"])
+@pytest.mark.parametrize("name", ["local", "LOCAL", "Nobody"])
+def test_names_of_people_without_an_account_are_reserved(access, name):
+    with pytest.raises(Refused, match=f"{name}.* is reserved"):
+        access.accounts.add(name, Role.VIEWER, PASSWORD)
+
+
+@pytest.mark.parametrize(
+    "name", ["Anna", "Žofie Nováková", "李小龙", "o'brien", "a.b@example.org", "a_b_"]
+)
 def test_names_of_any_script_are_taken(access, name):
     assert access.accounts.add(name, Role.VIEWER, PASSWORD).name == name
 

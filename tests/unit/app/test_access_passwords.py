@@ -35,7 +35,7 @@ from app.errors import WeakPassword
 )
 def test_what_is_guessed_first_is_refused_without_repeating_it(password):
     with pytest.raises(WeakPassword) as refused:
-        passwords.check(password, "Anna Kowalska")
+        passwords.require_strong(password, "Anna Kowalska")
 
     assert password not in str(refused.value) or not password.strip()
 
@@ -53,7 +53,7 @@ def test_what_is_guessed_first_is_refused_without_repeating_it(password):
     ],
 )
 def test_what_takes_long_to_guess_is_taken(password):
-    passwords.check(password, "Anna Kowalska")
+    passwords.require_strong(password, "Anna Kowalska")
 
 
 def test_a_hash_is_argon2id_dear_enough_and_salted():
