@@ -197,7 +197,9 @@ def _positions(
     if good.sum() < _MIN_FIXES:
         return None
     t_ns = t_ns[good]
-    p_fix = to_enu(origin, gnss.lat_rad[good], gnss.lon_rad[good], height_m=gnss.height_m[good])
+    p_fix = to_enu(
+        origin, gnss.lat_rad[good], gnss.lon_rad[good], ellipsoidal_height_m=gnss.height_m[good]
+    )
     T_enu_body = trajectory.at(t_ns)
     before, after = (_antenna(trajectory.at(t_ns + d), rig) for d in (-_SPEED_NS, _SPEED_NS))
     return DriftRows(

@@ -196,7 +196,9 @@ def _place(
     priors = GnssPriors(
         t_ns=gnss.t_ns[few],
         row=few,
-        p_enu=to_enu(origin, gnss.lat_rad[few], gnss.lon_rad[few], height_m=gnss.height_m[few]),
+        p_enu=to_enu(
+            origin, gnss.lat_rad[few], gnss.lon_rad[few], ellipsoidal_height_m=gnss.height_m[few]
+        ),
         sd_m=np.fmax(gnss.sd_enu_m[few], settings.min_sd_m),
         node=np.arange(len(few)),
         p_node_antenna=p_body,

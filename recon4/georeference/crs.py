@@ -14,16 +14,20 @@ from recon4.geometry.se3 import Array
 
 @dataclass(frozen=True, slots=True)
 class GeodeticOrigin:
-    """Origin of a local frame (x east, y north, z up) in WGS 84, with ellipsoidal height."""
+    """Origin of a local frame (x east, y north, z up) in WGS 84."""
 
     lat_rad: float
     lon_rad: float
-    height_m: float
+    ellipsoidal_height_m: float
 
 
-def to_enu(origin: GeodeticOrigin, lat_rad: Array, lon_rad: Array, *, height_m: Array) -> Array:
+def to_enu(
+    origin: GeodeticOrigin, lat_rad: Array, lon_rad: Array, *, ellipsoidal_height_m: Array
+) -> Array:
     """Geodetic positions in the local frame [m], (N, 3)."""
-    east, north, up = _topocentric(origin).transform(lon_rad, lat_rad, height_m, radians=True)
+    east, north, up = _topocentric(origin).transform(
+        lon_rad, lat_rad, ellipsoidal_height_m, radians=True
+    )
     return np.stack([east, north, up], axis=-1)
 
 
@@ -65,7 +69,7 @@ class CrsTransform:
         self.has_heights = len(self._target.axis_info) == 3
         self._transformer = _best_transformer(origin, self._target, self.crs)
         here = self.to_crs(np.zeros((1, 3)))[0]
-        self.offset = np.round(here / 1000.0) * 1000.0
+        self.storage_offset = np.round(here / 1000.0) * 1000.0
         """Multiple of 1 000 m near the origin; files subtract it to keep numbers small, (3,)."""
 
     @property
@@ -110,7 +114,7 @@ def _topocentric(origin: GeodeticOrigin) -> Any:
     return Transformer.from_pipeline(
         "+proj=pipeline +step +proj=cart +ellps=WGS84 +step +proj=topocentric +ellps=WGS84 "
         f"+lon_0={float(np.rad2deg(origin.lon_rad))!r} "
-        f"+lat_0={float(np.rad2deg(origin.lat_rad))!r} +h_0={float(origin.height_m)!r}"
+        f"+lat_0={float(np.rad2deg(origin.lat_rad))!r} +h_0={float(origin.ellipsoidal_height_m)!r}"
     )
 
 

@@ -108,7 +108,7 @@ class GeoreferenceResult:
             origin=OriginRecord(
                 lat_deg=float(np.rad2deg(self.origin.lat_rad)),
                 lon_deg=float(np.rad2deg(self.origin.lon_rad)),
-                height_m=self.origin.height_m,
+                height_m=self.origin.ellipsoidal_height_m,
             ),
             fixes=self.samples,
             fixes_usable=len(self.used),

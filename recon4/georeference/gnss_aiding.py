@@ -40,7 +40,9 @@ def make_gnss_aiding(
         return None
     first = int(np.flatnonzero(good)[0])
     origin = GeodeticOrigin(gnss.lat_rad[first], gnss.lon_rad[first], gnss.height_m[first])
-    p_enu = to_enu(origin, gnss.lat_rad[good], gnss.lon_rad[good], height_m=gnss.height_m[good])
+    p_enu = to_enu(
+        origin, gnss.lat_rad[good], gnss.lon_rad[good], ellipsoidal_height_m=gnss.height_m[good]
+    )
     sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), settings.gnss_sd_m)
     t_ns, R_enu_body = gnss.t_ns[good], attitudes(gnss.rpy_ned_rad[good])
     clock_s = receiver_clock_s(t_ns, R_enu_body, imu=imu, rig=rig) if imu is not None else 0.0

@@ -86,6 +86,8 @@ def usable_gnss_priors(
     origin = GeodeticOrigin(
         float(gnss.lat_rad[first]), float(gnss.lon_rad[first]), float(gnss.height_m[first])
     )
+    height_m = gnss.height_m[rows]
+    p_enu = to_enu(origin, gnss.lat_rad[rows], gnss.lon_rad[rows], ellipsoidal_height_m=height_m)
     node = _nearest(graph.t_ns, t_ns[rows])
     T_odom_node = trajectory.at(np.clip(graph.t_ns, trajectory.t_ns[0], trajectory.t_ns[-1]))[node]
     sd_m = np.where(
@@ -95,9 +97,7 @@ def usable_gnss_priors(
         GnssPriors(
             t_ns=t_ns[rows],
             row=rows,
-            p_enu=to_enu(
-                origin, gnss.lat_rad[rows], gnss.lon_rad[rows], height_m=gnss.height_m[rows]
-            ),
+            p_enu=p_enu,
             sd_m=np.maximum(sd_m, settings.min_sd_m),
             node=node,
             p_node_antenna=T_odom_node.inverse() @ p_antenna,

@@ -125,7 +125,7 @@ def _on_earth(level: Path, p_map: Array) -> Array | None:
     lat_rad, lon_rad = np.deg2rad([BRNO.lat_deg, BRNO.lon_deg]).tolist()
     true = GeodeticOrigin(lat_rad, lon_rad, BRNO.height_m)
     lat, lon, height_m = to_geodetic(crs.origin, p_map)
-    return to_enu(true, lat, lon, height_m=height_m)
+    return to_enu(true, lat, lon, ellipsoidal_height_m=height_m)
 
 
 def _rms(difference: Array) -> float:

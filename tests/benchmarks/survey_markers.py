@@ -34,7 +34,7 @@ def true_positions(markers: Path, origin: GeodeticOrigin) -> dict[str, np.ndarra
     geodetic = np.array(
         [[float(r["lat_deg"]), float(r["lon_deg"]), float(r["height_m"])] for r in rows]
     )
-    p = to_enu(origin, *np.deg2rad(geodetic[:, :2]).T, height_m=geodetic[:, 2])
+    p = to_enu(origin, *np.deg2rad(geodetic[:, :2]).T, ellipsoidal_height_m=geodetic[:, 2])
     return {row["id"]: p[k] for k, row in enumerate(rows)}
 
 

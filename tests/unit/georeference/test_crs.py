@@ -15,7 +15,7 @@ def test_a_second_of_arc_north_is_30_9_m() -> None:
         BRNO,
         BRNO.lat_rad + np.deg2rad([1 / 3600]),
         np.array([BRNO.lon_rad]),
-        height_m=np.array([250.0]),
+        ellipsoidal_height_m=np.array([250.0]),
     )
 
     # Radius of the meridian at 49.2 degrees on WGS 84, plus the height.
@@ -29,7 +29,7 @@ def test_geodetic_and_local_are_inverse() -> None:
 
     lat, lon, height = to_geodetic(BRNO, p)
 
-    np.testing.assert_allclose(to_enu(BRNO, lat, lon, height_m=height), p, atol=1e-6)
+    np.testing.assert_allclose(to_enu(BRNO, lat, lon, ellipsoidal_height_m=height), p, atol=1e-6)
 
 
 def test_without_a_choice_the_utm_zone_of_the_place_is_taken() -> None:
@@ -53,8 +53,8 @@ def test_the_central_meridian_of_utm_is_500_km_and_its_scale_0_9996() -> None:
 def test_the_offset_is_a_multiple_of_a_kilometer_near_the_origin() -> None:
     transform = CrsTransform(BRNO)
 
-    assert np.all(transform.offset % 1000.0 == 0.0)
-    assert np.all(np.abs(transform.to_crs(np.zeros((1, 3)))[0] - transform.offset) <= 500.0)
+    assert np.all(transform.storage_offset % 1000.0 == 0.0)
+    assert np.all(np.abs(transform.to_crs(np.zeros((1, 3)))[0] - transform.storage_offset) <= 500.0)
 
 
 def test_krovak_uses_the_operation_of_the_country_not_the_first_in_the_list() -> None:

@@ -89,7 +89,7 @@ def worst_m(result: GeoreferenceResult, true: Trajectory) -> float:
     """Largest error of a node on earth."""
     assert result.origin is not None
     lat, lon, height = to_geodetic(result.origin, result.graph.T_map_body.t)
-    p = to_enu(PLACE, lat, lon, height_m=height)
+    p = to_enu(PLACE, lat, lon, ellipsoidal_height_m=height)
     return float(np.linalg.norm(p - true.at(result.graph.t_ns).t, axis=1).max())
 
 

@@ -28,7 +28,9 @@ from recon4.slices.slice_plane import horizontal, vertical
 from tests.unit.slices.room_map import wall, write_map
 
 BRNO = CrsTransform(
-    GeodeticOrigin(lat_rad=math.radians(49.2265), lon_rad=math.radians(16.5967), height_m=275.0)
+    GeodeticOrigin(
+        lat_rad=math.radians(49.2265), lon_rad=math.radians(16.5967), ellipsoidal_height_m=275.0
+    )
 )
 LOCAL = MapFrame("", "", None)
 PLACED = MapFrame(BRNO.crs, BRNO.wkt, BRNO.to_crs)
