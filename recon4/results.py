@@ -222,7 +222,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
             output = OutputCrs(place.wkt if place else None, to_crs)
             count = export_laz(tiles, temporary, output, strays=wanted.strays, progress=progress)
         else:
-            count = export_ply(tiles, temporary, to_crs=to_crs, progress=progress)
+            count = export_ply(tiles, temporary, map_to_crs=to_crs, progress=progress)
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
     return ExportedMap(count, tiles.strays, wanted.strays)

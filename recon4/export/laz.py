@@ -24,7 +24,7 @@ import recon4
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.export.gps_time import day_of, is_absolute, point_time_s
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, into_crs
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, output_transform
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
@@ -39,7 +39,7 @@ DEVIATION_STEP_M = 0.0001
 FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
 """What is read beside the coordinates."""
 OPTIONAL = {
-    "intensity_normalized": ("f4", "V Eq. 2.17"),
+    "intensity_normalized": ("f4", "beam, range, incidence removed"),
     "returns": ("u2", "returns the surface is fitted to"),
     "sigma_m": ("f4", "deviation across the surface"),
     "planarity": ("f4", "0..1"),
@@ -62,16 +62,16 @@ class _WrittenBounds:
     last: Any = None
 
 
-class _Watched(io.BufferedWriter):
-    """Keeps the cause of a failed write, because lazrs does not report it."""
+class _ErrorKeepingWriter(io.BufferedWriter):
+    """Keeps the error of a failed write, because lazrs does not report it."""
 
-    failed: OSError | None = None
+    write_error: OSError | None = None
 
     def write(self, data: Any) -> int:
         try:
             return super().write(data)
         except OSError as error:
-            self.failed = error
+            self.write_error = error
             raise
 
 
@@ -106,23 +106,23 @@ def export_laz(
     """
     check_name(path, ".laz")
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = into_crs(tiles, output.to_crs)
+    transform = output_transform(tiles, output.map_to_crs)
     crs = output.crs or (tiles.crs and tiles.crs.wkt) or None
     header = _header(tiles, center(tiles, transform), crs)
     fields = [name for name in [*FIELDS, *OPTIONAL] if name in tiles.fields]
-    stream = blocks(tiles, fields, to_crs=transform, progress=progress or Silent())
+    stream = blocks(tiles, fields, transform=transform, progress=progress or Silent())
     if strays:
-        loose, more = tiles.only_strays(), [*fields, "normal"]
-        noise = blocks(loose, more, to_crs=transform, progress=progress or Silent())
-        stream = chain(stream, (replace(block, noise=True) for block in noise))
-    with atomic_file(path) as temporary, _Watched(io.FileIO(temporary, "wb")) as file:
+        only, more = tiles.only_strays(), [*fields, "normal"]
+        of_strays = blocks(only, more, transform=transform, progress=progress or Silent())
+        stream = chain(stream, (replace(block, strays=True) for block in of_strays))
+    with atomic_file(path) as temporary, _ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file:
         try:
             written = _write(file, header, stream)
             file.flush()
             _check(temporary, written, header)
         except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
-            if file.failed:
-                raise file.failed from error
+            if file.write_error:
+                raise file.write_error from error
             raise StoreError(f"cannot write {path}: {error}") from error
     return written.count
 
@@ -170,7 +170,7 @@ def _wkt(crs: str) -> str:
         return str(known.to_wkt())
 
 
-def _write(file: _Watched, header: Any, stream: Iterable[Block]) -> _WrittenBounds:
+def _write(file: _ErrorKeepingWriter, header: Any, stream: Iterable[Block]) -> _WrittenBounds:
     written = _WrittenBounds()
     absolute = header.global_encoding.gps_time_type == laspy.header.GpsTimeType.STANDARD
     with laspy.open(
@@ -201,12 +201,13 @@ def _points(block: Block, header: Any, *, absolute: bool) -> Any:
     points.X[:], points.Y[:], points.Z[:] = steps.T.astype(np.int32)
     points.intensity[:] = columns["intensity"]
     points.return_number = columns["echo"] + 1
+    # The smallest it can be: a map does not store how many returns a shot had.
     points.number_of_returns = columns["echo"] + 1
     points.point_source_id[:] = columns["sensor"].astype(np.uint16) + 1
     points.gps_time[:] = point_time_s(columns["t_ns"], absolute=absolute)
     points["ring"][:] = columns["ring"]
     points["frame_id"][:] = columns["frame_id"]
-    if block.noise:
+    if block.strays:
         # Too few others around it for a normal: nothing else was measured there.
         alone = ~columns["normal"].any(axis=1)
         points.classification[:] = np.where(alone, HIGH_NOISE, LOW_NOISE)

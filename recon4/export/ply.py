@@ -9,7 +9,7 @@ import numpy as np
 from recon4.errors import StoreError
 from recon4.export.gps_time import is_absolute, point_time_s
 from recon4.export.names import check_name
-from recon4.export.points import Block, ToCrs, blocks, center, into_crs
+from recon4.export.points import Block, ToCrs, blocks, center, output_transform
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
@@ -31,7 +31,7 @@ def export_ply(
     map_: Path | TileSet,
     path: Path,
     *,
-    to_crs: ToCrs | None = None,
+    map_to_crs: ToCrs | None = None,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as little-endian PLY with all its fields, streaming.
@@ -42,7 +42,8 @@ def export_ply(
     Args:
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.ply``.
-        to_crs: Map coordinates to those wanted; None = the shift by the map's origin in its CRS.
+        map_to_crs: Map coordinates to those wanted; None = the shift by the map's origin in its
+            CRS.
         progress: Who watches.
 
     Returns:
@@ -54,13 +55,13 @@ def export_ply(
     """
     check_name(path, ".ply")
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = into_crs(tiles, to_crs)
+    transform = output_transform(tiles, map_to_crs)
     center(tiles, transform)
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
     absolute = is_absolute(tiles.first_ns)
     stream = blocks(
-        tiles, [*fields, "normal", "t_ns"], to_crs=transform, progress=progress or Silent()
+        tiles, [*fields, "normal", "t_ns"], transform=transform, progress=progress or Silent()
     )
     with atomic_file(path) as temporary:
         head = _head(row, len(tiles), tiles.crs.wkt if tiles.crs else "")

@@ -27,7 +27,7 @@ class OutputCrs:
 
     crs: str | None = None
     """WKT or code of the CRS; None = that of the map, if it has one."""
-    to_crs: ToCrs | None = None
+    map_to_crs: ToCrs | None = None
     """Map coordinates to those of the CRS; None = the shift by the map's origin in it."""
 
 
@@ -43,20 +43,20 @@ class Block:
     """Coordinates of the export, float64 (N, 3)."""
     columns: Columns
     """Further fields requested."""
-    noise: bool = False
-    """These are stray returns."""
+    strays: bool = False
+    """Whether these are stray returns."""
 
 
-def into_crs(tiles: TileSet, to_crs: ToCrs | None) -> ToCrs:
-    """How to get from the map to the export: as given, or by the origin of the map's CRS."""
-    if to_crs is not None:
-        return to_crs
+def output_transform(tiles: TileSet, map_to_crs: ToCrs | None) -> ToCrs:
+    """Transformation of points of the map for an export: as given, or by the map's origin."""
+    if map_to_crs is not None:
+        return map_to_crs
     shift = np.array(tiles.crs.origin_m if tiles.crs else (0.0, 0.0, 0.0))
     return lambda xyz_m: xyz_m + shift
 
 
 def blocks(
-    tiles: TileSet, fields: list[str], *, to_crs: ToCrs, progress: Progress
+    tiles: TileSet, fields: list[str], *, transform: ToCrs, progress: Progress
 ) -> Iterator[Block]:
     """All points, tile by tile; neighbors follow each other."""
     progress.start("export", len(tiles), "points")
@@ -67,12 +67,12 @@ def blocks(
             rows = order[first : first + BLOCK]
             xyz = np.take(columns["xyz"], rows, axis=0) + np.array(tile.origin_m)
             yield Block(
-                to_crs(xyz), {name: np.take(columns[name], rows, axis=0) for name in fields}
+                transform(xyz), {name: np.take(columns[name], rows, axis=0) for name in fields}
             )
             progress.advance(len(rows))
 
 
-def center(tiles: TileSet, to_crs: ToCrs) -> NDArray[np.float64]:
+def center(tiles: TileSet, transform: ToCrs) -> NDArray[np.float64]:
     """Whole meters near the middle of the map in the coordinates of the export, (3,).
 
     Raises:
@@ -81,4 +81,4 @@ def center(tiles: TileSet, to_crs: ToCrs) -> NDArray[np.float64]:
     if not len(tiles):
         raise ConfigError("the map has no points, there is nothing to export")
     low, high = tiles.bounds_m
-    return np.round(to_crs(((low + high) / 2.0)[None])[0])
+    return np.round(transform(((low + high) / 2.0)[None])[0])

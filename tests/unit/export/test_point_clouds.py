@@ -168,7 +168,7 @@ def test_a_crs_that_is_none_and_coordinates_that_do_not_fit_are_refused(folder, 
     with pytest.raises(GeoreferenceError, match="not a CRS"):
         export_laz(folder, tmp_path / "map.laz", OutputCrs("EPSG:0"))
     with pytest.raises(GeoreferenceError, match="4000 km"):
-        export_laz(folder, tmp_path / "map.laz", OutputCrs(to_crs=lambda xyz: xyz * 1e7))
+        export_laz(folder, tmp_path / "map.laz", OutputCrs(map_to_crs=lambda xyz: xyz * 1e7))
     assert list(tmp_path.iterdir()) == []
 
 
