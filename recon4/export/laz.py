@@ -40,13 +40,13 @@ FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
 """What is read beside the coordinates."""
 OPTIONAL = {
     "intensity_normalized": ("f4", "beam, range, incidence removed"),
-    "returns": ("u2", "returns the surface is fitted to"),
-    "sigma_m": ("f4", "deviation across the surface"),
+    "surface_returns": ("u2", "returns the surface is fitted to"),
+    "surface_sd_m": ("f4", "deviation across the surface"),
     "planarity": ("f4", "0..1"),
     DEVIATION: ("u4", "1 sigma by pose, worst axis"),
 }
 """Fields a map may have: type and description of the extra dimension."""
-COPIED = ("returns", "sigma_m", "planarity")
+COPIED = ("surface_returns", "surface_sd_m", "planarity")
 LOW_NOISE, HIGH_NOISE = 7, 18
 """Classes of stray returns: beside a surface, as where a beam hits two things; alone in the air."""
 

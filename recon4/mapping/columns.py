@@ -11,8 +11,18 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.mapping.tile import FIELDS
+from recon4.store.earlier_names import TILE_FIELDS
 
 _HEADER_BYTES = 128
+_EARLIER = {now: earlier for earlier, now in TILE_FIELDS.items()}
+
+
+def column_file(folder: Path, name: str) -> str:
+    """Name of the file of a column; maps of earlier versions have some under another one."""
+    earlier = f"{_EARLIER[name]}.npy" if name in _EARLIER else ""
+    current = f"{name}.npy"
+    is_earlier = earlier and not (folder / current).exists() and (folder / earlier).exists()
+    return earlier if is_earlier else current
 
 
 def column_shape(name: str, rows: int) -> tuple[int, ...]:
@@ -45,12 +55,11 @@ def map_rows(folder: Path, name: str, start: int, *, count: int) -> NDArray[Any]
     if count == 0:
         return np.empty(column_shape(name, 0), dtype)
     offset, _ = row_offset(name, start)
+    path = folder / column_file(folder, name)
     try:
-        mapped = np.memmap(
-            folder / f"{name}.npy", dtype, mode="r", offset=offset, shape=column_shape(name, count)
-        )
+        mapped = np.memmap(path, dtype, mode="r", offset=offset, shape=column_shape(name, count))
     except (OSError, ValueError, OverflowError) as error:
-        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
+        raise StoreError(f"{folder.name}/{path.name} cannot be read: {error}") from error
     return mapped.view(np.ndarray)
 
 
@@ -63,11 +72,11 @@ def check_columns(folder: Path, fields: Sequence[str], points: int) -> None:
     for name in fields:
         if name not in FIELDS:
             raise StoreError(f"tiles.json: unknown field {name!r}; known: {list(FIELDS)}")
-        path = folder / f"{name}.npy"
+        path = folder / column_file(folder, name)
         expected = _HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
         found = path.stat().st_size if path.is_file() else -1
         if found != expected:
             raise StoreError(
-                f"{folder.name}/{name}.npy: expected {expected} bytes for {points} points, "
+                f"{folder.name}/{path.name}: expected {expected} bytes for {points} points, "
                 f"got {found if found >= 0 else 'no file'}"
             )

@@ -41,14 +41,14 @@ FIELDS: dict[str, tuple[str, int]] = {
     "range_m": ("<f4", 1),
     "incidence_rad": ("<f4", 1),
     "raw_offset_m": ("<f2", 3),
-    "returns": ("<u2", 1),
-    "sigma_m": ("<f2", 1),
+    "surface_returns": ("<u2", 1),
+    "surface_sd_m": ("<f2", 1),
     "planarity": ("<f2", 1),
     DEVIATION: ("<f2", 1),
 }
 """Name -> (dtype, width). ``intensity_normalized`` exists only with an intensity table,
 ``position_sd_m`` only where covariances of the poses are stated."""
-SURFACE_FIELDS = ("raw_offset_m", "returns", "sigma_m", "planarity")
+SURFACE_FIELDS = ("raw_offset_m", "surface_returns", "surface_sd_m", "planarity")
 """Exist only in maps of fitted surfaces."""
 
 STRATA = 64
@@ -160,9 +160,9 @@ def _fitted_columns(
     columns = _columns(records, rows, normal, recipe=recipe)
     columns["xyz"] -= offset
     columns["raw_offset_m"] = as_half(offset)
-    columns["sigma_m"] = as_half(facts[0])
+    columns["surface_sd_m"] = as_half(facts[0])
     columns["planarity"] = as_half(facts[1])
-    columns["returns"] = returns
+    columns["surface_returns"] = returns
     return columns
 
 

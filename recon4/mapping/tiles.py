@@ -21,12 +21,14 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.mapping.columns import (
     check_columns,
+    column_file,
     map_rows,
     row_offset,
 )
 from recon4.mapping.notes import MapCrs, MapNotes, read_map_list
 from recon4.mapping.tile import Columns, spatial_order
 from recon4.store.checked import Altered, CheckedArtifact
+from recon4.store.earlier_names import TILE_FIELDS
 
 FORMAT = 1
 RAW_OFFSET = "raw_offset_m"
@@ -95,7 +97,8 @@ class Tile:
             return
         first, row_bytes = row_offset(name, self.start)
         try:
-            self.checked.check(f"tiles/{name}.npy", first, first + count * row_bytes)
+            file = column_file(self.folder, name)
+            self.checked.check(f"tiles/{file}", first, first + count * row_bytes)
         except Altered as error:
             raise Altered(f"tile {self.ijk} of the map was changed: {error}") from error
 
@@ -155,7 +158,7 @@ class TileSet:
             facts = read_map_list(path)
             if facts["format"] != FORMAT:
                 raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
-            fields = tuple(str(name) for name in facts["fields"])
+            fields = tuple(TILE_FIELDS.get(name, str(name)) for name in facts["fields"])
             tiles = tuple(
                 _tile(folder / "tiles", fields, row, checked=checked) for row in facts["tiles"]
             )

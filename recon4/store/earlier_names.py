@@ -13,6 +13,8 @@ SUMMARY = {"way_m": "path_length_m"}
 """Keys of ``summary.json`` and of the figures in an ``approval.json``."""
 STEPS = {"share": "match_ratio", "gap_m": "prediction_offset_m"}
 """Columns of ``steps.npz``."""
+TILE_FIELDS = {"returns": "surface_returns", "sigma_m": "surface_sd_m"}
+"""Fields of a map's tiles, of any format: names in ``tiles.json`` and of the column files."""
 PALETTES = {"grey": "gray"}
 """Palettes in the view that a browser keeps."""
 

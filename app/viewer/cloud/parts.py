@@ -27,6 +27,7 @@ from app.viewer.cloud.palette import (
     usual_range,
 )
 from recon4.geometry.se3 import Array
+from recon4.mapping.columns import column_file
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import RAW_OFFSET, Surface, Tile, TileSet
 
@@ -80,8 +81,9 @@ class Cloud:
         self.tiles = TileSet.open(artifact).on(surface)
         self._artifact = artifact
         self.began_ns = began_ns
+        folder = artifact / "tiles"
         self._columns = {
-            name: np.load(artifact / "tiles" / f"{name}.npy", mmap_mode="r").view(np.ndarray)
+            name: np.load(folder / column_file(folder, name), mmap_mode="r").view(np.ndarray)
             for name in self.tiles.fields
         }
         step = base_step(len(self.tiles), BASE_POINTS)

@@ -2,13 +2,16 @@
 
 import hashlib
 import json
+import shutil
 import tracemalloc
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from app.viewer.cloud.parts import Cloud
 from recon4.errors import OutOfRange, StoreError
+from recon4.export.laz import export_laz
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs
@@ -18,6 +21,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings, preset
+from recon4.store.earlier_names import TILE_FIELDS
 from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
 
 ALL = MapSettings(voxel_m=0.0, min_neighborhood=1, surface="raw")
@@ -303,9 +307,33 @@ def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp
     before = np.abs(measured[floor, 2] + 1.4)
     after = np.abs(everything(fitted)[floor, 2] + 1.4)
     assert after.mean() < 0.55 * before.mean()
-    assert points(fitted, "returns")[floor].mean() > 10
+    assert points(fitted, "surface_returns")[floor].mean() > 10
     assert fitted.as_measured().only_strays().strays == 0
     assert raw.as_measured() is raw
+
+
+def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(tmp_path):
+    fitted, _ = fitted_and_raw(tmp_path)
+    current, folder = tmp_path / "fitted", tmp_path / "earlier"
+    shutil.copytree(current, folder)
+    facts = json.loads((folder / "tiles.json").read_text())
+    for earlier, now in TILE_FIELDS.items():
+        (folder / "tiles" / f"{now}.npy").rename(folder / "tiles" / f"{earlier}.npy")
+        facts["fields"][facts["fields"].index(now)] = earlier
+    (folder / "tiles.json").write_text(json.dumps(facts))
+
+    found = TileSet.open(folder)
+
+    assert found.fields == fitted.fields
+    for name in TILE_FIELDS.values():
+        np.testing.assert_array_equal(points(found, name), points(fitted, name))
+        assert len(Cloud(folder)._columns[name]) == len(fitted) + fitted.strays
+    for map_ in (current, folder):
+        export_laz(map_, map_ / "map.laz")
+    assert (folder / "map.laz").read_bytes() == (current / "map.laz").read_bytes()
+    (folder / "tiles" / "returns.npy").unlink()
+    with pytest.raises(StoreError, match=r"surface_returns\.npy.*no file"):
+        TileSet.open(folder)
 
 
 def test_surfaces_are_fitted_unless_the_documents_are_followed():
