@@ -227,7 +227,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         access=open_access(settings.state, login=settings.lan),
         projects=projects,
         thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
-        trash=Trash(settings.root, settings.state / "trash", kept_s=settings.trash_s),
+        trash=Trash(settings.root, settings.state / "trash", kept_s=settings.trash_retention_s),
         uploads=UploadStore(settings),
         jobs=jobs,
         supervisor=Supervisor(jobs, settings),

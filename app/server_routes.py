@@ -35,7 +35,7 @@ def read_server(server: Server) -> ServerView:
     """Version of the server, disk space, and notices for users."""
     disk = shutil.disk_usage(server.settings.root)
     notices = [*filter(None, [server.jobs.notice]), *server.uploads.notices()]
-    if disk.free < max(LITTLE_ROOM * disk.total, server.settings.reserve_bytes):
+    if disk.free < max(LITTLE_ROOM * disk.total, server.settings.free_disk_reserve_bytes):
         notices.append(
             f"The disk is nearly full: {disk.free / 1e9:.1f} GB of {disk.total / 1e9:.0f} GB are "
             "free. Delete projects or uploads that are not needed."
@@ -44,6 +44,6 @@ def read_server(server: Server) -> ServerView:
         version=__version__,
         free_bytes=disk.free,
         disk_bytes=disk.total,
-        reserve_bytes=server.settings.reserve_bytes,
+        reserve_bytes=server.settings.free_disk_reserve_bytes,
         notices=notices,
     )

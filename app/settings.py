@@ -28,13 +28,13 @@ class ServerSettings:
     """The user's own certificate chain, PEM; None = one is made."""
     tls_key: Path | None = None
     """Its key, PEM."""
-    names: tuple[str, ...] = ()
+    allowed_hosts: tuple[str, ...] = ()
     """Host names browsers may use, besides those this computer knows of itself; ``lan`` only."""
-    recordings: tuple[Path, ...] = ()
+    recording_folders: tuple[Path, ...] = ()
     """Folders a job may read recordings from, besides ``root``."""
-    running_jobs: int = 1
+    max_running_jobs: int = 1
     """Jobs that run at the same time; the others wait."""
-    attempts: int = 3
+    max_job_attempts: int = 3
     """A job whose worker died this many times fails."""
     hung_after_s: float = 120.0
     """A worker that makes no progress for this long is killed, ten times later where a stage
@@ -53,26 +53,26 @@ class ServerSettings:
     """Most open connections; fewer where the limit of open files is low."""
     max_connections_per_address: int = 256
     """Most of them per address; phones behind one router share an address."""
-    worker: str = "app.jobs.worker"
+    worker_module: str = "app.jobs.worker"
     """Module run for a job."""
     max_body_bytes: int = 1 << 20
     """Largest request body [bytes]."""
-    waiting_jobs: int = 20
+    max_waiting_jobs: int = 20
     """Most jobs in the queue; more are rejected."""
-    memory_bytes: int = 0
+    worker_memory_bytes: int = 0
     """Most memory of a worker [bytes]; 0 = 70 % of this computer's."""
-    reserve_bytes: int = 2 << 30
+    free_disk_reserve_bytes: int = 2 << 30
     """Disk space that uploads and jobs leave free [bytes]."""
-    upload_bytes: int = 100_000_000_000
+    max_upload_bytes: int = 100_000_000_000
     """Largest upload [bytes]."""
-    open_uploads: int = 16
+    max_open_uploads: int = 16
     """Most unfinished uploads."""
     upload_stale_s: float = 7 * 86400.0
     """An upload without new data is removed after this long [s]."""
-    trash_s: float = 7 * 86400.0
+    trash_retention_s: float = 7 * 86400.0
     """A deleted project can be restored for this long [s]."""
 
-    live_address: str = "0.0.0.0"
+    sensor_bind_address: str = "0.0.0.0"
     """Address of the network interface for the sensors of a live capture; 0.0.0.0 = any."""
 
     def __post_init__(self) -> None:
@@ -102,16 +102,16 @@ class ServerSettings:
     @property
     def import_roots(self) -> tuple[Path, ...]:
         """Folders recordings may lie in, resolved."""
-        return tuple(dict.fromkeys(path.resolve() for path in (self.root, *self.recordings)))
+        return tuple(dict.fromkeys(path.resolve() for path in (self.root, *self.recording_folders)))
 
 
-def recordings_from_environment() -> tuple[Path, ...]:
+def recording_folders_from_environment() -> tuple[Path, ...]:
     """Folders named in ``RECON4_RECORDINGS``, else the folder the server was started in."""
     named = os.environ.get("RECON4_RECORDINGS", "")
     return tuple(Path(part) for part in named.split(os.pathsep) if part) or (Path.cwd(),)
 
 
-def names_from_environment() -> tuple[str, ...]:
+def allowed_hosts_from_environment() -> tuple[str, ...]:
     """Host names in ``RECON4_NAMES``, with commas between."""
     named = os.environ.get("RECON4_NAMES", "")
     return tuple(part.strip() for part in named.split(",") if part.strip())

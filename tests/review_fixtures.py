@@ -19,7 +19,9 @@ def made(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def running(tmp_path_factory):
-    with server_thread(tmp_path_factory.mktemp("served"), worker="tests.review_project") as one:
+    with server_thread(
+        tmp_path_factory.mktemp("served"), worker_module="tests.review_project"
+    ) as one:
         yield one
 
 

@@ -47,14 +47,14 @@ def robot_server(root):
     """A server that receives captures, with the rig ``rigs/robot.toml`` of a 2-D laser alone."""
     (root / "rigs").mkdir(parents=True)
     (root / "rigs" / "robot.toml").write_text(format_rig(LASER))
-    with server_thread(root, live_address=an_address()) as running:
+    with server_thread(root, sensor_bind_address=an_address()) as running:
         yield running
 
 
 @contextmanager
 def sending(server, recording, **how):
     """A recording is replayed to a server; at the end all of it was sent."""
-    target = server.app.state.parts.settings.live_address
+    target = server.app.state.parts.settings.sensor_bind_address
     how = {"progress": Silent(), "target": target, **how}
     thread = threading.Thread(target=replay, args=(recording,), kwargs=how)
     thread.start()

@@ -38,7 +38,11 @@ def serve(  # noqa: PLR0913 - what a server can be started with
     show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
 ) -> None:
     """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
-    from app.settings import ServerSettings, names_from_environment, recordings_from_environment
+    from app.settings import (
+        ServerSettings,
+        allowed_hosts_from_environment,
+        recording_folders_from_environment,
+    )
 
     try:
         chosen = ServerSettings(
@@ -48,10 +52,10 @@ def serve(  # noqa: PLR0913 - what a server can be started with
             port=port,
             tls_certificate=tls_cert,
             tls_key=tls_key,
-            names=names_from_environment(),
-            recordings=recordings_from_environment(),
+            allowed_hosts=allowed_hosts_from_environment(),
+            recording_folders=recording_folders_from_environment(),
             viewer_points=points,
-            live_address=live_address,
+            sensor_bind_address=live_address,
         )
     except ConfigError as error:
         raise typer.BadParameter(str(error)) from error
@@ -87,10 +91,10 @@ def demo(
         summary = make_map(sources, project, progress=progress)
     write(describe_summary(summary))
     if not headless:
-        from app.settings import ServerSettings, recordings_from_environment
+        from app.settings import ServerSettings, recording_folders_from_environment
 
-        recordings = recordings_from_environment()
-        chosen = ServerSettings(root=out, port=port, recordings=recordings)
+        recordings = recording_folders_from_environment()
+        chosen = ServerSettings(root=out, port=port, recording_folders=recordings)
         _serve(chosen, open_project=project.name)
 
 

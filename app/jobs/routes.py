@@ -276,7 +276,7 @@ def _refuse_hidden(server: ServerParts, inputs: Inputs) -> None:
 
 def _refuse_too_many(server: ServerParts) -> None:
     waiting = len(server.jobs.in_state(JobState.QUEUED))
-    if waiting >= server.settings.waiting_jobs:
+    if waiting >= server.settings.max_waiting_jobs:
         raise TooMany(f"{waiting} jobs wait already; try again when some are done, or cancel some")
 
 
@@ -285,7 +285,9 @@ def _refuse_if_full(server: ServerParts, project: str, inputs: Inputs) -> None:
     given = [Path(path) for path in files if path]
     try:
         refuse_if_full(
-            server.settings.root / project, given, reserve_bytes=server.settings.reserve_bytes
+            server.settings.root / project,
+            given,
+            reserve_bytes=server.settings.free_disk_reserve_bytes,
         )
     except NoSpace as error:
         raise NoRoom(str(error)) from error

@@ -169,7 +169,7 @@ class Supervisor:
         """Check every worker and the queue once; ids of the jobs that changed."""
         running = self._store.in_state(JobState.RUNNING)
         changed = {job.id for job in running if self._alone(self._watch, job)}
-        free = self._settings.running_jobs - len(self._store.in_state(JobState.RUNNING))
+        free = self._settings.max_running_jobs - len(self._store.in_state(JobState.RUNNING))
         waiting = self._store.in_state(JobState.QUEUED)[: max(0, free)]
         return changed | {job.id for job in waiting if self._alone(self._start, job)}
 
@@ -200,8 +200,8 @@ class Supervisor:
     def _start(self, job: Job) -> bool:
         folder = self.folder(job.id)
         limits = Limits(
-            memory_bytes=allowed_memory(self._settings.memory_bytes),
-            reserve_bytes=self._settings.reserve_bytes,
+            memory_bytes=allowed_memory(self._settings.worker_memory_bytes),
+            reserve_bytes=self._settings.free_disk_reserve_bytes,
         )
         folder.prepare(job.inputs, self._settings.root.resolve() / job.project, limits)
         self._tail(job).forget()
@@ -212,7 +212,7 @@ class Supervisor:
             attempt = job.attempt + 1
             self._store.change(job, job.to(JobState.RUNNING, attempt=attempt, started=started))
             if lock is not None:
-                self._workers[job.id] = _spawn(self._settings.worker, folder.path, lock)
+                self._workers[job.id] = _spawn(self._settings.worker_module, folder.path, lock)
         return True
 
     def _watch(self, job: Job) -> bool:
@@ -266,7 +266,7 @@ class Supervisor:
             how = f"made no progress for {self._hung[job.id]:.0f} s and was killed"
         if self.folder(job.id).stop_requested_s() is not None:
             return job.to(JobState.CANCELLED, finished=now(), note="stopped on request")
-        if job.attempt < self._settings.attempts:
+        if job.attempt < self._settings.max_job_attempts:
             note = f"the worker {how}, {where}; it continues after the last finished stage"
             return job.to(JobState.QUEUED, note=note)
         note = (

@@ -18,9 +18,9 @@ from app.deps import Server, parts
 from app.error_responses import ProblemDetail
 from app.errors import Conflict, TooMany
 from app.jobs.routes import JobView, NewJob, add_job
+from app.live.current_capture import CurrentCapture
 from app.live.phone import Phone, state_of
 from app.live.rigs import RigChoice, rig_files, rigs_in, shipped_rigs
-from app.live.current_capture import CurrentCapture
 from app.names import Name, Note
 from app.network.request_caller import CalledBy
 from app.network.streams import TOO_MANY
@@ -126,7 +126,7 @@ async def start_capture(
         await check_rig_file(server.compute_pool, caller, file)
         rig = str(file)
     capture = await server.current_capture.start(
-        new.project, rig, preset=new.preset, address=server.settings.live_address
+        new.project, rig, preset=new.preset, address=server.settings.sensor_bind_address
     )
     if new.place:
         await capture.request(AddMark("place", new.place, who.name))

@@ -106,7 +106,7 @@ def hosts_of(settings: ServerSettings) -> Hosts:
     """Host names the server accepts."""
     if not settings.lan:
         return Hosts(LOOPBACK)
-    names = {name.lower() for name in settings.names}
+    names = {name.lower() for name in settings.allowed_hosts}
     return Hosts(own_names() | names, by_address=True)
 
 

@@ -86,7 +86,9 @@ class Slices:
         self._pool, self._checks = pool, checks
         self._projects = projects
         self._kept = settings.state / "slices"
-        self.exports = Exports(pool, self._kept / "exports", reserve_bytes=settings.reserve_bytes)
+        self.exports = Exports(
+            pool, self._kept / "exports", reserve_bytes=settings.free_disk_reserve_bytes
+        )
         self._newest: OrderedDict[tuple[str, str], _Latest] = OrderedDict()
         self._keeping = threading.Lock()
         self._making: dict[Path, asyncio.Lock] = {}

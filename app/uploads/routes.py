@@ -43,7 +43,7 @@ class TusRoute(APIRoute):
                 MutableHeaders(scope=message)["Tus-Resumable"] = tus.VERSION
             await send(message)
 
-        most = scope["app"].state.parts.settings.upload_bytes
+        most = scope["app"].state.parts.settings.max_upload_bytes
         await RequestBodyLimitMiddleware(super().handle, most)(scope, receive, send_tus)
 
 
@@ -206,7 +206,7 @@ def options(server: Server) -> Response:
             "Tus-Version": tus.VERSION,
             "Tus-Extension": tus.EXTENSIONS,
             "Tus-Checksum-Algorithm": ",".join(tus.ALGORITHMS),
-            "Tus-Max-Size": str(server.settings.upload_bytes),
+            "Tus-Max-Size": str(server.settings.max_upload_bytes),
         },
     )
 

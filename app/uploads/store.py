@@ -214,21 +214,22 @@ class UploadStore:
 
     def _refuse_too_much(self, total: int) -> None:
         settings = self._settings
-        if total > settings.upload_bytes:
+        if total > settings.max_upload_bytes:
             raise TooLarge(
                 f"{total / 1e9:.1f} GB are more than this server accepts in one upload "
-                f"({settings.upload_bytes / 1e9:.0f} GB)"
+                f"({settings.max_upload_bytes / 1e9:.0f} GB)"
             )
         still_open = [upload for upload in self._uploads.values() if not upload.finished]
-        if len(still_open) >= settings.open_uploads:
+        if len(still_open) >= settings.max_open_uploads:
             raise TooMany(
                 f"{len(still_open)} uploads are unfinished already; finish or remove one first"
             )
         promised = sum(upload.bytes - upload.received for upload in still_open)
         free = shutil.disk_usage(self._settings.root).free - promised
-        if free < total + settings.reserve_bytes:
+        room = free - settings.free_disk_reserve_bytes
+        if room < total:
             raise NoRoom(
-                f"the disk has room for {max(0, free - settings.reserve_bytes) / 1e9:.1f} GB, "
+                f"the disk has room for {max(0, room) / 1e9:.1f} GB, "
                 f"this recording has {total / 1e9:.1f} GB; make room first"
             )
 

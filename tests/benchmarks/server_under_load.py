@@ -101,7 +101,10 @@ def measure(root: Path, given: argparse.Namespace) -> bool:
     """Run everything for the given time; whether the requirements held."""
     address, seconds = an_address(), 60.0 * given.minutes
     spawn = multiprocessing.get_context("spawn")
-    with server_process(root, worker="app.jobs.worker", live_address=address) as (server, process):
+    with server_process(root, worker_module="app.jobs.worker", sensor_bind_address=address) as (
+        server,
+        process,
+    ):
         tally = Tally()
         probes: Queue[tuple[str, list[float]]] = spawn.Queue()
         ready = spawn.Barrier(4)  # they take a while to start, and none of their work is ours

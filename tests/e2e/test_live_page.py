@@ -63,7 +63,7 @@ def server(tmp_path):
     (root / "rigs").mkdir(parents=True)
     (root / "rigs" / "ours.toml").write_text(format_rig(load_rig("4recon")))
     address = an_address()
-    with server_thread(root, live_address=address) as running:
+    with server_thread(root, sensor_bind_address=address) as running:
         yield running
 
 
@@ -106,7 +106,7 @@ class Enough(Exception):
 
 @contextmanager
 def sending(server, walk):
-    target, enough = server.app.state.parts.settings.live_address, threading.Event()
+    target, enough = server.app.state.parts.settings.sensor_bind_address, threading.Event()
     began_ns = next(datagrams_of(walk)).t_ns
 
     def until_enough(datagram):

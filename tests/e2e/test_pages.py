@@ -25,7 +25,7 @@ def finished(tmp_path_factory):
 
 @pytest.fixture
 def server(tmp_path):
-    with server_thread(tmp_path, worker=SLOW) as running:
+    with server_thread(tmp_path, worker_module=SLOW) as running:
         yield running
 
 

@@ -18,7 +18,7 @@ pytestmark = pytest.mark.e2e
 @pytest.fixture
 def server(tmp_path):
     (tmp_path / "server").mkdir()
-    with server_thread(tmp_path / "server", worker=SLOW) as running:
+    with server_thread(tmp_path / "server", worker_module=SLOW) as running:
         yield running
 
 

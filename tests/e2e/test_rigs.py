@@ -16,7 +16,7 @@ pytestmark = pytest.mark.e2e
 
 @pytest.fixture
 def server(tmp_path):
-    with server_thread(tmp_path, worker=SLOW) as running:
+    with server_thread(tmp_path, worker_module=SLOW) as running:
         answer = running.post("/api/rigs", json={"id": "field", "copy_of": "4recon"})
         assert answer.status_code == 201
         yield running

@@ -57,7 +57,7 @@ def server(tmp_path_factory):
     (root / "key.toml").symlink_to(state / "secret.toml")
     (root / ".hidden.toml").write_text(RIG)
     os.mkfifo(root / "pipe.pcap")
-    with server_thread(root, worker=SLOW) as running:
+    with server_thread(root, worker_module=SLOW) as running:
         yield running
 
 

@@ -72,7 +72,10 @@ def run_gated(root: Path, request: dict[str, Any], victims: Mapping[str, str]) -
     try:
         with gates(root) as closed:
             while True:
-                with server_process(root, worker="tests.service.gated_worker") as (server, process):
+                with server_process(root, worker_module="tests.service.gated_worker") as (
+                    server,
+                    process,
+                ):
                     if not survived.jobs:
                         survived.jobs.append(_started(server, request))
                     if _live_gated(server, process, survived, victims, closed):
@@ -218,7 +221,7 @@ def run(root: Path, request: dict[str, Any], *, kills: int, seed: int) -> Surviv
     plan = [((k + rng.random()) / kills, victim) for k, victim in enumerate(victims)]
     try:
         while True:
-            with server_process(root, worker="app.jobs.worker") as (server, process):
+            with server_process(root, worker_module="app.jobs.worker") as (server, process):
                 if not survived.jobs:
                     survived.jobs.append(_started(server, request))
                 if _live(server, process, survived, plan):

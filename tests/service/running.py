@@ -30,7 +30,7 @@ from app.network.listen import (
     make_state,
     uvicorn_config,
 )
-from app.settings import ServerSettings, recordings_from_environment
+from app.settings import ServerSettings, recording_folders_from_environment
 
 ROOT = Path(__file__).parents[2]
 SLOW = "tests.service.slow_worker"
@@ -115,11 +115,18 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
 
 @contextmanager
 def server_process(
-    root: Path, worker: str = SLOW, *, live_address: str = "0.0.0.0"
+    root: Path, worker_module: str = SLOW, *, sensor_bind_address: str = "0.0.0.0"
 ) -> Iterator[tuple[Running, subprocess.Popen[str]]]:
     """A server in a process of its own."""
     process = subprocess.Popen(
-        [sys.executable, "-m", "tests.service.running", str(root), worker, live_address],
+        [
+            sys.executable,
+            "-m",
+            "tests.service.running",
+            str(root),
+            worker_module,
+            sensor_bind_address,
+        ],
         stdout=subprocess.PIPE,
         text=True,
         cwd=ROOT,
@@ -182,9 +189,9 @@ if __name__ == "__main__":
         ServerSettings(
             root=Path(sys.argv[1]),
             port=0,
-            recordings=recordings_from_environment(),
-            worker=sys.argv[2],
-            live_address=sys.argv[3],
+            recording_folders=recording_folders_from_environment(),
+            worker_module=sys.argv[2],
+            sensor_bind_address=sys.argv[3],
         ),
         on_ready=lambda url, notes: sys.stdout.write(url + "\n") and sys.stdout.flush(),
     )

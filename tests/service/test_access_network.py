@@ -44,7 +44,10 @@ def test_the_very_address_a_connection_came_to_is_answered_and_no_other_name(ser
 
 
 def test_names_of_the_setting_are_answered(tmp_path):
-    with secure_server(tmp_path, names=("Maps.Example.org",)) as server, server.client() as client:
+    with (
+        secure_server(tmp_path, allowed_hosts=("Maps.Example.org",)) as server,
+        server.client() as client,
+    ):
         assert client.get("/healthz", headers={"Host": "maps.example.org"}).status_code == 200
 
 

@@ -213,7 +213,7 @@ def test_a_session_above_its_rate_limit_gets_retry_after(server):
 
 
 def test_a_person_starts_ten_jobs_an_hour_and_refused_ones_do_not_count(tmp_path):
-    with secure_server(tmp_path, worker=SLOW) as server, server.signed_in("otto") as client:
+    with secure_server(tmp_path, worker_module=SLOW) as server, server.signed_in("otto") as client:
         for _ in range(12):
             assert client.post("/api/jobs", json={}).status_code == 422
         statuses = []

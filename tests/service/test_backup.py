@@ -13,7 +13,7 @@ def test_a_backup_while_a_job_runs_is_whole_and_restores(tmp_path):
     build_project(root / "office", points=20_000)
     approve_project(root / "office", tmp_path / "signing.key")
     recording = recording_with_gate(root / "recording")
-    with server_thread(root, worker=SLOW) as server:
+    with server_thread(root, worker_module=SLOW) as server:
         job = server.start("walk", recording)
         server.wait_at_gate(job)
         assert main(["backup", str(root), "--out", str(tmp_path / "backups")]) == 0
@@ -24,5 +24,5 @@ def test_a_backup_while_a_job_runs_is_whole_and_restores(tmp_path):
 
     found = verify(tmp_path / "new", Silent())
     assert found.damaged == () and len(found.approvals) == 1
-    with server_thread(tmp_path / "new", worker=SLOW) as again:
+    with server_thread(tmp_path / "new", worker_module=SLOW) as again:
         assert {one["id"] for one in again.get("/api/projects").json()} == {"office", "walk"}

@@ -41,7 +41,7 @@ def call(here, url, *more):
 
 
 def test_the_client_signs_in_sends_follows_and_fetches_a_result(here, root):
-    with secure_server(root, worker=FINISHING) as server:
+    with secure_server(root, worker_module=FINISHING) as server:
         certificate = root / ".recon4" / "tls" / "certificate.pem"
         who = ["--name", "otto", "--certificate", str(certificate)]
 
@@ -58,7 +58,7 @@ def test_the_client_signs_in_sends_follows_and_fetches_a_result(here, root):
 
 
 def test_a_failed_job_is_reported_with_the_message_of_the_server(here, root):
-    with server_thread(root, worker=SLOW) as server:  # its worker takes no capture
+    with server_thread(root, worker_module=SLOW) as server:  # its worker takes no capture
         ended = call(here, server.url, "--project", "office")
 
     assert ended.returncode == 1

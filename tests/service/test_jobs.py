@@ -24,7 +24,7 @@ def recording(tmp_path):
 
 @pytest.fixture
 def server(tmp_path):
-    with server_thread(tmp_path, worker=SLOW) as running:
+    with server_thread(tmp_path, worker_module=SLOW) as running:
         yield running
 
 
@@ -112,7 +112,7 @@ def test_a_running_job_stops_on_request_and_resumes_as_a_new_one(server, recordi
 
 
 def test_a_worker_that_does_not_stop_is_killed(tmp_path, recording):
-    with server_thread(tmp_path, worker=SLOW, stop_within_s=0.2) as server:
+    with server_thread(tmp_path, worker_module=SLOW, stop_within_s=0.2) as server:
         job = server.start("office", recording)
         server.wait_at_gate(job)
         os.kill(server.worker_pid(job), signal.SIGSTOP)
@@ -123,7 +123,7 @@ def test_a_worker_that_does_not_stop_is_killed(tmp_path, recording):
 
 
 def test_a_worker_without_a_heartbeat_is_killed_and_replaced(tmp_path, recording):
-    with server_thread(tmp_path, worker=SLOW, hung_after_s=2.5) as server:
+    with server_thread(tmp_path, worker_module=SLOW, hung_after_s=2.5) as server:
         job = server.start("office", recording)
         server.wait_at_gate(job)
 
@@ -161,7 +161,7 @@ def test_a_worker_outlives_a_killed_server_and_is_adopted_by_the_next(tmp_path, 
         process.kill()
         process.wait()
 
-    with server_thread(tmp_path, worker=SLOW) as server:
+    with server_thread(tmp_path, worker_module=SLOW) as server:
         server.wait_at_gate(job)
         gate = open_gate(recording)
         view = server.wait_state(job, "succeeded")
@@ -180,7 +180,7 @@ def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
         process.wait()
     os.kill(server.worker_pid(job), signal.SIGKILL)
 
-    with server_thread(tmp_path, worker=SLOW) as server:
+    with server_thread(tmp_path, worker_module=SLOW) as server:
         server.wait_at_gate(job, attempt=2)
         gate = open_gate(recording)
         server.wait_state(job, "succeeded")

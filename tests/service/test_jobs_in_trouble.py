@@ -24,7 +24,7 @@ def recording(tmp_path):
 
 @pytest.fixture
 def server(tmp_path):
-    with server_thread(tmp_path, worker=SLOW, attempts=1) as running:
+    with server_thread(tmp_path, worker_module=SLOW, max_job_attempts=1) as running:
         yield running
 
 
@@ -98,7 +98,7 @@ def _group(pid):
 
 
 def test_a_job_the_disk_has_no_room_for_is_refused_with_figures(tmp_path, recording):
-    with server_thread(tmp_path, worker=SLOW, reserve_bytes=1 << 60) as server:
+    with server_thread(tmp_path, worker_module=SLOW, free_disk_reserve_bytes=1 << 60) as server:
         answer = server.post("/api/jobs", json={"project": "a", "recordings": [str(recording)]})
 
     assert answer.status_code == 507
@@ -108,7 +108,7 @@ def test_a_job_the_disk_has_no_room_for_is_refused_with_figures(tmp_path, record
 def test_room_is_asked_for_again_when_the_turn_comes(tmp_path):
     """The real worker: what was free when the job was taken may be gone."""
     (tmp_path / "walk.pcap").write_bytes(b"no capture")
-    with server_process(tmp_path, worker="app.jobs.worker") as (server, process):
+    with server_process(tmp_path, worker_module="app.jobs.worker") as (server, process):
         job = server.start("office", tmp_path / "walk.pcap")
         first = server.wait_state(job, "failed")
         request = tmp_path / ".recon4" / "jobs" / job / "request.json"
@@ -122,7 +122,7 @@ def test_room_is_asked_for_again_when_the_turn_comes(tmp_path):
 
 
 def test_more_jobs_than_may_wait_are_refused(tmp_path, recording):
-    with server_thread(tmp_path, worker=SLOW, waiting_jobs=1) as server:
+    with server_thread(tmp_path, worker_module=SLOW, max_waiting_jobs=1) as server:
         first = server.start("a", recording)
         server.wait_at_gate(first)
         second = server.start("b", recording)
@@ -136,7 +136,7 @@ def test_more_jobs_than_may_wait_are_refused(tmp_path, recording):
 
 
 def test_a_damaged_queue_is_replaced_by_its_newest_backup_with_a_notice(tmp_path, recording):
-    with server_thread(tmp_path, worker=SLOW) as server:
+    with server_thread(tmp_path, worker_module=SLOW) as server:
         job = server.start("office", recording)
         server.wait_at_gate(job)
         server.post(f"/api/jobs/{job}/cancel")
@@ -144,11 +144,11 @@ def test_a_damaged_queue_is_replaced_by_its_newest_backup_with_a_notice(tmp_path
     state = tmp_path / ".recon4"
     copy = next((state / "backups").glob("jobs-*.sqlite"))
     copy.unlink()
-    with server_thread(tmp_path, worker=SLOW):
+    with server_thread(tmp_path, worker_module=SLOW):
         pass  # makes today's backup again, with the job in it
     damage(state / "jobs.sqlite")
 
-    with server_thread(tmp_path, worker=SLOW) as server:
+    with server_thread(tmp_path, worker_module=SLOW) as server:
         status = server.get("/api/server").json()
         jobs = server.get("/api/jobs").json()
 
@@ -175,7 +175,7 @@ def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recor
         process.send_signal(signal.SIGTERM)
 
         assert process.wait(10.0 + BUSY_S) == 0
-    with server_thread(tmp_path, worker=SLOW) as server:
+    with server_thread(tmp_path, worker_module=SLOW) as server:
         server.post(f"/api/jobs/{job}/cancel")
         assert server.wait_state(job, "cancelled")["job"]["attempt"] == 1
 
@@ -184,7 +184,9 @@ def test_asked_to_end_the_server_ends_soon_and_without_complaint(tmp_path, recor
 def test_a_worker_whose_work_hangs_is_killed_and_its_note_names_the_stage(
     tmp_path, recording, word
 ):
-    with server_thread(tmp_path, worker=SLOW, attempts=1, hung_after_s=3.0) as server:
+    with server_thread(
+        tmp_path, worker_module=SLOW, max_job_attempts=1, hung_after_s=3.0
+    ) as server:
         job = server.start("office", recording)
         server.wait_at_gate(job)
         gate = open_gate(recording, word)

@@ -34,7 +34,7 @@ def server(tmp_path):
     root = tmp_path / "projects"
     root.mkdir()
     address = an_address()
-    with server_thread(root, live_address=address) as running:
+    with server_thread(root, sensor_bind_address=address) as running:
         yield running
 
 
@@ -85,7 +85,10 @@ def sending(server, walk):
     thread = threading.Thread(
         target=replay,
         args=(walk,),
-        kwargs={"progress": Silent(), "target": server.app.state.parts.settings.live_address},
+        kwargs={
+            "progress": Silent(),
+            "target": server.app.state.parts.settings.sensor_bind_address,
+        },
     )
     thread.start()
     yield

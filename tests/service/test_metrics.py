@@ -22,7 +22,7 @@ from tests.service.secure import secure_server
 
 @pytest.fixture
 def server(tmp_path):
-    with server_thread(tmp_path, worker=SLOW) as running:
+    with server_thread(tmp_path, worker_module=SLOW) as running:
         yield running
 
 

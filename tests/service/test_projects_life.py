@@ -26,7 +26,7 @@ def recording(tmp_path):
 
 @pytest.fixture
 def server(tmp_path):
-    with server_thread(tmp_path, worker=SLOW) as running:
+    with server_thread(tmp_path, worker_module=SLOW) as running:
         yield running
 
 

@@ -217,7 +217,7 @@ def test_only_bytes_of_uploads_may_be_large(server):
 
 def test_too_much_too_many_and_no_room_are_refused_in_words(tmp_path):
     free = os.statvfs(tmp_path).f_bavail * os.statvfs(tmp_path).f_frsize
-    limits = {"upload_bytes": free * 2, "open_uploads": 1}
+    limits = {"max_upload_bytes": free * 2, "max_open_uploads": 1}
     with server_thread(tmp_path, **limits) as server:
         ask = {"name": "walk", "files": 1}
         large = server.post("/api/uploads", json=ask | {"bytes": free * 3})

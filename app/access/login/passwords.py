@@ -12,7 +12,7 @@ from argon2.exceptions import InvalidHashError, VerificationError
 from zxcvbn import zxcvbn
 
 from app.errors import WeakPassword
-from app.settings import names_from_environment
+from app.settings import allowed_hosts_from_environment
 
 SHORTEST, LONGEST = 12, 256
 """Characters of a password."""
@@ -138,6 +138,6 @@ def _kind(match: dict[str, object]) -> str:
 
 def _known_words(name: str) -> list[str]:
     """Words an attacker would try first for this person on this computer."""
-    names = (name, socket.gethostname(), *names_from_environment())
+    names = (name, socket.gethostname(), *allowed_hosts_from_environment())
     parts = {part for one in names for part in re.split(r"[\W_]+", one) if len(part) > 2}
     return [*sorted({*parts, *names} - {""}), *CONTEXT, *COMMON]

@@ -18,7 +18,9 @@ def store(tmp_path):
 
 @pytest.fixture
 def supervisor(tmp_path, store):
-    supervisor = Supervisor(store, ServerSettings(root=tmp_path, worker="tests.no_such_worker"))
+    supervisor = Supervisor(
+        store, ServerSettings(root=tmp_path, worker_module="tests.no_such_worker")
+    )
     yield supervisor
     supervisor.close()
 
