@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from recon4.calibration.equations import RoundBounds
 from recon4.calibration.held_out import (
     Agreement,
+    contradicted_beams,
     not_observable,
     refusal,
     unexplained,
@@ -182,7 +183,7 @@ def calibrate(
         return None
     first = _counted_from(first, recorded)
     second = estimator.second(others, first)
-    unknown = not_observable(first, second)
+    unknown = not_observable(first, second) | contradicted_beams(first, second)
     table = judge(first, not_observable=unknown)
     before, after = (
         Agreement.of(explain(others, rig, every=estimator.every, settings=settings))

@@ -19,6 +19,8 @@ _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s"
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
 _KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
 """The same of single beams."""
+_FEW_BEAMS = 0.1
+"""Part of the parameters of beams that may contradict another part of the walk."""
 _NOT_WORSE, _BETTER = 1.01, 0.99
 """Ratio of figures of fit, after against before."""
 
@@ -76,6 +78,28 @@ def not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArra
     return np.asarray(vague | (undetected & (np.abs(first.change) <= SIGMAS * first.sd)))
 
 
+def contradicted_beams(first: JointEstimate, second: JointEstimate | None) -> NDArray[np.bool_]:
+    """Parameters of single beams that two estimates contradict each other about, (P,).
+
+    Of some hundred parameters a few may, and these keep their values. If more do, none is
+    returned: then the estimates contradict each other.
+    """
+    listed = first.parameters.listed
+    of_beams = np.array([parameter.of_beam for parameter in listed], dtype=bool)
+    if second is None:
+        return np.zeros(len(listed), dtype=bool)
+    contradicted = of_beams & _contradicted(first, second)
+    few = contradicted.sum() <= _FEW_BEAMS * of_beams.sum()
+    return np.asarray(contradicted & few)
+
+
+def _contradicted(first: JointEstimate, second: JointEstimate) -> NDArray[np.bool_]:
+    """Parameters that two estimates from different windows contradict each other about, (P,)."""
+    apart = np.abs(first.parameters.between(first.rig, second.rig))
+    scatter = SIGMAS * np.hypot(first.sd, second.sd)
+    return np.asarray(apart > np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters))))
+
+
 def refusal(
     rows: Sequence[ParameterFigures], first: JointEstimate, second: JointEstimate | None
 ) -> str:
@@ -92,11 +116,8 @@ def refusal(
         if first.parameters.beams:
             return "nothing is corrected: mounts, clocks and beams agree with the rig file"
         return "inconclusive: longer windows do not confirm what the audit found"
-    apart = np.abs(first.parameters.between(first.rig, second.rig))
-    scatter = SIGMAS * np.hypot(first.sd, second.sd)
-    limit = np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters)))
     checked = np.array([row.status != "not observable" for row in rows])
-    wrong = np.flatnonzero(checked & (apart > limit))
+    wrong = np.flatnonzero(checked & _contradicted(first, second))
     if len(wrong):
         names = ", ".join(first.parameters.listed[k].name for k in wrong)
         return f"inconclusive: another part of the walk gives another value for {names}"

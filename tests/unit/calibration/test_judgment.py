@@ -1,13 +1,17 @@
 """What an estimate says of a parameter depends on how many windows it comes from."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from recon4.calibration.equations import Fit
+from recon4.calibration.held_out import contradicted_beams, refusal
 from recon4.calibration.joint import JointEstimate
 from recon4.calibration.judgment import contradictions, judge
 from recon4.calibration.parameters import Parameters
 from recon4.geometry.se3 import SE3
+from recon4.model.beams import BeamCorrections
 from tests.room_walks import rig_of
 
 FIT = Fit(points=1000, shared_points=500, rms_m=0.01, offset_m=0.001, imu_rms=1.0)
@@ -48,3 +52,32 @@ def test_a_change_that_may_be_noise_does_not_confirm_the_rig_file():
 
     assert rows[1].status == "not observable"
     assert rows[0].status == "consistent"
+
+
+def beams_of(rows):
+    """An estimate of the beams of one LiDAR: rows of range, elevation, azimuth, (3, 16)."""
+    rig = rig_of(SE3.identity())
+    parameters = Parameters.of(rig, reference=0, lidars=(), imu=False).with_beams(rig, {0: 16})
+    sensor = replace(rig.sensors[0], beams=BeamCorrections.of(rows))
+    known = np.full(len(parameters), 1e-5)
+    found = replace(rig, sensors=(sensor,))
+    return JointEstimate(found, parameters, rows.ravel(), known, known, (FIT,) * 8)
+
+
+@pytest.mark.parametrize(("wrong", "kept"), [(1, 1), (4, 4), (5, 0)])
+def test_single_beams_that_another_part_of_the_walk_contradicts_keep_their_values(wrong, kept):
+    one, other = np.zeros((3, 16)), np.zeros((3, 16))
+    one[0, 5] = other[0, 5] = 0.005
+    other[1, :wrong] = np.deg2rad(0.1)
+    first, second = beams_of(one), beams_of(other)
+
+    found = contradicted_beams(first, second)
+
+    assert found.sum() == kept
+    assert found[16 : 16 + kept].all()
+    refused = refusal(judge(first, not_observable=found), first, second)
+    assert ("gives another value for s0 beam elevation 0" in refused) == (kept == 0)
+
+
+def test_without_another_part_of_the_walk_no_beam_is_contradicted():
+    assert not contradicted_beams(beams_of(np.zeros((3, 16))), None).any()
