@@ -44,6 +44,20 @@ class HeightDoubt(msgspec.Struct, frozen=True, kw_only=True):
     """Up is positive [m]."""
 
 
+class TurnDoubt(msgspec.Struct, frozen=True, kw_only=True):
+    """A stretch of the walk in which the LiDARs hardly observe a turn of the body."""
+
+    start_s: float
+    """After the first multiframe [s]."""
+    end_s: float
+    axis: tuple[float, float, float]
+    """Unit vector, in odom axes."""
+    center_m: tuple[float, float, float]
+    """A point of the axis of the turn, from the first position, in odom axes [m]."""
+    rate_sd_rad_s: float
+    """How fast the error grows [rad/s]."""
+
+
 class MovingOutcome(StrEnum):
     """What became of the points of moving objects."""
 
@@ -96,6 +110,8 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Whether fixes were used."""
     heights: tuple[HeightDoubt, ...] = ()
     """Rides that no LiDAR sees, and other contradictions of the heights."""
+    turns: tuple[TurnDoubt, ...] = ()
+    """Turns that no LiDAR observes."""
     moving: MovingFigures | None = None
     """People and vehicles in view; None = not searched for."""
 

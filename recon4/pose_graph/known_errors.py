@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.figures import CalibrationFigures, HeightDoubt, OdometryFigures
+from recon4.model.figures import CalibrationFigures, HeightDoubt, OdometryFigures, TurnDoubt
 from recon4.model.trajectory import Times
 from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
 from recon4.store.stage import read_figures
@@ -24,6 +24,8 @@ class KnownErrors:
     """A LiDAR that is not as the rig file says."""
     heights: tuple[HeightDoubt, ...] = ()
     """Rides that no LiDAR sees; positions on the earth show them, a local map does not."""
+    turns: tuple[TurnDoubt, ...] = ()
+    """Turns that no LiDAR observes; likewise."""
 
     def cov(self, t_ns: Times, T_map_body: SE3, *, on_earth: bool) -> Array:
         """Covariances that they add to poses, (N, 6, 6), turn first, in axes of the map.
@@ -38,7 +40,23 @@ class KnownErrors:
         for doubt in () if on_earth else self.heights:
             height_m = np.interp(since_s, [doubt.start_s, doubt.end_s], [0.0, doubt.rise_m])
             out[:, _Z, _Z] += height_m**2
+        for turn in () if on_earth else self.turns:
+            out += _turn_cov(turn, since_s, T_map_body)
         return out
+
+
+def _turn_cov(turn: TurnDoubt, since_s: Array, T_map_body: SE3) -> Array:
+    """Covariances of poses by a turn that grows while nothing observes it, (N, 6, 6).
+
+    Axes of odometry and of a local map differ by its leveling only.
+    """
+    grown_s = np.clip(since_s - turn.start_s, 0.0, turn.end_s - turn.start_s)
+    axis = np.array(turn.axis)
+    arm = T_map_body.t - T_map_body.t[0] - np.array(turn.center_m)
+    moved = np.cross(axis, arm)
+    twist = np.concatenate([np.broadcast_to(axis, arm.shape), moved], axis=1)
+    twist *= (turn.rate_sd_rad_s * grown_s)[:, None]
+    return np.asarray(twist[:, :, None] * twist[:, None, :])
 
 
 NOTHING_KNOWN = KnownErrors()
@@ -51,5 +69,7 @@ def load_known_errors(*, audit: Path | None = None, odometry: Path | None = None
         StoreError: If figures are missing or damaged.
     """
     rig = audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
-    heights = read_figures(odometry, OdometryFigures).heights if odometry else ()
-    return KnownErrors(rig=rig, heights=heights)
+    if odometry is None:
+        return KnownErrors(rig=rig)
+    figures = read_figures(odometry, OdometryFigures)
+    return KnownErrors(rig=rig, heights=figures.heights, turns=figures.turns)

@@ -47,6 +47,27 @@ def observable_pose(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
     return root.T @ H @ root, full
 
 
+def weakest_twist(H: Array) -> tuple[Array, float, float]:
+    """The small motion that is observed least.
+
+    Args:
+        H: Information on a correction of one pose, (6, 6), rotation first.
+
+    Returns:
+        Turn [rad] and shift [m] of that motion, (6,), its size at the typical distance of the
+        points being 1; the standard deviation of its size [m]; the typical distance [m].
+        NaN if nothing is observed.
+    """
+    weight, turning = (float(np.trace(H[part, part])) for part in (TRANSLATION, ROTATION))
+    if not (weight > 0.0 and turning > 0.0 and np.isfinite(H).all()):
+        return np.full(6, np.nan), float("nan"), float("nan")
+    typical_m = np.sqrt(turning / weight)
+    scale = np.repeat([1.0 / typical_m, 1.0], 3)
+    information, directions = np.linalg.eigh(scale[:, None] * H * scale)
+    sd_m = float(max(information[0], 1e-4) ** -0.5)
+    return scale * directions[:, 0], sd_m, float(typical_m)
+
+
 def _reductions(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
     """Matrices (6, 6) that reduce information: the square root for ``H``, the whole for ``g``."""
     weight = float(np.trace(H[TRANSLATION, TRANSLATION]))

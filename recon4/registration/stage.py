@@ -33,6 +33,7 @@ from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
+from recon4.registration.weak_turns import turn_text, weak_turns
 from recon4.settings import Settings
 from recon4.store.arrays import save_record, save_trajectory
 
@@ -152,11 +153,13 @@ def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures) -> OdometryFigures:
     """Figures of a pass, with what contradicts it."""
     rides = _rides(made.trajectory, made.imu, rig, steps=made.steps)
     crowd = crowd_text(moving)
+    turns = weak_turns(made.steps, with_imu=made.imu is not None)
     contradicted = (
         *(ride.text for ride in rides),
         *(wrong_gravity(made.trajectory, made.imu, rig) if made.imu else ()),
         *(made.estimate.texts if made.estimate else ()),
         *crowd,
+        *(turn_text(turn) for turn in turns),
         *_bridges(made.steps),
     )
     severe = tuple(ride.text for ride in rides if ride.is_severe)
@@ -167,6 +170,7 @@ def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures) -> OdometryFigures:
         warnings=(made.remark, *contradicted) if made.remark else contradicted,
         severe=(*severe, *(crowd if moving.is_severe else ())),
         heights=tuple(ride.doubt for ride in rides),
+        turns=turns,
         moving=moving,
     )
 

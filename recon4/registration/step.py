@@ -9,6 +9,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.trajectory import Times
+from recon4.registration.degeneracy import of_rigid_pose, weakest_twist
 from recon4.registration.frame_fit import FrameFit, motion_cov
 from recon4.registration.motion import Prediction, middle_of
 
@@ -42,6 +43,12 @@ class OdometryStep:
     """See `Match.weak_direction`, in odom axes; NaN where it is unknown."""
     weak_sd_m: float = float("nan")
     """Standard deviation of the position along it by the LiDARs of this frame alone [m]."""
+    weak_twist: Array = field(default_factory=lambda: np.full(6, np.nan))
+    """See `weakest_twist`: turn and shift of the body that are observed least, in odom axes …"""
+    weak_twist_sd_m: float = float("nan")
+    """… the standard deviation of its size by the LiDARs of this frame alone [m] …"""
+    typical_m: float = float("nan")
+    """… and the distance of the points at which it has that size [m]."""
     stationary: bool = False
     """Whether the IMU says that the body stands."""
     bridged: bool = False
@@ -72,5 +79,6 @@ def make_step(
         motion_cov(prediction.prior if lost else fit.P),
         fit.match.weak_direction,
         fit.weak_sd_m,
+        *weakest_twist(of_rigid_pose(fit.H_lidar)),
         fit.stationary,
     )

@@ -1,0 +1,97 @@
+"""Stretches of the walk in which only the gyroscope holds a turn.
+
+In a round hall, a silo or a round stairwell the surroundings look the same after a turn about their
+axis. The planes fitted to a curved wall seem to observe that turn nevertheless, a little and
+wrongly, and so do registered pairs: no residual shows the error, which grows with the time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
+from recon4.model.figures import TurnDoubt
+from recon4.model.usability import WEAK_SECONDS
+from recon4.registration.step import OdometryStep
+
+_WEAK_SD_M = 0.02
+"""Deviation by the points of one multiframe at their typical distance, above which the turn is not
+observed [m]: at most 0.012 in offices, staircases, corridors and forests (95 %), 0.025 to 0.036 in
+a round hall."""
+_LEAST_TURN = 0.2
+"""Part of the turn in the weakest motion: in a tunnel, which is a shift along it, it is 0.01."""
+_BRIDGED_S = 1.0
+"""Two stretches with less than this between them are one [s]."""
+_RATE_SD_RAD_S = float(np.deg2rad(0.2))
+"""Standard deviation of a turn rate that only a gyroscope measures, whose bias such surroundings
+do not show, either [rad/s]: 0.22° a second were measured."""
+_FREE_RATE_SD_RAD_S = float(np.deg2rad(2.0))
+"""The same without a gyroscope."""
+
+
+def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDoubt, ...]:
+    """Find the stretches of `WEAK_SECONDS` or more, in order of time.
+
+    Args:
+        steps: Of all multiframes.
+        with_imu: Whether a gyroscope was used.
+    """
+    if len(steps) < 2:
+        return ()
+    t_s = 1e-9 * (np.array([step.t_mid_ns for step in steps]) - steps[0].t_mid_ns)
+    rows = np.flatnonzero([_is_weak(step) for step in steps])
+    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > _BRIDGED_S) + 1)
+    rate = _RATE_SD_RAD_S if with_imu else _FREE_RATE_SD_RAD_S
+    return tuple(
+        _doubt([steps[k] for k in run], t_s[run], steps[0].T_odom_body.t, rate_sd_rad_s=rate)
+        for run in runs
+        if len(run) and t_s[run[-1]] - t_s[run[0]] >= WEAK_SECONDS
+    )
+
+
+def turn_text(doubt: TurnDoubt) -> str:
+    """A sentence for the operator."""
+    x, y, z = doubt.center_m
+    largest_deg = float(np.rad2deg(2.0 * doubt.rate_sd_rad_s * (doubt.end_s - doubt.start_s)))
+    axis = "vertical" if abs(doubt.axis[2]) > np.sqrt(0.5) else "horizontal"
+    return (
+        f"Between {doubt.start_s:.0f} s and {doubt.end_s:.0f} s the surroundings are round: the "
+        f"LiDARs hardly observe the turn about the {axis} axis at x {x:.1f} m, y {y:.1f} m, "
+        f"z {z:.1f} m from the start. At the end the map may be turned by ± {largest_deg:.1f}° "
+        "(2σ). Put things there that are not round, or begin and end with a view through a door."
+    )
+
+
+def _is_weak(step: OdometryStep) -> bool:
+    if step.lost or step.stationary:  # one is reported by itself, the other cannot drift
+        return False
+    return bool(step.weak_twist_sd_m > _WEAK_SD_M) and _turn_part(step) > _LEAST_TURN
+
+
+def _turn_part(step: OdometryStep) -> float:
+    """Squared part of the turn in the weakest motion, at the typical distance of the points."""
+    turn_m = float(np.linalg.norm(step.weak_twist[ROTATION])) * step.typical_m
+    shift_m = float(np.linalg.norm(step.weak_twist[TRANSLATION]))
+    return turn_m**2 / max(turn_m**2 + shift_m**2, 1e-12)
+
+
+def _doubt(
+    steps: Sequence[OdometryStep], t_s: Array, start_m: Array, *, rate_sd_rad_s: float
+) -> TurnDoubt:
+    """Axis and center of the turn from the weakest motions, which are the same turn all along."""
+    turns = np.array([step.weak_twist[ROTATION] for step in steps])
+    shifts = np.array([step.weak_twist[TRANSLATION] for step in steps])
+    length_sq = np.sum(turns**2, axis=1, keepdims=True)
+    axis = np.linalg.eigh((turns / length_sq).T @ turns)[1][:, -1]
+    to_center = np.cross(turns, shifts) / length_sq
+    centers = np.array([step.T_odom_body.t for step in steps]) + to_center - start_m
+    x, y, z = np.median(centers, axis=0).tolist()
+    return TurnDoubt(
+        start_s=float(t_s[0]),
+        end_s=float(t_s[-1]),
+        axis=(float(axis[0]), float(axis[1]), float(axis[2])),
+        center_m=(x, y, z),
+        rate_sd_rad_s=rate_sd_rad_s,
+    )

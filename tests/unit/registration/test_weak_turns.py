@@ -1,0 +1,130 @@
+"""In a round hall only the gyroscope holds the turn about its axis."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.known_errors import KnownErrors
+from recon4.registration.degeneracy import of_rigid_pose, weakest_twist
+from recon4.registration.plane_map import PlaneMap
+from recon4.registration.step import OdometryStep
+from recon4.registration.weak_turns import turn_text, weak_turns
+from recon4.settings import Settings
+
+CENTER = np.array([0.5, 3.0, 0.0])
+
+
+def hall(points, rng, *, is_round):
+    """Walls, floor and ceiling 5 m around `CENTER`, with 1 cm of noise, (N, 3)."""
+    z = rng.uniform(-1.5, 2.5, points)
+    angle = rng.uniform(-np.pi, np.pi, points)
+    out = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    if not is_round:
+        out /= np.abs(out).max(axis=1, keepdims=True)
+    wall = np.column_stack([5.0 * out, z])
+    flat = rng.uniform(-3.5, 3.5, (points, 2))
+    ends = np.column_stack([flat, rng.choice([-1.5, 2.5], points)])
+    return np.concatenate([wall, ends]) + CENTER + rng.normal(0.0, 0.01, (2 * points, 3))
+
+
+def weakest_in(is_round):
+    """The motion that a scan from the origin observes least in such a hall."""
+    rng = np.random.default_rng(4)
+    planes = PlaneMap(Settings().planes)
+    planes.add(hall(60_000, rng, is_round=is_round))
+    scan = hall(1500, rng, is_round=is_round)
+    match = planes.match(scan, np.zeros(len(scan)), center=np.zeros(3), finest=0, gate_m=0.2)
+    assert match.match_ratio > 0.9
+    return weakest_twist(0.1 * of_rigid_pose(match.H))
+
+
+def step(k, *, weakest, at_m, lost=False, stationary=False):
+    pose = SE3(np.eye(3), np.asarray(at_m, float))
+    twist, sd_m, typical_m = weakest
+    return OdometryStep(
+        frame_id=k, t_mid_ns=100_000_000 * k, T_odom_body=pose, t_ns=np.array([0]), T_dense=pose,
+        error_m=0.01, match_ratio=0.9, rounds=3, converged=True, degeneracy=0.1,
+        prediction_offset_m=0.0, lost=lost, motion_cov=np.zeros((6, 6)),
+        weak_twist=twist, weak_twist_sd_m=sd_m, typical_m=typical_m, stationary=stationary,
+    )  # fmt: skip
+
+
+def about(center, at_m, *, sd_m=0.03):
+    """A turn about a vertical axis, as a body at ``at_m`` moves in it."""
+    turn = np.array([0.0, 0.0, 0.2])
+    return np.concatenate([turn, np.cross(turn, at_m - center)]), sd_m, 3.0
+
+
+def walk(count, **kinds):
+    """Multiframes on a straight line along x through a round hall."""
+    places = [np.array([0.03 * k, 0.0, 0.0]) for k in range(count)]
+    return [step(k, weakest=about(CENTER, p), at_m=p, **kinds) for k, p in enumerate(places)]
+
+
+def test_a_round_hall_does_not_observe_the_turn_about_its_axis():
+    twist, sd_m, _ = weakest_in(is_round=True)
+    turn, shift = twist[:3], twist[3:]
+
+    assert abs(turn[2]) > 0.99 * np.linalg.norm(turn)
+    center = np.cross(turn, shift) / (turn @ turn)
+    np.testing.assert_allclose(center[:2], CENTER[:2], atol=0.4)
+    assert sd_m > 3.0 * weakest_in(is_round=False)[1]
+
+
+def test_the_stretch_is_found_with_its_axis_and_its_error():
+    (found,) = weak_turns(walk(100), with_imu=True)
+
+    assert (found.start_s, found.end_s) == (0.0, pytest.approx(9.9))
+    np.testing.assert_allclose(np.abs(found.axis), [0.0, 0.0, 1.0], atol=1e-9)
+    np.testing.assert_allclose(found.center_m, CENTER, atol=1e-9)
+    assert "about the vertical axis at x 0.5 m, y 3.0 m" in turn_text(found)
+    assert "turned by ± 4.0° (2σ)" in turn_text(found)
+    (free,) = weak_turns(walk(100), with_imu=False)
+    assert free.rate_sd_rad_s == pytest.approx(10.0 * found.rate_sd_rad_s)
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [
+        pytest.param(walk(15), id="short"),
+        pytest.param(walk(100, stationary=True), id="stationary"),
+        pytest.param(walk(100, lost=True), id="lost"),
+        pytest.param([replace(one, weak_twist_sd_m=0.01) for one in walk(100)], id="well observed"),
+        pytest.param(
+            [replace(one, weak_twist=np.eye(6)[3]) for one in walk(100)], id="tunnel: a shift"
+        ),
+        pytest.param(
+            [replace(one, weak_twist_sd_m=float("nan")) for one in walk(100)], id="unknown"
+        ),
+        pytest.param(walk(1), id="one multiframe"),
+    ],
+)
+def test_nothing_is_said_of_other_walks(steps):
+    assert weak_turns(steps, with_imu=True) == ()
+
+
+def test_nothing_observed_has_no_weakest_motion():
+    twist, sd_m, typical_m = weakest_twist(np.zeros((6, 6)))
+
+    assert np.isnan(twist).all() and np.isnan(sd_m) and np.isnan(typical_m)
+
+
+def test_poses_know_how_far_the_turn_may_move_them():
+    steps = walk(100)
+    found = weak_turns(steps, with_imu=True)
+    poses = Trajectory(
+        np.array([one.t_mid_ns for one in steps]), SE3.stack(one.T_odom_body for one in steps)
+    )
+
+    cov = KnownErrors(turns=found).cov(poses.t_ns, poses.T_a_b, on_earth=False)
+
+    turned = found[0].rate_sd_rad_s * 9.9
+    arm_m = np.linalg.norm(poses.T_a_b.t[-1] - CENTER)
+    np.testing.assert_allclose(cov[0], 0.0)
+    assert np.sqrt(cov[-1, 2, 2]) == pytest.approx(turned)
+    assert np.sqrt(np.trace(cov[-1, 3:, 3:])) == pytest.approx(turned * arm_m)
+    on_earth = KnownErrors(turns=found).cov(poses.t_ns, poses.T_a_b, on_earth=True)
+    np.testing.assert_allclose(on_earth, 0.0)
