@@ -7,9 +7,10 @@ trajectory equals the vertical acceleration, weighted by a triangle of the same 
 
     (z(t - dt) - 2 z(t) + z(t + dt)) / dt²  =  sum of w(s) (R f(s) - g) over abs(s - t) < dt
 
-Half a second makes it blind to the steps of a walk. What is left is the bias, the same all along,
-and pushes that only the IMU felt. A ride is a push up and a later one down, or the reverse. Where
-the difference stays large without that pattern, height and IMU contradict each other.
+Half a second makes it blind to the steps of a walk. What is left is the bias, the same all along in
+the axes of the body, and pushes that only the IMU felt. A ride is a push up and a later one down,
+or the reverse. Where the difference stays large without that pattern, height and IMU contradict
+each other.
 """
 
 from __future__ import annotations
@@ -34,11 +35,18 @@ _PUSH_M_S2, _PUSH_SIGMAS = 0.12, 5.0
 """A push is larger than this, and than this multiple of the usual difference."""
 _PUSH_M_S = 0.25
 """It changes the speed by at least this."""
+_SLOW_PUSH_M_S2, _SLOW_PUSH_SIGMAS = 0.03, 8.0
+_SLOW_PUSH_M_S = 0.06
+"""The same of a slow lift, if an opposite push follows while the body stays in one place."""
+_CAR_M = 1.0
+"""A person in the car of a lift moves by at most this from the middle [m]."""
 _RELIABLE_M_S2 = 0.06
 """With a larger usual difference rides are not distinguished from errors of IMU and trajectory."""
 _CONTRADICTION_M_S2, _CONTRADICTION_S = 0.1, 2.0
 """A difference above the first contradicts the heights, if it lasts for the second. On walks with
 known truth it is 0.003 to 0.04."""
+_BIAS_SD_M_S2, _BIAS_NOISE_M_S2, _BIAS_ROUNDS = 0.1, 0.01, 10
+"""Bias of an accelerometer, usual difference beside it, and rounds of its fit."""
 _BRIDGED_KNOTS = 2
 _SAME_RIDE_S = 3.0
 """Stretches with no longer break between them are one: the speed that the first has built up
@@ -136,20 +144,71 @@ def unseen_rides(
         rig: Where the IMU is.
         lost_ns: Middle of the multiframes that were lost, (K,).
     """
-    knots_s, extra = _contradiction(trajectory, imu, rig, lost_ns=lost_ns)
+    knots_s, extra, upward = _contradiction(trajectory, imu, rig, lost_ns=lost_ns)
     known = np.isfinite(extra)
     if known.sum() < _MIN_KNOTS:
         return []
-    extra = np.where(known, extra - np.median(extra[known]), 0.0)
+    extra[known] -= _of_bias(extra[known], upward[known])
+    extra[~known] = 0.0
     usual = 1.4826 * float(np.median(np.abs(extra[known])))
     rides: list[UnseenRide] = []
     if usual <= _RELIABLE_M_S2:
-        rides = _rides(knots_s, extra, limit=max(_PUSH_M_S2, _PUSH_SIGMAS * usual))
+        limit = max(_PUSH_M_S2, _PUSH_SIGMAS * usual)
+        rides = _rides(knots_s, extra, limit=limit, least_m_s=_PUSH_M_S)
+        rides += _slow_rides(knots_s, extra, usual, trajectory=trajectory, others=rides)
     others = [
         stretch for stretch in _contradicted(knots_s, extra, usual)
         if not any(r.start_s <= stretch.end_s and stretch.start_s <= r.end_s for r in rides)
     ]  # fmt: skip
     return sorted([*rides, *others], key=lambda found: found.start_s)
+
+
+def _of_bias(extra: Array, upward: Array) -> Array:
+    """What the bias of the accelerometer makes of the vertical acceleration, (K,).
+
+    A body that is tilted, or laid down, has another part of the bias along the vertical. Pushes
+    are outliers of this fit.
+
+    Args:
+        extra: Vertical acceleration by the IMU less that of the trajectory, (K,).
+        upward: The vertical in axes of the body, (K, 3).
+    """
+    level = float(np.median(extra))
+    tilted = upward - np.median(upward, axis=0)
+    bias: Array = np.zeros(3)
+    for _ in range(_BIAS_ROUNDS):
+        r = extra - level - tilted @ bias
+        weight = 1.0 / np.maximum(np.abs(r), _BIAS_NOISE_M_S2)
+        H = (tilted * weight[:, None]).T @ tilted + _BIAS_NOISE_M_S2 / _BIAS_SD_M_S2**2 * np.eye(3)
+        bias = np.asarray(np.linalg.solve(H, tilted.T @ (weight * (extra - level))))
+        level = float(np.median(extra - tilted @ bias))
+    return np.asarray(level + tilted @ bias)
+
+
+def _slow_rides(
+    knots_s: Array,
+    extra: Array,
+    usual: float,
+    *,
+    trajectory: Trajectory,
+    others: list[UnseenRide],
+) -> list[UnseenRide]:
+    """Rides with weak pushes, as of a platform lift, in which the body stays in one place."""
+    limit = max(_SLOW_PUSH_M_S2, _SLOW_PUSH_SIGMAS * usual)
+    found = _rides(knots_s, extra, limit=limit, least_m_s=_SLOW_PUSH_M_S)
+    return [
+        ride for ride in found
+        if np.isfinite(ride.rise_m)
+        and _stays(trajectory, ride.start_s, ride.end_s)
+        and not any(o.start_s <= ride.end_s and ride.start_s <= o.end_s for o in others)
+    ]  # fmt: skip
+
+
+def _stays(trajectory: Trajectory, start_s: float, end_s: float) -> bool:
+    """Whether the body stays within the car of a lift, whatever its height."""
+    since_s = (trajectory.t_ns - trajectory.t_ns[0]) * 1e-9
+    place_m = trajectory.T_a_b.t[(since_s >= start_s) & (since_s <= end_s), :2]
+    return bool(np.linalg.norm(place_m - np.median(place_m, axis=0), axis=1).max() < _CAR_M)
 
 
 def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightContradiction]:
@@ -184,13 +243,15 @@ def _rise_m(extra: Array) -> float:
 
 def _contradiction(
     trajectory: Trajectory, imu: ImuSamples, rig: Rig, *, lost_ns: Times
-) -> tuple[Array, Array]:
-    """Vertical acceleration by the IMU less that of the trajectory, at knots; NaN = unknown."""
+) -> tuple[Array, Array, Array]:
+    """At knots: vertical acceleration by the IMU less that of the trajectory, NaN = unknown; the
+    vertical in axes of the body.
+    """
     first_ns = max(trajectory.t_ns[0], imu.t_ns[0])
     last_ns = min(trajectory.t_ns[-1], imu.t_ns[-1])
     count = int((last_ns - first_ns) * 1e-9 / _KNOT_S) if len(imu) > 1 else 0
     if count < _MIN_KNOTS:
-        return np.empty(0), np.empty(0)
+        return np.empty(0), np.empty(0), np.empty((0, 3))
     _, accel = imu_in_body(imu, rig)
     inside = (imu.t_ns >= first_ns) & (imu.t_ns <= last_ns)
     upward = trajectory.at(imu.t_ns[inside]).R[:, 2, :]
@@ -210,12 +271,13 @@ def _contradiction(
     lost_at = (lost_ns - first_ns) * 1e-9 / _KNOT_S
     rows = np.arange(1, count)
     extra[np.isin(rows, np.rint(lost_at)[:, None] + [-1, 0, 1])] = np.nan
-    return rows * _KNOT_S + (first_ns - trajectory.t_ns[0]) * 1e-9, extra
+    up = trajectory.at(knots_ns[1:count]).R[:, 2, :]
+    return rows * _KNOT_S + (first_ns - trajectory.t_ns[0]) * 1e-9, extra, up
 
 
-def _rides(knots_s: Array, extra: Array, *, limit: float) -> list[UnseenRide]:
+def _rides(knots_s: Array, extra: Array, *, limit: float, least_m_s: float) -> list[UnseenRide]:
     """Pair pushes with the opposite one that follows them."""
-    pushes = _pushes(extra, limit)
+    pushes = _pushes(extra, limit, least_m_s=least_m_s)
     change = [float(extra[push].sum() * _KNOT_S) for push in pushes]
     found, k = [], 0
     while k < len(pushes):
@@ -241,9 +303,9 @@ def _balanced(first: float, second: float) -> bool:
     return first * second < 0.0 and abs(first + second) < _BALANCE * max(abs(first), abs(second))
 
 
-def _pushes(extra: Array, limit: float) -> list[NDArray[np.intp]]:
+def _pushes(extra: Array, limit: float, *, least_m_s: float) -> list[NDArray[np.intp]]:
     """Rows of each run above the limit, of one sign, that changes the speed enough."""
     sign = np.where(np.abs(extra) > limit, np.sign(extra), 0.0)
     edges = [0, *(np.flatnonzero(np.diff(sign)) + 1).tolist(), len(sign)]
     runs = [np.arange(a, b) for a, b in pairwise(edges) if sign[a]]
-    return [run for run in runs if abs(extra[run].sum()) * _KNOT_S >= _PUSH_M_S]
+    return [run for run in runs if abs(extra[run].sum()) * _KNOT_S >= least_m_s]

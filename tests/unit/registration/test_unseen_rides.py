@@ -5,10 +5,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import HeightDoubt
 from recon4.model.rig import load_rig
-from recon4.model.samples import ImuSamples
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.registration.unseen_rides import (
     HeightContradiction,
@@ -21,9 +21,11 @@ from recon4.simulation.gait import plan_walk
 from recon4.simulation.imu import ImuModel, simulate_imu
 from recon4.simulation.truth import true_trajectory
 from recon4.simulation.worlds import build_world
+from tests.room_walks import rig_of
 
 RIG = load_rig("4recon")
 EPOCH_NS = 1_780_308_000_000_000_000
+BIAS_M_S2 = np.array([0.12, 0.0, -0.05])
 NOTHING_LOST = np.empty(0, np.int64)
 
 
@@ -162,3 +164,58 @@ def test_a_short_or_silent_imu_says_nothing() -> None:
 
     for samples in (few, silent):
         assert unseen_rides(trajectory, samples, RIG, lost_ns=NOTHING_LOST) == []
+
+
+def standing(
+    *,
+    seconds: float = 60.0,
+    rise: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    lying_s: tuple[float, float] | None = None,
+    strides: bool = False,
+) -> list[UnseenRide | HeightContradiction]:
+    """What is found of a body at one place, or one that walks on, whose accelerometer has a bias.
+
+    Args:
+        seconds: Length of the recording.
+        rise: Begin [s], length of each push [s] and speed [m/s] of a lift, which runs for 18 s.
+        lying_s: From when to when the body lies on its back [s].
+        strides: Whether it walks on at 1 m/s.
+    """
+    rng = np.random.default_rng(5)
+    t_s = np.arange(0.0, seconds, 0.01)
+    begin_s, push_s, speed_m_s = rise
+    pushed = np.zeros_like(t_s)
+    for at_s, sign in ((begin_s, 1.0), (begin_s + 18.0, -1.0)):
+        pushed[(t_s >= at_s) & (t_s < at_s + push_s)] = sign * speed_m_s / max(push_s, 1e-9)
+    turn = np.zeros((len(t_s), 3))
+    if lying_s:
+        turn[:, 1] = np.interp(t_s, [lying_s[0] - 1, lying_s[0], *lying_s[1:], lying_s[1] + 1],
+                               [0.0, -np.pi / 2, -np.pi / 2, 0.0])  # fmt: skip
+    R = so3_exp(turn)
+    force = np.einsum("nji,j->ni", R, [0.0, 0.0, 1.0]) * (STANDARD_GRAVITY_M_S2 + pushed)[:, None]
+    noise = 0.02 * rng.standard_normal(force.shape)
+    t_ns = EPOCH_NS + np.rint(1e9 * t_s).astype(np.int64)
+    imu = ImuSamples(t_ns=t_ns, gyro_rad_s=np.zeros_like(force),
+                     accel_m_s2=force + noise + BIAS_M_S2)  # fmt: skip
+    place = np.zeros((len(t_s), 3))
+    place[:, 0] = t_s * strides
+    rig = rig_of(SE3.identity())
+    return unseen_rides(Trajectory(t_ns, SE3(R, place)), imu, rig, lost_ns=NOTHING_LOST)
+
+
+def test_a_slow_platform_lift_is_found_while_the_body_stays_in_one_place() -> None:
+    (ride,) = standing(rise=(20.0, 1.25, 0.15))
+
+    assert isinstance(ride, UnseenRide)
+    assert ride.rise_m == pytest.approx(0.15 * 18.0, abs=0.4)
+    assert ride.is_severe
+    assert standing(rise=(20.0, 1.25, 0.15), strides=True) == []
+
+
+def test_nothing_is_found_of_a_body_that_stands() -> None:
+    assert standing() == []
+    assert standing(strides=True) == []
+
+
+def test_a_bias_that_turns_into_the_vertical_is_no_ride() -> None:
+    assert standing(lying_s=(20.0, 32.0)) == []
