@@ -28,6 +28,10 @@ _NEAR_VARIANCE = 1e-6
 _MIDDLE: Array = np.zeros((6, END.stop))
 """A correction of the pose at the middle of a frame, by those at its start and end."""
 _MIDDLE[:, START] = _MIDDLE[:, END_POSE] = 0.5 * np.eye(6)
+_PERSON_M_S, _PERSON_SD_M_S = 2.5, 0.5
+"""Speed that a person with a backpack hardly exceeds, and how firmly: where nothing observes the
+motion, errors of the accelerometer would add up to tens of meters a second. What a LiDAR observes
+is known a hundred times better, so a vehicle is not held back."""
 _STATIONARY_SD_M_S = 0.02
 """Standard deviation of the velocity of a person who stands [m/s]."""
 
@@ -68,6 +72,8 @@ class FrameFitter:
     """First level of cubes, 0 = the finest. Larger cubes allow a larger prediction error."""
     rounds: int
     """Upper bound on match-and-solve rounds."""
+    with_imu: bool = True
+    """Whether an IMU predicts the motion, with a velocity that adds up its errors."""
     aiding: GnssAiding | None = None
 
     def fit(
@@ -88,6 +94,8 @@ class FrameFitter:
         stationary this halves the scatter of the pose.
         """
         information, g_prior = _prior(prediction, stationary=stationary)
+        if self.with_imu:
+            _add_speed_of_person(information, g_prior, prediction)
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
@@ -165,6 +173,16 @@ def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
         information[END_VELOCITY, END_VELOCITY] += np.eye(3) / _STATIONARY_SD_M_S**2
         g[END_VELOCITY] += prediction.end.vector[VECTOR.velocity] / _STATIONARY_SD_M_S**2
     return information, g
+
+
+def _add_speed_of_person(information: Array, g: Array, prediction: Prediction) -> None:
+    """Add to the normal equations, in place, that a person is hardly faster than `_PERSON_M_S`."""
+    velocity = prediction.end.vector[VECTOR.velocity]
+    speed = float(np.linalg.norm(velocity))
+    if speed > _PERSON_M_S:
+        along = velocity / speed
+        information[END_VELOCITY, END_VELOCITY] += np.outer(along, along) / _PERSON_SD_M_S**2
+        g[END_VELOCITY] += along * (speed - _PERSON_M_S) / _PERSON_SD_M_S**2
 
 
 def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:

@@ -93,6 +93,7 @@ class Odometry:
             settings.registration.converged_step_m,
             coarse=0 if with_imu else settings.planes.levels - 1,
             rounds=settings.odometry.rounds if with_imu else settings.odometry.rounds_without_imu,
+            with_imu=with_imu,
             aiding=aiding,
         )
         self._map = PlaneMap(settings.planes)

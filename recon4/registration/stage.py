@@ -76,7 +76,7 @@ def run_odometry(
             save_record(out / MOVING_POINTS, hidden)
     save_trajectory(out / "trajectory.npz", made.trajectory)
     _save_steps(out / "steps.npz", made.steps)
-    figures = _judged(made, frames.rig, moving=moving)
+    figures = _judged(made, frames.rig, moving=moving, aided=aiding is not None)
     for text in figures.warnings:
         progress.event(Warned(text=text))
     return replace(figures, gnss=aiding is not None)
@@ -149,11 +149,11 @@ def _moved_m(before: list[OdometryStep], after: list[OdometryStep]) -> float:
     return float(np.linalg.norm((a - a[0]) - (b - b[0]), axis=1).max())
 
 
-def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures) -> OdometryFigures:
-    """Figures of a pass, with what contradicts it."""
+def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures, aided: bool) -> OdometryFigures:
+    """Figures of a pass, with what contradicts it; ``aided`` by fixes, which show the heading."""
     rides = _rides(made.trajectory, made.imu, rig, steps=made.steps)
     crowd = crowd_text(moving)
-    turns = weak_turns(made.steps, with_imu=made.imu is not None)
+    turns = () if aided else weak_turns(made.steps, with_imu=made.imu is not None)
     contradicted = (
         *(ride.text for ride in rides),
         *(wrong_gravity(made.trajectory, made.imu, rig) if made.imu else ()),

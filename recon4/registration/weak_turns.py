@@ -57,10 +57,11 @@ def turn_text(doubt: TurnDoubt) -> str:
     largest_deg = float(np.rad2deg(2.0 * doubt.rate_sd_rad_s * (doubt.end_s - doubt.start_s)))
     axis = "vertical" if abs(doubt.axis[2]) > np.sqrt(0.5) else "horizontal"
     return (
-        f"Between {doubt.start_s:.0f} s and {doubt.end_s:.0f} s the surroundings are round: the "
-        f"LiDARs hardly observe the turn about the {axis} axis at x {x:.1f} m, y {y:.1f} m, "
-        f"z {z:.1f} m from the start. At the end the map may be turned by ± {largest_deg:.1f}° "
-        "(2σ). Put things there that are not round, or begin and end with a view through a door."
+        f"Between {doubt.start_s:.0f} s and {doubt.end_s:.0f} s the surroundings look the same "
+        f"after a turn about the {axis} axis at x {x:.1f} m, y {y:.1f} m, z {z:.1f} m from the "
+        "start, as in a round hall or on bare ground: the LiDARs hardly observe it. At the end the "
+        f"map may be turned by ± {largest_deg:.1f}° (2σ). Put things there that stand out, or use "
+        "GNSS."
     )
 
 
