@@ -3,8 +3,9 @@
 A mirror shows a room as still as the true one, so no registration contradicts it: the map has a
 second room behind the wall. What gives it away are beams that cross a wall, and what they meet,
 reflected in that wall, is a surface of the room before it. Only surfaces that face the wall count:
-floor, ceiling and side walls look the same at every distance. A door between two like rooms is the
-same for a LiDAR, but smaller than `_MIN_AREA_M2`.
+floor, ceiling and side walls look the same at every distance. A room in which the carrier was is no
+reflection. A door between two like rooms is the same for a LiDAR that stays in one of them, but
+smaller than `_MIN_AREA_M2`.
 """
 
 from __future__ import annotations
@@ -40,6 +41,8 @@ _MIN_BEAMS, _MIN_RATIO = 3, 0.75
 """A cell is mirrored if this many beams cross it, and this ratio of them shows the room before
 it."""
 _MIN_AREA_M2 = 2.5
+_ENTERED_RATIO = 0.5
+"""A room is real if this ratio of it was seen from behind the wall, too."""
 _MOST_BEAMS, _MOST_POINTS = 20_000, 60_000
 """No more beams through a wall, and points on walls, are used."""
 
@@ -207,9 +210,19 @@ def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFound | None:
     which = which.ravel()
     mirrored = (count >= _MIN_BEAMS) & (np.bincount(which, met) >= _MIN_RATIO * count)
     area_m2 = float(mirrored.sum()) * _GRID_M**2
-    if area_m2 < _MIN_AREA_M2:
+    if area_m2 < _MIN_AREA_M2 or _is_entered(wall, steep, point[met & mirrored[which]]):
         return None
     x, y, _ = at[mirrored[which]].mean(axis=0).tolist()
     crossing = wall.height(every.origin_m) > _BEFORE_M
     crossing &= wall.height(every.point_m) < -_BEHIND_M
     return MirrorFound(area_m2, (x, y), float(crossing.mean()))
+
+
+def _is_entered(wall: _Wall, steep: _Steep, reflected: Array) -> bool:
+    """Whether what looks like a reflection, (N, 3), was seen from behind the wall, too."""
+    inside = np.flatnonzero(wall.height(steep.sight.origin_m) < -_BEFORE_M)
+    if not len(inside):
+        return False
+    tree = cKDTree(steep.sight.point_m[inside], balanced_tree=False, compact_nodes=False)
+    reach, _ = tree.query(reflected, distance_upper_bound=_SAME_M)
+    return bool(np.isfinite(reach).mean() > _ENTERED_RATIO)

@@ -98,3 +98,38 @@ def test_evenly_spaced_boards_have_none() -> None:
             origins.append(np.tile(origin, (int(hit.sum()), 1)))
 
     assert find_mirrors(Sight(np.concatenate(points), np.concatenate(origins))) == []
+
+
+def like_rooms(origins_x):
+    """Two rooms of 4 m, one the mirror image of the other, with an opening of 2.4 x 2.4 m between
+    them, seen from places with these x."""
+    rng = np.random.default_rng(3)
+    points, origins = [], []
+    for x0 in origins_x:
+        for y0 in np.linspace(-2.0, 2.0, 8):
+            origin = np.array([x0, y0, 1.3])
+            d = rng.normal(size=(6000, 3))
+            d /= np.linalg.norm(d, axis=1, keepdims=True)
+            side = np.sign(x0)
+            first = _reach(origin, d, (-4.0, 0.0) if side < 0 else (0.0, 4.0))
+            at = origin + first[:, None] * d
+            through = (np.abs(at[:, 0]) < 1e-6) & (np.abs(at[:, 1]) < 1.2) & (at[:, 2] < 2.4)
+            reach = np.where(through, _reach(origin, d, (-4.0, 4.0)), first)
+            noisy = reach + rng.normal(0.0, 0.01, len(reach))
+            points.append(origin + noisy[:, None] * d)
+            origins.append(np.tile(origin, (len(d), 1)))
+    return Sight(np.concatenate(points), np.concatenate(origins))
+
+
+def _reach(origin, d, between):
+    """Distance to the walls of a box, x within ``between``, from inside it, (N,)."""
+    low, high = np.array([between[0], -3.0, 0.0]), np.array([between[1], 3.0, 2.6])
+    with np.errstate(divide="ignore"):
+        return np.where(d > 0, (high - origin) / d, (low - origin) / d).min(axis=1)
+
+
+def test_a_like_room_is_no_reflection_once_it_was_entered() -> None:
+    (doubtful,) = find_mirrors(like_rooms((-3.0, -2.0, -1.0)))
+
+    assert doubtful.middle_m[0] == pytest.approx(0.0, abs=0.1)
+    assert find_mirrors(like_rooms((-3.0, -2.0, -1.0, 1.0, 2.0, 3.0))) == []
