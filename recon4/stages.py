@@ -303,7 +303,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 16, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 17, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 8, ("map",), _map, MapFigures)
 

@@ -23,6 +23,7 @@ from recon4.model.corrections import apply_corrections
 from recon4.model.figures import AntennaFigures, LevelFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
+from recon4.model.rejected_fixes import disputed_m, rejected_runs
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.files import save_graph
@@ -183,7 +184,9 @@ def _uncertainty(
     """Covariances of the final poses, with the errors that were found."""
     if frames.rig.row_of("profiler") is not None:
         return None  # line scans have errors of their own kind, which the model does not know
-    model = CALIBRATED
+    runs = rejected_runs(placed.t_ns, placed.used, placed.residual_m)
+    disputed = disputed_m(runs, fixes=len(placed.t_ns))
+    model = replace(CALIBRATED, gnss_m=float(np.hypot(CALIBRATED.gnss_m, disputed)))
     if antenna is not None and antenna_contradictions(antenna):
         known_m = float(np.linalg.norm(antenna.arm_m)) + _WALK_M_S * abs(antenna.clock_s)
         nodes = Trajectory(graph.t_ns, graph.T_map_body)

@@ -16,7 +16,6 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.model.usability import UNOBSERVED_SECONDS
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
 from recon4.report.artifacts import Results, path_length_m
-from recon4.report.contradictions import rejected_runs
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
 from recon4.report.observability import WeakStretch, held_by_surfaces, weak_stretches
@@ -344,7 +343,7 @@ def _rejected_fixes(results: Results) -> list[Finding]:
             f"{run.height_m:.2f} m in height from the trajectory. They were rejected: either the "
             "trajectory or GNSS is wrong there. A control point would tell which.",
         )
-        for run in rejected_runs(results.placement.gnss)[:_MAX_WARNINGS]
+        for run in results.placement.gnss.rejected_runs[:_MAX_WARNINGS]
     ]
 
 

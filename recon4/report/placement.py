@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import msgspec
+import numpy as np
 
 from recon4.errors import StoreError
+from recon4.model.rejected_fixes import RejectedRun, rejected_runs
 
 
 class LevelFacts(msgspec.Struct, frozen=True):
@@ -28,6 +30,14 @@ class GnssFacts(msgspec.Struct, frozen=True):
     """Measured minus solved position, east, north, up [m], (M, 3)."""
     used: tuple[bool, ...] = ()
     """Whether a fix is a GNSS prior, (M,)."""
+
+    @property
+    def rejected_runs(self) -> list[RejectedRun]:
+        """Fixes that were rejected although they agree with each other."""
+        residual_m = np.asarray(self.residual_enu_m, np.float64).reshape(-1, 3)
+        return rejected_runs(
+            np.asarray(self.t_ns, np.int64), np.asarray(self.used, bool), residual_m
+        )
 
 
 class Placement(msgspec.Struct, frozen=True):

@@ -2,17 +2,20 @@
 
 A single rejected fix is noise. Many in a row that lie beside the trajectory by the same amount are
 a contradiction of two sensors: either the trajectory left the true path there, or GNSS did.
-Multipath beside a building does that in every walk, so a run is a warning, no verdict.
+Multipath beside a building does that in every walk, so a run is a warning, no verdict. The more
+fixes it has, the more likely the others are the wrong ones: then the whole map is out of place.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.report.placement import GnssFacts
+from recon4.model.trajectory import Times
 
 MIN_FIXES, MIN_SECONDS = 10, 1.0
 """Shorter runs count as noise."""
@@ -36,18 +39,23 @@ class RejectedRun:
     height_m: float
     """Largest difference in height [m]."""
 
+    @property
+    def size_m(self) -> float:
+        """Of both together [m]."""
+        return float(np.hypot(self.horizontal_m, self.height_m))
 
-def rejected_runs(gnss: GnssFacts) -> list[RejectedRun]:
+
+def rejected_runs(t_ns: Times, used: NDArray[np.bool_], residual_m: Array) -> list[RejectedRun]:
     """Find them, in order of time.
 
     Args:
-        gnss: The fixes with their residuals.
+        t_ns: Times of the usable fixes [ns], (M,).
+        used: Whether a fix is a GNSS prior, (M,).
+        residual_m: Measured minus solved position, east, north, up [m], (M, 3).
     """
-    t_ns = np.asarray(gnss.t_ns, np.int64)
-    rejected = np.flatnonzero(~np.asarray(gnss.used, bool))
+    rejected = np.flatnonzero(~used)
     if not len(t_ns) or not len(rejected):
         return []
-    residual_m = np.asarray(gnss.residual_enu_m, np.float64)
     t_s = (t_ns - t_ns[0]) / 1e9
     runs = np.split(rejected, np.flatnonzero(np.diff(t_s[rejected]) > _BRIDGED_S) + 1)
     return [
@@ -63,6 +71,23 @@ def rejected_runs(gnss: GnssFacts) -> list[RejectedRun]:
         and t_s[run[-1]] - t_s[run[0]] >= MIN_SECONDS
         and _agree(residual_m[run])
     ]
+
+
+def disputed_m(runs: Sequence[RejectedRun], *, fixes: int) -> float:
+    """Standard deviation of the place of the map, as the rejected runs dispute it [m].
+
+    With a ratio p of all fixes, they are right with the probability p² / (p² + (1 - p)²): one half
+    if they are as many as the others, 1 % if they are a tenth.
+
+    Args:
+        runs: Those of a walk.
+        fixes: Number of its usable fixes.
+    """
+    if not runs:
+        return 0.0
+    ratio = sum(run.fixes for run in runs) / fixes
+    right = ratio**2 / (ratio**2 + (1.0 - ratio) ** 2)
+    return float(np.sqrt(right) * max(run.size_m for run in runs))
 
 
 def _agree(residual_m: Array) -> bool:

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
+from recon4.model.rejected_fixes import RejectedRun, disputed_m
 from recon4.report.artifacts import Results
-from recon4.report.contradictions import rejected_runs
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import Level, find
 from recon4.report.placement import placement_in
@@ -35,7 +35,7 @@ def growing(count):
 
 
 def test_the_last_fixes_from_which_the_trajectory_runs_away_are_a_contradiction():
-    (found,) = rejected_runs(gnss(fixes(slice(239, 300), growing(61))))
+    (found,) = gnss(fixes(slice(239, 300), growing(61))).rejected_runs
 
     assert (found.start_s, found.end_s, found.fixes) == pytest.approx((23.9, 29.9, 61))
     assert found.horizontal_m == pytest.approx(3.0)
@@ -46,13 +46,13 @@ def test_scattered_outliers_are_noise():
     scattered = np.arange(0, 300, 15)
     jumping = np.random.default_rng(1).normal(0.0, 2.0, (40, 3))
 
-    assert rejected_runs(gnss(fixes(scattered, [2.0, 0.0, 0.0]))) == []
-    assert rejected_runs(gnss(fixes(slice(100, 140), jumping))) == []
-    assert rejected_runs(gnss(fixes(slice(100, 108), growing(8)))) == []
+    assert gnss(fixes(scattered, [2.0, 0.0, 0.0])).rejected_runs == []
+    assert gnss(fixes(slice(100, 140), jumping)).rejected_runs == []
+    assert gnss(fixes(slice(100, 108), growing(8))).rejected_runs == []
 
 
 def test_without_gnss_nothing_is_contradicted():
-    assert rejected_runs(gnss({"georeferenced": False})) == []
+    assert gnss({"georeferenced": False}).rejected_runs == []
 
 
 def test_a_contradiction_is_a_warning_as_multipath_of_a_good_map_looks_the_same():
@@ -64,3 +64,14 @@ def test_a_contradiction_is_a_warning_as_multipath_of_a_good_map_looks_the_same(
     (text,) = [text for text in texts if "61 GNSS fixes agree" in text]
     assert texts[text] is Level.WARNING
     assert "3.00 m horizontally" in text
+
+
+@pytest.mark.parametrize(
+    ("fixes_rejected", "expected_m"), [(0, 0.0), (30, 0.55), (150, 3.54), (300, 5.0)]
+)
+def test_the_more_fixes_are_rejected_the_more_the_place_is_disputed(fixes_rejected, expected_m):
+    run = RejectedRun(start_s=0.0, end_s=9.0, fixes=fixes_rejected, horizontal_m=3.0, height_m=4.0)
+
+    found = disputed_m([run] if fixes_rejected else [], fixes=300)
+
+    assert found == pytest.approx(expected_m, abs=0.01)
