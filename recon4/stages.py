@@ -283,7 +283,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    29,
+    30,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

@@ -26,6 +26,7 @@ from recon4.registration.bridge import bridged_text
 from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.imu_gravity import wrong_gravity
+from recon4.registration.imu_saturation import saturated_texts
 from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.make import make_odometry
 from recon4.registration.moving import StandingFrames, crowd_text, find_moving, hide_moving
@@ -76,7 +77,7 @@ def run_odometry(
             save_record(out / MOVING_POINTS, hidden)
     save_trajectory(out / "trajectory.npz", made.trajectory)
     _save_steps(out / "steps.npz", made.steps)
-    figures = _judged(made, frames.rig, moving=moving, aided=aiding is not None)
+    figures = _judged(made, frames, moving=moving, aided=aiding is not None)
     for text in figures.warnings:
         progress.event(Warned(text=text))
     return replace(figures, gnss=aiding is not None)
@@ -149,13 +150,17 @@ def _moved_m(before: list[OdometryStep], after: list[OdometryStep]) -> float:
     return float(np.linalg.norm((a - a[0]) - (b - b[0]), axis=1).max())
 
 
-def _judged(made: _Pass, rig: Rig, *, moving: MovingFigures, aided: bool) -> OdometryFigures:
+def _judged(
+    made: _Pass, frames: RecordedFrames, *, moving: MovingFigures, aided: bool
+) -> OdometryFigures:
     """Figures of a pass, with what contradicts it; ``aided`` by fixes, which show the heading."""
+    rig = frames.rig
     rides = _rides(made.trajectory, made.imu, rig, steps=made.steps)
     crowd = crowd_text(moving)
     turns = () if aided else weak_turns(made.steps, with_imu=made.imu is not None)
     contradicted = (
         *(ride.text for ride in rides),
+        *(saturated_texts(frames.imu) if frames.imu else ()),
         *(wrong_gravity(made.trajectory, made.imu, rig) if made.imu else ()),
         *(made.estimate.texts if made.estimate else ()),
         *crowd,

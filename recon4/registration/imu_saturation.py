@@ -1,0 +1,85 @@
+"""An IMU at the end of its range: it repeats one largest value while the body turns faster."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.samples import ImuSamples
+
+_SAME = 1e-4
+"""Values that differ by less than this ratio are the same."""
+_LEAST_RUN, _LEAST_SAMPLES = 3, 5
+"""A peak of a motion has one largest sample, a saturated sensor repeats it."""
+_BRIDGED = 20
+"""At the ends of a stretch noise leaves the largest value for some samples."""
+_SLOWEST_RAD_S, _WEAKEST_M_S2 = 1.5, 15.0
+"""No range of an IMU ends below this."""
+
+
+def saturated_texts(imu: ImuSamples) -> tuple[str, ...]:
+    """A sentence for each sensor that is saturated.
+
+    Args:
+        imu: As recorded, in its own axes.
+    """
+    gyro = _stretches(imu.gyro_rad_s, _SLOWEST_RAD_S)
+    accel = _stretches(imu.accel_m_s2, _WEAKEST_M_S2)
+    texts = []
+    if gyro:
+        parts = [f"{np.rad2deg(s.largest):.0f}°/s about {s.axis} {s.times}" for s in gyro]
+        texts.append(_text(imu, "gyroscope", parts, found=gyro))
+    if accel:
+        parts = [f"{s.largest:.1f} m/s² along {s.axis} {s.times}" for s in accel]
+        texts.append(_text(imu, "accelerometer", parts, found=accel))
+    return tuple(texts)
+
+
+@dataclass(frozen=True, slots=True)
+class _Saturated:
+    """An axis that repeats its largest value."""
+
+    axis: str
+    largest: float
+    count: int
+    """Number of stretches."""
+    first_row: int
+    """Sample with which the first of them begins."""
+
+    @property
+    def times(self) -> str:
+        return "once" if self.count == 1 else f"{self.count} times"
+
+
+def _text(imu: ImuSamples, name: str, parts: list[str], *, found: list[_Saturated]) -> str:
+    first_ns = int(imu.t_ns[min(one.first_row for one in found)] - imu.t_ns[0])
+    return (
+        f"The {name} is saturated, first {1e-9 * first_ns:.1f} s after its start: it repeats its "
+        f"largest value, {', '.join(parts)}. Faster motions are missing, so poses there may be "
+        "wrong, and its scale looks wrong. Record with a larger range."
+    )
+
+
+def _stretches(values: Array, least: float) -> list[_Saturated]:
+    """The saturated axes of a sensor, (N, 3)."""
+    found = []
+    for axis, column in zip("xyz", values.T, strict=True):
+        runs = _runs_at_the_end(column, least)
+        if sum(map(len, runs)) >= _LEAST_SAMPLES:
+            largest = float(np.nanmax(np.abs(column)))
+            found.append(_Saturated(axis, largest, len(runs), int(runs[0][0])))
+    return found
+
+
+def _runs_at_the_end(values: Array, least: float) -> list[NDArray[np.intp]]:
+    """Rows of each run of the largest value, of either sign."""
+    size = np.abs(np.nan_to_num(values))
+    largest = float(size.max(initial=0.0))
+    if largest < least:
+        return []
+    rows = np.flatnonzero(size >= (1.0 - _SAME) * largest)
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) > _BRIDGED) + 1)
+    return [run for run in runs if len(run) >= _LEAST_RUN]

@@ -1,0 +1,50 @@
+"""An IMU at the end of its range is named: its scale only looks wrong."""
+
+import numpy as np
+
+from recon4.model.samples import ImuSamples
+from recon4.registration.imu_saturation import saturated_texts
+
+
+def samples(*, gyro_range_deg_s=1e4, accel_range_m_s2=1e4):
+    """30 s of a walk with turns of up to 300°/s about z and shaking of 20 m/s² along y."""
+    rng = np.random.default_rng(2)
+    t_s = np.arange(0.0, 30.0, 0.005)
+    gyro = 0.05 * rng.standard_normal((len(t_s), 3))
+    gyro[:, 2] += np.deg2rad(300.0) * np.sin(0.5 * t_s)
+    accel = 0.2 * rng.standard_normal((len(t_s), 3)) + np.array([0.0, 0.0, 9.81])
+    accel[:, 1] += 20.0 * np.sin(11.0 * t_s)
+    limit = np.deg2rad(gyro_range_deg_s)
+    return ImuSamples(
+        t_ns=np.rint(1e9 * t_s).astype(np.int64),
+        gyro_rad_s=np.clip(gyro, -limit, limit),
+        accel_m_s2=np.clip(accel, -accel_range_m_s2, accel_range_m_s2),
+    )
+
+
+def test_a_gyroscope_at_the_end_of_its_range_is_named_with_axis_and_place():
+    (text,) = saturated_texts(samples(gyro_range_deg_s=250.0))
+
+    assert "The gyroscope is saturated, first 2.0 s" in text
+    assert "250°/s about z 5 times" in text and "about x" not in text
+
+
+def test_so_is_an_accelerometer():
+    (text,) = saturated_texts(samples(accel_range_m_s2=19.6))
+
+    assert "The accelerometer is saturated" in text
+    assert "19.6 m/s² along y" in text
+
+
+def test_an_imu_within_its_range_is_not():
+    assert saturated_texts(samples()) == ()
+
+
+def test_neither_is_one_that_stands_or_has_no_samples():
+    still = np.zeros((200, 3))
+    t_ns = np.arange(200) * 5_000_000
+    gravity = still + np.array([0.0, 0.0, 9.81])
+    assert saturated_texts(ImuSamples(t_ns=t_ns, gyro_rad_s=still, accel_m_s2=gravity)) == ()
+    nothing = np.empty((0, 3))
+    none = ImuSamples(t_ns=np.empty(0, np.int64), gyro_rad_s=nothing, accel_m_s2=nothing)
+    assert saturated_texts(none) == ()
