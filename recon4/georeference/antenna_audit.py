@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_log
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.drift_fit import DriftFit, DriftRows, fit_drift
+from recon4.georeference.fix_clock import coarse_clock_s
 from recon4.georeference.gnss_aiding import attitudes
 from recon4.georeference.gnss_priors import positioned
 from recon4.model.figures import AntennaFigures
@@ -34,9 +35,12 @@ _MAX_SD_M = 0.1
 _SPEED_NS = 50_000_000
 """Rates are measured over this time before and after a fix [ns]."""
 _CREDIBLE_S = 1.0
-"""A larger error of the clock is one of the trajectory: nothing can be compared [s]."""
+"""A larger error of the clock than the shape of the walk shows is one of the trajectory: nothing
+can be compared [s]."""
 _RELINEARIZED = 3
 """How many times the fixes are shifted by the clock: a body sways within 100 ms."""
+GPS_MINUS_UTC_S = 18
+"""Since 2017 [s]."""
 _MIN_FIXES = 50
 _LEVER_ARM_M, _CLOCK_S = 0.05, 0.02
 """Smaller errors are not announced."""
@@ -62,7 +66,7 @@ def audit_antenna(
         What is to be added to the rig file's values, with standard deviations; None = too few
         fixes.
     """
-    clock_s = 0.0
+    coarse_s = clock_s = _coarse_clock_s(trajectory, gnss, origin=origin)
     found = None
     for _ in range(1 + _RELINEARIZED):
         rows = _positions(trajectory, gnss, rig, origin=origin, clock_s=clock_s)
@@ -74,7 +78,7 @@ def audit_antenna(
         x, cov = _together(position, attitude)
         clock_s += float(x[3])
         found = x, cov, len(rows.t_s)
-    if found is None or abs(clock_s) > _CREDIBLE_S:
+    if found is None or abs(clock_s - coarse_s) > _CREDIBLE_S:
         return None
     x, cov, fixes = found
     sd = np.sqrt(np.diag(cov))
@@ -148,11 +152,28 @@ def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
         )
     if abs(found.clock_s) > max(_SIGMAS * found.clock_sd_s, _CLOCK_S):
         texts.append(
-            "The rig file contradicts the GNSS fixes: their clock differs by "
-            f"{1e3 * found.clock_s:.0f} ms ± {1e3 * found.clock_sd_s:.0f} ms. Check the time "
-            "offset of the receiver, or calibrate the rig (recon4 calibrate)."
+            f"The rig file contradicts the GNSS fixes: their clock differs by {_clock(found)}. "
+            "Check the time offset of the receiver, or calibrate the rig (recon4 calibrate)."
         )
     return tuple(texts)
+
+
+def _clock(found: AntennaFigures) -> str:
+    """An error of the clock in milliseconds, or in seconds with a usual cause."""
+    if abs(found.clock_s) < 1.0:
+        return f"{1e3 * found.clock_s:.0f} ms ± {1e3 * found.clock_sd_s:.0f} ms"
+    leap = abs(abs(found.clock_s) - GPS_MINUS_UTC_S) < 0.5
+    cause = f" (GPS time is {GPS_MINUS_UTC_S} s ahead of UTC)" if leap else ""
+    return f"{found.clock_s:.2f} s ± {found.clock_sd_s:.2f} s{cause}"
+
+
+def _coarse_clock_s(trajectory: Trajectory, gnss: GnssSamples, *, origin: GeodeticOrigin) -> float:
+    """An error of the clock by seconds, as the shape of the walk shows it."""
+    good = positioned(gnss) & (gnss.quality == GnssQuality.RTK_FIXED)
+    p_enu = to_enu(
+        origin, gnss.lat_rad[good], gnss.lon_rad[good], ellipsoidal_height_m=gnss.height_m[good]
+    )
+    return coarse_clock_s(trajectory, gnss.t_ns[good], p_enu[:, :2])
 
 
 def _triple(v: Array) -> tuple[float, float, float]:

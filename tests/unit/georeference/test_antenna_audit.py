@@ -146,3 +146,23 @@ def test_an_error_of_the_antenna_turns_the_map_that_is_fitted_to_the_fixes() -> 
 def replace_error(error: AntennaFigures, *, arm_m: tuple[float, float, float]) -> AntennaFigures:
     """Another lever arm, and a clock that is right."""
     return msgspec.structs.replace(error, arm_m=arm_m, clock_s=0.0)
+
+
+@pytest.mark.parametrize("late_s", [18.0, -18.0, 1.0, 7.3])
+def test_a_clock_that_is_off_by_seconds_is_found_by_the_shape_of_the_walk(late_s):
+    true = walk(90.0)
+
+    found = audit(true, fixes(true, late_s=late_s))
+
+    assert found.clock_s == pytest.approx(-late_s, abs=0.01)
+    (text,) = antenna_contradictions(found)
+    assert f"their clock differs by {-late_s:.2f} s" in text
+    assert ("GPS time is 18 s ahead of UTC" in text) == (abs(late_s) == 18.0)
+
+
+def test_a_straight_walk_at_one_speed_shows_no_clock():
+    true = walk(90.0, turns=False)
+
+    found = audit(true, fixes(true, late_s=5.0))
+
+    assert abs(found.clock_s) < 0.5

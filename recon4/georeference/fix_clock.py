@@ -1,0 +1,67 @@
+"""A clock of the fixes that is wrong by seconds: GPS time for UTC, or a receiver without time.
+
+The audit of the antenna looks for small errors, by how fast the body moves. Seconds show in the
+shape of the walk: where it begins, turns and stops.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Times, Trajectory
+
+_LARGEST_S, _GRID_S = 30.0, 0.25
+_STEP_NS = 500_000_000
+"""Displacements over this time are compared [ns]."""
+_LEAST_S = 0.5
+"""Smaller errors are left to the audit [s]."""
+_MIN_STEPS, _MIN_OVERLAP = 30, 0.5
+"""Displacements that both tracks must have: their number, and their ratio of all."""
+_GROSS = 2.0
+"""Larger displacements than this multiple of the 95th percentile are gross errors of a fix."""
+_CLEARLY = 0.25
+"""The tracks at the clock that is found differ by less than this ratio of those at the stamps."""
+
+
+def coarse_clock_s(trajectory: Trajectory, t_ns: Times, p_fix: Array) -> float:
+    """Seconds to be added to fixes so that their track has the shape of the trajectory's; 0 = none.
+
+    Args:
+        trajectory: ``T_a_body`` with z up; its heading and place do not matter.
+        t_ns: Times of the fixes, increasing [ns], (N,).
+        p_fix: East and north of them [m], (N, 2).
+    """
+    if len(t_ns) < _MIN_STEPS:
+        return 0.0
+    begin_ns = np.arange(t_ns[0], t_ns[-1] - _STEP_NS, _STEP_NS)
+    east_north = [
+        np.interp(begin_ns + _STEP_NS, t_ns, axis) - np.interp(begin_ns, t_ns, axis)
+        for axis in p_fix.T
+    ]
+    of_fixes = east_north[0] + 1j * east_north[1]
+    size_m = np.abs(of_fixes)
+    usual = size_m <= _GROSS * np.percentile(size_m, 95.0)
+    begin_ns, of_fixes = begin_ns[usual], of_fixes[usual]
+    grid_s = np.arange(-_LARGEST_S, _LARGEST_S + 0.5 * _GRID_S, _GRID_S)
+    differ = np.array([_differ(trajectory, begin_ns, of_fixes, clock) for clock in grid_s])
+    best = int(np.nanargmin(differ)) if np.isfinite(differ).any() else 0
+    at_stamps = _differ(trajectory, begin_ns, of_fixes, 0.0)
+    clear = differ[best] < _CLEARLY * at_stamps or np.isnan(at_stamps)
+    return float(grid_s[best]) if clear and abs(grid_s[best]) >= _LEAST_S else 0.0
+
+
+def _differ(
+    trajectory: Trajectory, begin_ns: Times, of_fixes: NDArray[np.complex128], clock_s: float
+) -> float:
+    """Mean square difference of the displacements at the best heading [m²]; NaN = no overlap."""
+    moved_ns = begin_ns + round(1e9 * clock_s)
+    inside = (moved_ns >= trajectory.t_ns[0]) & (moved_ns + _STEP_NS <= trajectory.t_ns[-1])
+    if inside.sum() < max(_MIN_STEPS, _MIN_OVERLAP * len(begin_ns)):
+        return float("nan")
+    step = trajectory.at(moved_ns[inside] + _STEP_NS).t - trajectory.at(moved_ns[inside]).t
+    seen, fixed = step[:, 0] + 1j * step[:, 1], of_fixes[inside]
+    together = abs(np.vdot(seen, fixed))
+    total = np.vdot(seen, seen).real + np.vdot(fixed, fixed).real - 2.0 * together
+    return float(total) / len(fixed)
