@@ -15,8 +15,8 @@ from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_log
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.drift_fit import DriftFit, DriftRows, fit_drift
 from recon4.georeference.fix_clock import coarse_clock_s
-from recon4.georeference.gnss_aiding import attitudes
 from recon4.georeference.gnss_priors import positioned
+from recon4.georeference.ins_attitudes import attitudes
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples

@@ -45,15 +45,17 @@ def coarse_clock_s(trajectory: Trajectory, t_ns: Times, p_fix: Array) -> float:
     usual = size_m <= _GROSS * np.percentile(size_m, 95.0)
     begin_ns, of_fixes = begin_ns[usual], of_fixes[usual]
     grid_s = np.arange(-_LARGEST_S, _LARGEST_S + 0.5 * _GRID_S, _GRID_S)
-    differ = np.array([_differ(trajectory, begin_ns, of_fixes, clock) for clock in grid_s])
-    best = int(np.nanargmin(differ)) if np.isfinite(differ).any() else 0
-    at_stamps = _differ(trajectory, begin_ns, of_fixes, 0.0)
+    differ = np.array([_differ(trajectory, begin_ns, of_fixes, clock_s=clock) for clock in grid_s])
+    if not np.isfinite(differ).any():
+        return 0.0
+    best = int(np.nanargmin(differ))
+    at_stamps = _differ(trajectory, begin_ns, of_fixes, clock_s=0.0)
     clear = differ[best] < _CLEARLY * at_stamps or np.isnan(at_stamps)
     return float(grid_s[best]) if clear and abs(grid_s[best]) >= _LEAST_S else 0.0
 
 
 def _differ(
-    trajectory: Trajectory, begin_ns: Times, of_fixes: NDArray[np.complex128], clock_s: float
+    trajectory: Trajectory, begin_ns: Times, of_fixes: NDArray[np.complex128], *, clock_s: float
 ) -> float:
     """Mean square difference of the displacements at the best heading [m²]; NaN = no overlap."""
     moved_ns = begin_ns + round(1e9 * clock_s)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_exp
+from recon4.georeference.ins_attitudes import ins_mount
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -89,7 +90,7 @@ def level(
         gnss: May hold attitudes.
     """
     if gnss is not None:
-        leveling = level_by_attitude(trajectory, gnss, rig)
+        leveling = level_by_attitude(trajectory, gnss, rig, imu=imu)
         if leveling.pairs >= _MIN_PAIRS:
             return leveling
     if imu is not None:
@@ -107,24 +108,26 @@ def tilt_to(up_odom: Array) -> SE3:
     )
 
 
-def level_by_attitude(trajectory: Trajectory, gnss: GnssSamples, rig: Rig) -> Leveling:
+def level_by_attitude(
+    trajectory: Trajectory, gnss: GnssSamples, rig: Rig, *, imu: ImuSamples | None = None
+) -> Leveling:
     """Average roll and pitch of an INS over the walk (V Eq. 2.13-2.16).
 
     The heading is that of the SLAM pose in the leveled frame; it is computed again after each
-    average until the tilt converges (A0, A8).
+    average until the tilt converges (A0, A8). ``imu`` tells whose attitudes they are.
     """
     t_ns = gnss.t_ns
     rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
     if rows.sum() < _MIN_PAIRS:
         return NOT_LEVELED
-    R_odom_imu = trajectory.at(t_ns[rows]).R @ rig.T_body_imu.R
+    R_odom_ins = trajectory.at(t_ns[rows]).R @ ins_mount(gnss, rig, imu=imu)
     roll, pitch = gnss.rpy_ned_rad[rows, 0], gnss.rpy_ned_rad[rows, 1]
     # With y left and z up, a pitch about y right (nose up) has the opposite sign.
-    R_flat_imu = so3_exp(_about(1, -pitch)) @ so3_exp(_about(0, roll))
+    R_flat_ins = so3_exp(_about(1, -pitch)) @ so3_exp(_about(0, roll))
     T_level_odom, kept = SE3.identity(), np.ones(len(roll), dtype=np.bool_)
     for _ in range(20):
-        yaw = SE3(T_level_odom.R @ R_odom_imu, np.zeros((len(roll), 3))).rpy()[:, 2]
-        R_level_odom = so3_exp(_about(2, yaw)) @ R_flat_imu @ np.swapaxes(R_odom_imu, 1, 2)
+        yaw = SE3(T_level_odom.R @ R_odom_ins, np.zeros((len(roll), 3))).rpy()[:, 2]
+        R_level_odom = so3_exp(_about(2, yaw)) @ R_flat_ins @ np.swapaxes(R_odom_ins, 1, 2)
         ups = R_level_odom[:, 2, :]
         before, T_level_odom = T_level_odom, tilt_to(mean_rotation(R_level_odom[kept])[2])
         kept = _trimmed(_angles(ups, T_level_odom.R[2]))

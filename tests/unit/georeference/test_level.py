@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -123,8 +125,6 @@ def test_shaken_seconds_are_trimmed() -> None:
 
 
 def test_a_turned_imu_levels_all_the_same() -> None:
-    from dataclasses import replace
-
     rig = replace(load_rig("4recon"), T_body_imu=SE3.from_rpy(np.pi, 0.2, 0.7, t=[0.1, 0.0, -0.2]))
     true = walk()
 
@@ -145,6 +145,19 @@ def test_attitudes_of_an_ins_level_by_the_texts_equations() -> None:
     assert tilt_error_deg(leveling.T_level_odom) < 0.1
     assert leveling.source == "ins"
     assert np.rad2deg(leveling.spread_rad) == pytest.approx(np.sqrt(2.0), rel=0.1)
+
+
+@pytest.mark.parametrize("of_body", [True, False])
+def test_gravity_tells_whether_attitudes_are_of_the_body_or_of_a_turned_imu(of_body) -> None:
+    rig = replace(load_rig("4recon"), T_body_imu=SE3.from_rpy(0.5 * np.pi, 0.0, 0.0, t=[0] * 3))
+    true = walk()
+    T = true.T_a_b if of_body else true.T_a_b @ rig.T_body_imu
+    imu = imu_of(true, rig, bias=np.zeros(3))
+
+    leveling = level(tilted(true), imu, rig, gnss=gnss_of(true, rpy_ned(T)))
+
+    assert leveling.source == "ins"
+    assert tilt_error_deg(leveling.T_level_odom) < 0.1
 
 
 def test_without_any_source_nothing_is_turned() -> None:
