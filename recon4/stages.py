@@ -283,14 +283,14 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    30,
+    31,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
 )
 CALIBRATION = Stage(
     "calibration",
-    7,
+    8,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,
@@ -303,7 +303,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 17, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 18, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 8, ("map",), _map, MapFigures)
 

@@ -77,6 +77,23 @@ def _status(change: float, parameter: Parameter, *, sd: float, noise: float) -> 
     return "consistent" if agrees else "not observable"
 
 
+def changed_text(estimate: JointEstimate) -> str:
+    """A sentence about a rig that does not stay the same; it names what differs most."""
+    listed = estimate.parameters.listed
+    k = int(np.argmax(estimate.scatter_sd / estimate.formal_sd))
+    factor, unit = _SHOWN[listed[k].unit]
+    name = _NAMES.get(listed[k].sensor, f"LiDAR {listed[k].sensor!r}")
+    relation = "about" if listed[k].quantity == "rotation" else "along"
+    axis = f" {relation} {listed[k].axis}" if listed[k].axis else ""
+    return (
+        "The rig does not stay the same during the walk: parts of the walk disagree by "
+        f"{np.sqrt(estimate.disagreement):.0f} times what noise explains, most in the "
+        f"{listed[k].quantity}{axis} of the {name} against the other sensors (they scatter by "
+        f"{factor * estimate.scatter_sd[k]:.2f}{unit}). A mount has slipped, or a clock has "
+        "jumped: walls are doubled, and no calibration corrects that. Fix it and record again."
+    )
+
+
 def split_beams(
     rows: Sequence[ParameterFigures],
 ) -> tuple[tuple[ParameterFigures, ...], tuple[ParameterFigures, ...]]:

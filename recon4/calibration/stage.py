@@ -19,7 +19,7 @@ from recon4.calibration.calibrate import (
 )
 from recon4.calibration.calibrate import calibrated_parameters as parameters_of
 from recon4.calibration.joint import JointEstimate
-from recon4.calibration.judgment import contradictions, judge, split_beams
+from recon4.calibration.judgment import changed_text, contradictions, judge, split_beams
 from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.note import calibration_note
 from recon4.calibration.parameters import Parameters
@@ -62,7 +62,7 @@ def run_calibration(
         frames.rig, reference=reference, with_imu=start.imu_usable, settings=settings.calibration
     )
     found = _audit(walk, start, parameters, settings=settings, progress=progress)
-    if settings.calibration.mode == "auto":
+    if settings.calibration.mode == "auto" and not found.figures.changes:
         begin, parameters = _to_calibrate(walk, found, parameters, settings=settings)
         calibrated = begin and calibrate(
             walk, begin, parameters, settings=settings, progress=progress
@@ -92,9 +92,11 @@ def _audit(
     estimate = audit(walk, start.rig, parameters, settings=settings, progress=progress)
     if estimate is None:
         return _nothing("no window of the walk has planes to compare", remarks)
-    rows = judge(estimate)
-    exchanged = _exchanged(walk.frames.rig, estimate)
-    warnings = (*remarks, *exchanged, *contradictions(rows))
+    rows, exchanged = judge(estimate), _exchanged(walk.frames.rig, estimate)
+    changes = estimate.changes and not exchanged
+    # Of a rig that changes no parameter has one value.
+    contradicted = (changed_text(estimate),) if changes else (*exchanged, *contradictions(rows))
+    warnings = (*remarks, *contradicted)
     figures = CalibrationFigures(
         parameters=rows,
         windows=len(estimate.fits),
@@ -102,6 +104,7 @@ def _audit(
         outcome="the rig file contradicts the recording" if warnings else _consistent(rows),
         warnings=warnings,
         uncorrected=remarks,
+        changes=changes,
     )
     return CalibrationResult(figures=figures, begin=estimate.rig)
 

@@ -162,6 +162,8 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
     warnings: tuple[str, ...] = ()
     uncorrected: tuple[str, ...] = ()
     """Those of the warnings that no calibration corrects: wrong units, axes with a wrong sign."""
+    changes: bool = False
+    """Whether the rig does not stay the same during the walk."""
 
     @property
     def is_severe(self) -> bool:
@@ -169,7 +171,7 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
 
         A lever arm or the clock of the GNSS receiver moves a map and bends it, but no wall doubles.
         """
-        return any(
+        return self.changes or any(
             row.status == "off" and row.sensor != GNSS and abs(row.change) > _SEVERE[row.unit]
             for row in self.parameters
         )

@@ -8,6 +8,7 @@ import pytest
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.stage import run_calibration
 from recon4.errors import ConfigError, StoreError
+from recon4.geometry.se3 import so3_exp
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.store.frames import FrameStore, open_frames
@@ -59,6 +60,7 @@ def test_a_rig_file_that_is_right_is_confirmed(right):
     assert found.figures.warnings == ()
     assert found.figures.outcome.startswith("the rig file agrees with the recording")
     assert not any(row.status == "off" for row in found.figures.parameters)
+    assert not found.figures.changes
     assert sum(row.status == "consistent" for row in found.figures.parameters) >= 11
 
 
@@ -106,6 +108,31 @@ def test_a_confirmed_calibration_is_written_and_used(wrong, calibrated, tmp_path
     np.testing.assert_allclose(late_ns[of_second], 5e6, atol=5e5)
     assert abs(int(frames.imu.t_ns[0] - wrong.frames.imu.t_ns[0]) - 5_000_000) < 500_000
     assert load_rig(tmp_path / "rig.toml").name == wrong.true.name
+
+
+class Slipped:
+    """A walk in whose second half a LiDAR has turned by 2.5° about its own y axis."""
+
+    def __init__(self, walk):
+        self.rig, self._frames = walk.rig, list(walk)
+
+    def __iter__(self):
+        R = so3_exp(np.deg2rad([0.0, 2.5, 0.0])).astype(np.float32)
+        for k, frame in enumerate(self._frames):
+            turned = (frame.sensor == 1) & (2 * k >= len(self._frames))
+            yield replace(frame, xyz=np.where(turned[:, None], frame.xyz @ R.T, frame.xyz))
+
+
+def test_a_mount_that_slips_during_the_walk_is_announced_and_not_calibrated(dance, tmp_path):
+    slipped = store(tmp_path, Slipped(dance), dance.rig, dance.imu)
+
+    figures = run(slipped, AUTO).figures
+
+    assert figures.changes and figures.is_severe
+    (text,) = figures.warnings
+    assert "The rig does not stay the same during the walk" in text
+    assert "A mount has slipped, or a clock has jumped" in text
+    assert not figures.applied
 
 
 def test_a_right_rig_file_is_not_changed_on_request(right, tmp_path):
