@@ -40,7 +40,7 @@ def make_gnss_aiding(
         origin, gnss.lat_rad[good], gnss.lon_rad[good], ellipsoidal_height_m=gnss.height_m[good]
     )
     sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), settings.gnss_sd_m)
-    R_ins_body = ins_mount(gnss, rig, imu=imu).T
+    R_ins_body = ins_mount(gnss, rig, imu=imu, usual=np.eye(3)).T
     t_ns, R_enu_body = gnss.t_ns[good], attitudes(gnss.rpy_ned_rad[good]) @ R_ins_body
     clock_s = receiver_clock_s(t_ns, R_enu_body, imu=imu, rig=rig) if imu is not None else 0.0
     return GnssAiding(

@@ -16,6 +16,8 @@ _R_ENU_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 _R_DOWN_UP = np.diag([1.0, -1.0, -1.0])
 """Rotation from a body frame with z up to one with x forward and z down."""
 _MIN_SAMPLES = 50
+_TURNED_RAD = float(np.deg2rad(10.0))
+"""Bias and mount of an accelerometer may be wrong by some degrees."""
 
 
 def attitudes(rpy_ned_rad: Array) -> Array:
@@ -28,22 +30,23 @@ def attitudes(rpy_ned_rad: Array) -> Array:
     return np.asarray(_R_ENU_NED @ R_ned_down @ _R_DOWN_UP)
 
 
-def ins_mount(gnss: GnssSamples, rig: Rig, *, imu: ImuSamples | None) -> Array:
+def ins_mount(gnss: GnssSamples, rig: Rig, *, imu: ImuSamples | None, usual: Array) -> Array:
     """Rotation ``R_body_ins``, (3, 3): that of the IMU or none, whichever agrees with gravity.
 
     Args:
         gnss: Attitudes of the INS.
         rig: How the IMU is mounted.
-        imu: Its samples; without an accelerometer the attitudes count as those of the IMU (V
-            section 2.9).
+        imu: Its samples, or None.
+        usual: What counts where gravity does not tell: without an accelerometer, or if the IMU is
+            hardly turned.
     """
     known = np.isfinite(gnss.rpy_ned_rad[:, :2]).all(axis=1)
     t_ns = gnss.t_ns[known]
-    if imu is None or len(t_ns) < 2:
-        return rig.T_body_imu.R
+    if imu is None or len(t_ns) < 2 or rig.T_body_imu.angle() < _TURNED_RAD:
+        return usual
     inside = (imu.t_ns >= t_ns[0]) & (imu.t_ns <= t_ns[-1]) & np.isfinite(imu.accel_m_s2).all(1)
     if inside.sum() < _MIN_SAMPLES:
-        return rig.T_body_imu.R
+        return usual
     # A heading does not change what is vertical. Samples meet the next attitude.
     vertical = attitudes(gnss.rpy_ned_rad[known] * [1.0, 1.0, 0.0])[:, 2]
     vertical_ins = vertical[np.searchsorted(t_ns, imu.t_ns[inside])]

@@ -120,7 +120,8 @@ def level_by_attitude(
     rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
     if rows.sum() < _MIN_PAIRS:
         return NOT_LEVELED
-    R_odom_ins = trajectory.at(t_ns[rows]).R @ ins_mount(gnss, rig, imu=imu)
+    R_body_ins = ins_mount(gnss, rig, imu=imu, usual=rig.T_body_imu.R)
+    R_odom_ins = trajectory.at(t_ns[rows]).R @ R_body_ins
     roll, pitch = gnss.rpy_ned_rad[rows, 0], gnss.rpy_ned_rad[rows, 1]
     # With y left and z up, a pitch about y right (nose up) has the opposite sign.
     R_flat_ins = so3_exp(_about(1, -pitch)) @ so3_exp(_about(0, roll))
