@@ -36,11 +36,7 @@ def coarse_clock_s(trajectory: Trajectory, t_ns: Times, p_fix: Array) -> float:
     if len(t_ns) < _MIN_STEPS:
         return 0.0
     begin_ns = np.arange(t_ns[0], t_ns[-1] - _STEP_NS, _STEP_NS)
-    east_north = [
-        np.interp(begin_ns + _STEP_NS, t_ns, axis) - np.interp(begin_ns, t_ns, axis)
-        for axis in p_fix.T
-    ]
-    of_fixes = east_north[0] + 1j * east_north[1]
+    of_fixes = _displacements(begin_ns, t_ns, p_fix)
     size_m = np.abs(of_fixes)
     usual = size_m <= _GROSS * np.percentile(size_m, 95.0)
     begin_ns, of_fixes = begin_ns[usual], of_fixes[usual]
@@ -62,8 +58,16 @@ def _differ(
     inside = (moved_ns >= trajectory.t_ns[0]) & (moved_ns + _STEP_NS <= trajectory.t_ns[-1])
     if inside.sum() < max(_MIN_STEPS, _MIN_OVERLAP * len(begin_ns)):
         return float("nan")
-    step = trajectory.at(moved_ns[inside] + _STEP_NS).t - trajectory.at(moved_ns[inside]).t
-    seen, fixed = step[:, 0] + 1j * step[:, 1], of_fixes[inside]
+    seen = _displacements(moved_ns[inside], trajectory.t_ns, trajectory.T_a_b.t[:, :2])
+    fixed = of_fixes[inside]
     together = abs(np.vdot(seen, fixed))
     total = np.vdot(seen, seen).real + np.vdot(fixed, fixed).real - 2.0 * together
     return float(total) / len(fixed)
+
+
+def _displacements(begin_ns: Times, t_ns: Times, p: Array) -> NDArray[np.complex128]:
+    """East and, as imaginary part, north by which positions (N, 2) move in `_STEP_NS`, (M,)."""
+    # float64 represents nanoseconds exactly only after the start is subtracted.
+    at, known = (np.asarray(times - t_ns[0], np.float64) for times in (begin_ns, t_ns))
+    east, north = (np.interp(at + _STEP_NS, known, x) - np.interp(at, known, x) for x in p.T)
+    return np.asarray(east + 1j * north)
