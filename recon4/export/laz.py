@@ -22,11 +22,11 @@ from numpy.typing import NDArray
 
 import recon4
 from recon4.errors import GeoreferenceError, StoreError
-from recon4.export.gps_time import day_of, is_absolute, point_time_s
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, output_transform
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import TileSet
+from recon4.model.gps_time import day_of, is_absolute, point_time_s
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
 

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import StoreError
-from recon4.export.gps_time import is_absolute, point_time_s
 from recon4.export.names import check_name
 from recon4.export.points import Block, ToCrs, blocks, center, output_transform
 from recon4.mapping.tiles import TileSet
+from recon4.model.gps_time import is_absolute, point_time_s
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
 

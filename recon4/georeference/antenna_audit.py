@@ -18,6 +18,7 @@ from recon4.georeference.fix_clock import coarse_clock_s
 from recon4.georeference.gnss_priors import positioned
 from recon4.georeference.ins_attitudes import attitudes
 from recon4.model.figures import AntennaFigures
+from recon4.model.gps_time import GPS_MINUS_UTC_S
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -39,8 +40,6 @@ _CREDIBLE_S = 1.0
 can be compared [s]."""
 _RELINEARIZED = 3
 """How many times the fixes are shifted by the clock: a body sways within 100 ms."""
-GPS_MINUS_UTC_S = 18
-"""Since 2017 [s]."""
 _MIN_FIXES = 50
 _LEVER_ARM_M, _CLOCK_S = 0.05, 0.02
 """Smaller errors are not announced."""

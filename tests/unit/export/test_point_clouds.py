@@ -11,7 +11,6 @@ import pytest
 
 from recon4.errors import ConfigError, GeoreferenceError, StoreError
 from recon4.export import laz
-from recon4.export.gps_time import adjusted_gps_s
 from recon4.export.laz import export_laz
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
@@ -19,6 +18,7 @@ from recon4.intensity.normalize import learn_intensity
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.notes import MapCrs
 from recon4.mapping.tiles import TileSet
+from recon4.model.gps_time import adjusted_gps_s
 from recon4.model.trajectory import Trajectory
 from recon4.settings import IntensitySettings, MapSettings
 from tests.room_walks import T0_NS, Walk, room_walk

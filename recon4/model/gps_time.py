@@ -1,4 +1,4 @@
-"""UTC to GPS time, as point clouds carry it."""
+"""UTC and GPS time."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ def _utc_ns(day: str) -> int:
     return int(datetime.fromisoformat(day).replace(tzinfo=UTC).timestamp()) * 10**9
 
 
+GPS_MINUS_UTC_S = len(_LEAPS.split())
+"""How far GPS time is ahead of UTC now [s]."""
 GPS_EPOCH_NS = _utc_ns("1980-01-06")
 _LEAP_NS = np.array([_utc_ns(day) for day in _LEAPS.split()], dtype=np.int64)
 _ADJUSTED_NS = 10**18
