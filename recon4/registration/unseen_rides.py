@@ -158,9 +158,14 @@ def unseen_rides(
         rides += _slow_rides(knots_s, extra, usual, trajectory=trajectory, others=rides)
     others = [
         stretch for stretch in _contradicted(knots_s, extra, usual)
-        if not any(r.start_s <= stretch.end_s and stretch.start_s <= r.end_s for r in rides)
+        if not _overlaps(stretch, rides)
     ]  # fmt: skip
     return sorted([*rides, *others], key=lambda found: found.start_s)
+
+
+def _overlaps(found: UnseenRide | HeightContradiction, rides: list[UnseenRide]) -> bool:
+    """Whether a stretch overlaps one of the rides in time."""
+    return any(r.start_s <= found.end_s and found.start_s <= r.end_s for r in rides)
 
 
 def _of_bias(extra: Array, upward: Array) -> Array:
@@ -200,7 +205,7 @@ def _slow_rides(
         ride for ride in found
         if np.isfinite(ride.rise_m)
         and _stays(trajectory, ride.start_s, ride.end_s)
-        and not any(o.start_s <= ride.end_s and ride.start_s <= o.end_s for o in others)
+        and not _overlaps(ride, others)
     ]  # fmt: skip
 
 
