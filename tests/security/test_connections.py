@@ -17,17 +17,16 @@ import time
 from pathlib import Path
 
 import httpx
-import numpy as np
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
 
 from app.network import accept
 from app.network.connections import open_file_limit, raise_file_limit
+from tests.deadlines import BUSY_S
 from tests.security.raw_clients import connect, head, rest_of
 from tests.service.running import ROOT, server_thread, wait_for
 
 MUTE = 2000
-P99_S = 0.5
 LOG_GROWTH_BYTES = 100_000
 
 
@@ -84,7 +83,7 @@ def test_2000_mute_connections_hold_up_nobody(server, source_of):
         ]
         held = len(table)
 
-    assert np.percentile(times_s, 99) < P99_S
+    assert max(times_s) < BUSY_S, "nobody waits until mute clients are given up"
     most = table.limits.per_address if source_of is one_address else table.limits.total
     assert most - 5 <= held <= most + 5, "the limit holds, and room is used up to it"
     assert table.counts.evicted["waiting"] >= MUTE - most
@@ -117,7 +116,7 @@ def test_many_mute_connections_to_a_process_with_few_files_grow_no_log(tmp_path)
         started.terminate()
         started.wait()
 
-    assert np.percentile(times_s, 99) < P99_S
+    assert max(times_s) < BUSY_S, "nobody waits until mute clients are given up"
     assert log.stat().st_size - before < LOG_GROWTH_BYTES
 
 

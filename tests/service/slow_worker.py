@@ -47,10 +47,14 @@ def tell_limits() -> None:
     logging.getLogger("recon4.job").info("%s %s", limits, status[status.index("NoNewPrivs") :][:20])
 
 
-def keep_busy() -> None:
-    """All processors, for some seconds."""
-    spin = "import time; end = time.monotonic() + 3.0\nwhile time.monotonic() < end: pass"
-    for one in [subprocess.Popen([sys.executable, "-c", spin]) for _ in range(os.cpu_count() or 1)]:
+def keep_busy(recording: Path) -> None:
+    """All processors, until the test says that it has seen enough."""
+    idle = recording / "idle"
+    spin = f"import os\nwhile not os.path.exists({str(idle)!r}): pass"
+    spinning = [subprocess.Popen([sys.executable, "-c", spin]) for _ in range(os.cpu_count() or 1)]
+    (recording / "busy").write_text(" ".join(str(one.pid) for one in spinning))
+    _note(recording, "busy")
+    for one in spinning:
         one.wait()
 
 
@@ -67,7 +71,6 @@ def hang_in_c_with_the_gil() -> None:
 DEEDS = {
     "hang": hang_in_python,
     "hang in C": hang_in_c_with_the_gil,
-    "busy": keep_busy,
     "crash": lambda: os.kill(os.getpid(), signal.SIGSEGV),
     "memory": take_memory,
     "full": fill_disk,
@@ -105,6 +108,8 @@ def _odometry(context: StageContext, *, recording: Path, frames: Path) -> None:
         context.progress.advance(0)
     word = os.read(gate, 100).decode()
     os.close(gate)
+    if word == "busy":
+        keep_busy(recording)
     DEEDS.get(word, lambda: None)()
     context.progress.advance(100)
     _note(recording, "finished")

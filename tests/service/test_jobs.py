@@ -2,18 +2,19 @@
 
 import os
 import signal
-import time
 
 import httpx
 import pytest
 
 from tests.service.running import (
     SLOW,
+    busy_processes,
     open_gate,
     ran,
     recording_with_gate,
     server_process,
     server_thread,
+    wait_for,
 )
 
 
@@ -189,26 +190,27 @@ def test_what_happened_while_no_server_ran_is_found_out(tmp_path, recording):
     assert ran(recording) == ["frames", "odometry", "odometry", "finished"]
 
 
-def test_health_is_answered_within_a_tenth_of_a_second_while_a_job_takes_all_processors(
-    tmp_path, recording
-):
-    with server_process(tmp_path) as (server, _), httpx.Client(base_url=server.url) as client:
+def test_the_server_answers_before_a_job_that_takes_all_processors(tmp_path, recording):
+    with (
+        server_process(tmp_path) as (server, process),
+        httpx.Client(base_url=server.url) as client,
+    ):
         job = server.start("office", recording)
         server.wait_at_gate(job)
         gate = open_gate(recording, "busy")
-        taken_s = sorted(_asked(client) for _ in range(200))
+        wait_for(lambda: "busy" in ran(recording), "all processors are taken")
+        answers = [client.get("/healthz").status_code for _ in range(200)]
         still = client.get(f"/api/jobs/{job}").json()["job"]["state"]
+        niceness = [os.getpriority(os.PRIO_PROCESS, pid) for pid in busy_processes(recording)]
+        of_server = os.getpriority(os.PRIO_PROCESS, process.pid)
+        (recording / "idle").touch()
         server.wait_state(job, "succeeded")
         os.close(gate)
 
-    assert still == "running"
-    assert taken_s[197] <= 0.1, taken_s[-5:]  # the 99th percentile; usually 5 ms
-
-
-def _asked(client):
-    began_s = time.perf_counter()
-    assert client.get("/healthz").status_code == 200
-    return time.perf_counter() - began_s
+    assert (set(answers), still) == ({200}, "running")
+    assert len(niceness) == os.cpu_count()
+    # How fast is measured by tests/benchmarks/server_under_load.py.
+    assert min(niceness) >= min(of_server + 10, 19), niceness
 
 
 def test_a_new_project_does_not_take_the_name_of_another(server, recording):

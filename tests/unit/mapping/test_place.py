@@ -1,7 +1,5 @@
 """Every point by the pose at its own time."""
 
-import time
-
 import numpy as np
 import pytest
 
@@ -112,20 +110,3 @@ def test_an_empty_frame_has_no_points():
         0,
         3,
     )
-
-
-def test_a_dual_multiframe_takes_a_few_milliseconds():
-    rng = np.random.default_rng(6)
-    n = 57_600
-    dt_ns = np.concatenate([np.arange(n // 2) * (99_000_000 // (n // 2))] * 2)
-    frame = frame_of(rng.uniform(-20, 20, (n, 3)), dt_ns, np.repeat([0, 1], n // 2))
-    trajectory, rig = walk(frame.t_ns, rng), load_rig("4recon")
-    place(frame, trajectory, rig)
-
-    took_s = []
-    for _ in range(20):
-        start = time.perf_counter()
-        place(frame, trajectory, rig)
-        took_s.append(time.perf_counter() - start)
-
-    assert min(took_s) < 0.01, f"{min(took_s) * 1e3:.1f} ms"
