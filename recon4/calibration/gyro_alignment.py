@@ -9,10 +9,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.imu_saturation import saturated_samples
 
 _LARGEST_CLOCK_S, _CLOCK_STEP_S = 0.5, 0.005
 _MIN_INTERVALS = 20
@@ -55,16 +57,19 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
     t_ns = t_ns[inside]
     if len(t_ns) <= _MIN_INTERVALS:
         return None
+    measured = ~_saturated(t_ns, imu)
+    if measured.sum() < _MIN_INTERVALS:
+        return None
     R = trajectory.at(t_ns, slack_ns=margin_ns).R
-    of_body = _centered(so3_log(np.swapaxes(R[:-1], -1, -2) @ R[1:]))
+    of_body = _centered(so3_log(np.swapaxes(R[:-1], -1, -2) @ R[1:])[measured])
     t_s, known_s = (t_ns - t_ns[0]) * 1e-9, (imu.t_ns - t_ns[0]) * 1e-9
     if np.sqrt(np.mean(of_body**2)) < _MIN_RATE_RAD_S * np.median(np.diff(t_s)):
         return None
     turned = _integral(known_s, imu.gyro_rad_s)
     clocks = np.arange(-_LARGEST_CLOCK_S, _LARGEST_CLOCK_S, _CLOCK_STEP_S)
     fits = [
-        _fit(of_body, _centered(np.diff(_interpolated(t_s - clock, known_s, turned), axis=0)))
-        for clock in clocks
+        _fit(of_body, _centered(np.diff(of_imu, axis=0)[measured]))
+        for of_imu in (_interpolated(t_s - clock, known_s, turned) for clock in clocks)
     ]
     explained = np.array([fit[1] for fit in fits])
     best = int(np.argmax(explained))
@@ -76,6 +81,16 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
         explained=float(explained[best]),
         mirrored=mirrored,
     )
+
+
+def _saturated(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
+    """Intervals in which the gyroscope misses a part of the turn, (N - 1,)."""
+    rows = np.flatnonzero(saturated_samples(imu)[:, 0])
+    found = np.zeros(len(t_ns) - 1, np.bool_)
+    # With one more on either side: the clock may be off.
+    for near in (-1, 0, 1):
+        found[np.clip(np.searchsorted(t_ns, imu.t_ns[rows]) - 1 + near, 0, len(found) - 1)] = True
+    return found
 
 
 def _fit(of_body: Array, of_imu: Array) -> tuple[Array, float, float, bool]:

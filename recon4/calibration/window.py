@@ -15,6 +15,7 @@ from recon4.model.frames import RecordedFrames
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.imu_saturation import saturated_samples
 
 KNOT_S = 0.05
 """Distance in time of the knots of the trajectory's correction [s]."""
@@ -186,10 +187,12 @@ def _span(frames: RecordedFrames, rows: range, trajectory: Trajectory) -> tuple[
 
 
 def _samples(imu: ImuSamples | None, start_ns: int, end_ns: int) -> ImuSamples | None:
+    """The samples of a window; None where faster motions than the IMU measures are missing."""
     if imu is None:
         return None
     kept = (imu.t_ns >= start_ns - _MARGIN_NS) & (imu.t_ns <= end_ns + _MARGIN_NS)
-    return ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
+    samples = ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
+    return None if saturated_samples(samples).any() else samples
 
 
 def with_trajectory(window: Window, trajectory: Trajectory) -> Window:

@@ -38,6 +38,17 @@ def saturated_texts(imu: ImuSamples) -> tuple[str, ...]:
     return tuple(texts)
 
 
+def saturated_samples(imu: ImuSamples) -> NDArray[np.bool_]:
+    """Samples at which gyroscope and accelerometer are saturated along some axis, (N, 2)."""
+    found = np.zeros((len(imu), 2), np.bool_)
+    sensors = ((imu.gyro_rad_s, _SLOWEST_RAD_S), (imu.accel_m_s2, _WEAKEST_M_S2))
+    for sensor, (values, least) in enumerate(sensors):
+        for column in values.T:
+            for run in _runs_at_the_end(column, least):
+                found[run[0] : run[-1] + 1, sensor] = True
+    return found
+
+
 @dataclass(frozen=True, slots=True)
 class _Saturated:
     """An axis that repeats its largest value."""
@@ -58,8 +69,8 @@ def _text(imu: ImuSamples, name: str, parts: list[str], *, found: list[_Saturate
     first_ns = int(imu.t_ns[min(one.first_row for one in found)] - imu.t_ns[0])
     return (
         f"The {name} is saturated, first {1e-9 * first_ns:.1f} s after its start: it repeats its "
-        f"largest value, {', '.join(parts)}. Faster motions are missing, so poses there may be "
-        "wrong, and its scale looks wrong. Record with a larger range."
+        f"largest value, {', '.join(parts)}. Faster motions are missing: there only the "
+        "LiDARs observe them. Record with a larger range."
     )
 
 

@@ -12,6 +12,7 @@ from recon4.kernels.imu import SIZE, propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.state import STATE, VECTOR
 from recon4.settings import OdometrySettings
 
@@ -35,6 +36,9 @@ _MOST_CLOCK_S = 0.1
 _VECTOR_SIZE = SIZE - 3
 _KEPT_NS = 60_000_000_000
 """During live capture IMU samples are kept for this time [ns]."""
+_SATURATED_NOISE = (0.5, 10.0)
+"""Noise densities of a gyroscope [rad/s/√Hz] and an accelerometer [m/s²/√Hz] at the end of their
+range: a gyroscope of 250°/s in turns of 330°/s misses 8° in a multiframe."""
 _SLOT_S = 0.02
 """Without an IMU the motion is sampled this often [s]."""
 
@@ -103,6 +107,7 @@ class ImuMotion:
         self._rig = rig
         self._t_ns = imu.t_ns
         self._gyro, self._accel = imu_in_body(imu, rig)
+        self._saturated = saturated_samples(imu)
         self._has_accel = bool(np.isfinite(self._accel).all())
         s = settings
         walks = (_GAIN_WALK if s.gyro_gain_sd else 0.0, _CLOCK_WALK_S if s.imu_clock_sd_s else 0.0)
@@ -128,6 +133,7 @@ class ImuMotion:
         self._t_ns = np.concatenate([self._t_ns[kept], imu.t_ns])
         self._gyro = np.concatenate([self._gyro[kept], gyro])
         self._accel = np.concatenate([self._accel[kept], accel])
+        self._saturated = np.concatenate([self._saturated[kept], saturated_samples(imu)])
 
     def covers(self, start_ns: int, end_ns: int) -> bool:
         """Whether there are samples over a whole time span, without a gap of more than 50 ms."""
@@ -185,7 +191,10 @@ class ImuMotion:
         gyro, accel = (imu_at(stamps, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
             accel = np.zeros_like(gyro)
-        return _predict(state, times, gyro, accel=accel, noise=self._noise)
+        noise = self._noise.copy()
+        saturated = self._saturated[max(first - 1, 0) : last + 1].any(axis=0)
+        noise[:2] = np.where(saturated, np.maximum(noise[:2], _SATURATED_NOISE), noise[:2])
+        return _predict(state, times, gyro, accel=accel, noise=noise)
 
 
 class FreeMotion:

@@ -9,7 +9,9 @@ import pytest
 from recon4.calibration.gyro_alignment import align_gyro
 from recon4.calibration.start import find_start
 from recon4.calibration.walk import RecordedWalk
+from recon4.calibration.window import cut_window
 from recon4.geometry.se3 import so3_log
+from tests.room_walks import T0_NS
 from tests.unit.calibration.conftest import SETTINGS, dancing
 
 EXCHANGED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
@@ -96,3 +98,36 @@ def test_the_walk_of_these_tests_turns_about_all_axes():
     turned = so3_log(dancing(t).R)
 
     assert np.all(np.ptp(turned, axis=0) > 0.3)
+
+
+def test_turns_that_a_saturated_gyroscope_misses_do_not_make_its_scale_wrong(dance):
+    fast = replace(dance, truth=replace(dance.truth, t_ns=faster(dance.truth.t_ns)))
+    t_ns = faster(dance.t_mid_ns)
+    gyro = FASTER * dance.imu.gyro_rad_s
+    limit = 0.7 * np.abs(gyro).max()
+    imu = replace(dance.imu, t_ns=faster(dance.imu.t_ns), gyro_rad_s=np.clip(gyro, -limit, limit))
+
+    found = align_gyro(fast.truth, t_ns, imu)
+
+    assert limit > 1.5 and np.mean(np.abs(gyro).max(axis=1) > limit) > 0.03
+    assert found.scale == pytest.approx(1.0, abs=0.005)
+
+
+FASTER = 4
+
+
+def faster(t_ns):
+    """The same motion in a quarter of the time."""
+    return T0_NS + (t_ns - T0_NS) // FASTER
+
+
+def test_a_window_with_a_saturated_sensor_has_no_imu(dance):
+    gyro = dance.imu.gyro_rad_s.copy()
+    from_ns = int(dance.t_mid_ns[60])
+    gyro[(dance.imu.t_ns > from_ns) & (dance.imu.t_ns < from_ns + 200_000_000), 2] = 4.0
+    frames = replace(dance, imu=replace(dance.imu, gyro_rad_s=gyro))
+
+    early, late = (cut_window(frames, dance.truth, rows) for rows in (range(40), range(40, 80)))
+
+    assert early.imu is not None
+    assert late.imu is None

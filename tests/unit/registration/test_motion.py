@@ -3,7 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.geometry.se3 import SE3, so3_exp
+from recon4.geometry.se3 import SE3, so3_exp, so3_log
 from recon4.model.samples import ImuSamples
 from recon4.registration.motion import FreeMotion, ImuMotion, MotionState
 from recon4.settings import OdometrySettings
@@ -257,3 +257,33 @@ def test_what_is_known_of_the_unit_outlives_a_new_start():
     sd = np.sqrt(np.diag(begun.P))[18:]
     np.testing.assert_allclose(sd, np.repeat([1.02e-3, 5.83e-4], [9, 1]), rtol=1e-2)
     np.testing.assert_array_equal(begun.vector[:12], learned.vector[:12])
+
+
+def test_a_saturated_gyroscope_is_not_taken_for_a_measurement():
+    imu = imu_of(spinning, 3.0)
+    limit = 2.5
+    clipped = replace(imu, gyro_rad_s=np.clip(imu.gyro_rad_s, -limit, limit))
+    fast_ns = T0_NS + S_NS  # turns of 4 rad/s for a third of a second
+
+    known = ImuMotion(imu, RIG, SETTINGS).predict(
+        start_of(spinning, fast_ns, [0, 0, 0]), fast_ns + S_NS // 10
+    )
+    missed = ImuMotion(clipped, RIG, SETTINGS).predict(
+        start_of(spinning, fast_ns, [0, 0, 0]), fast_ns + S_NS // 10
+    )
+    before = ImuMotion(clipped, RIG, SETTINGS).predict(
+        start_of(spinning, T0_NS, [0, 0, 0]), T0_NS + S_NS // 10
+    )
+
+    wrong = np.linalg.norm(so3_log(known.end.R.T @ missed.end.R))
+    stated = np.sqrt(np.diag(missed.end.P)[:3].max())
+    assert wrong > np.deg2rad(5.0)
+    assert wrong / 2.0 < stated < np.deg2rad(20.0)
+    assert np.sqrt(np.diag(before.end.P)[:3].max()) < np.deg2rad(0.1)
+
+
+def spinning(t_s):
+    """Turns about z of up to 4 rad/s at one place, fastest after 1 s."""
+    turns = np.zeros((len(t_s), 3))
+    turns[:, 2] = 2.0 * np.tanh(2.0 * (t_s - 1.0))
+    return SE3(so3_exp(turns), np.zeros((len(t_s), 3)))
