@@ -283,14 +283,14 @@ def _refine_lines(
 FRAMES = Stage("frames", 7, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    31,
+    32,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
 )
 CALIBRATION = Stage(
     "calibration",
-    8,
+    9,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,

@@ -8,8 +8,18 @@ from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.registration.plane_map import Match
 from recon4.registration.state import END_POSE, START
 
+LEAST_TURN = 0.2
+"""Squared part of the turn in a motion from which on it counts as a turn: a shift along a tunnel
+has 0.01 of it, a turn in a round hall or stairwell 0.3 to 1."""
+_CURVED_INFORMATION = 0.009
+"""Information on a turn per weight of the points, at their typical distance, that planes fitted to
+curved walls feign: 0.0028 to 0.0040 in a round hall, 0.0018 to 0.0060 on spiral stairs; offices
+and staircases have at least 0.0139."""
 
-def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array, Array]:
+
+def observable_directions(
+    match: Match, normal_noise_rad: float, *, with_imu: bool = False
+) -> tuple[Array, Array]:
     """Normal equations reduced by the information that noise of the normals creates.
 
     On flat ground every normal should be vertical. Small errors of the normals seem to constrain
@@ -17,14 +27,19 @@ def observable_directions(match: Match, normal_noise_rad: float) -> tuple[Array,
     direction; this amount is subtracted. A direction with less information counts as unobservable
     (compare Zhang & Singh 2016).
 
+    Curved walls create more of it, along a turn about their axis. Where a gyroscope measures the
+    turn, a little information along one is not taken for more than that.
+
     Args:
         match: Normal equations of a round.
         normal_noise_rad: Standard deviation of a plane's normal [rad].
+        with_imu: Whether a gyroscope measures turns.
 
     Returns:
         ``H`` (12, 12) and ``g`` (12,) in the form of `Match`.
     """
-    root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad)
+    feigned = _CURVED_INFORMATION if with_imu else 0.0
+    root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad, least_of_turn=feigned)
     both = np.kron(np.eye(2), root)
     return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
 
@@ -68,8 +83,13 @@ def weakest_twist(H: Array) -> tuple[Array, float, float]:
     return scale * directions[:, 0], sd_m, float(typical_m)
 
 
-def _reductions(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
-    """Matrices (6, 6) that reduce information: the square root for ``H``, the whole for ``g``."""
+def _reductions(
+    H: Array, normal_noise_rad: float, *, least_of_turn: float = 0.0
+) -> tuple[Array, Array]:
+    """Matrices (6, 6) that reduce information: the square root for ``H``, the whole for ``g``.
+
+    Turns with less information than ``least_of_turn`` keep nothing of it.
+    """
     weight = float(np.trace(H[TRANSLATION, TRANSLATION]))
     if weight <= 0.0:
         return np.eye(6), np.eye(6)
@@ -78,6 +98,8 @@ def _reductions(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
     scale = np.repeat([1.0 / max(arm_m, 1e-3), 1.0], 3)
     normalized, V = np.linalg.eigh(scale[:, None] * H * scale / weight)
     kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(normalized, 1e-12), 0.0, 1.0)
+    turns = np.sum(V[ROTATION] ** 2, axis=0) > LEAST_TURN
+    kept[turns & (normalized < least_of_turn)] = 0.0
     root = scale[:, None] * (V * np.sqrt(kept)) @ V.T / scale
     full = scale[:, None] * (V * kept) @ V.T / scale
     return root, full

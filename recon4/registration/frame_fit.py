@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log, tangent_size_m
+from recon4.geometry.se3 import ROTATION, SE3, Array, proper, so3_exp, so3_log, tangent_size_m
 from recon4.kernels.imu import place_points
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import observable_directions, of_rigid_pose
@@ -32,6 +32,8 @@ _PERSON_M_S, _PERSON_SD_M_S = 2.5, 0.5
 """Speed that a person with a backpack hardly exceeds, and how firmly: where nothing observes the
 motion, errors of the accelerometer would add up to tens of meters a second. What a LiDAR observes
 is known a hundred times better, so a vehicle is not held back."""
+_GYROSCOPE_SD_RAD = float(np.deg2rad(0.1))
+"""Standard deviation of the turn of a multiframe by the gyroscope, with its bias and scale."""
 _STATIONARY_SD_M_S = 0.02
 """Standard deviation of the velocity of a person who stands [m/s]."""
 
@@ -52,11 +54,17 @@ class FrameFit:
     converged: bool
     stationary: bool
     """Whether the body was known to stand at the end of the frame."""
+    with_imu: bool
 
     @property
     def weak_sd_m(self) -> float:
-        """Standard deviation along the weak direction by the points alone [m], at most 100 m."""
+        """Standard deviation along the weak direction by the points [m], at most 100 m.
+
+        A gyroscope knows the turn: on spiral stairs it tells a turn from a rise.
+        """
         H6 = of_rigid_pose(self.H_lidar)
+        if self.with_imu:
+            H6[ROTATION, ROTATION] += np.eye(3) / _GYROSCOPE_SD_RAD**2
         direction = np.zeros(6)
         direction[STATE.position] = self.match.weak_direction
         return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))
@@ -93,9 +101,7 @@ class FrameFitter:
         Both ends of a segment are used, not its midpoint: planes are fitted to ends. While
         stationary this halves the scatter of the pose.
         """
-        information, g_prior = _prior(prediction, stationary=stationary)
-        if self.with_imu:
-            _add_speed_of_person(information, g_prior, prediction)
+        information, g_prior = self._known(prediction, stationary=stationary)
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
@@ -125,7 +131,16 @@ class FrameFitter:
                 converged = True
                 break
         P = np.asarray(np.linalg.inv(H), np.float64)
-        return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged, stationary)
+        return FrameFit(
+            T_dense, delta, P, H_lidar, match, rounds, converged, stationary, self.with_imu
+        )
+
+    def _known(self, prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
+        """What is known before the points are used, in the form of `_prior`."""
+        information, g = _prior(prediction, stationary=stationary)
+        if self.with_imu:
+            _add_speed_of_person(information, g, prediction)
+        return information, g
 
     def as_expected(self, tried: FrameFit, prediction: Prediction) -> FrameFit:
         """The motion through the expected pose, where the local map says too little of it.
@@ -151,7 +166,7 @@ class FrameFitter:
         return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]
 
     def _weighted(self, match: Match) -> tuple[Array, Array]:
-        H, g = observable_directions(match, self.settings.normal_noise_rad)
+        H, g = observable_directions(match, self.settings.normal_noise_rad, with_imu=self.with_imu)
         return self.settings.information_scale * H, self.settings.information_scale * g
 
 

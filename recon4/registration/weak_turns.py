@@ -14,14 +14,13 @@ import numpy as np
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.figures import TurnDoubt
 from recon4.model.usability import WEAK_SECONDS
+from recon4.registration.degeneracy import LEAST_TURN
 from recon4.registration.step import OdometryStep
 
 _WEAK_SD_M = 0.02
 """Deviation by the points of one multiframe at their typical distance, above which the turn is not
 observed [m]: at most 0.012 in offices, staircases, corridors and forests (95 %), 0.025 to 0.036 in
 a round hall."""
-_LEAST_TURN = 0.2
-"""Part of the turn in the weakest motion: in a tunnel, which is a shift along it, it is 0.01."""
 _BRIDGED_S = 1.0
 """Two stretches with less than this between them are one [s]."""
 _RATE_SD_RAD_S = float(np.deg2rad(0.2))
@@ -68,7 +67,7 @@ def turn_text(doubt: TurnDoubt) -> str:
 def _is_weak(step: OdometryStep) -> bool:
     if step.lost or step.stationary:  # one is reported by itself, the other cannot drift
         return False
-    return bool(step.weak_twist_sd_m > _WEAK_SD_M) and _turn_part(step) > _LEAST_TURN
+    return bool(step.weak_twist_sd_m > _WEAK_SD_M) and _turn_part(step) > LEAST_TURN
 
 
 def _turn_part(step: OdometryStep) -> float:
