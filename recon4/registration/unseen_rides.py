@@ -51,6 +51,8 @@ _BRIDGED_KNOTS = 2
 _SAME_RIDE_S = 3.0
 """Stretches with no longer break between them are one: the speed that the first has built up
 carries on through the break."""
+_WHOLE = 0.8
+"""Part of the samples of a knot without which it lies at a gap of the IMU."""
 _BALANCE = 0.4
 """The changes of the speed at both ends of a ride cancel out but for this ratio."""
 _LONGEST_S = 120.0
@@ -270,14 +272,20 @@ def _contradiction(
     knots_ns = first_ns + np.rint(np.arange(count + 1) * _KNOT_S * 1e9).astype(np.int64)
     height_m = trajectory.at(np.minimum(knots_ns, last_ns)).t[:, 2]
     seen = np.diff(height_m, 2) / _KNOT_S**2
-    # A knot without half of its samples lies in a gap of the IMU.
-    enough = weight[1:count] > 0.5 * np.median(weight[1:count])
-    extra = np.where(enough, measured[1:count] / np.maximum(weight[1:count], 1e-9) - seen, np.nan)
+    extra = measured[1:count] / np.maximum(weight[1:count], 1e-9) - seen
+    extra[_near_gap(weight)[1:count]] = np.nan
     lost_at = (lost_ns - first_ns) * 1e-9 / _KNOT_S
     rows = np.arange(1, count)
     extra[np.isin(rows, np.rint(lost_at)[:, None] + [-1, 0, 1])] = np.nan
     up = trajectory.at(knots_ns[1:count]).R[:, 2, :]
     return rows * _KNOT_S + (first_ns - trajectory.t_ns[0]) * 1e-9, extra, up
+
+
+def _near_gap(weight: Array) -> NDArray[np.bool_]:
+    """Knots at or beside which samples are missing: half a step of a walk looks like a push."""
+    gap = weight < _WHOLE * np.median(weight[1:-2])
+    gap[[0, -1]] = False  # the ends, where there is one side only
+    return gap | np.roll(gap, 1) | np.roll(gap, -1)
 
 
 def _rides(knots_s: Array, extra: Array, *, limit: float, least_m_s: float) -> list[UnseenRide]:

@@ -18,6 +18,9 @@ Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
 _FASTEST_RAD_S = 12.0
 """Largest sustained turn rate (690 deg/s); beyond it the unit is wrong."""
+_LEAST_REPEATED, _MOVING_RAD_S = 10, 0.1
+"""Noise changes each sample of a sensor that works. A few equal ones are those of a slower sensor;
+at rest they do no harm."""
 
 
 def join(parts: Sequence[Samples]) -> Samples | None:
@@ -50,7 +53,7 @@ def clean_imu(
         offset_s: Added to their times [s].
         jumps_ns: How far the clock went back in the LiDARs' times: a jump of the IMU like one of
             these is the same jump, and is carried on by the same amount.
-        report: Gets the counts ``imu_nan``, ``imu_duplicate``, ``imu_unsorted``.
+        report: Gets the counts ``imu_nan``, ``imu_duplicate``, ``imu_unsorted``, ``imu_repeated``.
 
     Raises:
         ConfigError: If the angular rates cannot be rad/s.
@@ -61,6 +64,7 @@ def clean_imu(
     finite &= (whole == 3) | (whole == 0)
     report.count("imu_nan", int(np.count_nonzero(~finite)))
     imu = _sorted(_take(imu, finite), offset_s, "imu", report=report)
+    imu = _without_repeated(imu, report)
     report.count("imu_kept", len(imu))
     if not len(imu):
         report.warn("no usable IMU sample")
@@ -112,6 +116,28 @@ def _carried_on(imu: ImuSamples, jumps_ns: Sequence[int], report: ImportReport) 
             shift[row + 1 :] += like[0]
             report.count("imu_jumps_back")
     return ImuSamples(imu.t_ns + shift, imu.gyro_rad_s, imu.accel_m_s2)
+
+
+def _without_repeated(imu: ImuSamples, report: ImportReport) -> ImuSamples:
+    """Drop what a driver that hangs repeats with new time stamps: a gap is honest."""
+    values = np.concatenate([imu.gyro_rad_s, np.nan_to_num(imu.accel_m_s2)], axis=1)
+    same = np.all(values[1:] == values[:-1], axis=1)
+    moving = np.linalg.norm(imu.gyro_rad_s[1:], axis=1) > _MOVING_RAD_S
+    rows = np.flatnonzero(same & moving) + 1
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+    runs = [run for run in runs if len(run) >= _LEAST_REPEATED]
+    if not runs:
+        return imu
+    repeated = np.concatenate(runs)
+    report.count("imu_repeated", len(repeated))
+    longest_s = 1e-9 * max(int(imu.t_ns[run[-1]] - imu.t_ns[run[0] - 1]) for run in runs)
+    first_s = 1e-9 * int(imu.t_ns[repeated[0]] - imu.t_ns[0])
+    times = "once" if len(runs) == 1 else f"{len(runs)} times"
+    report.warn(
+        f"the IMU repeats a sample with new time stamps {times}, first {first_s:.1f} s after its "
+        f"start, for up to {longest_s:.1f} s: its driver hangs. {len(repeated)} samples dropped"
+    )
+    return _take(imu, np.delete(np.arange(len(imu)), repeated))
 
 
 def _check_rates(imu: ImuSamples) -> None:

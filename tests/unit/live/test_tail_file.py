@@ -20,13 +20,13 @@ from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture
 
 def walk(path):
     imu = (
-        b'{"t_ns": %d, "gx_rad_s": 0.1, "gy_rad_s": 0, "gz_rad_s": 0.5, '
+        b'{"t_ns": %d, "gx_rad_s": 0.1, "gy_rad_s": 0, "gz_rad_s": 0.5%03d, '
         b'"ax_m_s2": 0, "ay_m_s2": 0, "az_m_s2": 9.8}'
     )
     t_ns, first = spin(3000)
     texts = np.zeros((len(t_ns) // 4, 150), np.uint8)
     for row, t in zip(texts, t_ns[::4].tolist(), strict=True):
-        line = imu % t
+        line = imu % (t, t // 1000 % 1000)
         row[: len(line)] = np.frombuffer(line, np.uint8)
     return capture(
         path,

@@ -138,6 +138,28 @@ def test_samples_that_are_no_numbers_are_dropped_and_counted():
     assert report.counts["imu_nan"] == 2
 
 
+def test_samples_that_a_driver_repeats_in_motion_are_dropped_and_said():
+    rng = np.random.default_rng(4)
+    imu = imu_of(5_000_000 * np.arange(1000))
+    imu.gyro_rad_s[:] += 0.1 * rng.standard_normal((1000, 3))
+    imu.gyro_rad_s[200:500], imu.gyro_rad_s[700:705] = [0.4, 0.0, 0.1], [0.0, 0.3, 0.0]
+
+    kept, report = cleaned(imu)
+
+    assert len(kept) == 701, "the first of them was measured; a slower sensor repeats a few"
+    assert report.counts["imu_repeated"] == 299
+    assert any(
+        "once, first 1.0 s after its start, for up to 1.5 s" in text for text in report.warnings
+    )
+
+
+def test_an_imu_at_rest_may_repeat_itself():
+    kept, report = cleaned(imu_of(5_000_000 * np.arange(100), gyro=0.01))
+
+    assert len(kept) == 100
+    assert "imu_repeated" not in report.counts
+
+
 def test_a_missing_accelerometer_is_no_fault():
     imu = ImuSamples(np.array([1, 2]), np.zeros((2, 3)), np.full((2, 3), np.nan))
 

@@ -219,3 +219,15 @@ def test_nothing_is_found_of_a_body_that_stands() -> None:
 
 def test_a_bias_that_turns_into_the_vertical_is_no_ride() -> None:
     assert standing(lying_s=(20.0, 32.0)) == []
+
+
+@pytest.mark.parametrize("gap_s", [0.6, 1.0, 2.0])
+def test_a_gap_of_the_imu_is_no_ride(gap_s: float) -> None:
+    trajectory, imu = walked("office")
+    since_s = (imu.t_ns - imu.t_ns[0]) * 1e-9
+    kept = np.ones(len(imu), bool)
+    for start_s in np.arange(4.13, 50.0, 6.37):
+        kept &= (since_s < start_s) | (since_s > start_s + gap_s)
+    pieces = ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
+
+    assert unseen_rides(trajectory, pieces, RIG, lost_ns=NOTHING_LOST) == []
