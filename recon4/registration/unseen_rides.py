@@ -284,7 +284,7 @@ def _contradiction(
 def _near_gap(weight: Array) -> NDArray[np.bool_]:
     """Knots at or beside which samples are missing: half a step of a walk looks like a push."""
     gap = weight < _WHOLE * np.median(weight[1:-2])
-    gap[[0, -1]] = False  # the ends, where there is one side only
+    gap[[0, -2, -1]] = False  # the ends, where there is one side only
     return gap | np.roll(gap, 1) | np.roll(gap, -1)
 
 
