@@ -116,6 +116,16 @@ def test_an_imu_that_contradicts_the_lidar_is_not_used_with_a_warning(pcap, proc
     assert_warned(summary, "gyroscope")
 
 
+def test_an_imu_of_which_all_samples_are_the_same_is_named(pcap, process, tmp_path):
+    imu = write_imu(tmp_path / "imu.csv", gyro=(0.0, 0.0, 3.0), noise=0.0)
+
+    summary = process(pcap, "--imu", imu)
+
+    assert summary["lost"] == 0
+    assert counts(tmp_path)["imu_repeated"] == 99
+    assert_warned(summary, "repeats a sample with new time stamps once")
+
+
 def test_samples_of_another_day_are_refused(pcap, refuse, tmp_path):
     imu = write_imu(tmp_path / "imu.csv")
     imu.write_text(imu.read_text().replace(str(T0_NS)[:6], "160000"))
