@@ -88,8 +88,8 @@ def _saturated(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
     rows = np.flatnonzero(saturated_samples(imu)[:, 0])
     found = np.zeros(len(t_ns) - 1, np.bool_)
     # With one more on either side: the clock may be off.
-    for near in (-1, 0, 1):
-        found[np.clip(np.searchsorted(t_ns, imu.t_ns[rows]) - 1 + near, 0, len(found) - 1)] = True
+    near = np.searchsorted(t_ns, imu.t_ns[rows])[:, None] - 1 + np.array([-1, 0, 1])
+    found[np.clip(near, 0, len(found) - 1)] = True
     return found
 
 

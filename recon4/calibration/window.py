@@ -191,8 +191,10 @@ def _samples(imu: ImuSamples | None, start_ns: int, end_ns: int) -> ImuSamples |
     if imu is None:
         return None
     kept = (imu.t_ns >= start_ns - _MARGIN_NS) & (imu.t_ns <= end_ns + _MARGIN_NS)
-    samples = ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
-    return None if saturated_samples(samples).any() else samples
+    # Of all samples: the fastest turn of a window alone may look like the end of a range.
+    if saturated_samples(imu)[kept].any():
+        return None
+    return ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
 
 
 def with_trajectory(window: Window, trajectory: Trajectory) -> Window:

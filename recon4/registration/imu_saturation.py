@@ -26,8 +26,7 @@ def saturated_texts(imu: ImuSamples) -> tuple[str, ...]:
     Args:
         imu: As recorded, in its own axes.
     """
-    gyro = _stretches(imu.gyro_rad_s, _SLOWEST_RAD_S)
-    accel = _stretches(imu.accel_m_s2, _WEAKEST_M_S2)
+    gyro, accel = _saturated(imu)
     texts = []
     if gyro:
         parts = [f"{np.rad2deg(s.largest):.0f}°/s about {s.axis} {s.times}" for s in gyro]
@@ -41,11 +40,10 @@ def saturated_texts(imu: ImuSamples) -> tuple[str, ...]:
 def saturated_samples(imu: ImuSamples) -> NDArray[np.bool_]:
     """Samples at which gyroscope and accelerometer are saturated along some axis, (N, 2)."""
     found = np.zeros((len(imu), 2), np.bool_)
-    sensors = ((imu.gyro_rad_s, _SLOWEST_RAD_S), (imu.accel_m_s2, _WEAKEST_M_S2))
-    for sensor, (values, least) in enumerate(sensors):
-        for column in values.T:
-            for run in _runs_at_the_end(column, least):
-                found[run[0] : run[-1] + 1, sensor] = True
+    gyro, accel = _saturated(imu)
+    for column, axes in enumerate((gyro, accel)):
+        for run in (run for axis in axes for run in axis.runs):
+            found[run[0] : run[-1] + 1, column] = True
     return found
 
 
@@ -55,18 +53,16 @@ class _Saturated:
 
     axis: str
     largest: float
-    count: int
-    """Number of stretches."""
-    first_row: int
-    """Sample with which the first of them begins."""
+    runs: list[NDArray[np.intp]]
+    """Samples of each stretch."""
 
     @property
     def times(self) -> str:
-        return "once" if self.count == 1 else f"{self.count} times"
+        return "once" if len(self.runs) == 1 else f"{len(self.runs)} times"
 
 
 def _text(imu: ImuSamples, name: str, parts: list[str], *, found: list[_Saturated]) -> str:
-    first_ns = int(imu.t_ns[min(one.first_row for one in found)] - imu.t_ns[0])
+    first_ns = int(imu.t_ns[min(axis.runs[0][0] for axis in found)] - imu.t_ns[0])
     return (
         f"The {name} is saturated, first {1e-9 * first_ns:.1f} s after its start: it repeats its "
         f"largest value, {', '.join(parts)}. Faster motions are missing: there only the "
@@ -74,14 +70,22 @@ def _text(imu: ImuSamples, name: str, parts: list[str], *, found: list[_Saturate
     )
 
 
-def _stretches(values: Array, least: float) -> list[_Saturated]:
+def _saturated(imu: ImuSamples) -> tuple[list[_Saturated], list[_Saturated]]:
+    """The saturated axes of gyroscope and accelerometer."""
+    return (
+        _saturated_axes(imu.gyro_rad_s, _SLOWEST_RAD_S),
+        _saturated_axes(imu.accel_m_s2, _WEAKEST_M_S2),
+    )
+
+
+def _saturated_axes(values: Array, least: float) -> list[_Saturated]:
     """The saturated axes of a sensor, (N, 3)."""
     found = []
     for axis, column in zip("xyz", values.T, strict=True):
         runs = _runs_at_the_end(column, least)
         if sum(map(len, runs)) >= _LEAST_SAMPLES:
             largest = float(np.nanmax(np.abs(column)))
-            found.append(_Saturated(axis, largest, len(runs), int(runs[0][0])))
+            found.append(_Saturated(axis, largest, runs))
     return found
 
 

@@ -192,6 +192,7 @@ class ImuMotion:
         if not self._has_accel:
             accel = np.zeros_like(gyro)
         noise = self._noise.copy()
+        first, last = np.searchsorted(self._t_ns, stamps[[0, -1]])
         saturated = self._saturated[max(first - 1, 0) : last + 1].any(axis=0)
         noise[:2] = np.where(saturated, np.maximum(noise[:2], _SATURATED_NOISE), noise[:2])
         return _predict(state, times, gyro, accel=accel, noise=noise)

@@ -179,11 +179,6 @@ def open_gate(recording: Path, word: str = "go") -> int:
     return gate
 
 
-def busy_processes(recording: Path) -> list[int]:
-    """Processes that take all processors in the slow worker's second stage."""
-    return [int(pid) for pid in (recording / "busy").read_text().split()]
-
-
 def ran(recording: Path) -> list[str]:
     """What the slow worker's stages noted."""
     return (recording / "ran").read_text().split()

@@ -27,20 +27,20 @@ from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 
 
-def take_memory() -> None:
+def take_memory(_: Path) -> None:
     _ = np.ones((1 << 40) // 8)
 
 
-def fill_disk() -> None:
+def fill_disk(_: Path) -> None:
     raise OSError(errno.ENOSPC, "No space left on device")
 
 
-def leave_a_child() -> None:
+def leave_a_child(_: Path) -> None:
     subprocess.Popen(["sleep", "600"])
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def tell_limits() -> None:
+def tell_limits(_: Path) -> None:
     names = ("RLIMIT_DATA", "RLIMIT_NOFILE", "RLIMIT_CORE")
     status = Path("/proc/self/status").read_text()
     limits = {name: resource.getrlimit(getattr(resource, name)) for name in names}
@@ -52,18 +52,17 @@ def keep_busy(recording: Path) -> None:
     idle = recording / "idle"
     spin = f"import os\nwhile not os.path.exists({str(idle)!r}): pass"
     spinning = [subprocess.Popen([sys.executable, "-c", spin]) for _ in range(os.cpu_count() or 1)]
-    (recording / "busy").write_text(" ".join(str(one.pid) for one in spinning))
     _note(recording, "busy")
     for one in spinning:
         one.wait()
 
 
-def hang_in_python() -> None:
+def hang_in_python(_: Path) -> None:
     while True:
         pass
 
 
-def hang_in_c_with_the_gil() -> None:
+def hang_in_c_with_the_gil(_: Path) -> None:
     """No thread of Python runs any more."""
     ctypes.PyDLL(None).pause()
 
@@ -71,13 +70,14 @@ def hang_in_c_with_the_gil() -> None:
 DEEDS = {
     "hang": hang_in_python,
     "hang in C": hang_in_c_with_the_gil,
-    "crash": lambda: os.kill(os.getpid(), signal.SIGSEGV),
+    "busy": keep_busy,
+    "crash": lambda _: os.kill(os.getpid(), signal.SIGSEGV),
     "memory": take_memory,
     "full": fill_disk,
     "child": leave_a_child,
     "limits": tell_limits,
 }
-"""Word written to the gate -> what happens to the worker."""
+"""Word written to the gate -> what happens to the worker, which gets the recording."""
 
 
 def work(folder: JobFolder, progress: Progress) -> None:
@@ -108,9 +108,7 @@ def _odometry(context: StageContext, *, recording: Path, frames: Path) -> None:
         context.progress.advance(0)
     word = os.read(gate, 100).decode()
     os.close(gate)
-    if word == "busy":
-        keep_busy(recording)
-    DEEDS.get(word, lambda: None)()
+    DEEDS.get(word, lambda _: None)(recording)
     context.progress.advance(100)
     _note(recording, "finished")
     (context.out / "done.txt").write_text("done")

@@ -4,11 +4,11 @@ import os
 import signal
 
 import httpx
+import psutil
 import pytest
 
 from tests.service.running import (
     SLOW,
-    busy_processes,
     open_gate,
     ran,
     recording_with_gate,
@@ -201,8 +201,8 @@ def test_the_server_answers_before_a_job_that_takes_all_processors(tmp_path, rec
         wait_for(lambda: "busy" in ran(recording), "all processors are taken")
         answers = [client.get("/healthz").status_code for _ in range(200)]
         still = client.get(f"/api/jobs/{job}").json()["job"]["state"]
-        niceness = [os.getpriority(os.PRIO_PROCESS, pid) for pid in busy_processes(recording)]
-        of_server = os.getpriority(os.PRIO_PROCESS, process.pid)
+        niceness = [one.nice() for one in psutil.Process(server.worker_pid(job)).children()]
+        of_server = psutil.Process(process.pid).nice()
         (recording / "idle").touch()
         server.wait_state(job, "succeeded")
         os.close(gate)

@@ -14,6 +14,7 @@ from recon4.geometry.se3 import so3_log
 from tests.room_walks import T0_NS
 from tests.unit.calibration.conftest import SETTINGS, dancing
 
+FASTER = 4
 EXCHANGED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 
@@ -101,19 +102,15 @@ def test_the_walk_of_these_tests_turns_about_all_axes():
 
 
 def test_turns_that_a_saturated_gyroscope_misses_do_not_make_its_scale_wrong(dance):
-    fast = replace(dance, truth=replace(dance.truth, t_ns=faster(dance.truth.t_ns)))
-    t_ns = faster(dance.t_mid_ns)
+    truth = replace(dance.truth, t_ns=faster(dance.truth.t_ns))
     gyro = FASTER * dance.imu.gyro_rad_s
     limit = 0.7 * np.abs(gyro).max()
     imu = replace(dance.imu, t_ns=faster(dance.imu.t_ns), gyro_rad_s=np.clip(gyro, -limit, limit))
 
-    found = align_gyro(fast.truth, t_ns, imu)
+    found = align_gyro(truth, faster(dance.t_mid_ns), imu)
 
     assert limit > 1.5 and np.mean(np.abs(gyro).max(axis=1) > limit) > 0.03
     assert found.scale == pytest.approx(1.0, abs=0.005)
-
-
-FASTER = 4
 
 
 def faster(t_ns):
