@@ -16,7 +16,7 @@ _LEAST_RUN, _LEAST_SAMPLES = 3, 5
 """A peak of a motion has one largest sample, a saturated sensor repeats it."""
 _BRIDGED = 20
 """At the ends of a stretch noise leaves the largest value for some samples."""
-_SLOWEST_RAD_S, _WEAKEST_M_S2 = 1.5, 15.0
+_SLOWEST_RAD_S, _WEAKEST_M_S2 = 1.5, 14.0
 """No range of an IMU ends below this."""
 
 
