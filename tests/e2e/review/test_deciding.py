@@ -96,7 +96,13 @@ def test_whatever_is_held_or_pressed_again_decides_about_one_pair(opened, root):
 def test_nothing_is_decided_before_the_points_are_drawn(opened, root):
     page = opened
     held = []
-    page.route("**/review/points?**", lambda route: held.append(route), times=1)
+
+    def hold_first(route):
+        route.continue_() if held else held.append(route)
+
+    page.route("**/review/points?**", hold_first)
+    page.reload()  # requests of a loaded page may pass right after Chromium began to intercept
+    expect(page.locator(".queue li").first).to_be_visible()
 
     with page.expect_request("**/review/points?**"):
         page.keyboard.press("j")
