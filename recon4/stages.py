@@ -283,7 +283,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 8, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    32,
+    33,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

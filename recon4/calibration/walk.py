@@ -14,7 +14,7 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
-from recon4.registration.stage import dense_trajectory
+from recon4.registration.passes import dense_trajectory
 from recon4.settings import Settings
 from recon4.store.frames import FrameStore
 

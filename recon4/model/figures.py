@@ -66,6 +66,8 @@ class MovingOutcome(StrEnum):
     LEFT_OUT = "left out"
     NOT_SETTLED = "not settled"
     """Left out, but which points they are still changes from pass to pass of the odometry."""
+    CONTRADICTED = "contradicted"
+    """Left out, but the trajectory without them contradicts the fixes of a GNSS/INS."""
     NOT_HELD = "not held"
     """Kept, because what is left of the view does not hold the trajectory."""
 
@@ -92,7 +94,7 @@ class MovingFigures(msgspec.Struct, frozen=True, kw_only=True):
     @property
     def is_severe(self) -> bool:
         """Whether they have pulled the trajectory along."""
-        return self.outcome in (MovingOutcome.NOT_SETTLED, MovingOutcome.NOT_HELD)
+        return self.outcome not in (MovingOutcome.KEPT, MovingOutcome.LEFT_OUT)
 
 
 class OdometryFigures(Figures, frozen=True, kw_only=True):

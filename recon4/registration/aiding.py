@@ -6,12 +6,13 @@ keep odometry within decimeters there. Where the LiDAR observes the motion they 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, skew, so3_log
-from recon4.model.trajectory import Times
+from recon4.model.trajectory import Times, Trajectory
 
 _MAX_GAP_NS = 300_000_000
 """No position is interpolated between two fixes farther apart than this [ns]."""
@@ -72,6 +73,32 @@ class GnssAiding:
         H[2, 2] += weight
         g[2] += weight * turn
         return H, g
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """``T_enu_body`` by the fixes alone, which is no use between fixes far apart."""
+        p = self.p_enu - self.R_enu_body @ self.p_body_antenna
+        return Trajectory(self.t_ns, SE3(self.R_enu_body, p))
+
+    @property
+    def turns(self) -> Sequence[tuple[int, int, Array]]:
+        """Times [ns] of two fixes in a row, and the turn between, (3, 3)."""
+        near = np.flatnonzero(np.diff(self.t_ns) <= _MAX_GAP_NS)
+        R = self.R_enu_body
+        return [(int(self.t_ns[k]), int(self.t_ns[k + 1]), R[k].T @ R[k + 1]) for k in near]
+
+    def covers(self, first_ns: int, last_ns: int) -> bool:
+        """Whether there are fixes at both of two times that are near each other."""
+        return self._around(first_ns) is not None and self._around(last_ns) is not None
+
+    def rejected_ratio(self, trajectory: Trajectory) -> float:
+        """Ratio of the fixes that a trajectory of the same frame contradicts, 0..1."""
+        inside = (self.t_ns >= trajectory.t_ns[0]) & (self.t_ns <= trajectory.t_ns[-1])
+        if not inside.any():
+            return 0.0
+        T = trajectory.at(self.t_ns[inside])
+        z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
+        return float(np.mean((z**2).sum(axis=1) > _OUTLIER_SD**2))
 
     def _around(self, t_ns: int) -> tuple[int, float] | None:
         right = int(np.searchsorted(self.t_ns, t_ns))

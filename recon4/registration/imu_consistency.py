@@ -33,8 +33,14 @@ _TYPICAL = 0.8
 _EXPLAINED = 0.3
 """The gyroscope explains the turns that the LiDARs see without it if this ratio of them is left. A
 clock 20 ms off leaves 0.07, a rotated LiDAR 0.12, a clock 300 ms off 0.7, swapped axes 2."""
+_MOST_TURNS = 300
+"""Turns of an INS that are compared at most, at regular times."""
 _NEVER_M = 1.0
 """The error of a trial that found no match [m]."""
+
+
+Turns = Sequence[tuple[int, int, Array]]
+"""Two times [ns] and the turn of the body between them, (3, 3)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +50,8 @@ class Trial:
     lost: int
     error_m: float
     """Distance of the matched segments from the local map that most frames stay below [m]."""
-    turns: Sequence[tuple[int, int, Array]]
-    """Times [ns] of two multiframes in a row that were tracked, and the turn between, (3, 3)."""
+    turns: Turns
+    """Between multiframes in a row that were tracked."""
 
     def clearly_better(self, other: Trial) -> bool:
         """Whether no more frames are lost and the error is much smaller."""
@@ -56,16 +62,19 @@ class Trial:
             (1.0 - _CLEARLY) * other.error_m, _CLEARLY_M
         )
 
-    def unexplained(self, motion: ImuMotion) -> float:
-        """Part of the turns that a gyroscope does not measure, 0..; infinite without turns."""
-        seen = np.array([so3_log(R) for _, _, R in self.turns]).reshape(-1, 3)
-        measured = [so3_log(motion.turn(first, last)) for first, last, _ in self.turns]
-        total = float((seen**2).sum())
-        left = float(((seen - np.array(measured).reshape(-1, 3)) ** 2).sum())
-        return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
+
+def unexplained(turns: Turns, motion: ImuMotion) -> float:
+    """Part of the turns that a gyroscope does not measure, 0..; infinite without turns."""
+    seen = np.array([so3_log(R) for _, _, R in turns]).reshape(-1, 3)
+    measured = [so3_log(motion.turn(first, last)) for first, last, _ in turns]
+    total = float((seen**2).sum())
+    left = float(((seen - np.array(measured).reshape(-1, 3)) ** 2).sum())
+    return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
 
 
-def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSamples | None, str]:
+def consistent_imu(
+    frames: RecordedFrames, settings: Settings, *, turns: Turns = ()
+) -> tuple[ImuSamples | None, str]:
     """The IMU samples as recorded, with the gyroscope bias removed, or None.
 
     The first multiframes and those of the fastest turn are registered with each variant. A variant
@@ -76,6 +85,8 @@ def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSampl
     Args:
         frames: The multiframes with their rig and IMU.
         settings: Settings of the odometry.
+        turns: Of an INS, where moving objects leave too little of the view to doubt an IMU: one
+            that measures these turns is used. What comes of it has to agree with the fixes.
 
     Returns:
         The samples to use, and a warning for the user (empty = none).
@@ -98,20 +109,35 @@ def consistent_imu(frames: RecordedFrames, settings: Settings) -> tuple[ImuSampl
     used = chosen[0]
     if used is None or not found.clearly_better(best):
         return chosen
-    if found.unexplained(ImuMotion(used, frames.rig, settings.odometry)) < _EXPLAINED:
-        # A rotated LiDAR raises the error too, and no IMU is at fault then.
-        turns_only = ImuSamples(used.t_ns, used.gyro_rad_s, np.full_like(used.accel_m_s2, np.nan))
-        found = _try(frames, turns_only, settings)
-        if not found.clearly_better(best):
-            return chosen
-        settling = min(_SETTLING, max(len(frames) - _FRAMES, 0))
-        best, found = (
-            _try(frames, samples, settings, settling=settling) for samples in (used, turns_only)
-        )
-        if not found.clearly_better(best):
-            return chosen
-        return turns_only, _contradicts("accelerometer", best, found)
+    motion = ImuMotion(used, frames.rig, settings.odometry)
+    if unexplained(_some(turns), motion) < _EXPLAINED:
+        return chosen
+    if unexplained(found.turns, motion) < _EXPLAINED:
+        return _without_forces(frames, used, whole=best, settings=settings) or chosen
     return None, _contradicts("IMU", best, found)
+
+
+def _without_forces(
+    frames: RecordedFrames, imu: ImuSamples, *, whole: Trial, settings: Settings
+) -> tuple[ImuSamples, str] | None:
+    """The gyroscope alone, if the accelerometer is at fault; None = it is not.
+
+    A rotated LiDAR raises the error too, and no IMU is at fault then.
+    """
+    turns_only = ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))
+    if not _try(frames, turns_only, settings).clearly_better(whole):
+        return None
+    settling = min(_SETTLING, max(len(frames) - _FRAMES, 0))
+    best, found = (
+        _try(frames, samples, settings, settling=settling) for samples in (imu, turns_only)
+    )
+    if not found.clearly_better(best):
+        return None
+    return turns_only, _contradicts("accelerometer", best, found)
+
+
+def _some(turns: Turns) -> Turns:
+    return turns[:: 1 + len(turns) // _MOST_TURNS]
 
 
 def _contradicts(what: str, with_it: Trial, without: Trial) -> str:

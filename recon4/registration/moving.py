@@ -46,6 +46,9 @@ are asked."""
 _RULES: Array = np.array(
     [_MARGIN_M, _MARGIN_PER_M, _NEAREST_M, _FARTHEST_M, _MIN_PASSES, _AGREED], np.float64
 )
+_AROUND_M, _AROUND_POINTS = 0.25, 3
+"""Feet on the ground and hands at a wall are not seen through: points count as moving, too, if so
+many moving ones lie in the cubes of this size around their own [m]."""
 _SAMPLED = 3000
 """Points of a scan of which the ratio of moving ones is worked out."""
 _CLEARED, _CLEARED_NS = 0.04, 2_000_000_000
@@ -157,6 +160,10 @@ _BECAME = {
     MovingOutcome.NOT_SETTLED: (
         "Without their points the trajectory still changes with every pass of the odometry."
     ),
+    MovingOutcome.CONTRADICTED: (
+        "The trajectory without their points contradicts the positions of the GNSS/INS: these are "
+        "wrong, or what is left of the view does not hold it."
+    ),
     MovingOutcome.NOT_HELD: (
         "The rest does not hold the trajectory, so they stay in and pull it along. Record again "
         "without people around the carrier."
@@ -191,14 +198,46 @@ def hide_moving(
         found: Of `find_moving`.
     """
     space = FreeSpace(frames, trajectory, piece)
-    t_ns = frames.t_mid_ns
-    crowded_ns = t_ns[space.rows][np.array(found.ratio) >= _CLEARED]
+    crowded = is_crowded_at(frames.t_mid_ns, found) & (piece >= 0)
     masks: list[NDArray[np.bool_] | None] = []
     for row in range(len(frames)):
-        crowded = piece[row] >= 0 and (np.abs(crowded_ns - t_ns[row]) <= _CLEARED_NS).any()
-        frame = frames[row] if crowded else None
-        masks.append(space.moving(frame, np.arange(len(frame))) if frame is not None else None)
+        if crowded[row]:
+            frame = frames[row]
+            moving = space.moving(frame, np.arange(len(frame)))
+            masks.append(with_points_around(frame, moving, frames.rig))
+        else:
+            masks.append(None)
     return HiddenPoints.of(masks)
+
+
+def with_points_around(frame: Multiframe, moving: NDArray[np.bool_], rig: Rig) -> NDArray[np.bool_]:
+    """Moving points of a multiframe and the points around them: feet on the ground, (N,)."""
+    cell = np.floor(_in_body(frame, rig) / _AROUND_M).astype(np.int64)
+    crowded, count = np.unique(_keys(cell[moving]), return_counts=True)
+    around = (crowded[:, None] + _keys(_NEIGHBORS)).ravel()
+    cells, of = np.unique(around, return_inverse=True)
+    near = np.bincount(of, np.repeat(count, len(_NEIGHBORS)), len(cells)) >= _AROUND_POINTS
+    return np.asarray(moving | np.isin(_keys(cell), cells[near]))
+
+
+_NEIGHBORS = np.stack(np.meshgrid(*3 * [np.arange(-1, 2)], indexing="ij"), axis=-1).reshape(-1, 3)
+
+
+def _keys(cell: NDArray[np.int64]) -> NDArray[np.int64]:
+    """A number for each cell of a grid, (N, 3) -> (N,); those of neighbors add up."""
+    return np.asarray(cell @ np.array([1, 1 << 20, 1 << 40], np.int64))
+
+
+def is_crowded_at(t_ns: Times, found: MovingFigures) -> NDArray[np.bool_]:
+    """Near which multiframes moving objects were found.
+
+    Args:
+        t_ns: Times of all multiframes [ns], (N,).
+        found: Of `find_moving`.
+    """
+    since_s = np.array(found.t_s)[np.array(found.ratio) >= _CLEARED]
+    crowded_ns = t_ns[0] + np.round(1e9 * since_s).astype(np.int64)
+    return np.asarray((np.abs(crowded_ns - t_ns[:, None]) <= _CLEARED_NS).any(axis=1))
 
 
 def _regular(t_ns: Times, usable: NDArray[np.bool_]) -> NDArray[np.intp]:
@@ -213,13 +252,19 @@ def _placed(frame: Multiframe, trajectory: Trajectory, rig: Rig) -> Array:
     first, last = np.searchsorted(trajectory.t_ns, [frame.t_ns, frame.t_ns + frame.duration_ns])
     first = min(max(int(first) - 1, 0), len(trajectory) - 2)
     part = trajectory[slice(first, max(int(last) + 1, first + 2))]
+    body = _in_body(frame, rig)
+    t_s = (part.t_ns - frame.t_ns).astype(np.float64) * 1e-9
+    s = frame.dt_ns.astype(np.float64) * 1e-9
+    return np.asarray(place_points(t_s, part.T_a_b.R, part.T_a_b.t, s, body))
+
+
+def _in_body(frame: Multiframe, rig: Rig) -> Array:
+    """Points of a multiframe in the body, each at its time [m], (N, 3)."""
     body = np.empty((len(frame), 3))
     for number, sensor in enumerate(rig.sensors):
         mine = frame.sensor == number
         body[mine] = sensor.T_body_sensor @ frame.xyz[mine].astype(np.float64)
-    t_s = (part.t_ns - frame.t_ns).astype(np.float64) * 1e-9
-    s = frame.dt_ns.astype(np.float64) * 1e-9
-    return np.asarray(place_points(t_s, part.T_a_b.R, part.T_a_b.t, s, body))
+    return body
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
+from recon4.model.trajectory import Trajectory
 from recon4.registration.aiding import GnssAiding
 
 SD_M, SD_RAD = 0.1, 0.01
@@ -54,3 +55,55 @@ def test_nothing_is_known_outside_the_fixes() -> None:
 
     assert not H.any()
     assert not g.any()
+
+
+def walking(*, missing: slice = slice(0, 0)) -> GnssAiding:
+    """A body that goes 1 m/s along x and turns 90°/s, with an antenna 1 m before it."""
+    rows = np.delete(np.arange(31), missing)
+    R = SE3.stack(SE3.from_rpy(0.0, 0.0, 0.05 * np.pi * k, t=[0.0, 0.0, 0.0]) for k in rows).R
+    arm, place = np.array([1.0, 0.0, 0.0]), np.outer(0.1 * rows, [1.0, 0.0, 0.0])
+    return GnssAiding(
+        t_ns=rows.astype(np.int64) * 100_000_000,
+        p_enu=place + R @ arm,
+        sd_m=np.full((len(rows), 3), SD_M),
+        R_enu_body=R,
+        attitude_sd_rad=SD_RAD,
+        p_body_antenna=arm,
+    )
+
+
+def test_fixes_alone_make_a_trajectory_of_the_body() -> None:
+    T = walking().trajectory.at(np.array([1_550_000_000]))
+
+    assert T.t[0] == pytest.approx([1.55, 0.0, 0.0], abs=0.01)
+    assert T.angle()[0] == pytest.approx(np.pi * 0.775, abs=0.01)
+
+
+def test_turns_are_between_fixes_that_are_near_each_other() -> None:
+    aiding = walking(missing=slice(10, 15))
+
+    spans = [last - first for first, last, _ in aiding.turns]
+    turned = [SE3(R, np.zeros(3)).angle() for _, _, R in aiding.turns]
+
+    assert len(spans) == 24 and set(spans) == {100_000_000}
+    assert turned == pytest.approx([0.05 * np.pi] * 24)
+
+
+def test_a_time_beside_a_gap_is_covered_and_one_inside_is_not() -> None:
+    aiding = walking(missing=slice(10, 15))
+
+    assert aiding.covers(700_000_000, 800_000_000)
+    assert not aiding.covers(800_000_000, 1_000_000_000)
+    assert not aiding.covers(2_950_000_000, 3_050_000_000)
+
+
+def test_fixes_that_a_trajectory_contradicts_are_counted() -> None:
+    aiding = walking()
+    drifting = SE3(aiding.trajectory.T_a_b.R, aiding.trajectory.T_a_b.t * [[1.5, 1.0, 1.0]])
+
+    assert aiding.rejected_ratio(aiding.trajectory) == 0.0
+    # 0.05 m a fix; three standard deviations are 0.3 m.
+    found = aiding.rejected_ratio(Trajectory(aiding.t_ns, drifting))
+    assert found == pytest.approx(24 / 31, abs=1 / 31)
+    later = Trajectory(aiding.t_ns + 10_000_000_000, drifting)
+    assert aiding.rejected_ratio(later) == 0.0

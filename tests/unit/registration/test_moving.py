@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.figures import MovingFigures, MovingOutcome
@@ -13,7 +14,13 @@ from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Silent
-from recon4.registration.moving import StandingFrames, crowd_text, find_moving, hide_moving
+from recon4.registration.moving import (
+    StandingFrames,
+    crowd_text,
+    find_moving,
+    hide_moving,
+    with_points_around,
+)
 from recon4.registration.stage import run_odometry
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.arrays import load_record
@@ -161,6 +168,27 @@ def test_moving_points_are_hidden_and_others_are_not() -> None:
     before, after = walk[40].intensity == ON_PILLAR, seen[40].intensity == ON_PILLAR
     assert after.sum() < 0.3 * before.sum()
     assert (~after).sum() > 0.99 * (~before).sum()
+
+
+def test_feet_that_no_scan_sees_through_are_hidden_with_the_rest() -> None:
+    walk = Walk(GROUP)
+    frame = walk[40]
+    person, z = frame.intensity == ON_PILLAR, frame.xyz[:, 2]
+    found = person & (z > -1.1)
+
+    hidden = with_points_around(frame, found, RIG)
+
+    assert hidden[person & (z > -1.3)].all()
+    away_m = cKDTree(frame.xyz[found]).query(frame.xyz)[0]
+    assert not hidden[away_m > 0.5 * np.sqrt(3.0)].any()
+
+
+def test_single_points_hide_nothing_around_them() -> None:
+    frame = Walk(GROUP)[40]
+    found = np.zeros(len(frame), np.bool_)
+    found[np.flatnonzero(frame.intensity == ON_PILLAR)[[0, -1]]] = True
+
+    np.testing.assert_array_equal(with_points_around(frame, found, RIG), found)
 
 
 def test_multiframes_that_lost_tracking_are_not_compared() -> None:

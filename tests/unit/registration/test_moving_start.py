@@ -8,7 +8,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.registration import odometry as module
 from recon4.registration.moving_start import starting_velocity
 from recon4.registration.odometry import Odometry
-from recon4.registration.stage import dense_trajectory
+from recon4.registration.passes import dense_trajectory
 from recon4.settings import Settings
 
 FIRST = 25

@@ -11,8 +11,9 @@ from recon4.recording.formats.poses import read_tum
 from recon4.registration.line_odometry import LineOdometry, averaged
 from recon4.registration.make import make_odometry
 from recon4.registration.odometry import Odometry
+from recon4.registration.passes import dense_trajectory
 from recon4.registration.result import Registration, StopReason
-from recon4.registration.stage import dense_trajectory, run_odometry
+from recon4.registration.stage import run_odometry
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from tests.room_walks import FRAME_NS, T0_NS

@@ -1,0 +1,144 @@
+"""One pass of the odometry over all multiframes, and the dense trajectory that it leaves."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3
+from recon4.model.events import PosesAdded, TrackingLost, positions_of
+from recon4.model.frames import RecordedFrames
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, track
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.imu_consistency import Turns, consistent_imu
+from recon4.registration.imu_estimate import ImuEstimate
+from recon4.registration.line_odometry import LineOdometry
+from recon4.registration.make import make_odometry
+from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
+from recon4.registration.odometry import Odometry
+from recon4.registration.step import OdometryStep
+from recon4.settings import Settings
+
+_REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
+"""The pose of every n-th multiframe is reported while the stage runs, some per event."""
+_DENSE_NS = 9_000_000
+"""Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OdometryPass:
+    """Odometry of all multiframes, and what was found out about the IMU meanwhile."""
+
+    steps: list[OdometryStep]
+    trajectory: Trajectory
+    """``T_odom_body``, dense."""
+    imu: ImuSamples | None
+    """As it was used; None = not."""
+    remark: str
+    """What is wrong with it before any multiframe is registered; empty = nothing."""
+    estimate: ImuEstimate | None
+
+    @property
+    def lost(self) -> int:
+        """Multiframes where tracking was lost."""
+        return sum(step.lost for step in self.steps)
+
+    @property
+    def pieces(self) -> NDArray[np.int64]:
+        """Number of the piece of each multiframe, -1 = lost, (N,)."""
+        return np.array([-1 if step.lost else step.piece for step in self.steps], np.int64)
+
+
+def register_all(
+    frames: RecordedFrames,
+    settings: Settings,
+    *,
+    progress: Progress,
+    aiding: GnssAiding | None = None,
+    turns: Turns = (),
+) -> OdometryPass:
+    """Register all multiframes once.
+
+    Args:
+        frames: The multiframes with their rig and IMU.
+        settings: Of the odometry.
+        progress: Counts multiframes; tracking that is lost is an event.
+        aiding: Fixes of a GNSS/INS, outdoors.
+        turns: See `consistent_imu`.
+    """
+    imu, remark = consistent_imu(frames, settings, turns=turns)
+    odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
+    steps = _register(frames, odometry, progress)
+    estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
+    used = imu if settings.odometry.use_imu else None
+    return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
+
+
+def _register(
+    frames: RecordedFrames, odometry: Odometry | LineOdometry, progress: Progress
+) -> list[OdometryStep]:
+    """Register all multiframes in order, and report the growing trajectory."""
+    steps: list[OdometryStep] = []
+    for frame in track(frames, progress, what="odometry", unit="multiframe"):
+        step = odometry.push(frame)
+        if step.lost:
+            progress.event(TrackingLost(frame_id=step.frame_id, t_ns=step.t_mid_ns))
+        steps.append(step)
+        if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
+            _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
+    return steps
+
+
+def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
+    """Report some poses as an event, for a display of the growing trajectory."""
+    T = SE3.stack(step.T_odom_body for step in steps)
+    quaternions = np.round(T.quat_xyzw(), 5).tolist()
+    progress.event(
+        PosesAdded(
+            t_ns=tuple(step.t_mid_ns for step in steps),
+            t_m=positions_of(T.t),
+            quat_xyzw=tuple((x, y, z, w) for x, y, z, w in quaternions),
+        )
+    )
+
+
+def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
+    """The dense poses of all steps as one trajectory, at most about 100 Hz."""
+    steps = _begun_in_motion(steps)
+    t_ns = np.concatenate([step.t_ns for step in steps])
+    R = np.concatenate([step.T_dense.R for step in steps])
+    t_m = np.concatenate([step.T_dense.t for step in steps])
+    # The first pose of a frame updates the last pose of the frame before.
+    newest = len(t_ns) - 1 - np.unique(t_ns[::-1], return_index=True)[1]
+    t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
+    slot = (t_ns - t_ns[0]) // _DENSE_NS
+    kept = np.append(np.diff(slot) > 0, True)
+    kept[0] = True
+    return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
+
+
+def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
+    """The steps with a first frame that moves as fast as the second one begins.
+
+    The velocity at the start is known only with the second frame, when the poses inside the first
+    one were already reported: half a frame of a walk puts them 6 cm beside their places.
+    """
+    if len(steps) < 2 or len(steps[0].t_ns) < 2 or steps[1].lost:
+        return steps
+    first, second = steps[:2]
+    span_ns = second.t_mid_ns - first.t_mid_ns
+    if second.piece != first.piece or not 0 < span_ns <= LONGEST_NS:
+        return steps
+    # Both at the end of the first frame; what the IMU measured inside it stays.
+    there = (second.T_odom_body.t - first.T_odom_body.t) / (1e-9 * span_ns)
+    reported = (first.T_dense.t[-1] - first.T_dense.t[-2]) / (1e-9 * np.diff(first.t_ns)[-1])
+    missing = there - reported
+    if float(np.linalg.norm(missing)) < MOVING_M_S:
+        return steps
+    since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
+    moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
+    return [replace(first, T_dense=moving), *steps[1:]]

@@ -1,0 +1,105 @@
+"""Moving objects that pull the odometry along, with and without fixes that show it."""
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.figures import MovingFigures, MovingOutcome
+from recon4.progress import Silent
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.moving_passes import Found, leave_out_moving, less_sure
+from recon4.registration.passes import OdometryPass, register_all
+from recon4.settings import Settings
+from tests.unit.registration.test_moving import GROUP, ROWS, Walk
+
+SETTINGS = Settings()
+
+
+class WithoutImu(Walk):
+    """A hall without pillars: who walks along is all that holds an odometry without an IMU."""
+
+    def __init__(self, seconds: float = 6.0) -> None:
+        super().__init__(GROUP, seconds=seconds)
+        self.imu = None
+
+
+def fixes(walk: Walk, *, scale: float = 1.0) -> GnssAiding:
+    """Of an antenna in the body, every tenth of a second of the walk, 2 cm."""
+    t_ns = np.arange(0, len(walk) + 1, dtype=np.int64) * 100_000_000
+    places = np.stack([walk.place(t) for t in t_ns])
+    return GnssAiding(
+        t_ns=t_ns,
+        p_enu=scale * (places - places[0]),
+        sd_m=np.full((len(t_ns), 3), 0.1),
+        R_enu_body=np.tile(np.eye(3), (len(t_ns), 1, 1)),
+        attitude_sd_rad=0.01,
+        p_body_antenna=np.zeros(3),
+    )
+
+
+def largest_error_m(walk: Walk, made: OdometryPass) -> float:
+    places = np.stack([walk.place(t) for t in walk.t_mid_ns])
+    found = SE3.stack(step.T_odom_body for step in made.steps).t
+    return float(np.linalg.norm((found - found[0]) - (places - places[0]), axis=1).max())
+
+
+def processed(walk: Walk, aiding: GnssAiding) -> tuple[OdometryPass, Found]:
+    """Odometry with all points, and what is found without the moving ones."""
+
+    def register(seen, turns=()):
+        return register_all(seen, SETTINGS, progress=Silent(), aiding=aiding, turns=turns)
+
+    made = register(walk)
+    return made, leave_out_moving(walk, made, register=register, aiding=aiding)
+
+
+def test_fixes_show_who_pulled_the_odometry_along() -> None:
+    walk = Walk(GROUP, ROWS, seconds=4.5)
+
+    made, found = processed(walk, fixes(walk))
+
+    assert largest_error_m(walk, made) > 1.0
+    assert largest_error_m(walk, found.made) < 0.2
+    assert found.hidden is not None and found.moving.outcome == MovingOutcome.LEFT_OUT
+
+
+def test_what_contradicts_the_fixes_without_them_is_not_said_to_hold() -> None:
+    walk = Walk(GROUP, ROWS, seconds=4.5)
+
+    _, found = processed(walk, fixes(walk, scale=1.5))
+
+    assert found.moving.outcome == MovingOutcome.CONTRADICTED and found.moving.is_severe
+
+
+def test_wrong_fixes_hide_nothing_that_stands() -> None:
+    walk = Walk(standing=ROWS, seconds=6.0)
+
+    made, found = processed(walk, fixes(walk, scale=1.5))
+
+    assert found.made is made and found.hidden is None
+    assert largest_error_m(walk, found.made) < 0.05
+
+
+def test_where_the_rest_does_not_hold_it_the_trajectory_is_as_unsure_as_people_walk_fast() -> None:
+    walk = WithoutImu(seconds=3.0)
+    made = register_all(walk, SETTINGS, progress=Silent())
+    moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.NOT_HELD)
+
+    sure, unsure = (
+        np.array([step.motion_cov for step in steps])
+        for steps in (made.steps, less_sure(Found(made, moving)))
+    )
+
+    added = np.sqrt(np.einsum("nii->ni", unsure - sure))
+    crowded = walk.t_mid_ns - walk.t_mid_ns[0] <= 2_000_000_000
+    expected = 0.1 * np.array([0.0, 0.0, 0.5, 1.5, 1.5, 0.0])
+    assert added[crowded] == pytest.approx(np.tile(expected, (crowded.sum(), 1)), rel=0.02)
+    assert not added[~crowded].any()
+
+
+def test_what_was_left_out_makes_nothing_less_sure() -> None:
+    walk = WithoutImu(seconds=1.0)
+    made = register_all(walk, SETTINGS, progress=Silent())
+    moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.LEFT_OUT)
+
+    assert less_sure(Found(made, moving)) is made.steps
