@@ -6,7 +6,6 @@ keep odometry within decimeters there. Where the LiDAR observes the motion they 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -79,13 +78,6 @@ class GnssAiding:
         """``T_enu_body`` by the fixes alone, which is no use between fixes far apart."""
         p = self.p_enu - self.R_enu_body @ self.p_body_antenna
         return Trajectory(self.t_ns, SE3(self.R_enu_body, p))
-
-    @property
-    def turns(self) -> Sequence[tuple[int, int, Array]]:
-        """Times [ns] of two fixes in a row, and the turn between, (3, 3)."""
-        near = np.flatnonzero(np.diff(self.t_ns) <= _MAX_GAP_NS)
-        R = self.R_enu_body
-        return [(int(self.t_ns[k]), int(self.t_ns[k + 1]), R[k].T @ R[k + 1]) for k in near]
 
     def covers(self, first_ns: int, last_ns: int) -> bool:
         """Whether there are fixes at both of two times that are near each other."""

@@ -33,14 +33,8 @@ _TYPICAL = 0.8
 _EXPLAINED = 0.3
 """The gyroscope explains the turns that the LiDARs see without it if this ratio of them is left. A
 clock 20 ms off leaves 0.07, a rotated LiDAR 0.12, a clock 300 ms off 0.7, swapped axes 2."""
-_MOST_TURNS = 300
-"""Turns of an INS that are compared at most, at regular times."""
 _NEVER_M = 1.0
 """The error of a trial that found no match [m]."""
-
-
-Turns = Sequence[tuple[int, int, Array]]
-"""Two times [ns] and the turn of the body between them, (3, 3)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,8 +44,8 @@ class Trial:
     lost: int
     error_m: float
     """Distance of the matched segments from the local map that most frames stay below [m]."""
-    turns: Turns
-    """Between multiframes in a row that were tracked."""
+    turns: Sequence[tuple[int, int, Array]]
+    """Times [ns] of two multiframes in a row that were tracked, and the turn between, (3, 3)."""
 
     def clearly_better(self, other: Trial) -> bool:
         """Whether no more frames are lost and the error is much smaller."""
@@ -62,18 +56,17 @@ class Trial:
             (1.0 - _CLEARLY) * other.error_m, _CLEARLY_M
         )
 
-
-def unexplained(turns: Turns, motion: ImuMotion) -> float:
-    """Part of the turns that a gyroscope does not measure, 0..; infinite without turns."""
-    seen = np.array([so3_log(R) for _, _, R in turns]).reshape(-1, 3)
-    measured = [so3_log(motion.turn(first, last)) for first, last, _ in turns]
-    total = float((seen**2).sum())
-    left = float(((seen - np.array(measured).reshape(-1, 3)) ** 2).sum())
-    return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
+    def unexplained(self, motion: ImuMotion) -> float:
+        """Part of the turns that a gyroscope does not measure, 0..; infinite without turns."""
+        seen = np.array([so3_log(R) for _, _, R in self.turns]).reshape(-1, 3)
+        measured = [so3_log(motion.turn(first, last)) for first, last, _ in self.turns]
+        total = float((seen**2).sum())
+        left = float(((seen - np.array(measured).reshape(-1, 3)) ** 2).sum())
+        return float(np.sqrt(left / total)) if total > 0.0 else float("inf")
 
 
 def consistent_imu(
-    frames: RecordedFrames, settings: Settings, *, turns: Turns = ()
+    frames: RecordedFrames, settings: Settings, *, trusted: bool = False
 ) -> tuple[ImuSamples | None, str]:
     """The IMU samples as recorded, with the gyroscope bias removed, or None.
 
@@ -85,8 +78,7 @@ def consistent_imu(
     Args:
         frames: The multiframes with their rig and IMU.
         settings: Settings of the odometry.
-        turns: Of an INS, where moving objects leave too little of the view to doubt an IMU: one
-            that measures these turns is used. What comes of it has to agree with the fixes.
+        trusted: Whether nothing but a bias is wrong with it: who walks along contradicts an IMU.
 
     Returns:
         The samples to use, and a warning for the user (empty = none).
@@ -105,14 +97,14 @@ def consistent_imu(
             text = ", ".join(f"{value:.1f}" for value in np.rad2deg(zero_rad_s))
             best = found
             chosen = zeroed, f"gyroscope bias at the start ({text} deg/s) was subtracted"
+    if trusted:
+        return chosen
     found = _try(frames, None, settings)
     used = chosen[0]
     if used is None or not found.clearly_better(best):
         return chosen
     motion = ImuMotion(used, frames.rig, settings.odometry)
-    if unexplained(_some(turns), motion) < _EXPLAINED:
-        return chosen
-    if unexplained(found.turns, motion) < _EXPLAINED:
+    if found.unexplained(motion) < _EXPLAINED:
         return _without_forces(frames, used, whole=best, settings=settings) or chosen
     return None, _contradicts("IMU", best, found)
 
@@ -134,10 +126,6 @@ def _without_forces(
     if not found.clearly_better(best):
         return None
     return turns_only, _contradicts("accelerometer", best, found)
-
-
-def _some(turns: Turns) -> Turns:
-    return turns[:: 1 + len(turns) // _MOST_TURNS]
 
 
 def _contradicts(what: str, with_it: Trial, without: Trial) -> str:

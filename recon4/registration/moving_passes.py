@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from dataclasses import replace as with_fields
+from functools import partial
+from typing import Protocol
 
 import numpy as np
 from msgspec.structs import replace
@@ -16,13 +18,10 @@ from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import HiddenPoints
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.imu_consistency import Turns
 from recon4.registration.moving import StandingFrames, find_moving, hide_moving, is_crowded_at
 from recon4.registration.passes import OdometryPass
 from recon4.registration.step import OdometryStep
 
-Register = Callable[[RecordedFrames, Turns], OdometryPass]
-"""Registers all multiframes once; turns of an INS speak for the gyroscope."""
 _ROUNDS, _SETTLED_M = 4, 0.1
 """Most passes without moving objects; a trajectory is settled if the last one moved no position by
 more than this [m]."""
@@ -31,6 +30,13 @@ _REJECTED = 0.1
 _ALONG_M_S, _ALONG_RAD_S = 1.5, 0.5
 """Speed of people who walk along [m/s], and without a gyroscope how fast they turn [rad/s]: what a
 trajectory that they pull along may be wrong by."""
+
+
+class Register(Protocol):
+    """Registers all multiframes once."""
+
+    def __call__(self, frames: RecordedFrames, /, *, trusted: bool) -> OdometryPass:
+        """Odometry of these frames; ``trusted``: see `consistent_imu`."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,8 +64,9 @@ def leave_out_moving(
     """
     moving = find_moving(frames, made.trajectory, made.pieces)
     if aiding is not None and _contradicts(made, aiding):
-        led = _led_by_fixes(frames, made, register=register, aiding=aiding)
-        if led is not None:
+        shown = _shown_by_fixes(frames, aiding)
+        led = _without_moving(frames, shown, made, register=register, fixes=aiding)
+        if not led.moving.is_severe:
             return led
     if not moving.is_crowded:
         return Found(made, moving)
@@ -106,20 +113,9 @@ class _Shown:
     moving: MovingFigures
 
 
-def _led_by_fixes(
-    frames: RecordedFrames, made: OdometryPass, *, register: Register, aiding: GnssAiding
-) -> Found | None:
-    """Passes without what moves by the fixes; None if that does not resolve the contradiction."""
+def _shown_by_fixes(frames: RecordedFrames, aiding: GnssAiding) -> _Shown:
     pieces = _covered(frames, aiding)
-    if (pieces < 0).all():
-        return None
-    moving = find_moving(frames, aiding.trajectory, pieces)
-    if not moving.is_crowded:
-        return None
-
-    shown = _Shown(aiding.trajectory, pieces, moving)
-    found = _without_moving(frames, shown, made, register=register, turns=aiding.turns)
-    return None if found.hidden is None or _contradicts(found.made, aiding) else found
+    return _Shown(aiding.trajectory, pieces, find_moving(frames, aiding.trajectory, pieces))
 
 
 def _covered(frames: RecordedFrames, aiding: GnssAiding) -> NDArray[np.int64]:
@@ -137,9 +133,42 @@ def _without_moving(
     made: OdometryPass,
     *,
     register: Register,
-    turns: Turns = (),
+    fixes: GnssAiding | None = None,
 ) -> Found:
-    """Register again without moving objects, until that does not move the trajectory any more.
+    """Passes without moving objects, with the IMU trusted first: they may have contradicted it.
+
+    Args:
+        frames: The multiframes.
+        shown: What moves. If it fills little of the view, this is severe.
+        made: Odometry with all points.
+        register: Makes a pass.
+        fixes: Those that a pass must not contradict.
+    """
+
+    def fails(now: OdometryPass) -> bool:
+        return now.lost > made.lost or (fixes is not None and _contradicts(now, fixes))
+
+    found = Found(made, replace(shown.moving, outcome=MovingOutcome.NOT_HELD))
+    for trusted in (True, False) if shown.moving.is_crowded else ():
+        settled = _settled(
+            frames, shown, made, register=partial(register, trusted=trusted), fails=fails
+        )
+        if settled is not None:
+            found = settled
+        if not found.moving.is_severe:
+            break
+    return found
+
+
+def _settled(
+    frames: RecordedFrames,
+    shown: _Shown,
+    made: OdometryPass,
+    *,
+    register: Callable[[RecordedFrames], OdometryPass],
+    fails: Callable[[OdometryPass], bool],
+) -> Found | None:
+    """Passes without moving objects until one does not move the trajectory; None if one fails.
 
     A trajectory that they have pulled along shows only some of them. The next one, without these,
     shows the others.
@@ -147,9 +176,9 @@ def _without_moving(
     now, outcome = made, MovingOutcome.NOT_SETTLED
     for _ in range(_ROUNDS):
         hidden = hide_moving(frames, shown.trajectory, shown.pieces, found=shown.moving)
-        before, now = now, register(StandingFrames(frames, hidden), turns)
-        if now.lost > made.lost:
-            return Found(made, replace(shown.moving, outcome=MovingOutcome.NOT_HELD))
+        before, now = now, register(StandingFrames(frames, hidden))
+        if fails(now):
+            return None
         moving = find_moving(frames, now.trajectory, now.pieces)
         shown = _Shown(now.trajectory, now.pieces, moving)
         if _moved_m(before.steps, now.steps) < _SETTLED_M:

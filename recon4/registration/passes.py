@@ -14,7 +14,7 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.imu_consistency import Turns, consistent_imu
+from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.make import make_odometry
@@ -59,7 +59,7 @@ def register_all(
     *,
     progress: Progress,
     aiding: GnssAiding | None = None,
-    turns: Turns = (),
+    trusted: bool = False,
 ) -> OdometryPass:
     """Register all multiframes once.
 
@@ -68,14 +68,20 @@ def register_all(
         settings: Of the odometry.
         progress: Counts multiframes; tracking that is lost is an event.
         aiding: Fixes of a GNSS/INS, outdoors.
-        turns: See `consistent_imu`.
+        trusted: Whether the IMU is, see `consistent_imu`.
     """
-    imu, remark = consistent_imu(frames, settings, turns=turns)
-    odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
-    steps = _register(frames, odometry, progress)
-    estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
-    used = imu if settings.odometry.use_imu else None
-    return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
+    imu, remark = consistent_imu(frames, settings, trusted=trusted)
+
+    def make() -> Odometry | LineOdometry:
+        return make_odometry(frames.rig, settings, imu, aiding=aiding)
+
+    def made_by(odometry: Odometry | LineOdometry) -> OdometryPass:
+        steps = _register(frames, odometry, progress)
+        estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
+        used = imu if settings.odometry.use_imu else None
+        return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
+
+    return made_by(make())
 
 
 def _register(

@@ -19,7 +19,6 @@ from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.bridge import bridged_text
-from recon4.registration.imu_consistency import Turns
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.imu_saturation import saturated_texts
 from recon4.registration.moving import crowd_text, find_moving
@@ -51,8 +50,8 @@ def run_odometry(
         aiding: Fixes of a GNSS/INS, outdoors.
     """
 
-    def register(seen: RecordedFrames, turns: Turns = ()) -> OdometryPass:
-        return register_all(seen, settings, progress=progress, aiding=aiding, turns=turns)
+    def register(seen: RecordedFrames, *, trusted: bool = False) -> OdometryPass:
+        return register_all(seen, settings, progress=progress, aiding=aiding, trusted=trusted)
 
     made = register(frames)
     if settings.odometry.leave_out_moving:

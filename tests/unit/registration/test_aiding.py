@@ -79,16 +79,6 @@ def test_fixes_alone_make_a_trajectory_of_the_body() -> None:
     assert T.angle()[0] == pytest.approx(np.pi * 0.775, abs=0.01)
 
 
-def test_turns_are_between_fixes_that_are_near_each_other() -> None:
-    aiding = walking(missing=slice(10, 15))
-
-    spans = [last - first for first, last, _ in aiding.turns]
-    turned = [SE3(R, np.zeros(3)).angle() for _, _, R in aiding.turns]
-
-    assert len(spans) == 24 and set(spans) == {100_000_000}
-    assert turned == pytest.approx([0.05 * np.pi] * 24)
-
-
 def test_a_time_beside_a_gap_is_covered_and_one_inside_is_not() -> None:
     aiding = walking(missing=slice(10, 15))
 

@@ -78,6 +78,12 @@ def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
     assert "contradicts the LiDARs" in remark
 
 
+def test_an_imu_that_is_trusted_is_used_all_the_same(frames):
+    walk = Walk(frames, altered(frames, turn=lambda gyro: 3.0 * gyro))
+
+    assert consistent_imu(walk, SETTINGS, trusted=True) == (walk.imu, "")
+
+
 def test_of_an_imu_with_wrong_forces_the_gyroscope_is_used(frames):
     walk = Walk(frames, altered(frames, force=-1.0))
 
@@ -107,41 +113,21 @@ def test_a_gyroscope_that_explains_the_turns_is_not_dropped(monkeypatch, frames,
     assert (remark == "") == kept
 
 
-@pytest.mark.parametrize(("sign", "kept"), [(1.0, True), (-1.0, False)])
-def test_an_ins_speaks_for_the_imu_where_the_lidars_cannot(monkeypatch, frames, sign, kept):
-    """Errors of field/60 with five people, who fill the view of the LiDARs."""
-    motion = ImuMotion(altered(frames, lambda gyro: sign * gyro), frames.rig, SETTINGS.odometry)
-    spans = [(first, first + 100_000_000) for first in frames.t_mid_ns[:10].tolist()]
-    turns = [(first, last, motion.turn(first, last)) for first, last in spans]
-    monkeypatch.setattr(
-        imu_consistency,
-        "_try",
-        lambda _, imu, __, **settling: Trial(0, 0.0191 if imu is None else 0.0265, []),
-    )
-
-    imu, remark = consistent_imu(Walk(frames, frames.imu), SETTINGS, turns=turns)
-
-    assert imu is (frames.imu if kept else None)
-    assert (remark == "") == kept
-
-
 @pytest.mark.parametrize(("settled_m", "kept"), [(0.0105, True), (0.0158, False)])
 def test_an_accelerometer_is_tried_again_after_it_settled(monkeypatch, frames, settled_m, kept):
     """Errors of corridor:2/3, whose second trial begins within its fastest turn."""
     asked = []
 
-    turns = [(0, 100_000_000, np.eye(3))]
-
     def trial(_, imu, __, *, settling=0):
         asked.append(settling)
         if imu is None:
-            return Trial(0, 0.0111, turns)
+            return Trial(0, 0.0111, [])
         if np.isnan(imu.accel_m_s2).all():
-            return Trial(0, 0.0118, turns)
-        return Trial(0, settled_m if settling else 0.0158, turns)
+            return Trial(0, 0.0118, [])
+        return Trial(0, settled_m if settling else 0.0158, [])
 
     monkeypatch.setattr(imu_consistency, "_try", trial)
-    monkeypatch.setattr(imu_consistency, "unexplained", lambda t, _: 0.07 if t else np.inf)
+    monkeypatch.setattr(Trial, "unexplained", lambda *_: 0.07)
 
     imu, remark = consistent_imu(frames, SETTINGS)
 

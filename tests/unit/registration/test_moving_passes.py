@@ -46,8 +46,8 @@ def largest_error_m(walk: Walk, made: OdometryPass) -> float:
 def processed(walk: Walk, aiding: GnssAiding) -> tuple[OdometryPass, Found]:
     """Odometry with all points, and what is found without the moving ones."""
 
-    def register(seen, turns=()):
-        return register_all(seen, SETTINGS, progress=Silent(), aiding=aiding, turns=turns)
+    def register(seen, *, trusted=False):
+        return register_all(seen, SETTINGS, progress=Silent(), aiding=aiding, trusted=trusted)
 
     made = register(walk)
     return made, leave_out_moving(walk, made, register=register, aiding=aiding)
