@@ -25,6 +25,8 @@ from recon4.settings import Settings
 
 _REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
 """The pose of every n-th multiframe is reported while the stage runs, some per event."""
+_AS_WELL = 1.02
+"""Residuals that are larger by no more than this factor are as good."""
 _DENSE_NS = 9_000_000
 """Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
 
@@ -52,6 +54,12 @@ class OdometryPass:
         """Number of the piece of each multiframe, -1 = lost, (N,)."""
         return np.array([-1 if step.lost else step.piece for step in self.steps], np.int64)
 
+    def fits_as_well(self, other: OdometryPass) -> bool:
+        """Whether it loses no more multiframes, and what matches lies as near."""
+        mine, others = (np.array([s.error_m for s in one.steps]) for one in (self, other))
+        both = np.isfinite(mine) & np.isfinite(others)
+        return self.lost <= other.lost and bool(mine[both].sum() <= _AS_WELL * others[both].sum())
+
 
 def register_all(
     frames: RecordedFrames,
@@ -61,7 +69,9 @@ def register_all(
     aiding: GnssAiding | None = None,
     trusted: bool = False,
 ) -> OdometryPass:
-    """Register all multiframes once.
+    """Register all multiframes; again with a corrected IMU, if it proved to be wrong.
+
+    Until the scale, the axes and the clock of an IMU are known the trajectory errs by them.
 
     Args:
         frames: The multiframes with their rig and IMU.
@@ -81,7 +91,14 @@ def register_all(
         used = imu if settings.odometry.use_imu else None
         return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
 
-    return made_by(make())
+    first, again = make(), make()
+    made = made_by(first)
+    if not (made.estimate and made.estimate.texts):
+        return made
+    if isinstance(first, Odometry) and isinstance(again, Odometry):
+        again.remember_imu(first)
+    corrected = made_by(again)
+    return corrected if corrected.fits_as_well(made) else made
 
 
 def _register(

@@ -1,0 +1,83 @@
+"""Odometry that runs again with what it found out about a wrong IMU."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.evaluation.ate import pair_poses
+from recon4.model.samples import ImuSamples
+from recon4.progress import Silent
+from recon4.recording.formats.poses import read_tum
+from recon4.recording.ingest import ingest
+from recon4.recording.sources import Sources
+from recon4.registration.passes import OdometryPass, register_all
+from recon4.settings import preset
+from recon4.store.frames import FrameStore
+
+SETTINGS = preset("indoor")
+SCALE = 1.05
+
+
+@pytest.fixture(scope="module")
+def frames(office_recording, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("frames")
+    sources = Sources((office_recording / "recording.pcap",), imu=office_recording / "imu.csv")
+    ingest(sources, folder, settings=SETTINGS.ingest, progress=Silent())
+    return FrameStore.open(folder)
+
+
+def with_scale(frames, scale):
+    imu = ImuSamples(frames.imu.t_ns, scale * frames.imu.gyro_rad_s, frames.imu.accel_m_s2)
+    return replace(frames, imu=imu)
+
+
+class Counted(Silent):
+    """Counts the passes."""
+
+    passes = 0
+
+    def start(self, what, total, unit):
+        self.passes += 1
+
+
+def turn_error_rad(made: OdometryPass, office_recording) -> float:
+    """Largest error of the orientation against that of the first multiframe."""
+    pairs = pair_poses(made.trajectory, read_tum(office_recording / "truth.tum"))
+    found, true = pairs.T_map_body, pairs.T_true_body
+    left = (true[0].inverse() @ true).inverse() @ (found[0].inverse() @ found)
+    return float(np.max(left.angle()))
+
+
+def test_a_wrong_scale_is_corrected_from_the_start(frames, office_recording, monkeypatch):
+    walk, progress = with_scale(frames, SCALE), Counted()
+
+    corrected = register_all(walk, SETTINGS, progress=progress)
+    monkeypatch.setattr(OdometryPass, "fits_as_well", lambda *_: False)
+    first = register_all(walk, SETTINGS, progress=Silent())
+
+    assert progress.passes == 2
+    assert "scale" in first.estimate.texts[0] and "scale" in corrected.estimate.texts[0]
+    errors = [turn_error_rad(made, office_recording) for made in (first, corrected)]
+    assert errors[1] < 0.5 * errors[0]
+
+
+def test_an_imu_in_order_needs_one_pass(frames):
+    progress = Counted()
+
+    made = register_all(frames, SETTINGS, progress=progress)
+
+    assert progress.passes == 1
+    assert made.estimate.texts == ()
+
+
+@pytest.mark.parametrize(
+    ("factor", "lost", "fits"), [(1.01, 0, True), (1.05, 0, False), (1.0, 1, False)]
+)
+def test_a_pass_fits_as_well_if_it_loses_nothing_and_lies_as_near(frames, factor, lost, fits):
+    made = register_all(frames, SETTINGS, progress=Silent())
+    steps = [
+        replace(s, error_m=factor * s.error_m, lost=k < lost) for k, s in enumerate(made.steps)
+    ]
+
+    assert replace(made, steps=steps).fits_as_well(made) is fits
