@@ -10,7 +10,7 @@ from recon4.geometry.se3 import ROTATION, SE3, Array, proper, so3_exp, so3_log, 
 from recon4.kernels.imu import place_points
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.degeneracy import observable_directions, of_rigid_pose
-from recon4.registration.motion import Prediction, middle_of
+from recon4.registration.motion import Prediction, Rest, middle_of
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
@@ -34,8 +34,14 @@ motion, errors of the accelerometer would add up to tens of meters a second. Wha
 is known a hundred times better, so a vehicle is not held back."""
 _GYROSCOPE_SD_RAD = float(np.deg2rad(0.1))
 """Standard deviation of the turn of a multiframe by the gyroscope, with its bias and scale."""
-_STATIONARY_SD_M_S = 0.02
-"""Standard deviation of the velocity of a person who stands [m/s]."""
+_AT_REST = {
+    Rest.STATIONARY: np.full(3, 0.02**-2),
+    Rest.STOPPED: np.array([0.1, 0.1, np.inf]) ** -2.0,
+}
+"""Information on the velocity of a person who stands [s²/m²]. Who has just stopped still sways; the
+ground observes the height."""
+_WEAK_SD_M = 0.04
+"""Standard deviation of the position by the points from which on they hardly observe it [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -55,6 +61,11 @@ class FrameFit:
     stationary: bool
     """Whether the body was known to stand at the end of the frame."""
     with_imu: bool
+
+    @property
+    def is_weak(self) -> bool:
+        """Whether the points hardly observe a direction."""
+        return self.weak_sd_m > _WEAK_SD_M
 
     @property
     def weak_sd_m(self) -> float:
@@ -91,17 +102,17 @@ class FrameFitter:
         prediction: Prediction,
         *,
         weak: WeakDirections | None = None,
-        stationary: bool = False,
+        rest: Rest = Rest.MOVING,
     ) -> FrameFit:
         """Correct a predicted motion until the ends of the segments lie on the planes.
 
-        Where these observe a direction weakly, ``weak`` adds points that observe it. A body known
-        to be ``stationary`` at the end has no velocity there.
+        Where these observe a direction weakly, ``weak`` adds points that observe it. A body at
+        ``rest`` at the end has no velocity there.
 
         Both ends of a segment are used, not its midpoint: planes are fitted to ends. While
         stationary this halves the scatter of the pose.
         """
-        information, g_prior = self._known(prediction, stationary=stationary)
+        information, g_prior = self._known(prediction, rest)
         center = prediction.T_odom_body.t[-1]
         p_body = np.concatenate([segments.a_body, segments.b_body])
         p_s = np.concatenate([segments.a_s, segments.b_s])
@@ -132,12 +143,13 @@ class FrameFitter:
                 break
         P = np.asarray(np.linalg.inv(H), np.float64)
         return FrameFit(
-            T_dense, delta, P, H_lidar, match, rounds, converged, stationary, self.with_imu
-        )
+            T_dense, delta, P, H_lidar, match, rounds, converged,
+            rest is Rest.STATIONARY, self.with_imu,
+        )  # fmt: skip
 
-    def _known(self, prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
+    def _known(self, prediction: Prediction, rest: Rest) -> tuple[Array, Array]:
         """What is known before the points are used, in the form of `_prior`."""
-        information, g = _prior(prediction, stationary=stationary)
+        information, g = _prior(prediction, rest)
         if self.with_imu:
             _add_speed_of_person(information, g, prediction)
         return information, g
@@ -149,7 +161,7 @@ class FrameFitter:
             tried: The fit to the local map, for its figures.
             prediction: With an expected pose.
         """
-        information, g_prior = _prior(prediction, stationary=False)
+        information, g_prior = _prior(prediction, Rest.MOVING)
         P = np.asarray(np.linalg.inv(information), np.float64)
         delta = np.asarray(-P @ g_prior, np.float64)
         T_dense = _correct(prediction, delta, prediction.T_odom_body.t[-1])
@@ -176,7 +188,7 @@ def motion_cov(P: Array) -> Array:
     return np.asarray(P[START, START] + P[END_POSE, END_POSE] - cross - P[END_POSE, START])
 
 
-def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
+def _prior(prediction: Prediction, rest: Rest) -> tuple[Array, Array]:
     """Information (34, 34) of the prediction and gradient (34,) where nothing is corrected."""
     information = np.asarray(np.linalg.inv(prediction.prior + 1e-12 * np.eye(END.stop)), np.float64)
     g = np.zeros(END.stop)
@@ -184,9 +196,10 @@ def _prior(prediction: Prediction, *, stationary: bool) -> tuple[Array, Array]:
         weighted = _MIDDLE.T / _EXPECTED_SD**2
         information += weighted @ _MIDDLE
         g -= weighted @ _from_expected(prediction, prediction.expected)
-    if stationary:
-        information[END_VELOCITY, END_VELOCITY] += np.eye(3) / _STATIONARY_SD_M_S**2
-        g[END_VELOCITY] += prediction.end.vector[VECTOR.velocity] / _STATIONARY_SD_M_S**2
+    at_rest = _AT_REST.get(rest)
+    if at_rest is not None:
+        information[END_VELOCITY, END_VELOCITY] += np.diag(at_rest)
+        g[END_VELOCITY] += at_rest * prediction.end.vector[VECTOR.velocity]
     return information, g
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from enum import Enum, auto
 
 import numpy as np
 
@@ -25,6 +26,8 @@ _MIN_REST_SAMPLES = 10
 _REST_RAD_S, _REST_M_S2, _REST_M_S = 0.12, 0.3, 0.1
 """Largest turn rate [rad/s], shaking [m/s²] and speed [m/s] of a person who stands; who walks turns
 by 0.5 rad/s and shakes by 1 m/s² and more."""
+_WALKED_NS, _WALK_M_S2 = 30_000_000_000, 0.8
+"""Who stops has walked within this time [ns], and shook by more than this [m/s²]."""
 _GAIN_WALK, _CLOCK_WALK_S = 1e-5, 1e-4
 """Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
 estimated: a clock that drifts by 300 ppm is followed."""
@@ -85,6 +88,15 @@ class MotionState:
         return replace(self, R=R, vector=self.vector + delta[STATE.position.start :], P=P)
 
 
+class Rest(Enum):
+    """What an IMU says of a body that may stand."""
+
+    MOVING = auto()
+    STOPPED = auto()
+    """It is still, and only a velocity that nothing observes says otherwise."""
+    STATIONARY = auto()
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Prediction:
     """Predicted motion over one frame, before the LiDAR is used."""
@@ -143,23 +155,43 @@ class ImuMotion:
         outside = start_ns < times[0] - 50_000_000 or end_ns > times[-1] + 50_000_000
         return len(times) > 1 and not outside and bool(np.diff(times).max() <= 50_000_000)
 
-    def is_stationary(self, state: MotionState) -> bool:
-        """Whether the samples of the last half second and the velocity fit a body that stands.
+    def rest(self, state: MotionState, *, weak: bool) -> Rest:
+        """Whether the body stands, by the samples of the last half second and the velocity.
 
         A cart that rolls evenly shakes as little as a person who stands: the velocity decides.
+        Where nothing observes it, a body that shook like a walker's before has stopped.
+
+        Args:
+            state: Predicted.
+            weak: Whether the LiDARs hardly observe the motion.
         """
-        first, last = np.searchsorted(self._t_ns, [state.t_ns - _REST_NS, state.t_ns + 1])
-        if not self._has_accel or last - first < _MIN_REST_SAMPLES:
-            return False
-        turn = self._gyro[first:last] - state.vector[VECTOR.gyro_bias]
-        shaking = np.linalg.norm(self._accel[first:last].std(axis=0))
+        if not self._has_accel or not self._is_still(state):
+            return Rest.MOVING
         speed = np.linalg.norm(state.vector[VECTOR.velocity])
         speed_sd = np.sqrt(np.trace(state.P[STATE.velocity, STATE.velocity]))
-        return bool(
-            np.abs(turn).max() < _REST_RAD_S
-            and shaking < _REST_M_S2
-            and speed < _REST_M_S + 3.0 * min(speed_sd, _REST_M_S)
+        if speed < _REST_M_S + 3.0 * min(speed_sd, _REST_M_S):
+            return Rest.STATIONARY
+        return (
+            Rest.STOPPED
+            if weak and self._shakes(state.t_ns, _WALKED_NS) > _WALK_M_S2
+            else Rest.MOVING
         )
+
+    def _is_still(self, state: MotionState) -> bool:
+        rows = self._before(state.t_ns, _REST_NS)
+        turn = self._gyro[rows] - state.vector[VECTOR.gyro_bias]
+        return bool(
+            len(turn) >= _MIN_REST_SAMPLES
+            and np.abs(turn).max() < _REST_RAD_S
+            and self._shakes(state.t_ns, _REST_NS) < _REST_M_S2
+        )
+
+    def _shakes(self, t_ns: int, span_ns: int) -> float:
+        """Standard deviation of the specific force over a time span [m/s²]."""
+        return float(np.linalg.norm(self._accel[self._before(t_ns, span_ns)].std(axis=0)))
+
+    def _before(self, t_ns: int, span_ns: int) -> slice:
+        return slice(*np.searchsorted(self._t_ns, [t_ns - span_ns, t_ns + 1]).tolist())
 
     def initial(self, t_ns: int) -> MotionState:
         """Initial state at ``t_ns``: roll and pitch from the mean specific force."""
@@ -234,9 +266,9 @@ class FreeMotion:
         sd = _start_sd([*_FREE_SD, 1e-9, 1e-9])[STATE.calibration]
         return state.with_biases(np.zeros(len(sd)), np.diag(sd**2))
 
-    def is_stationary(self, state: MotionState) -> bool:
+    def rest(self, state: MotionState, *, weak: bool) -> Rest:
         """Nothing is known of it without an IMU: registration decides (`zero_velocity`)."""
-        return False
+        return Rest.MOVING
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """Stationary state at ``t_ns`` at the last position, because the motion is unknown."""

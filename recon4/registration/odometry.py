@@ -101,7 +101,7 @@ class Odometry:
         self._keyframes: deque[tuple[Array, Array]] = deque()
         """Ends of the segments of the last keyframes (N, 3), and from where they were seen (3,)."""
         self._last_keyframe = SE3.identity()
-        self._lost_frames = 0
+        self._lost_frames, self._is_weak = 0, False
         self._limits = LostLimits(settings.odometry)
         self._fresh: FreshChain | None = None
         """Without an IMU: the scans since tracking was lost."""
@@ -170,8 +170,8 @@ class Odometry:
             prediction,
             max_eigenvalue=self._settings.odometry.weak_eigenvalue,
         )
-        stationary = self._motion.is_stationary(prediction.end)
-        fit = self._fitter.fit(self._map, segments, prediction, weak=weak, stationary=stationary)
+        rest = self._motion.rest(prediction.end, weak=self._is_weak)
+        fit = self._fitter.fit(self._map, segments, prediction, weak=weak, rest=rest)
         lost = not first and (not found or self._is_lost(fit, prediction))
         if lost and across is not None:
             # So much is new that the local map says little.
@@ -188,6 +188,7 @@ class Odometry:
         self._state = _updated(prediction, fit, lost=lost, first=first)
         if not lost:
             self._good = self._state
+        self._is_weak = not lost and fit.is_weak
         self._count_lost(prediction.end.t_ns, lost=lost)
         T_dense = prediction.T_odom_body if lost or first else fit.T_dense
         step = make_step(frame, prediction, fit, T_dense=T_dense, lost=lost)

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp, so3_log
 from recon4.model.samples import ImuSamples
-from recon4.registration.motion import FreeMotion, ImuMotion, MotionState
+from recon4.registration.motion import FreeMotion, ImuMotion, MotionState, Rest
 from recon4.settings import OdometrySettings
 from tests.room_walks import T0_NS
 from tests.scanned_room import RIG, imu_of, standing, strolling
@@ -287,3 +287,44 @@ def spinning(t_s):
     turns = np.zeros((len(t_s), 3))
     turns[:, 2] = 2.0 * np.tanh(2.0 * (t_s - 1.0))
     return SE3(so3_exp(turns), np.zeros((len(t_s), 3)))
+
+
+def who_walks_and_stands(seconds=6.0, walking_s=3.0, still_again_s=6.0):
+    """IMU samples of a body that bounces by 2 m/s² at 2 Hz, then stands."""
+    t_s = np.arange(0.0, seconds, 0.005)
+    accel = np.tile([0.0, 0.0, 9.80665], (len(t_s), 1))
+    bounces = (t_s < walking_s) | (t_s >= still_again_s)
+    accel[:, 2] += bounces * 2.0 * np.sin(4.0 * np.pi * t_s)
+    return ImuSamples(T0_NS + (1e9 * t_s).astype(np.int64), np.zeros_like(accel), accel)
+
+
+def rest_at(second, imu, *, speed=0.8, weak=True):
+    state = start_of(standing, T0_NS, [speed, 0.0, 0.0])
+    motion = ImuMotion(imu, RIG, SETTINGS)
+    return motion.rest(replace(state, t_ns=T0_NS + int(1e9 * second)), weak=weak)
+
+
+def test_who_walked_and_is_still_has_stopped_if_nothing_observes_the_speed():
+    imu = who_walks_and_stands()
+
+    assert rest_at(5.0, imu) is Rest.STOPPED
+    assert rest_at(5.0, imu, weak=False) is Rest.MOVING
+    assert rest_at(2.0, imu) is Rest.MOVING
+    assert rest_at(3.2, imu) is Rest.MOVING  # the half second before had steps
+
+
+def test_who_never_walked_may_be_on_a_cart():
+    assert rest_at(5.0, who_walks_and_stands(walking_s=0.0)) is Rest.MOVING
+
+
+def test_a_still_body_without_speed_is_stationary_whatever_observes_it():
+    imu = who_walks_and_stands(walking_s=0.0)
+
+    assert rest_at(5.0, imu, speed=0.05, weak=False) is Rest.STATIONARY
+    assert rest_at(5.0, imu, speed=0.05) is Rest.STATIONARY
+
+
+def test_without_an_imu_nothing_is_known_of_a_rest():
+    state = start_of(standing, T0_NS, [0.0, 0.0, 0.0])
+
+    assert FreeMotion(SETTINGS).rest(state, weak=True) is Rest.MOVING

@@ -3,10 +3,11 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.registration.frame_fit import FrameFitter
-from recon4.registration.motion import FreeMotion
+from recon4.registration.motion import FreeMotion, Rest
 from recon4.registration.odometry import Odometry
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.segments import sample_segments
+from recon4.registration.state import END, VECTOR
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings, override
 from tests.room_walks import FRAME_NS
@@ -104,3 +105,28 @@ def test_the_zero_velocity_update_does_not_depend_on_the_prediction(slow):
     np.testing.assert_allclose(end.vector[3:9], 0.0, atol=1e-12)
     np.testing.assert_allclose(held.T_dense.t, np.zeros_like(free.T_dense.t), atol=0.0)
     assert held.T_dense.R.shape == free.T_dense.R.shape
+
+
+def velocity_after(recording, rest):
+    """Of a body predicted at 0.8 m/s along x and 0.4 m/s upwards, which no plane observes."""
+    settings, start_ns = Settings(), recording[1].t_ns
+    T = SE3.stack([SE3.identity(), SE3.from_rpy(0.0, 0.0, 0.0, t=[0.08, 0.0, 0.04])])
+    motion = FreeMotion(settings.odometry)
+    state = motion.between(T, (start_ns - FRAME_NS, start_ns), start_ns)
+    prediction = motion.predict(state, start_ns + FRAME_NS)
+    segments = sample_segments(recording[1], RIG, settings.segments)
+    fitter = FrameFitter(settings.odometry, 1e-4, coarse=3, rounds=8)
+    fit = fitter.fit(PlaneMap(settings.planes), segments, prediction, rest=rest)
+    after = prediction.end.corrected(fit.delta[END], fit.P[END, END])
+    return after.vector[VECTOR.velocity], fit.stationary
+
+
+def test_who_has_stopped_is_slowed_and_not_called_stationary(slow):
+    moving, stopped, still = (
+        velocity_after(slow, rest) for rest in (Rest.MOVING, Rest.STOPPED, Rest.STATIONARY)
+    )
+
+    np.testing.assert_allclose(moving[0], [0.8, 0.0, 0.4], atol=1e-3)
+    assert 0.0 < stopped[0][0] < 0.2 and stopped[0][2] > 0.39
+    assert np.abs(still[0]).max() < 0.01
+    assert (moving[1], stopped[1], still[1]) == (False, False, True)
