@@ -107,10 +107,8 @@ class FrameFitter:
         """Correct a predicted motion until the ends of the segments lie on the planes.
 
         Where these observe a direction weakly, ``weak`` adds points that observe it. A body at
-        ``rest`` at the end has no velocity there.
-
-        Both ends of a segment are used, not its midpoint: planes are fitted to ends. While
-        stationary this halves the scatter of the pose.
+        ``rest`` at the end has no velocity there. Both ends of a segment are used, not its
+        midpoint: planes are fitted to ends. While stationary this halves the scatter of the pose.
         """
         information, g_prior = self._known(prediction, rest)
         center = prediction.T_odom_body.t[-1]
@@ -141,11 +139,8 @@ class FrameFitter:
             if rounds > self.coarse and _largest_move_m(step) < self.converged_step_m:
                 converged = True
                 break
-        P = np.asarray(np.linalg.inv(H), np.float64)
-        return FrameFit(
-            T_dense, delta, P, H_lidar, match, rounds, converged,
-            rest is Rest.STATIONARY, self.with_imu,
-        )  # fmt: skip
+        P, still = np.asarray(np.linalg.inv(H), np.float64), rest is Rest.STATIONARY
+        return FrameFit(T_dense, delta, P, H_lidar, match, rounds, converged, still, self.with_imu)
 
     def _known(self, prediction: Prediction, rest: Rest) -> tuple[Array, Array]:
         """What is known before the points are used, in the form of `_prior`."""
