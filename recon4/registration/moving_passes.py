@@ -149,7 +149,8 @@ def _without_moving(
         return now.lost > made.lost or (fixes is not None and _contradicts(now, fixes))
 
     found = Found(made, replace(shown.moving, outcome=MovingOutcome.NOT_HELD))
-    for trusted in (True, False) if shown.moving.is_crowded else ():
+    tries = (True, False) if frames.imu is not None else (True,)
+    for trusted in tries if shown.moving.is_crowded else ():
         settled = _settled(
             frames, shown, made, register=partial(register, trusted=trusted), fails=fails
         )
