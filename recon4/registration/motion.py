@@ -28,6 +28,8 @@ _REST_RAD_S, _REST_M_S2, _REST_M_S = 0.12, 0.3, 0.1
 by 0.5 rad/s and shakes by 1 m/s² and more."""
 _WALKED_NS, _WALK_M_S2 = 30_000_000_000, 0.8
 """Who stops has walked within this time [ns], and shook by more than this [m/s²]."""
+_STOPPED_M_S2 = 0.5
+"""Least acceleration of who does not stand [m/s²]; bias and tilt of an accelerometer are less."""
 _GAIN_WALK, _CLOCK_WALK_S = 1e-5, 1e-4
 """Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
 estimated: a clock that drifts by 300 ppm is followed."""
@@ -171,11 +173,17 @@ class ImuMotion:
         speed_sd = np.sqrt(np.trace(state.P[STATE.velocity, STATE.velocity]))
         if speed < _REST_M_S + 3.0 * min(speed_sd, _REST_M_S):
             return Rest.STATIONARY
-        return (
-            Rest.STOPPED
-            if weak and self._shakes(state.t_ns, _WALKED_NS) > _WALK_M_S2
-            else Rest.MOVING
-        )
+        walked = self._shakes(state.t_ns, _WALKED_NS) > _WALK_M_S2
+        stopped = weak and walked and self._acceleration(state) < _STOPPED_M_S2
+        return Rest.STOPPED if stopped else Rest.MOVING
+
+    def _acceleration(self, state: MotionState) -> float:
+        """Mean of the last half second by the accelerometer as it is [m/s²].
+
+        Where the motion is not observed its estimated bias may be as wrong as the velocity.
+        """
+        force = self._accel[self._before(state.t_ns, _REST_NS)].mean(axis=0)
+        return float(np.linalg.norm(state.R @ force + state.vector[VECTOR.gravity]))
 
     def _is_still(self, state: MotionState) -> bool:
         rows = self._before(state.t_ns, _REST_NS)

@@ -228,16 +228,19 @@ def _keys(cell: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.asarray(cell @ np.array([1, 1 << 20, 1 << 40], np.int64))
 
 
-def is_crowded_at(t_ns: Times, found: MovingFigures) -> NDArray[np.bool_]:
+def is_crowded_at(
+    t_ns: Times, found: MovingFigures, *, within_ns: int = _CLEARED_NS
+) -> NDArray[np.bool_]:
     """Near which multiframes moving objects were found.
 
     Args:
         t_ns: Times of all multiframes [ns], (N,).
         found: Of `find_moving`.
+        within_ns: How near in time [ns].
     """
     since_s = np.array(found.t_s)[np.array(found.ratio) >= _CLEARED]
     crowded_ns = t_ns[0] + np.round(1e9 * since_s).astype(np.int64)
-    return np.asarray((np.abs(crowded_ns - t_ns[:, None]) <= _CLEARED_NS).any(axis=1))
+    return np.asarray((np.abs(crowded_ns - t_ns[:, None]) <= within_ns).any(axis=1))
 
 
 def _regular(t_ns: Times, usable: NDArray[np.bool_]) -> NDArray[np.intp]:

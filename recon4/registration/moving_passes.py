@@ -31,6 +31,9 @@ _ALONG_M_S, _ALONG_RAD_S = 1.5, 0.5
 """Speed of people who walk along [m/s], and without a gyroscope how fast they turn [rad/s]: what a
 trajectory that they pull along may be wrong by."""
 
+_UNSEEN_NS = 10_000_000_000
+"""Who was found had walked along for this time [ns], maybe without being seen through."""
+
 
 class Register(Protocol):
     """Registers all multiframes once."""
@@ -82,7 +85,8 @@ def less_sure(found: Found) -> list[OdometryStep]:
     made = found.made
     if not found.moving.is_severe:
         return made.steps
-    crowded = is_crowded_at(np.array([s.t_mid_ns for s in made.steps]), found.moving)
+    t_ns = np.array([step.t_mid_ns for step in made.steps])
+    crowded = is_crowded_at(t_ns, found.moving, within_ns=_UNSEEN_NS)
     turn_sd = 0.0 if made.imu else _ALONG_RAD_S
     return [
         with_fields(step, motion_cov=step.motion_cov + _pulled_cov(step, turn_sd)) if c else step

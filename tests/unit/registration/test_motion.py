@@ -313,6 +313,13 @@ def test_who_walked_and_is_still_has_stopped_if_nothing_observes_the_speed():
     assert rest_at(3.2, imu) is Rest.MOVING  # the half second before had steps
 
 
+def test_who_is_accelerated_evenly_has_not_stopped():
+    imu = who_walks_and_stands()
+    pushed = replace(imu, accel_m_s2=imu.accel_m_s2 + np.array([0.7, 0.0, 0.0]))
+
+    assert rest_at(5.0, pushed) is Rest.MOVING
+
+
 def test_who_never_walked_may_be_on_a_cart():
     assert rest_at(5.0, who_walks_and_stands(walking_s=0.0)) is Rest.MOVING
 
