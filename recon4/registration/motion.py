@@ -28,8 +28,9 @@ _REST_RAD_S, _REST_M_S2, _REST_M_S = 0.12, 0.3, 0.1
 by 0.5 rad/s and shakes by 1 m/s² and more."""
 _WALKED_NS, _WALK_M_S2 = 30_000_000_000, 0.8
 """Who stops has walked within this time [ns], and shook by more than this [m/s²]."""
-_STOPPED_M_S2 = 0.5
-"""Least acceleration of who does not stand [m/s²]; bias and tilt of an accelerometer are less."""
+_STOPPED_M_S2 = 1.4
+"""Least acceleration of who does not stand [m/s²]; the wrong bias and tilt of a body whose motion
+nothing observes look like up to 1.1."""
 _GAIN_WALK, _CLOCK_WALK_S = 1e-5, 1e-4
 """Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
 estimated: a clock that drifts by 300 ppm is followed."""

@@ -315,7 +315,7 @@ def test_who_walked_and_is_still_has_stopped_if_nothing_observes_the_speed():
 
 def test_who_is_accelerated_evenly_has_not_stopped():
     imu = who_walks_and_stands()
-    pushed = replace(imu, accel_m_s2=imu.accel_m_s2 + np.array([0.7, 0.0, 0.0]))
+    pushed = replace(imu, accel_m_s2=imu.accel_m_s2 + np.array([1.6, 0.0, 0.0]))
 
     assert rest_at(5.0, pushed) is Rest.MOVING
 
