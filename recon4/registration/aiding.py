@@ -84,10 +84,13 @@ class GnssAiding:
         return self._around(first_ns) is not None and self._around(last_ns) is not None
 
     def rejected_ratio(self, trajectory: Trajectory) -> float:
-        """Ratio of the fixes that a trajectory of the same frame contradicts, 0..1."""
-        inside = (self.t_ns >= trajectory.t_ns[0]) & (self.t_ns <= trajectory.t_ns[-1])
-        if not inside.any():
+        """Ratio of the fixes that an aided trajectory contradicts, 0..1.
+
+        One that begins before the fixes has a frame of its own and contradicts none.
+        """
+        if self._around(int(trajectory.t_ns[0])) is None:
             return 0.0
+        inside = (self.t_ns >= trajectory.t_ns[0]) & (self.t_ns <= trajectory.t_ns[-1])
         T = trajectory.at(self.t_ns[inside])
         z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
         return float(np.mean((z**2).sum(axis=1) > _OUTLIER_SD**2))

@@ -30,7 +30,6 @@ _REJECTED = 0.1
 _ALONG_M_S, _ALONG_RAD_S = 1.5, 0.5
 """Speed of people who walk along [m/s], and without a gyroscope how fast they turn [rad/s]: what a
 trajectory that they pull along may be wrong by."""
-
 _UNSEEN_NS = 10_000_000_000
 """Who was found had walked along for this time [ns], maybe without being seen through."""
 
@@ -87,16 +86,18 @@ def less_sure(found: Found) -> list[OdometryStep]:
         return made.steps
     t_ns = np.array([step.t_mid_ns for step in made.steps])
     crowded = is_crowded_at(t_ns, found.moving, within_ns=_UNSEEN_NS)
+    seconds = 1e-9 * float(np.median(np.diff(t_ns)))
     turn_sd = 0.0 if made.imu else _ALONG_RAD_S
     return [
-        with_fields(step, motion_cov=step.motion_cov + _pulled_cov(step, turn_sd)) if c else step
+        with_fields(step, motion_cov=step.motion_cov + _pulled_cov(step, seconds, turn_sd))
+        if c
+        else step
         for step, c in zip(made.steps, crowded, strict=True)
     ]
 
 
-def _pulled_cov(step: OdometryStep, turn_sd_rad_s: float) -> Array:
+def _pulled_cov(step: OdometryStep, seconds: float, turn_sd_rad_s: float) -> Array:
     """Covariance of the motion by which moving objects may pull a step along, (6, 6)."""
-    seconds = 1e-9 * float(step.t_ns[-1] - step.t_ns[0])
     speed_m_s = float(np.linalg.norm(step.T_dense.t[-1] - step.T_dense.t[0])) / seconds
     # As far as from standing still to walking, or from walking to what is faster than that.
     along_m_s = max(_ALONG_M_S, speed_m_s - _ALONG_M_S)

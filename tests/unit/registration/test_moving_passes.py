@@ -27,8 +27,8 @@ class WithoutImu(Walk):
 
 def fixes(walk: Walk, *, scale: float = 1.0) -> GnssAiding:
     """Of an antenna in the body, every tenth of a second of the walk, 2 cm."""
-    t_ns = np.arange(0, len(walk) + 1, dtype=np.int64) * 100_000_000
-    places = np.stack([walk.place(t) for t in t_ns])
+    t_ns = np.arange(-1, len(walk) + 1, dtype=np.int64) * 100_000_000
+    places = np.stack([walk.place(max(t, 0)) for t in t_ns])
     return GnssAiding(
         t_ns=t_ns,
         p_enu=scale * (places - places[0]),
@@ -96,7 +96,7 @@ def test_where_the_rest_does_not_hold_it_the_trajectory_is_as_unsure_as_people_w
 
     added = np.sqrt(np.einsum("nii->ni", unsure - sure))
     crowded = np.array([s.t_mid_ns - spread[0].t_mid_ns for s in spread]) <= 10_000_000_000
-    expected = 0.1 * np.array([0.0, 0.0, 0.5, 1.5, 1.5, 0.0])
+    expected = 0.6 * np.array([0.0, 0.0, 0.5, 1.5, 1.5, 0.0])
     assert added[crowded] == pytest.approx(np.tile(expected, (crowded.sum(), 1)), rel=0.02)
     assert not added[~crowded].any() and 10 < crowded.sum() < 20
 
