@@ -133,10 +133,12 @@ class Capture:
                     await started(self.session, "mapper", env=worker_environment())
                 except ConfigError as error:
                     self.problem = str(error)
-        if done is None:
-            self.problem = "the map stopped growing (its process died); the recording continues"
-        else:  # finished: earlier problems no longer count
-            self.problem = "; ".join(filter(None, (self._ended_because, done.problem)))
+        if done is not None:  # finished: earlier problems no longer count
+            of_map = done.problem
+        else:
+            of_map = "the map stopped growing (its process died)"
+            of_map += "; the recording continues" if self._recorder is not None else ""
+        self.problem = "; ".join(filter(None, (self._ended_because, of_map)))
         while self._recorder is not None:
             await self.stream.news(self.stream.version, timeout_s=1.0)
         self.state = State.READY
