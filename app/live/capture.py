@@ -133,12 +133,14 @@ class Capture:
                     await started(self.session, "mapper", env=worker_environment())
                 except ConfigError as error:
                     self.problem = str(error)
+        problems = [self._ended_because]
         if done is not None:  # finished: earlier problems no longer count
-            of_map = done.problem
+            problems.append(done.problem)
         else:
-            of_map = "the map stopped growing (its process died)"
-            of_map += "; the recording continues" if self._recorder is not None else ""
-        self.problem = "; ".join(filter(None, (self._ended_because, of_map)))
+            problems.append("the map stopped growing (its process died)")
+            if self._recorder is not None:
+                problems.append("the recording continues")
+        self.problem = "; ".join(filter(None, problems))
         while self._recorder is not None:
             await self.stream.news(self.stream.version, timeout_s=1.0)
         self.state = State.READY

@@ -88,9 +88,9 @@ class GnssAiding:
 
         One that begins before the fixes has a frame of its own and contradicts none.
         """
-        if self._around(int(trajectory.t_ns[0])) is None:
-            return 0.0
         inside = (self.t_ns >= trajectory.t_ns[0]) & (self.t_ns <= trajectory.t_ns[-1])
+        if self._around(int(trajectory.t_ns[0])) is None or not inside.any():
+            return 0.0
         T = trajectory.at(self.t_ns[inside])
         z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
         return float(np.mean((z**2).sum(axis=1) > _OUTLIER_SD**2))

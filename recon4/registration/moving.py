@@ -18,6 +18,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.cubes import cubes_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.free_space import NO_SURFACE, find_moving_points, nearest_ranges
 from recon4.kernels.imu import place_points
@@ -212,7 +213,7 @@ def hide_moving(
 
 def with_points_around(frame: Multiframe, moving: NDArray[np.bool_], rig: Rig) -> NDArray[np.bool_]:
     """Moving points of a multiframe and the points around them: feet on the ground, (N,)."""
-    cell = np.floor(_in_body(frame, rig) / _AROUND_M).astype(np.int64)
+    cell = cubes_of(_in_body(frame, rig), _AROUND_M)
     crowded, count = np.unique(_keys(cell[moving]), return_counts=True)
     around = (crowded[:, None] + _keys(_NEIGHBORS)).ravel()
     cells, of = np.unique(around, return_inverse=True)

@@ -64,12 +64,13 @@ def leave_out_moving(
         register: Makes a pass.
         aiding: Fixes of a GNSS/INS, outdoors.
     """
-    moving = find_moving(frames, made.trajectory, made.pieces)
     if aiding is not None and _contradicts(made, aiding):
         shown = _shown_by_fixes(frames, aiding)
-        led = _without_moving(frames, shown, made, register=register, fixes=aiding)
-        if not led.moving.is_severe:
-            return led
+        if shown.moving.is_crowded:
+            led = _without_moving(frames, shown, made, register=register, fixes=aiding)
+            if not led.moving.is_severe:
+                return led
+    moving = find_moving(frames, made.trajectory, made.pieces)
     if not moving.is_crowded:
         return Found(made, moving)
     shown = _Shown(made.trajectory, made.pieces, moving)
@@ -144,7 +145,7 @@ def _without_moving(
 
     Args:
         frames: The multiframes.
-        shown: What moves. If it fills little of the view, this is severe.
+        shown: What moves.
         made: Odometry with all points.
         register: Makes a pass.
         fixes: Those that a pass must not contradict.
@@ -154,8 +155,7 @@ def _without_moving(
         return now.lost > made.lost or (fixes is not None and _contradicts(now, fixes))
 
     found = Found(made, replace(shown.moving, outcome=MovingOutcome.NOT_HELD))
-    tries = (True, False) if frames.imu is not None else (True,)
-    for trusted in tries if shown.moving.is_crowded else ():
+    for trusted in (True, False) if frames.imu is not None else (True,):
         settled = _settled(
             frames, shown, made, register=partial(register, trusted=trusted), fails=fails
         )

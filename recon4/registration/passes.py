@@ -82,21 +82,18 @@ def register_all(
     """
     imu, remark = consistent_imu(frames, settings, trusted=trusted)
 
-    def make() -> Odometry | LineOdometry:
-        return make_odometry(frames.rig, settings, imu, aiding=aiding)
-
     def made_by(odometry: Odometry | LineOdometry) -> OdometryPass:
         steps = _register(frames, odometry, progress)
         estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
         used = imu if settings.odometry.use_imu else None
         return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
 
-    first, again = make(), make()
-    made = made_by(first)
-    if not (made.estimate and made.estimate.texts):
+    odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
+    made = made_by(odometry)
+    if not isinstance(odometry, Odometry) or not (made.estimate and made.estimate.texts):
         return made
-    if isinstance(first, Odometry) and isinstance(again, Odometry):
-        again.remember_imu(first)
+    again = Odometry(frames.rig, settings, imu, aiding=aiding)
+    again.remember_imu(odometry)
     corrected = made_by(again)
     return corrected if corrected.fits_as_well(made) else made
 

@@ -98,3 +98,5 @@ def test_fixes_that_a_trajectory_contradicts_are_counted() -> None:
     assert found == pytest.approx(24 / 30, abs=1 / 30)
     earlier = Trajectory(right.t_ns - 1_000_000_000, drifting)
     assert aiding.rejected_ratio(earlier) == 0.0  # its frame is not that of the fixes
+    short = Trajectory(right.t_ns[:2] // 1000 + 110_000_000, drifting[:2])
+    assert aiding.rejected_ratio(short) == 0.0  # between two fixes

@@ -6,14 +6,10 @@ import numpy as np
 import pytest
 
 from recon4.model.samples import ImuSamples
-from recon4.progress import Silent
-from recon4.recording.ingest import ingest
-from recon4.recording.sources import Sources
 from recon4.registration import imu_consistency
 from recon4.registration.imu_consistency import Trial, consistent_imu
 from recon4.registration.motion import ImuMotion
 from recon4.settings import OdometrySettings, preset
-from recon4.store.frames import FrameStore
 
 SETTINGS = preset("indoor")
 
@@ -30,14 +26,6 @@ class Walk:
 
     def __getitem__(self, k):
         return self._frames[k]
-
-
-@pytest.fixture(scope="module")
-def frames(office_recording, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("frames")
-    sources = Sources((office_recording / "recording.pcap",), imu=office_recording / "imu.csv")
-    ingest(sources, folder, settings=SETTINGS.ingest, progress=Silent())
-    return FrameStore.open(folder)
 
 
 def altered(frames, turn=lambda gyro: gyro, late_ns=0, force=1.0):

@@ -9,22 +9,11 @@ from recon4.evaluation.ate import pair_poses
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
-from recon4.recording.ingest import ingest
-from recon4.recording.sources import Sources
 from recon4.registration.passes import OdometryPass, register_all
 from recon4.settings import preset
-from recon4.store.frames import FrameStore
 
 SETTINGS = preset("indoor")
 SCALE = 1.05
-
-
-@pytest.fixture(scope="module")
-def frames(office_recording, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("frames")
-    sources = Sources((office_recording / "recording.pcap",), imu=office_recording / "imu.csv")
-    ingest(sources, folder, settings=SETTINGS.ingest, progress=Silent())
-    return FrameStore.open(folder)
 
 
 def with_scale(frames, scale):
