@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import SE3
+from recon4.geometry.se3 import SE3, proper, so3_exp, so3_log
 from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.frames import RecordedFrames
 from recon4.model.samples import ImuSamples
@@ -18,6 +19,7 @@ from recon4.registration.imu_consistency import consistent_imu
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.line_odometry import LineOdometry
 from recon4.registration.make import make_odometry
+from recon4.registration.motion import middle_of
 from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
@@ -83,7 +85,7 @@ def register_all(
     imu, remark = consistent_imu(frames, settings, trusted=trusted)
 
     def made_by(odometry: Odometry | LineOdometry) -> OdometryPass:
-        steps = _register(frames, odometry, progress)
+        steps = _without_jumps(_register(frames, odometry, progress))
         estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
         used = imu if settings.odometry.use_imu else None
         return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
@@ -128,7 +130,7 @@ def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
 
 def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
     """The dense poses of all steps as one trajectory, at most about 100 Hz."""
-    steps = _begun_in_motion(steps)
+    steps = _without_jumps(_begun_in_motion(steps))
     t_ns = np.concatenate([step.t_ns for step in steps])
     R = np.concatenate([step.T_dense.R for step in steps])
     t_m = np.concatenate([step.T_dense.t for step in steps])
@@ -162,3 +164,27 @@ def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
     since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
     moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
     return [replace(first, T_dense=moving), *steps[1:]]
+
+
+def _without_jumps(steps: list[OdometryStep]) -> list[OdometryStep]:
+    """The steps with inner poses that lead to where the next one begins.
+
+    The next multiframe corrects the pose between both, by up to a millimeter. What it says of the
+    end is true of the motion that led there, in proportion to the time: a jump in the last 10 ms
+    of every revolution would always meet the same azimuths. How the first multiframe began is not
+    known better than by itself.
+    """
+    if len(steps) < 3:
+        return steps
+    return [steps[0], *(_led_to(step, after) for step, after in pairwise(steps[1:])), steps[-1]]
+
+
+def _led_to(step: OdometryStep, after: OdometryStep) -> OdometryStep:
+    if step.lost or after.lost or step.piece != after.piece or step.t_ns[-1] != after.t_ns[0]:
+        return step
+    T, begin = step.T_dense, after.T_dense[0]
+    part = ((step.t_ns - step.t_ns[0]) / max(1, int(step.t_ns[-1] - step.t_ns[0])))[:, None]
+    turn = so3_log(begin.R @ T.R[-1].T)
+    led = SE3(proper(so3_exp(part * turn) @ T.R), T.t + part * (begin.t - T.t[-1]))
+    t_s = 1e-9 * (step.t_ns - step.t_ns[0])
+    return replace(step, T_dense=led, T_odom_body=middle_of(t_s, led))

@@ -10,7 +10,7 @@ from typing import Literal
 class OdometrySettings:
     """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
 
-    history: int = 10
+    history: int = 40
     """Keyframes in the local map; for line odometry the number of past multiframes."""
     history_mode: Literal["joined", "averaged"] = "joined"
     """Line odometry: ``joined`` registers to the lines of the whole history, ``averaged`` to each

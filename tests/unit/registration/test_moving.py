@@ -233,7 +233,7 @@ def test_what_does_not_hold_the_trajectory_is_severe() -> None:
 
 
 def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
-    walk = Walk(GROUP, ROWS, seconds=6.0)
+    walk = Walk(GROUP[2:], ROWS, seconds=6.0)
 
     figures = run_odometry(walk, tmp_path, settings=Settings(), progress=Silent())
 

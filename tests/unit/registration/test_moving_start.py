@@ -68,7 +68,7 @@ def test_poses_inside_the_first_frame_move_too(office_frames, office_walk):
     off_m = np.linalg.norm(T.t - T_true.t, axis=1)
     reported_m = np.linalg.norm(steps[0].T_dense.t[0] - dense.T_a_b.t[0])
     assert reported_m > 0.03  # before the velocity was known
-    assert off_m.max() < 0.015
+    assert off_m.max() < 0.02
 
 
 def test_a_first_frame_that_stands_stays_as_it_was_reported(office_frames):

@@ -147,9 +147,10 @@ def test_single_frames_and_the_stage_give_the_same_result(stroll, tmp_path):
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll)
     run_odometry(stroll, tmp_path, settings=Settings(), progress=Silent())
 
-    np.testing.assert_array_equal(
-        load_arrays(tmp_path / "steps.npz", ["t_m"])["t_m"], poses(steps).t
-    )
+    # The stage also knows where the next multiframe begins.
+    of_stage = load_arrays(tmp_path / "steps.npz", ["t_m"])["t_m"]
+    np.testing.assert_allclose(of_stage, poses(steps).t, atol=5e-4)
+    np.testing.assert_array_equal(of_stage[[0, -1]], poses(steps).t[[0, -1]])
 
 
 def test_a_frame_of_noise_is_lost_and_tracking_continues(stroll):
@@ -390,4 +391,5 @@ def test_a_gap_in_the_recording_is_bridged(stroll):
     assert not any(step.lost for step in steps)
     T_true = stroll.truth.at(np.array([f.t_mid_ns for f in frames]))
     assert worst_from_start(poses(steps), T_true) < 0.03
-    np.testing.assert_allclose(dense.at(np.array([frames[5].t_mid_ns])).t[0], poses(steps).t[5])
+    middle = dense.at(np.array([frames[5].t_mid_ns])).t[0]
+    np.testing.assert_allclose(middle, poses(steps).t[5], atol=1e-3)
