@@ -283,14 +283,14 @@ def _refine_lines(
 FRAMES = Stage("frames", 8, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    33,
+    34,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
 )
 CALIBRATION = Stage(
     "calibration",
-    9,
+    10,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,

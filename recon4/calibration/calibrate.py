@@ -289,9 +289,15 @@ class _Estimator:
         *,
         recorded: Rig,
     ) -> JointEstimate:
-        """From all windows; the parameters that are unknown, (P,) bool, keep their values."""
-        begin = first.parameters.keeping(unknown, recorded, first.rig)
-        fixed = first.parameters.fixing(unknown) if unknown.any() else first.parameters
+        """From all windows; the parameters that are unknown, (P,) bool, keep their values.
+
+        Of beams they are estimated all the same: one that is wrong by 0.04° would pull the others.
+        """
+        of_beams = np.array([parameter.of_beam for parameter in first.parameters.listed])
+        held = unknown & ~of_beams
+        begin = first.parameters.keeping(held, recorded, first.rig)
+        fixed = first.parameters.fixing(held) if held.any() else first.parameters
         rounds = thinned_rounds(LAST_ROUNDS, self.every, dense=DENSE_ROUNDS)
-        found = self.estimate(windows, begin, fixed, rounds=rounds)
-        return _counted_from(found or first, recorded)
+        found = self.estimate(windows, begin, fixed, rounds=rounds) or first
+        rig = first.parameters.keeping(unknown, recorded, found.rig)
+        return _counted_from(replace(found, rig=rig), recorded)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.calibration.imu_rows import BIASES, WindowBiases, imu_rows
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.purity import distance_sd_m, only_own_points
 from recon4.calibration.surfaces import SharedSurfaces, find_surfaces
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import Array
@@ -50,6 +51,9 @@ class RoundBounds:
     """Largest distance between the planes of two LiDARs in a cube."""
     kernel_m: float
     """Scale of the Cauchy kernel on the distance of a point."""
+    pure: bool = False
+    """Whether points of other surfaces are left out, and points count by their incidence: only
+    near the right rig, where a point lies within some standard deviations of its plane."""
     every: int = 1
     """Only every so-many-th point is used: fewer are enough on the way to the solution."""
 
@@ -139,12 +143,14 @@ def reduce_window(
         placed.odom, window.sensor,
         cube_m=bounds.cube_m, max_sd_m=bounds.max_sd_m, gate_m=bounds.gate_m,
     )  # fmt: skip
+    if bounds.pure:
+        surfaces = only_own_points(surfaces, placed.odom, placed.beam_odom, cube_m=bounds.cube_m)
     if len(surfaces) == 0:
         return None
     own = state.unknowns
     H, g = np.zeros((own + len(parameters),) * 2), np.zeros(own + len(parameters))
     normal = _NormalEquations(H, g, parameters, rig)
-    r, weight = _add_points(normal, window, placed, surfaces=surfaces, kernel_m=bounds.kernel_m)
+    r, weight = _add_points(normal, window, placed, surfaces=surfaces, bounds=bounds)
     imu_rms = _add_motion(normal, state, rig, settings=settings)
     right = np.column_stack([H[:own, own:], g[:own]])
     solved: Array = np.asarray(np.linalg.solve(H[:own, :own], right), np.float64)
@@ -168,10 +174,13 @@ def _add_points(
     placed: PlacedPoints,
     *,
     surfaces: SharedSurfaces,
-    kernel_m: float,
+    bounds: RoundBounds,
 ) -> tuple[Array, Array]:
     """Add the points, the planes eliminated; returns their distances and weights, (M,) each."""
     H, g = equations.H, equations.g
+    sd_m = np.full(len(surfaces.point), _POINT_SD_M)
+    if bounds.pure:
+        sd_m = distance_sd_m(surfaces, placed.beam_odom)
     mixed = np.zeros((len(surfaces), 3, len(H)))
     of_planes, pull = np.zeros((len(surfaces), 3, 3)), np.zeros((len(surfaces), 3))
     r, weight = add_points(
@@ -182,7 +191,7 @@ def _add_points(
         ),
         _columns(equations, window),
         PointSums(H, g, mixed, of_planes, pull),
-        _POINT_SD_M, kernel_m, _GRAZING,
+        sd_m, bounds.kernel_m, _GRAZING,
     )  # fmt: skip
     H += np.triu(H, 1).T
     inverse = np.linalg.inv(of_planes + _PLANE_PRIOR * np.eye(3))

@@ -26,18 +26,20 @@ from recon4.semi_rigid.knots import apply_knots
 from recon4.settings import OdometrySettings, Settings
 
 _TIGHT = RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.08, kernel_m=0.04)
+_PURE = replace(_TIGHT, pure=True)
 ROUNDS = (
     RoundBounds(cube_m=0.8, max_sd_m=0.06, gate_m=0.40, kernel_m=0.15),
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.20, kernel_m=0.08),
     RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.10, kernel_m=0.05),
     _TIGHT,
-    _TIGHT,
+    _PURE,
+    _PURE,
 )
 """Bounds of each round of an estimate that begins at a rig file."""
-NEAR_ROUNDS = (*ROUNDS[2:], _TIGHT, _TIGHT)
+NEAR_ROUNDS = (*ROUNDS[2:], _PURE)
 """The same near the right rig: bounds as wide as the first ones join both sides of thin walls and
 of flights of stairs, and a window that is bent so far does not come back."""
-LAST_ROUNDS = (_TIGHT,) * 4
+LAST_ROUNDS = (_PURE,) * 4
 """The same at a rig that others confirm."""
 DENSE_ROUNDS = 2
 """Number of the last rounds that use all points; before them a part leads near the solution."""

@@ -20,8 +20,10 @@ _PRIOR_SD: dict[Unit, float] = {"rad": 0.2, "m": 0.3, "s": 0.1}
 """Standard deviation of each parameter before the walk is looked at: hardly any knowledge."""
 _BEAM_PRIOR_SD: dict[Unit, float] = {"rad": float(np.deg2rad(0.05)), "m": 0.03}
 """The same of a beam: assemblies are exact to some hundredths of a degree."""
-_MEAN_SD = 1e-6
-"""Of means that nothing observes [rad], [m]."""
+_MEAN_AZIMUTH_SD_RAD = 1e-6
+"""Of a mean that nothing observes."""
+_MEAN_RANGE_SD_M = 1e-3
+"""Of the mean of all beams: of 32 that are wrong by 5 mm."""
 _KNOWN_SD = 1e-9
 """Of a parameter that keeps its value, in its unit."""
 _AXES = ("x", "y", "z")
@@ -111,20 +113,19 @@ class Parameters:
     def prior(self) -> Array:
         """Information before the walk is looked at, (P, P).
 
-        An azimuth that all beams of a LiDAR share is the yaw of its mount, and a range bias that
-        all beams of the rig share changes the scale of the walk, which only the accelerometer
-        tells roughly. Both means stay.
+        An azimuth that all beams of a LiDAR share is the yaw of its mount: their mean stays. A
+        range bias that all beams share is observed, because it moves a wall less that is seen
+        obliquely; in a single room it changes little but the size of the room.
         """
         information = np.diag(self.prior_sd**-2.0)
-        common = np.zeros(len(self))
+        ranges = np.zeros(len(self))
         for row, count in self.beams:
-            first = self.of_beams(row).start
-            common[first : first + count] = 1.0
-            own = np.zeros(len(self))
-            own[first + 2 * count : first + 3 * count] = 1.0 / count
-            information += np.outer(own, own) / _MEAN_SD**2
-        mean = common / max(common.sum(), 1.0)
-        return np.asarray(information + np.outer(mean, mean) / _MEAN_SD**2)
+            ranges[self.of_beams(row)][:count] = 1.0
+            azimuth = np.zeros(len(self))
+            azimuth[self.of_beams(row)][2 * count :] = 1.0 / count
+            information += np.outer(azimuth, azimuth) / _MEAN_AZIMUTH_SD_RAD**2
+        mean = ranges / max(ranges.sum(), 1.0)
+        return np.asarray(information + np.outer(mean, mean) / _MEAN_RANGE_SD_M**2)
 
     def of_beams(self, row: int) -> slice:
         """Columns of the beams of a LiDAR: all ranges, elevations, azimuths."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 
-_MIN_POINTS = 12
+MIN_POINTS = 12
 """Of one LiDAR in a cube."""
 _MIN_EXTENT_M = 0.08
 """Smallest standard deviation of the points along the plane, in the narrower direction [m]."""
@@ -31,6 +31,8 @@ class SharedSurfaces:
     """Unit normals, (V, 3)."""
     shared: NDArray[np.bool_]
     """Whether several LiDARs see the plane, (V,)."""
+    cube: NDArray[np.int64]
+    """Indices of the cube of each plane, (V, 3)."""
 
     def __len__(self) -> int:
         return len(self.center)
@@ -62,7 +64,8 @@ def find_surfaces(
         gate_m: Largest distance between the planes of two LiDARs.
     """
     sensors = int(sensor.max()) + 1 if len(sensor) else 1
-    cube = _cube_rows(p, cube_m)
+    cell = np.floor(p / cube_m).astype(np.int64)
+    cube = _cube_rows(cell)
     listed, group = np.unique(cube * sensors + sensor, return_inverse=True)
     groups = _fit(p, group, len(listed), max_sd_m=max_sd_m)
     cube_of_group = listed // sensors
@@ -77,12 +80,14 @@ def find_surfaces(
     row_of_group[kept] = plane_of_group
     plane = row_of_group[group]
     point = np.flatnonzero(plane >= 0)
-    return SharedSurfaces(point, plane[point], center, normal, np.bincount(plane_of_group) > 1)
+    cube_of_plane = np.empty((len(planes), 3), np.int64)
+    cube_of_plane[plane[point]] = cell[point]
+    shared = np.bincount(plane_of_group) > 1
+    return SharedSurfaces(point, plane[point], center, normal, shared, cube_of_plane)
 
 
-def _cube_rows(p: Array, cube_m: float) -> NDArray[np.int64]:
-    cell = np.floor(p / cube_m).astype(np.int64)
-    cell -= cell.min(axis=0, initial=0)
+def _cube_rows(cell: NDArray[np.int64]) -> NDArray[np.int64]:
+    cell = cell - cell.min(axis=0, initial=0)
     size = cell.max(axis=0, initial=0) + 1
     rows: NDArray[np.int64] = (cell[:, 0] * size[1] + cell[:, 1]) * size[2] + cell[:, 2]
     return rows
@@ -96,7 +101,7 @@ def _fit(p: Array, group: NDArray[np.intp], groups: int, *, max_sd_m: float) -> 
     cov = (_sums(group, products, groups) / count[:, None]).reshape(-1, 3, 3)
     values, vectors = np.linalg.eigh(cov)
     is_plane = (
-        (count >= _MIN_POINTS)
+        (count >= MIN_POINTS)
         & (values[:, 0] < max_sd_m**2)
         & (values[:, 1] > _MIN_EXTENT_M**2)
         & (values[:, 0] < 0.2 * values[:, 1])

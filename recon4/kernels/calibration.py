@@ -90,7 +90,7 @@ def add_points(
     planes: PlanesOfPoints,
     rig: RigColumns,
     sums: PointSums,
-    sd_m: float,
+    sd_m: NDArray[np.float64],
     kernel_m: float,
     grazing: float,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -104,7 +104,7 @@ def add_points(
         planes: On which plane each lies.
         rig: Columns of the parameters.
         sums: What is added to.
-        sd_m: Standard deviation of a distance [m].
+        sd_m: Standard deviation of each distance [m], (M,).
         kernel_m: Scale of the Cauchy kernel [m].
         grazing: Least cosine of the incidence: a range hardly tells the distance below it.
 
@@ -120,7 +120,7 @@ def add_points(
         for i in range(3):
             r += planes.normal[v, i] * (placed.odom[n, i] - planes.center[v, i])
         used = _row_of_point(placed, planes, rig, n, v, r, grazing, columns, values, of_plane)
-        w = 1.0 / (sd_m * sd_m * (1.0 + (r / kernel_m) ** 2))
+        w = 1.0 / (sd_m[m] * sd_m[m] * (1.0 + (r / kernel_m) ** 2))
         residual[m], weight[m] = r, w
         _add_row(sums, columns, values, of_plane, used, v, r, w)
     return residual, weight
