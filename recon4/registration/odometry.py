@@ -389,7 +389,8 @@ class Odometry:
         seen_from = T_dense.t[-1].copy()
         self._map.add(ends_odom, seen_from)
         self._keyframes.append((ends_odom, seen_from))
-        if len(self._keyframes) > self._settings.odometry.history:
+        longest = self._settings.odometry.longest_map(with_imu=self._chain is None)
+        if len(self._keyframes) > longest:
             self._map.remove(*self._keyframes.popleft())
 
 

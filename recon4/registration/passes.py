@@ -29,6 +29,8 @@ _REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
 """The pose of every n-th multiframe is reported while the stage runs, some per event."""
 _AS_WELL = 1.02
 """Residuals that are larger by no more than this factor are as good."""
+_MOST_TURN_RAD, _MOST_SHIFT_M = 2e-3, 5e-3
+"""A larger jump from one multiframe to the next is a contradiction, and stays where it is."""
 _DENSE_NS = 9_000_000
 """Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
 
@@ -184,7 +186,9 @@ def _led_to(step: OdometryStep, after: OdometryStep) -> OdometryStep:
         return step
     T, begin = step.T_dense, after.T_dense[0]
     part = ((step.t_ns - step.t_ns[0]) / max(1, int(step.t_ns[-1] - step.t_ns[0])))[:, None]
-    turn = so3_log(begin.R @ T.R[-1].T)
-    led = SE3(proper(so3_exp(part * turn) @ T.R), T.t + part * (begin.t - T.t[-1]))
+    turn, shift = so3_log(begin.R @ T.R[-1].T), begin.t - T.t[-1]
+    if np.linalg.norm(turn) > _MOST_TURN_RAD or np.linalg.norm(shift) > _MOST_SHIFT_M:
+        return step
+    led = SE3(proper(so3_exp(part * turn) @ T.R), T.t + part * shift)
     t_s = 1e-9 * (step.t_ns - step.t_ns[0])
     return replace(step, T_dense=led, T_odom_body=middle_of(t_s, led))

@@ -11,7 +11,9 @@ class OdometrySettings:
     """Pose of each multiframe from the ones before (V §2.4, requirements A3, A5)."""
 
     history: int = 40
-    """Keyframes in the local map; for line odometry the number of past multiframes."""
+    """Keyframes in the local map; for line odometry the number of past multiframes …"""
+    history_without_imu: int = 10
+    """… and without an IMU, when a longer map holds the body back where little is observed."""
     history_mode: Literal["joined", "averaged"] = "joined"
     """Line odometry: ``joined`` registers to the lines of the whole history, ``averaged`` to each
     of its multiframes with the mean of the poses (V Table 3.1, multi-frame; the work grows by
@@ -78,6 +80,10 @@ class OdometrySettings:
     lost_least_ratio: float = 0.1
     """The least match ratio, whatever is usual; it is enough at the start of a walk for a scan that
     lies where the IMU predicts it, and without an IMU for one that fits the scan before."""
+
+    def longest_map(self, *, with_imu: bool) -> int:
+        """Keyframes in the local map, with or without an IMU."""
+        return self.history if with_imu else min(self.history, self.history_without_imu)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

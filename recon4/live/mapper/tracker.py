@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from dataclasses import replace
 
 import numpy as np
 
@@ -32,7 +33,9 @@ class Tracker:
     """Runs `Odometry` with IMU samples that arrive in pieces."""
 
     def __init__(self, rig: Rig, settings: Settings) -> None:
-        self._rig, self._settings = rig, settings
+        # After a pause the walk goes on where a short map shows it; loops correct the drift.
+        shorter = replace(settings.odometry, history=settings.odometry.longest_map(with_imu=False))
+        self._rig, self._settings = rig, replace(settings, odometry=shorter)
         self._offset_ns = round(rig.imu_time_offset_s * 1e9)
         self._waiting: list[ImuSamples] = []
         self._odometry: Odometry | None = None
