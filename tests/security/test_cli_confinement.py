@@ -173,3 +173,33 @@ def test_a_failed_command_leaves_no_folder_that_it_made(place):
     assert "no reader recognizes it" in ended.stderr
     assert ended.returncode == 1
     assert sorted(path.name for path in place.iterdir()) == ["in", "out", "tmp"]
+
+
+ROUNDED = """
+import sys
+import numpy as np
+from pathlib import Path
+from recon4.sandbox import Policy, confine
+if sys.argv[1:]:
+    confine(Policy(read=(Path("/"),), temporary=Path(sys.argv[1])))
+from scipy.linalg import inv  # as in a command: numpy before, SciPy after
+print(inv(np.random.default_rng(0).normal(size=(40, 40))).tobytes().hex())
+"""
+
+
+def test_a_confined_process_rounds_as_any_other(place):
+    """Who chooses the instructions of BLAS has them chosen for the libraries loaded later, too."""
+    environment = {**os.environ, **ONE_THREAD, "PYTHONPATH": str(ROOT)}
+    environment |= {"OPENBLAS_CORETYPE": "Nehalem"}  # older than any machine of today
+
+    found = {
+        subprocess.run(
+            [sys.executable, "-c", ROUNDED, *arguments],
+            env=environment,
+            stdout=subprocess.PIPE,
+            check=True,
+        ).stdout
+        for arguments in ([], [str(place / "tmp")])
+    }
+
+    assert len(found) == 1
