@@ -305,7 +305,7 @@ REFINE = Stage(
 )
 LEVEL = Stage("level", 18, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
-MAP = Stage("map", 8, ("map",), _map, MapFigures)
+MAP = Stage("map", 9, ("map",), _map, MapFigures)
 
 _PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(

@@ -231,29 +231,32 @@ def spread_surfaces(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def find_strays(
+    to_sensor: NDArray[np.float32],
     weight: NDArray[np.float32],
     starts: NDArray[np.int32],
     begin: NDArray[np.int32],
     near: NDArray[np.int32],
     slot_of: NDArray[np.uint8],
-    ratio: float,
-    alone: float,
+    limits: NDArray[np.float64],
     sums: NDArray[np.float64],
     stray: NDArray[np.bool_],
 ) -> None:
     """Mark points on no surface that are few beside the returns of the surfaces around them.
 
     Args:
+        to_sensor: Vectors to the sensor [m], (N, 3).
         weight: Returns of each point, (N,).
         starts: Of `find_cells`, (C + 1,).
         begin: Of `list_neighbors`, (C + 1,).
         near: Of `list_neighbors`.
         slot_of: Plane of each point, SLOTS = none, (N,).
-        ratio: Largest ratio of such returns in the 3 x 3 x 3 cells around.
-        alone: As many such returns are few in any case.
-        sums: Receives the returns of each cell, and those on no surface, (C, 2).
+        limits: Largest ratio of such returns in the 3 x 3 x 3 cells around; as many are few in any
+            case; largest ratio of those from afar; how many times the mean range is afar, (4,).
+        sums: Receives of each cell the returns, those on no surface, the ranges of the others, and
+            those on no surface from afar, (C, 4).
         stray: Receives the marks, (N,).
     """
+    ratio, alone, far_ratio, afar = limits
     count = len(starts) - 1
     for c in range(count):
         sums[c] = 0.0
@@ -261,16 +264,47 @@ def find_strays(
             sums[c, 0] += weight[p]
             if slot_of[p] == SLOTS:
                 sums[c, 1] += weight[p]
+            else:
+                sums[c, 2] += weight[p] * range_of(to_sensor, p)
     for c in range(count):
-        few = False
         if sums[c, 1] > 0.0:
-            every = loose = 0.0
+            far_m = afar * mean_range_around(c, begin, near, sums)
+            for p in range(starts[c], starts[c + 1]):
+                if slot_of[p] == SLOTS and range_of(to_sensor, p) > far_m:
+                    sums[c, 3] += weight[p]
+    for c in range(count):
+        few = far_few = False
+        far_m = 0.0
+        if sums[c, 1] > 0.0:
+            every = loose = far = 0.0
             for k in range(begin[c], begin[c + 1]):
                 every += sums[near[k], 0]
                 loose += sums[near[k], 1]
+                far += sums[near[k], 3]
             few = loose <= max(ratio * every, alone) and every >= _MIN_AROUND * loose
+            far_few = far <= far_ratio * every
+            far_m = afar * mean_range_around(c, begin, near, sums)
         for p in range(starts[c], starts[c + 1]):
-            stray[p] = few and slot_of[p] == SLOTS
+            stray[p] = slot_of[p] == SLOTS and (few or (far_few and range_of(to_sensor, p) > far_m))
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def range_of(to_sensor: NDArray[np.float32], p: int) -> float:
+    """Range of a point [m]."""
+    x, y, z = to_sensor[p, 0], to_sensor[p, 1], to_sensor[p, 2]
+    return np.sqrt(x * x + y * y + z * z)
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def mean_range_around(
+    c: int, begin: NDArray[np.int32], near: NDArray[np.int32], sums: NDArray[np.float64]
+) -> float:
+    """Mean range of the returns on surfaces around a cell [m], infinite without any."""
+    ranges = held = 0.0
+    for k in range(begin[c], begin[c + 1]):
+        ranges += sums[near[k], 2]
+        held += sums[near[k], 0] - sums[near[k], 1]
+    return ranges / held if held > 0.0 else np.inf
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

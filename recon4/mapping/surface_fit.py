@@ -42,8 +42,12 @@ the noise's variance that is the same in all directions (poses and voxels), and 
 the returns of the window: noise beyond an edge has chance planes of a dozen returns."""
 STRAY_RATIO = 0.015
 """Largest ratio of stray returns among those around them."""
-ALONE = 1.0
-"""As many returns of no surface are stray ones whatever their ratio."""
+STRAY_DENSITY = 200.0
+"""As many returns of no surface are stray ones whatever their ratio [1/m² of the cells around]."""
+FAR_RATIO = 0.15
+"""The same of those that were measured from afar: the surfaces around them are known better."""
+AFAR = 1.75
+"""Times the mean range of the returns on surfaces."""
 BEND_M = 0.002
 """Standard deviation of a cell's surface from the plane of its window [m]."""
 
@@ -322,8 +326,10 @@ class _Fit:
             xyz, starts, found.cells, self.step[1:], windows.normals, beyond,
             slots.slot_of, shift_m, surface_of, surfaces, made,
         )  # fmt: skip
-        stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 2), np.float64)
+        stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 4), np.float64)
+        few = STRAY_DENSITY * (3.0 * grid.cell_m) ** 2
         surface_points.find_strays(
-            weight, starts, found.begin, found.near, slots.slot_of, STRAY_RATIO, ALONE, sums, stray
-        )
+            to_sensor, weight, starts, found.begin, found.near, slots.slot_of,
+            np.array([STRAY_RATIO, few, FAR_RATIO, AFAR]), sums, stray,
+        )  # fmt: skip
         return _Moved(shift_m, surface_of, surfaces[:made], stray)

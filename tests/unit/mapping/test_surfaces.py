@@ -217,6 +217,23 @@ def test_a_few_returns_before_a_wall_are_strays_and_keep_their_place(rng):
     assert surfaces.stray.mean() < 0.02
 
 
+@pytest.mark.parametrize(("sensor", "are_strays"), [(FRONT, False), ([2.5, -0.5, 2.2], True)])
+def test_many_returns_before_a_wall_are_strays_only_when_measured_from_afar(
+    rng, sensor, are_strays
+):
+    loose = rectangle(rng, [2.0, WALL_M - 0.083, 1.8], [0.5, 0, 0], [0, 0, 0.5], 0.04 * DENSITY)
+    loose[:, 1] += rng.uniform(0.0, 0.023, len(loose))  # no second surface
+
+    _, raw, _, surfaces = fitted(
+        returns(rng, wall(rng, WALL_M)), returns(rng, loose, np.array(sensor), noise_m=0.0)
+    )
+
+    x, y, z = raw.T
+    before = (y < WALL_M - 0.0601) & (abs(x - 2.25) < 0.15) & (abs(z - 2.05) < 0.15)
+    assert before.sum() > 50
+    assert surfaces.stray[before].mean() == pytest.approx(float(are_strays), abs=0.1)
+
+
 def test_lines_and_single_points_have_no_surface(rng):
     line = np.c_[np.linspace(1.0, 2.0, 400), np.full(400, 2.0), np.full(400, 2.0)]
 
