@@ -187,13 +187,13 @@ def calibrate(
     table = judge(first, not_observable=unknown)
     before, after = (
         Agreement.of(explain(others, rig, every=estimator.every, settings=settings))
-        for rig in (recorded, first.rig)
+        for rig in (recorded, parameters.keeping(unknown, recorded, first.rig))
     )
     why_not = refusal(table, first, second) or unexplained(before, after)
     if why_not:
         return Calibration(first, table, before, after, why_not)
     final = estimator.of_all(windows, first, unknown, recorded=recorded)
-    return Calibration(final, judge(final, not_observable=unknown), before, after, "")
+    return Calibration(*final, before, after, "")
 
 
 def _is_near(found: JointEstimate, recorded: Rig) -> bool:
@@ -288,16 +288,17 @@ class _Estimator:
         unknown: NDArray[np.bool_],
         *,
         recorded: Rig,
-    ) -> JointEstimate:
-        """From all windows; the parameters that are unknown, (P,) bool, keep their values.
+    ) -> tuple[JointEstimate, tuple[ParameterFigures, ...]]:
+        """From all windows, and what it says of each parameter.
 
-        Of beams they are estimated all the same: one that is wrong by 0.04° would pull the others.
+        What the walk does not show, (P,) bool and what all windows say, is estimated along with
+        the others and then keeps the value of the rig file: held at a wrong value, it would pull
+        the others away from theirs (20 cm along a straight walk).
         """
-        of_beams = np.array([parameter.of_beam for parameter in first.parameters.listed])
-        held = unknown & ~of_beams
-        begin = first.parameters.keeping(held, recorded, first.rig)
-        fixed = first.parameters.fixing(held) if held.any() else first.parameters
         rounds = thinned_rounds(LAST_ROUNDS, self.every, dense=DENSE_ROUNDS)
-        found = self.estimate(windows, begin, fixed, rounds=rounds) or first
-        rig = first.parameters.keeping(unknown, recorded, found.rig)
-        return _counted_from(replace(found, rig=rig), recorded)
+        found = self.estimate(windows, first.rig, first.parameters, rounds=rounds) or first
+        table = judge(_counted_from(found, recorded), not_observable=unknown)
+        kept = np.array([row.status == "not observable" for row in table])
+        rig = first.parameters.keeping(kept, recorded, found.rig)
+        final = _counted_from(replace(found, rig=rig), recorded)
+        return final, judge(final, not_observable=kept)

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike
 
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.stage import run_calibration
-from recon4.geometry.se3 import SE3, Array, so3_exp
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.rig import Rig
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
@@ -39,6 +39,7 @@ from tests.unit.calibration.conftest import (
     mounted,
     planar,
     store,
+    straight,
 )
 
 UPSIDE_DOWN = np.diag([1.0, -1.0, -1.0])
@@ -166,13 +167,6 @@ def moving(name: str, motion: Callable[[ArrayLike], SE3]) -> None:
             if one.status == "not observable"
         ]
         print(f"  not observable: {', '.join(unknown)}", *found.figures.warnings, sep="\n  ")
-
-
-def straight(t_s: ArrayLike) -> SE3:
-    """Without any turn."""
-    t = np.asarray(t_s)
-    zero = np.zeros_like(t)
-    return SE3(so3_exp(np.zeros((len(t), 3))), np.stack([0.2 * t - 1.0, zero, zero], axis=1))
 
 
 MOTIONS: dict[str, Callable[[ArrayLike], SE3]] = {

@@ -57,6 +57,14 @@ def circle(t_s):
     return SE3(so3_exp(np.stack([zero, zero, 0.5 * t], axis=1)), place)
 
 
+def straight(t_s):
+    """Without any turn."""
+    t = np.asarray(t_s)
+    zero = np.zeros_like(t)
+    place = np.stack([0.2 * t - 1.0, zero, zero], 1)
+    return SE3(so3_exp(np.zeros((len(t), 3))), place)
+
+
 def mounted(rig: Rig, row: int, *, turn_deg=(0.0, 0.0, 0.0), shift_m=(0.0, 0.0, 0.0), late_s=0.0):
     """The rig with another mount and clock offset of one LiDAR."""
     sensors = list(rig.sensors)
