@@ -47,7 +47,7 @@ WALKS = (
     "garage/1", "garage:1/2", "plaza/1", "plaza:3/2", "storeys/1", "storeys:1/2",
     "tower/1", "forest/1", "forest:1/2",
     "office/1", "office/2", "staircase/1", "street/1", "field/1", "field/2",
-    "mirrors/1", "elevator/1",
+    "mirrors/1", "elevator/1", "rooms/1", "rooms:1/2",
 )  # fmt: skip
 """World with its variant, and the seed of walk and noise."""
 DEGRADATIONS = (

@@ -13,6 +13,7 @@ FIXED = ("office", "staircase", "street", "field", "hall")
 """Worlds of one geometry."""
 PROCEDURAL = (
     "corridor", "tunnel", "garage", "plaza", "storeys", "tower", "forest", "mirrors", "elevator",
+    "rooms",
 )  # fmt: skip
 """Worlds of which there are variants: ``corridor`` is variant 0, ``corridor:7`` another one."""
 WORLDS = FIXED + PROCEDURAL
