@@ -171,10 +171,14 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
     def is_severe(self) -> bool:
         """Whether a map that was made with the rig file must not be used.
 
-        A lever arm or the clock of the GNSS receiver moves a map and bends it, but no wall doubles.
+        A lever arm or the clock of the GNSS receiver moves a map and bends it, the place of the IMU
+        changes accelerations only: no wall doubles.
         """
         return self.changes or any(
-            row.status == "off" and row.sensor != GNSS and abs(row.change) > _SEVERE[row.unit]
+            row.status == "off"
+            and row.sensor != GNSS
+            and (row.sensor, row.quantity) != (IMU, "position")
+            and abs(row.change) > _SEVERE[row.unit]
             for row in self.parameters
         )
 
