@@ -15,6 +15,8 @@ from recon4.model.trajectory import Times, Trajectory
 _LARGEST_S, _GRID_S = 30.0, 0.25
 _STEP_NS = 500_000_000
 """Displacements over this time are compared [ns]."""
+_GAP_NS = 1_500_000_000
+"""Displacements across longer gaps between fixes are not compared: the way there is unknown."""
 _LEAST_S = 0.5
 """Smaller errors are left to the audit [s]."""
 _MIN_STEPS, _MIN_OVERLAP = 30, 0.5
@@ -36,6 +38,9 @@ def coarse_clock_s(trajectory: Trajectory, t_ns: Times, p_fix: Array) -> float:
     if len(t_ns) < _MIN_STEPS:
         return 0.0
     begin_ns = np.arange(t_ns[0], t_ns[-1] - _STEP_NS, _STEP_NS)
+    begin_ns = begin_ns[_gap_ns(t_ns, begin_ns) <= _GAP_NS]
+    if len(begin_ns) < _MIN_STEPS:
+        return 0.0
     of_fixes = _displacements(begin_ns, t_ns, p_fix)
     size_m = np.abs(of_fixes)
     usual = size_m <= _GROSS * np.percentile(size_m, 95.0)
@@ -48,6 +53,14 @@ def coarse_clock_s(trajectory: Trajectory, t_ns: Times, p_fix: Array) -> float:
     at_stamps = _differ(trajectory, begin_ns, of_fixes, clock_s=0.0)
     clear = differ[best] < _CLEARLY * at_stamps or np.isnan(at_stamps)
     return float(grid_s[best]) if clear and abs(grid_s[best]) >= _LEAST_S else 0.0
+
+
+def _gap_ns(t_ns: Times, begin_ns: Times) -> Times:
+    """Longest time between fixes around each displacement [ns], (K,)."""
+    first = np.searchsorted(t_ns, begin_ns, side="right") - 1
+    last = np.minimum(np.searchsorted(t_ns, begin_ns + _STEP_NS), len(t_ns) - 1)
+    gaps = np.append(np.diff(t_ns), 0)
+    return np.maximum.reduceat(gaps, np.stack([first, last], axis=1).ravel())[::2]
 
 
 def _differ(

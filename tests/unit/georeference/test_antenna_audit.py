@@ -13,6 +13,7 @@ from recon4.georeference.antenna_audit import (
     turn_by_antenna,
 )
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
+from recon4.georeference.fix_clock import coarse_clock_s
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import GnssSamples
@@ -166,3 +167,18 @@ def test_a_straight_walk_at_one_speed_shows_no_clock():
     found = audit(true, fixes(true, late_s=5.0))
 
     assert abs(found.clock_s) < 0.5
+
+
+def test_ways_across_gaps_between_fixes_are_not_taken_for_straight():
+    """Between fixes at 8 to 16 s and 24 to 32 s of a walk along a street with corners."""
+    t = np.arange(0.0, 40.0, 0.02)
+    corners = np.random.default_rng(6).choice([-1, 0, 1], size=10)
+    yaw = np.repeat(0.5 * np.pi * np.cumsum(corners), 200)
+    step = 0.02 * 1.2 * np.stack([np.cos(yaw), np.sin(yaw), 0.0 * t], axis=1)
+    still = SE3.identity(len(t)).R
+    true = Trajectory((t * 1e9).astype(np.int64), SE3(still, np.cumsum(step, axis=0)))
+    t_ns = true.t_ns[::5]
+    t_ns = t_ns[t_ns // 8_000_000_000 % 2 == 1]
+    noise_m = np.random.default_rng(1).normal(0.0, 0.01, (len(t_ns), 2))
+
+    assert coarse_clock_s(true, t_ns, true.at(t_ns).t[:, :2] + noise_m) == 0.0
