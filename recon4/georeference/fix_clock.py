@@ -16,7 +16,7 @@ _LARGEST_S, _GRID_S = 30.0, 0.25
 _STEP_NS = 500_000_000
 """Displacements over this time are compared [ns]."""
 _GAP_NS = 1_500_000_000
-"""Displacements across longer gaps between fixes are not compared: the way there is unknown."""
+"""Displacements across longer gaps between fixes are not compared: the path there is unknown."""
 _LEAST_S = 0.5
 """Smaller errors are left to the audit [s]."""
 _MIN_STEPS, _MIN_OVERLAP = 30, 0.5

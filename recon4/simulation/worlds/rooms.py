@@ -2,7 +2,7 @@
 
 A grid of rooms whose rows and columns are 2.4 to 12 m wide, so that there are closets, corridors
 and halls. Doors connect all of them, further ones close loops. What stands in a room is drawn, up
-to nothing at all; only ways from door to door stay free.
+to nothing at all; only the legs from door to door stay free.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ _ANOTHER_DOOR = 0.3
 _CORNER_M, _BEFORE_M = 0.85, 0.9
 """From a door's middle to the corner of the room, and how far before it people turn."""
 _FREE_M = 0.6
-"""Nothing stands nearer to the ways between doors."""
+"""Nothing stands nearer to the legs between doors."""
 _THINGS_M2 = (0.0, 0.08, 0.2)
 """Things on a square meter of a room."""
 
@@ -104,15 +104,15 @@ class _FloorPlan:
         step = np.clip(middle - door.wall_m, -_BEFORE_M, _BEFORE_M)
         return door.place(float(step))
 
-    def ways(self, room: _Room) -> Iterator[tuple[Array, Array]]:
-        """Both ends of the straight ways that people take through a room [m]."""
+    def legs(self, room: _Room) -> Iterator[tuple[Array, Array]]:
+        """Both ends of the straight legs that people walk in a room [m]."""
         for door in self.doors_of(room):
             turn = self.before(door, room)
             yield door.place(), turn
             yield turn, self.middle(room)
 
     def path(self, start: _Room, goal: _Room) -> list[_Room]:
-        """The rooms of a shortest way, with both ends."""
+        """The rooms of a shortest path, with both ends."""
         came: dict[_Room, _Room] = {start: start}
         queue = deque([start])
         while queue:
@@ -229,14 +229,14 @@ def _holes(
 
 
 def _fill(builder: MeshBuilder, plan: _FloorPlan, room: _Room, *, rng: np.random.Generator) -> None:
-    """Put things into a room, away from the ways between its doors."""
+    """Put things into a room, away from the legs between its doors."""
     low, high = plan.corners(room)
-    ways = list(plan.ways(room))
+    legs = list(plan.legs(room))
     wanted = round(float(rng.choice(_THINGS_M2)) * float(np.prod(high - low)))
     for _ in range(10 * wanted):
         place = rng.uniform(low + 0.2, high - 0.2)
         radius_m = float(rng.uniform(0.1, 1.0))
-        if min(_distance(place, way) for way in ways) > radius_m + _FREE_M:
+        if min(_distance(place, leg) for leg in legs) > radius_m + _FREE_M:
             ceiling_m = float(plan.height_m[room])
             _thing(builder, place, radius_m=radius_m, ceiling_m=ceiling_m, rng=rng)
             wanted -= 1
@@ -244,8 +244,8 @@ def _fill(builder: MeshBuilder, plan: _FloorPlan, room: _Room, *, rng: np.random
             return
 
 
-def _distance(place: Array, way: tuple[Array, Array]) -> float:
-    start, step = way[0], way[1] - way[0]
+def _distance(place: Array, leg: tuple[Array, Array]) -> float:
+    start, step = leg[0], leg[1] - leg[0]
     share = float(np.clip((place - start) @ step / max(1e-9, float(step @ step)), 0.0, 1.0))
     return float(np.linalg.norm(place - start - share * step))
 
@@ -285,18 +285,18 @@ def _round(plan: _FloorPlan, rng: np.random.Generator, stops: int) -> list[Waypo
     near = sorted(np.array(plan.rooms[1:])[shuffled].tolist(), key=lambda room: away[tuple(room)])
     goals = [(int(i), int(j)) for i, j in near[:stops]]
     x, y = (float(place) for place in plan.middle(start))
-    way = [Waypoint(x, y)]
+    path = [Waypoint(x, y)]
     here = start
     for goal in [*goals, start]:
         rooms = plan.path(here, goal)
         for room, other in pairwise(rooms):
-            way += _through(plan, room, other)
+            path += _through(plan, room, other)
             x, y = (float(place) for place in plan.middle(other))
             last = other == rooms[-1] and goal != start
             look_deg = float(rng.choice([-180, -90, 90, 180])) if last else 0.0
-            way.append(Waypoint(x, y, stop=last, look_deg=look_deg))
+            path.append(Waypoint(x, y, stop=last, look_deg=look_deg))
         here = goal
-    return way
+    return path
 
 
 def _through(plan: _FloorPlan, room: _Room, other: _Room) -> list[Waypoint]:
