@@ -252,8 +252,8 @@ def find_strays(
         slot_of: Plane of each point, SLOTS = none, (N,).
         limits: Largest ratio of such returns in the 3 x 3 x 3 cells around; as many are few in any
             case; largest ratio of those from afar; how many times the mean range is afar, (4,).
-        sums: Receives of each cell the returns, those on no surface, the ranges of the others, and
-            those on no surface from afar, (C, 4).
+        sums: Receives of each cell the returns, those on no surface, the ranges of the others,
+            those on no surface from afar, and the range that is afar, (C, 5).
         stray: Receives the marks, (N,).
     """
     ratio, alone, far_ratio, afar = limits
@@ -268,13 +268,12 @@ def find_strays(
                 sums[c, 2] += weight[p] * range_of(to_sensor, p)
     for c in range(count):
         if sums[c, 1] > 0.0:
-            far_m = afar * mean_range_around(c, begin, near, sums)
+            sums[c, 4] = afar * mean_range_around(c, begin, near, sums)
             for p in range(starts[c], starts[c + 1]):
-                if slot_of[p] == SLOTS and range_of(to_sensor, p) > far_m:
+                if slot_of[p] == SLOTS and range_of(to_sensor, p) > sums[c, 4]:
                     sums[c, 3] += weight[p]
     for c in range(count):
         few = far_few = False
-        far_m = 0.0
         if sums[c, 1] > 0.0:
             every = loose = far = 0.0
             for k in range(begin[c], begin[c + 1]):
@@ -283,9 +282,9 @@ def find_strays(
                 far += sums[near[k], 3]
             few = loose <= max(ratio * every, alone) and every >= _MIN_AROUND * loose
             far_few = far <= far_ratio * every
-            far_m = afar * mean_range_around(c, begin, near, sums)
         for p in range(starts[c], starts[c + 1]):
-            stray[p] = slot_of[p] == SLOTS and (few or (far_few and range_of(to_sensor, p) > far_m))
+            from_afar = far_few and range_of(to_sensor, p) > sums[c, 4]
+            stray[p] = slot_of[p] == SLOTS and (few or from_afar)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")

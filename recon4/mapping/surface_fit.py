@@ -326,7 +326,7 @@ class _Fit:
             xyz, starts, found.cells, self.step[1:], windows.normals, beyond,
             slots.slot_of, shift_m, surface_of, surfaces, made,
         )  # fmt: skip
-        stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 4), np.float64)
+        stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 5), np.float64)
         few = STRAY_DENSITY * (3.0 * grid.cell_m) ** 2
         surface_points.find_strays(
             to_sensor, weight, starts, found.begin, found.near, slots.slot_of,
