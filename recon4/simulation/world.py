@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.mesh import WorldMesh
+from recon4.geometry.se3 import Array
 from recon4.simulation.rides import Car
 
 
@@ -71,3 +72,10 @@ class World:
     outdoors: bool = False
     """GNSS can be received."""
     origin: WorldOrigin = BRNO
+
+
+def distance_to_leg(place: Array, start: Array, end: Array) -> float:
+    """From a place on the floor to a straight leg of a route [m], (2,) each."""
+    step = end - start
+    along = np.clip((place - start) @ step / (step @ step), 0.0, 1.0)
+    return float(np.linalg.norm(place - start - along * step))

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
-from recon4.simulation.world import Waypoint, World, WorldMarker
+from recon4.simulation.world import Waypoint, World, WorldMarker, distance_to_leg
 from recon4.simulation.worlds.outdoors import (
     CONCRETE,
     GRASS,
@@ -151,17 +151,11 @@ def _free_places(rng: np.random.Generator, count: int) -> list[tuple[float, floa
     while len(places) < count:
         p = rng.uniform([-150.0, -110.0], [150.0, 110.0])
         if (
-            min(_distance(p, a, b) for a, b in ways[: -len(_PYLONS) - 1]) > _CLEAR_M + 2.5
-            and min(_distance(p, a, b) for a, b in ways[-len(_PYLONS) - 1 :]) > 8.0
+            min(distance_to_leg(p, a, b) for a, b in ways[: -len(_PYLONS) - 1]) > _CLEAR_M + 2.5
+            and min(distance_to_leg(p, a, b) for a, b in ways[-len(_PYLONS) - 1 :]) > 8.0
         ):
             places.append((float(p[0]), float(p[1])))
     return places
-
-
-def _distance(p: Array, a: Array, b: Array) -> float:
-    """From a point to a segment [m]."""
-    along = np.clip((p - a) @ (b - a) / ((b - a) @ (b - a)), 0.0, 1.0)
-    return float(np.linalg.norm(p - a - along * (b - a)))
 
 
 def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:

@@ -16,7 +16,7 @@ import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
-from recon4.simulation.world import Waypoint, World
+from recon4.simulation.world import Waypoint, World, distance_to_leg
 from recon4.simulation.worlds.walls import (
     CEILING,
     DARK,
@@ -24,6 +24,7 @@ from recon4.simulation.worlds.walls import (
     PAPER,
     PLASTER,
     STEEL,
+    WALL_M,
     WOOD,
     Opening,
     WallShape,
@@ -183,8 +184,7 @@ def _drawn_door(
 ) -> _DrawnDoor:
     along = 1 if other[0] > room[0] else 0
     low, high = plan.corners(room)
-    reach = high[along] - low[along] - 2.0 * _CORNER_M
-    width_m = min(float(rng.choice(_DOORS_M)), 0.6 * (reach + 2.0 * _CORNER_M))
+    width_m = min(float(rng.choice(_DOORS_M)), 0.6 * float(high[along] - low[along]))
     margin = max(_CORNER_M, width_m / 2.0 + 0.2)
     at_m = float(rng.uniform(low[along] + margin, high[along] - margin))
     top_m = float(rng.uniform(*_DOOR_TOPS_M))
@@ -204,7 +204,7 @@ def _lay_walls(builder: MeshBuilder, plan: _FloorPlan, rng: np.random.Generator)
                 ]
                 shape = WallShape(
                     height_m=float(max(plan.height_m[room] for room in beside)),
-                    thickness_m=0.12 if len(beside) == 2 else 0.3,
+                    thickness_m=WALL_M if len(beside) == 2 else 0.3,
                     reflectivity=PLASTER * float(rng.uniform(0.6, 1.3)),
                 )
                 ends = [(start, at), (end, at)] if along == 0 else [(at, start), (at, end)]
@@ -236,18 +236,12 @@ def _fill(builder: MeshBuilder, plan: _FloorPlan, room: _Room, *, rng: np.random
     for _ in range(10 * wanted):
         place = rng.uniform(low + 0.2, high - 0.2)
         radius_m = float(rng.uniform(0.1, 1.0))
-        if min(_distance(place, leg) for leg in legs) > radius_m + _FREE_M:
+        if min(distance_to_leg(place, *leg) for leg in legs) > radius_m + _FREE_M:
             ceiling_m = float(plan.height_m[room])
             _thing(builder, place, radius_m=radius_m, ceiling_m=ceiling_m, rng=rng)
             wanted -= 1
         if wanted == 0:
             return
-
-
-def _distance(place: Array, leg: tuple[Array, Array]) -> float:
-    start, step = leg[0], leg[1] - leg[0]
-    share = float(np.clip((place - start) @ step / max(1e-9, float(step @ step)), 0.0, 1.0))
-    return float(np.linalg.norm(place - start - share * step))
 
 
 def _thing(
@@ -279,11 +273,9 @@ def _thing(
 
 def _round(plan: _FloorPlan, rng: np.random.Generator, stops: int) -> list[Waypoint]:
     """From the first room through others, the nearest ones in a drawn order, and back."""
-    start = plan.rooms[0]
-    away = {room: len(plan.path(start, room)) for room in plan.rooms[1:]}
-    shuffled = rng.permutation(len(away))
-    near = sorted(np.array(plan.rooms[1:])[shuffled].tolist(), key=lambda room: away[tuple(room)])
-    goals = [(int(i), int(j)) for i, j in near[:stops]]
+    start, *others = plan.rooms
+    shuffled = [others[k] for k in rng.permutation(len(others))]
+    goals = sorted(shuffled, key=lambda room: len(plan.path(start, room)))[:stops]
     x, y = (float(place) for place in plan.middle(start))
     path = [Waypoint(x, y)]
     here = start
