@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Page, Route, expect
 
 from tests.e2e.conftest import EXPECTED_NOISE, browser_context, leave_out_viewer, looks
 from tests.project_builder import build_project
@@ -40,7 +40,7 @@ def sign_in(page, server: Secure, name: str, path: str = "/"):
     page.goto(server.url + path)
     page.get_by_label("Name").fill(name)
     page.get_by_label("Password", exact=True).fill(PASSWORD)
-    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Sign in").click()
     page.wait_for_url(server.url + path)
 
 
@@ -98,9 +98,25 @@ def test_a_hostile_link_to_the_login_stays_on_this_server(server, page):
     page.goto(f"{server.url}/login#next=//evil.example/x")
     page.get_by_label("Name").fill("vera")
     page.get_by_label("Password", exact=True).fill(PASSWORD)
-    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Sign in").click()
 
     page.wait_for_url(f"{server.url}/")
+
+
+@looks("desktop dark")
+def test_a_password_is_not_sent_before_the_script_has_loaded(server, page):
+    held: list[Route] = []
+    page.route("**/account/login.js*", lambda route: held.append(route))
+    page.goto(f"{server.url}/login#next=/account", wait_until="commit")
+    page.get_by_label("Name").fill("vera")
+    page.get_by_label("Password", exact=True).fill(PASSWORD)
+    page.keyboard.press("Enter")
+    expect(page.get_by_role("button", name="Sign in")).to_be_disabled()
+
+    assert page.url == f"{server.url}/login#next=/account"
+    held.pop().continue_()
+    page.get_by_role("button", name="Sign in").click()
+    page.wait_for_url(f"{server.url}/account")
 
 
 @looks("desktop dark")

@@ -4,7 +4,7 @@ import os
 from pathlib import Path
 
 import pytest
-from playwright.sync_api import expect
+from playwright.sync_api import Route, expect
 
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.project_builder import build_project
@@ -228,6 +228,25 @@ def test_a_job_is_started_by_keyboard_alone(server, page, tmp_path):
     page.keyboard.press("Enter")  # at once: the form looks at the recording before it starts
 
     expect(page.get_by_role("heading", name="walk")).to_be_visible()
+    expect(page.locator("job-status")).to_contain_text("Odometry")
+
+
+@looks("desktop light")
+def test_what_is_typed_before_the_choices_are_known_is_not_lost(server, page, tmp_path):
+    leave_out_viewer(page)
+    recording_with_gate(tmp_path / "data" / "walk")
+    build_project(server.root / "walk", with_map=False)
+    held: list[Route] = []
+    page.route("**/api/rigs", lambda route: held.append(route))
+    page.goto(server.url)
+    page.get_by_label("Or a recording on the server").fill(str(tmp_path / "data" / "walk"))
+    with page.expect_response("**/api/look*"):
+        page.keyboard.press("Enter")
+    expect(page.get_by_label("Project name")).to_have_value("walk")
+
+    held.pop().continue_()
+
+    expect(page.get_by_role("heading", name="walk-2")).to_be_visible()
     expect(page.locator("job-status")).to_contain_text("Odometry")
 
 

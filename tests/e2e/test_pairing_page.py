@@ -42,7 +42,7 @@ def sign_in(page, server, path):
     page.goto(server.url + path)
     page.get_by_label("Name").fill("otto")
     page.get_by_label("Password", exact=True).fill(PASSWORD)
-    page.keyboard.press("Enter")
+    page.get_by_role("button", name="Sign in").click()
     page.wait_for_url(server.url + path)
 
 

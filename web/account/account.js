@@ -1,7 +1,7 @@
 // The account of the signed-in person: sessions and password.
 
 import { changePassword, endMySession, listMySessions, readCurrentUser } from "../shared/api.js";
-import { attempt, byId, fields } from "../shared/dom.js";
+import { attempt, byId, fields, onSubmit } from "../shared/dom.js";
 import "../shared/page_head.js";
 import "./session_list.js";
 
@@ -14,7 +14,7 @@ if (me)
 for (const section of document.querySelectorAll("section")) section.hidden = !me?.login;
 list.source = { read: listMySessions, end: endMySession };
 
-form.addEventListener("submit", async (event) => {
+onSubmit(form, async (event) => {
   event.preventDefault();
   byId("password-done").textContent = "";
   const { old, fresh } = fields(form);

@@ -1,7 +1,7 @@
 // The login, and the first admin of a server without accounts.
 
 import { isSignedIn, setUp, signIn } from "../shared/api.js";
-import { byId, fields, targetOf } from "../shared/dom.js";
+import { byId, fields, onSubmit, targetOf } from "../shared/dom.js";
 
 const form = byId("login", HTMLFormElement);
 const controls = fields(form);
@@ -43,7 +43,7 @@ async function submit(event) {
   }
 }
 
-form.addEventListener("submit", submit);
+onSubmit(form, submit);
 byId("show").addEventListener("change", (event) => {
   controls.password.type = targetOf(event).checked ? "text" : "password";
 });

@@ -7,7 +7,7 @@ import {
   liveUrl,
   redeemInvitation,
 } from "../shared/api.js";
-import { attempt, byId, fields } from "../shared/dom.js";
+import { attempt, byId, fields, onSubmit } from "../shared/dom.js";
 
 const CLAIM_EVERY_MS = 2000;
 const AGAIN = "again"; // the session has ended
@@ -59,7 +59,7 @@ function over(text) {
 /** Whether this browser is signed in; false without a link, so that the page can be used. */
 const isIn = () => isSignedIn().catch(() => false);
 
-byId("ask").addEventListener("submit", ask);
+onSubmit(byId("ask"), ask);
 const ended =
   token === AGAIN ? "The session of this phone has ended; a running capture goes on. " : "";
 if (await isIn()) location.replace(liveUrl);

@@ -9,7 +9,7 @@ import {
   readAudit,
   readCurrentUser,
 } from "../shared/api.js";
-import { attempt, byId, fields, make } from "../shared/dom.js";
+import { attempt, byId, fields, make, onSubmit } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import "../shared/page_head.js";
 import "./session_list.js";
@@ -112,7 +112,7 @@ const form = byId("add", HTMLFormElement);
 fields(form).role.append(
   ...Object.entries(ROLES).map(([value, text]) => make("option", { value }, text)),
 );
-form.addEventListener("submit", async (event) => {
+onSubmit(form, async (event) => {
   event.preventDefault();
   const { who, role, password } = fields(form);
   const fresh = { name: who.value, role: role.value, password: password.value };

@@ -1,7 +1,7 @@
 // The laptop's side of pairing: a QR code for one phone, or the digits a phone shows.
 
 import { approvePhone, invitePhone, readPairing } from "../shared/api.js";
-import { attempt, byId, fields, make } from "../shared/dom.js";
+import { attempt, byId, fields, make, onSubmit } from "../shared/dom.js";
 import "../shared/page_head.js";
 
 const MAY = { operator: "look, and start, mark and stop", viewer: "look only" };
@@ -82,7 +82,7 @@ async function approve(event) {
 }
 
 byId("invite").addEventListener("click", invite);
-byId("approve").addEventListener("submit", approve);
+onSubmit(byId("approve"), approve);
 const pairing = await attempt(byId("message"), readPairing);
 if (pairing) {
   byId("without").hidden = pairing.login;

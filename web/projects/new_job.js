@@ -56,8 +56,9 @@ export class NewJob extends HTMLElement {
   #again = null;
   #start = make("button", { className: "primary" }, "Start");
   #checked = { path: "", found: Promise.resolve(null) }; // the last recording that was looked at
+  #offered = Promise.resolve(); // until presets, rigs and taken names are known
 
-  async connectedCallback() {
+  connectedCallback() {
     this.replaceChildren(
       make(
         "form",
@@ -104,6 +105,10 @@ export class NewJob extends HTMLElement {
       "toggle",
       () => this.#settings.open && this.#editor.show(this.#preset.value),
     );
+    this.#offered = this.#offer();
+  }
+
+  async #offer() {
     const [choices, projects, rigs] =
       (await attempt(this.#message, () =>
         Promise.all([readChoices(), this.#again ? [] : listProjects(), listRigs()]),
@@ -117,6 +122,7 @@ export class NewJob extends HTMLElement {
       ),
     );
     if (this.#again) this.#fill(this.#again);
+    else this.#suggest({ project: this.#project.value || undefined }); // may be taken
   }
 
   /** A job to repeat; set before the form is shown. */
@@ -143,7 +149,8 @@ export class NewJob extends HTMLElement {
   async #look() {
     const path = this.#recording.value.trim();
     this.#suggest({ project: slug(path) });
-    this.#checked = { path, found: this.#found.look(path) };
+    const looked = Promise.all([this.#found.look(path), this.#offered]);
+    this.#checked = { path, found: looked.then(([found]) => found) };
     const found = await this.#checked.found;
     if (found) this.#suggest(found);
   }

@@ -16,6 +16,15 @@ export function byId(id, kind = /** @type {any} */ (HTMLElement)) {
 /** The controls of a form by name. */
 export const fields = (form) => /** @type {Record<string, HTMLInputElement>} */ (form.elements);
 
+/**
+ * Gives a form of the page its listener, and then enables its button. A form that is submitted
+ * before its script has loaded puts its fields, a password too, into the address.
+ */
+export function onSubmit(form, listener) {
+  form.addEventListener("submit", listener);
+  for (const button of form.querySelectorAll("button")) button.disabled = false;
+}
+
 /** The element an event began at. */
 export const targetOf = (event) => /** @type {HTMLInputElement} */ (event.target);
 
