@@ -295,7 +295,7 @@ CALIBRATION = Stage(
     _calibration,
     CalibrationFigures,
 )
-GRAPH = Stage("graph", 8, _MATCHING, _graph, GraphFigures)
+GRAPH = Stage("graph", 9, _MATCHING, _graph, GraphFigures)
 VERIFICATION = Stage(
     "verification", 2, ("verification", "graph"), _verification, VerificationFigures
 )

@@ -18,7 +18,8 @@ from recon4.settings import RecognitionSettings
 _LINK_M = 15.0
 """Corrections with more path in between neither confirm nor exclude each other [m]."""
 _AGREE_M, _AGREE_RATIO, _AGREE_RAD = 0.4, 0.05, 0.09
-"""Largest difference of the corrections of two places: [m], ratio of the path in between, [rad]."""
+"""Largest difference of the corrections of two places, beside the drift that the graph states:
+[m], ratio of the path in between, [rad]."""
 _MAX_HEIGHT_SLACK_M = 1.0
 """Less than a storey, however long the walk [m]."""
 _NEUTRAL = (Reason.OVERLAP, Reason.DEGENERATE)
@@ -129,7 +130,7 @@ def _groups(
     agree = [
         (a, b)
         for a, b in _neighboring(places, chains)
-        if _chains_agree(places, chains[a], chains[b])
+        if _chains_agree(places, chains[a], chains[b], sd=settings.bound_sd)
     ]
     rows = np.array(agree, np.intp).reshape(-1, 2)
     joined = coo_array((np.ones(len(rows)), (rows[:, 0], rows[:, 1])), shape=(len(chains),) * 2)
@@ -159,20 +160,27 @@ def _span_m(places: Places, chains: Sequence[RecognizedChain]) -> tuple[float, f
     return float(path_m.min()), float(path_m.max())
 
 
-def _chains_agree(places: Places, a: RecognizedChain, b: RecognizedChain) -> bool:
+def _chains_agree(places: Places, a: RecognizedChain, b: RecognizedChain, *, sd: float) -> bool:
     """Whether the motion between corrected poses of two chains is that of the odometry."""
-    return any(_agree(places, one, other) for one in a.confirmed for other in b.confirmed)
+    return any(_agree(places, one, other, sd=sd) for one in a.confirmed for other in b.confirmed)
 
 
-def _agree(places: Places, a: Edge, b: Edge) -> bool:
+def _agree(places: Places, a: Edge, b: Edge, *, sd: float) -> bool:
     graph = places.graph
     path_m = abs(float(places.path_m[a.j] - places.path_m[b.j]))
     if path_m > _LINK_M:
         return False
     T_a_b = graph.T_map_body[a.j].inverse() @ graph.T_map_body[b.j]
-    apart = (_corrected(graph, a) @ T_a_b).inverse() @ _corrected(graph, b)
+    T_map_b = _corrected(graph, a) @ T_a_b
+    apart_m = _corrected(graph, b).t - T_map_b.t
+    turn_rad = (T_map_b.inverse() @ _corrected(graph, b)).angle()
+    across_m, height_m, yaw_rad = (sd * drift for drift in places.drift_between(a.j, b.j))
     limit_m = _AGREE_M + _AGREE_RATIO * path_m
-    return bool(np.linalg.norm(apart.t) < limit_m and apart.angle() < _AGREE_RAD)
+    return bool(
+        np.linalg.norm(apart_m[:2]) < limit_m + across_m
+        and abs(apart_m[2]) < limit_m + height_m
+        and turn_rad < _AGREE_RAD + yaw_rad
+    )
 
 
 def _corrected(graph: PoseGraph, edge: Edge) -> SE3:

@@ -67,10 +67,23 @@ class PairRegistrar:
                 progress.advance(len(done))
         return [edges[k] for k in range(len(pairs))]
 
-    def seen_through(self, edge: Edge) -> float:
-        """Fraction of the points of one node that lie in the free space of the other, 0..1."""
+    def most_overlapping(self, pairs: Sequence[Pair]) -> Pair:
+        """The pair whose views overlap most at their predicted poses."""
+        return max(pairs, key=self._overlap)
+
+    def checked(self, edge: Edge, most: float) -> Edge:
+        """Reject an edge if one visit sees points where the other one saw through.
+
+        Args:
+            edge: A registered pair.
+            most: Largest fraction of points of one visit in the free space of the other, 0..1.
+        """
+        if not edge.in_graph:
+            return edge
         i, j = self._view(edge.i), self._view(edge.j)
-        return seen_through(i, j, edge.T_i_j, settings=self.settings.overlap)
+        if seen_through(i, j, edge.T_i_j, settings=self.settings.overlap) <= most:
+            return edge
+        return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
         planes = PlaneMap(self.settings.planes)
@@ -147,7 +160,7 @@ class PairRegistrar:
             reason = Reason.FEW_MATCHES
         elif found.degeneracy < g.min_degeneracy:
             reason = Reason.DEGENERATE
-        return _edge(pair, overlap_ratio, reason).evolve(
+        edge = _edge(pair, overlap_ratio, reason).evolve(
             T_i_j=found.T_target_source,
             error_m=found.error_m,
             limit_m=limit_m,
@@ -156,6 +169,7 @@ class PairRegistrar:
             iterations=found.iterations,
             information=_information(found, self.settings),
         )
+        return edge if edge.kind is EdgeKind.NEIGHBOR else self.checked(edge, g.max_seen_through)
 
 
 def tried_event(edge: Edge) -> EdgeTried:

@@ -41,6 +41,20 @@ class Places:
     def __len__(self) -> int:
         return len(self.node)
 
+    def drift_between(self, a: int, b: int) -> tuple[float, float, float]:
+        """Standard deviations between two nodes: horizontal [m], height [m], yaw [rad]."""
+        at = tuple(np.minimum(np.searchsorted(self.node, (a, b)), len(self.node) - 1))
+        of = self.bounds
+        return float(of.horizontal_m[at]), float(of.vertical_m[at]), float(of.yaw_rad[at])
+
+    def drift_at(self, node: int) -> tuple[float, float, float]:
+        """The same for each meter of path at a node [1], [1], [rad/m]."""
+        at = max(1, min(int(np.searchsorted(self.node, node)), len(self.node) - 1))
+        before, after = self.node[at - 1], self.node[at]
+        walked_m = max(float(self.path_m[after] - self.path_m[before]), 0.1)  # parts may meet
+        across, height, yaw = self.drift_between(before, after)
+        return across / walked_m, height / walked_m, yaw / walked_m
+
 
 def make_places(
     graph: PoseGraph, views: NodeRangeImages, settings: RecognitionSettings, *, leveled: bool

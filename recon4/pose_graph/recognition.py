@@ -15,16 +15,17 @@ What fails only the last two is *ambiguous*: it is kept out of the graph and ann
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.density import MAX_SHIFT_M, Overlay, overlays, yaws_within
-from recon4.pose_graph.groups import RecognizedChain, contradicts, judge_chains
+from recon4.pose_graph.follow import ChainFollower, loop_pairs, register_recognized, taken_pairs
+from recon4.pose_graph.groups import RecognizedChain, judge_chains
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.places import Places, make_places
 from recon4.progress import Progress
@@ -34,20 +35,14 @@ _NEAR_M, _NEAR_RAD = 1.5, 0.26
 """Hypotheses of one place that are closer than this are the same."""
 _HEIGHT_M = 1.0
 """Two visits of one place differ in height by less than this, beside the drift [m]."""
+_KNOWN_M, _FLIGHT_M = 1.5, 2.0
+"""A height known to less than this [m] is kept, if it is less than a storey."""
 _YAW_RAD = 0.26
 """Rotations that are always tried [rad]."""
-_GROWTH_M, _MAX_GROWTH = 1.2, 12
-"""Step along the path at which a correction is tested [m], and the largest number of steps."""
-_PARTED_M = 3.0
-"""The two paths have parted where they are farther apart [m]."""
-_STEP_M, _STEP_RAD = 0.4, 0.07
-"""Largest change of a correction over one step."""
 _UNLIKELY = 0.1
 """Score that a hypothesis loses if it moves a node by as much as is likely."""
 _FAR, _MAX_FAR = 1.2, 1
 """Hypotheses of a place that are farther than likely; they can only be announced."""
-_MAX_STUCK = 2
-"""A correction is followed past this many nodes that contradict it, to count them."""
 _CLOSED_NODES = 2
 """A place is known if an accepted loop closure ends this many nodes from it, or closer."""
 
@@ -96,35 +91,16 @@ def recognize(
     hypotheses = [
         one for place in _open_places(places) for one in _hypotheses(places, place, settings)
     ]
-    pairs, kept = _pairs(places, hypotheses)
+    pairs, kept = _pairs(places, hypotheses, registrar)
     if not pairs:
         return []
-    edges = _register(pairs, registrar, progress)
+    edges = register_recognized(pairs, registrar, progress)
     chains = [
         RecognizedChain(place=one.place, earlier=one.earlier, edges=[edge])
         for one, edge in zip(kept, edges, strict=True)
     ]
-    _grow(places, chains, lambda more: _register(more, registrar, progress))
+    ChainFollower(places, registrar, progress).follow(chains)
     return judge_chains(places, chains, settings=settings)
-
-
-def _register(pairs: Sequence[Pair], registrar: PairRegistrar, progress: Progress) -> list[Edge]:
-    """Register pairs and compare them with the free space.
-
-    Pairs that ran out of rounds close to a fit continue from there.
-    """
-    if not pairs:
-        return []
-    edges = registrar.register(pairs, progress)
-    again = [k for k, edge in enumerate(edges) if _is_close(edge)]
-    further = [Pair(e.i, e.j, e.kind, e.T_i_j) for e in (edges[k] for k in again)]
-    for k, edge in zip(again, registrar.register(further, progress) if again else [], strict=True):
-        edges[k] = edge
-    return [_check_free_space(edge, registrar) for edge in edges]
-
-
-def _is_close(edge: Edge) -> bool:
-    return edge.reason is Reason.NOT_CONVERGED and edge.error_m <= edge.limit_m
 
 
 def without_settled(graph: PoseGraph) -> PoseGraph:
@@ -170,12 +146,14 @@ def _hypotheses(
     for k in _candidates(places, place, settings):
         yaws = yaws_within(settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + _YAW_RAD)
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
+        height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place]) + _HEIGHT_M
         for overlay in overlays(
             places.images[k], places.images[place], yaws=yaws, most=settings.hypotheses
         ):
-            T = _moved(T_map_place[place], T_map_place[k], overlay)
-            move_m = float(np.linalg.norm(T.t - T_map_place.t[place]))
-            unlikely = move_m / (likely_m + settings.bound_m)
+            T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)
+            move_m = T.t - T_map_place.t[place]
+            across = float(np.linalg.norm(move_m[:2])) / (likely_m + settings.bound_m)
+            unlikely = max(across, abs(float(move_m[2])) / height_m)
             if overlay.score >= settings.min_score:
                 found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
     return _distinct(sorted(found, key=lambda one: -one.rank), settings.hypotheses)
@@ -208,10 +186,16 @@ def _candidates(places: Places, place: int, settings: RecognitionSettings) -> li
     return chosen
 
 
-def _moved(T_map_body: SE3, T_map_earlier: SE3, overlay: Overlay) -> SE3:
-    """Pose of a place in the map if it is laid onto an earlier one; the height above it is 0."""
+def _moved(T_map_body: SE3, T_map_earlier: SE3, overlay: Overlay, *, height_m: float) -> SE3:
+    """Pose of a place in the map if it is laid onto an earlier one.
+
+    Images from above show no heights: on stairs one place lies above another. A height difference
+    that the graph knows, to less than ``height_m``, stays; else the visits have the same height.
+    """
     turn = so3_exp([0.0, 0.0, overlay.yaw_rad])
-    return SE3(turn @ T_map_body.R, T_map_earlier.t + np.append(overlay.shift_m, 0.0))
+    above_m = float(T_map_body.t[2] - T_map_earlier.t[2])
+    above_m = above_m if height_m < _KNOWN_M and abs(above_m) < _FLIGHT_M else 0.0
+    return SE3(turn @ T_map_body.R, T_map_earlier.t + np.append(overlay.shift_m, above_m))
 
 
 def _same(a: _PlaceHypothesis, b: _PlaceHypothesis) -> bool:
@@ -219,98 +203,20 @@ def _same(a: _PlaceHypothesis, b: _PlaceHypothesis) -> bool:
     return bool(np.linalg.norm(apart.t) < _NEAR_M and apart.angle() < _NEAR_RAD)
 
 
-def _taken(graph: PoseGraph) -> set[tuple[int, int]]:
-    """Pairs that are not registered again; better poses may decide what was not clear before."""
-    unclear = (Reason.AMBIGUOUS, Reason.UNCONFIRMED)
-    return {(e.i, e.j) for e in graph.edges if e.in_graph or e.reason not in unclear}
-
-
 def _pairs(
-    places: Places, hypotheses: Sequence[_PlaceHypothesis]
+    places: Places, hypotheses: Sequence[_PlaceHypothesis], registrar: PairRegistrar
 ) -> tuple[list[Pair], list[_PlaceHypothesis]]:
-    """One pair for each hypothesis: the place and the earlier node nearest to where it moves."""
+    """One pair for each hypothesis: the place and an earlier node near where it moves."""
     graph = places.graph
-    taken = _taken(graph)
+    taken = taken_pairs(graph)
     pairs, kept = [], []
     for one in hypotheses:
         j, k = int(places.node[one.place]), int(places.node[one.earlier])
-        near = np.flatnonzero(np.abs(places.path_m - places.path_m[k]) <= MAX_SHIFT_M)
-        near = near[near < j]
-        away = np.linalg.norm(graph.T_map_body.t[near] - one.T_map_body.t, axis=1)
-        free = [int(i) for i in near[np.argsort(away, kind="stable")] if (int(i), j) not in taken]
-        if not free:
+        around = np.flatnonzero(np.abs(places.path_m - places.path_m[k]) <= MAX_SHIFT_M)
+        near = [int(i) for i in around[around < j] if (int(i), j) not in taken]
+        if not near:
             continue
-        taken.add((free[0], j))
-        T_i_j = graph.T_map_body[free[0]].inverse() @ one.T_map_body
-        pairs.append(Pair(free[0], j, EdgeKind.LOOP, T_i_j))
+        pairs.append(registrar.most_overlapping(loop_pairs(graph, near, (j, one.T_map_body))))
+        taken.add((pairs[-1].i, j))
         kept.append(one)
     return pairs, kept
-
-
-def _grow(
-    places: Places,
-    chains: Sequence[RecognizedChain],
-    register: Callable[[list[Pair]], list[Edge]],
-) -> None:
-    """Follow each correction along the path, both ways, as long as the views fit.
-
-    A true revisit ends where the two paths part. A place that only looks alike ends where the views
-    contradict each other.
-    """
-    taken = _taken(places.graph) | {(e.i, e.j) for c in chains for e in c.edges}
-    fronts = [(c, c.edges[0], way, 0) for c in chains if c.edges[0].in_graph for way in (-1, 1)]
-    for _ in range(_MAX_GROWTH):
-        pairs, kept = [], []
-        for chain, edge, way, stuck in fronts:
-            pair = _next_pair(places, edge, way)
-            if pair is not None and (pair.i, pair.j) not in taken:
-                taken.add((pair.i, pair.j))
-                pairs.append(pair)
-                kept.append((chain, way, stuck))
-        if not pairs:
-            return
-        fronts = []
-        for pair, (chain, way, stuck), edge in zip(pairs, kept, register(pairs), strict=True):
-            edge = _checked_drift(pair, edge)
-            chain.edges.append(edge)
-            stuck = stuck + 1 if contradicts(edge) else 0
-            if stuck <= _MAX_STUCK:
-                # Without a fit the correction is carried on from its prediction.
-                ahead = edge if edge.in_graph else edge.evolve(T_i_j=pair.T_i_j)
-                fronts.append((chain, ahead, way, stuck))
-
-
-def _checked_drift(pair: Pair, edge: Edge) -> Edge:
-    """Reject an edge that moved far from where the neighboring one predicted it."""
-    apart = pair.T_i_j.inverse() @ edge.T_i_j
-    if not edge.in_graph or (np.linalg.norm(apart.t) < _STEP_M and apart.angle() < _STEP_RAD):
-        return edge
-    return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.UNCONFIRMED)
-
-
-def _next_pair(places: Places, edge: Edge, way: int) -> Pair | None:
-    """The same correction a step along the path; None = the paths part there."""
-    graph, path_m = places.graph, places.path_m
-    ahead = np.flatnonzero(way * (path_m - path_m[edge.j]) >= _GROWTH_M)
-    if not len(ahead):
-        return None
-    j = int(ahead[0] if way > 0 else ahead[-1])
-    T_corrected = graph.T_map_body[edge.i] @ edge.T_i_j
-    T_map_body = T_corrected @ graph.T_map_body[edge.j].inverse() @ graph.T_map_body[j]
-    near = np.flatnonzero(np.abs(path_m - path_m[edge.i]) <= MAX_SHIFT_M)
-    near = near[path_m[near] < path_m[j] - MAX_SHIFT_M]
-    if not len(near):
-        return None
-    away_m = np.linalg.norm(graph.T_map_body.t[near] - T_map_body.t, axis=1)
-    i = int(near[np.argmin(away_m)])
-    if away_m.min() > _PARTED_M:
-        return None
-    return Pair(i, j, EdgeKind.LOOP, graph.T_map_body[i].inverse() @ T_map_body)
-
-
-def _check_free_space(edge: Edge, registrar: PairRegistrar) -> Edge:
-    """Reject an edge if one visit sees points where the other one saw through."""
-    most = registrar.settings.recognition.max_seen_through
-    if not edge.in_graph or registrar.seen_through(edge) <= most:
-        return edge
-    return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)

@@ -45,6 +45,9 @@ class GraphSettings:
     """A pair with a smaller match ratio is rejected."""
     min_degeneracy: float = 0.005
     """A pair with a smaller degeneracy is rejected (0 = unobservable, 1/3 = isotropic)."""
+    max_seen_through: float = 0.2
+    """Largest fraction of points of a loop closure in the free space of the other visit: doors and
+    people move, walls do not."""
     error_relative: float = 0.01
     """t_r of the acceptance limit ``median_range * t_r + t_a`` (A0 no. 12)."""
     error_absolute_m: float = 0.05
@@ -130,7 +133,7 @@ class RecognitionSettings:
     """The search goes farther by this ratio of the path length in between, so that a drift larger
     than stated is announced."""
     max_seen_through: float = 0.06
-    """Largest fraction of points in the free space of the other visit."""
+    """The same as ``graph.max_seen_through`` for recognized places, which nothing predicted."""
     min_places: int = 3
     """Number of nodes in a row that must agree on a correction."""
     rival_ratio: float = 0.5

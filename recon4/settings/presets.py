@@ -92,6 +92,7 @@ PRESETS: dict[str, Settings] = {
             target_reach=0,
             min_match_ratio=0.0,
             min_degeneracy=0.0,
+            max_seen_through=1.0,
             loop_sd_m=0.1,
             loop_sd_rad=0.01,
         ),

@@ -51,6 +51,30 @@ class DriftedWalk:
     recording: Path
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LoopsFound:
+    """What the search found in a drifted walk."""
+
+    revisits: int
+    found: int
+    """Revisits that a loop closure ends at."""
+    loops: int
+    """Loop closures in the verified graph."""
+    false: int
+    """Those that are off the truth."""
+    ambiguous: int
+    """Edges that wait for a decision."""
+    ate_m: float
+    cpu_s: float
+
+    def row(self) -> tuple[str, ...]:
+        """Its columns of the table."""
+        return (
+            f"{self.found} of {self.revisits}", str(self.loops), str(self.false),
+            str(self.ambiguous), number(100.0 * self.ate_m, 1), number(self.cpu_s, 0),
+        )  # fmt: skip
+
+
 def prepared(spec: str, out: Path) -> DriftedWalk:
     """Simulate a walk ``WORLD/SEED/SECONDS`` and run its odometry, or find both in ``out``."""
     world, seed, seconds = spec.split("/")
@@ -116,8 +140,8 @@ def revisits(t_m: Array) -> list[int]:
     return found
 
 
-def row(spec: str, walk: DriftedWalk, *, drift_m: float, recognition: bool) -> tuple[str, ...]:
-    """One line of the table."""
+def loops_found(walk: DriftedWalk, *, drift_m: float, recognition: bool) -> LoopsFound:
+    """Search for loop closures in a walk with a drift of that many meters and degrees."""
     settings = without_neighbors(recognition=recognition)
     start = start_graph(walk.frames, walk.odometry, settings=settings.graph)
     start = drifted(start, drift_m=drift_m, drift_rad=np.deg2rad(drift_m))
@@ -141,13 +165,16 @@ def row(spec: str, walk: DriftedWalk, *, drift_m: float, recognition: bool) -> t
     false = sum(m > _FALSE_M or rad > _FALSE_RAD for m, rad in (off_truth(e, truth) for e in loops))
     again = revisits(truth.t)
     closed = {node for e in loops for node in range(e.j - _BESIDE, e.j + _BESIDE + 1)}
-    waiting = sum(e.reason is Reason.AMBIGUOUS for e in found.edges)
     error_m = (align_points(truth.t, found.T_map_body.t) @ found.T_map_body.t) - truth.t
-    ate_m = float(np.sqrt((error_m**2).sum(axis=1).mean()))
-    return (
-        spec, "yes" if recognition else "no", f"{sum(k in closed for k in again)} of {len(again)}",
-        str(len(loops)), str(false), str(waiting), number(100.0 * ate_m, 1), number(cpu_s, 0),
-    )  # fmt: skip
+    return LoopsFound(
+        revisits=len(again),
+        found=sum(k in closed for k in again),
+        loops=len(loops),
+        false=false,
+        ambiguous=sum(e.reason is Reason.AMBIGUOUS for e in found.edges),
+        ate_m=float(np.sqrt((error_m**2).sum(axis=1).mean())),
+        cpu_s=cpu_s,
+    )
 
 
 def main() -> None:
@@ -161,7 +188,8 @@ def main() -> None:
     for spec in a.walks:
         walk = prepared(spec, a.out)
         for recognition in (False, True):
-            rows.append(row(spec, walk, drift_m=a.drift_m, recognition=recognition))
+            found = loops_found(walk, drift_m=a.drift_m, recognition=recognition)
+            rows.append((spec, "yes" if recognition else "no", *found.row()))
             print(*rows[-1], flush=True)
     header = ("walk", "recognition", "revisits found", "loops", "false", "ambiguous", "ATE cm",
               "cpu s")  # fmt: skip

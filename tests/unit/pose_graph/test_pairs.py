@@ -93,6 +93,7 @@ def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(strol
     (["graph.error_relative=0.0", "graph.error_absolute_m=0.001"], None, Reason.ERROR),
     (["graph.min_match_ratio=1.01"], None, Reason.FEW_MATCHES),
     (["graph.min_degeneracy=0.34"], None, Reason.DEGENERATE),
+    (["graph.max_seen_through=-0.1"], None, Reason.SEEN_THROUGH),
 ])  # fmt: skip
 def test_each_reason_to_reject_a_pair(stroll, assignments, wrong, reason):
     edge = try_one(stroll, *assignments, wrong=wrong)
@@ -100,6 +101,16 @@ def test_each_reason_to_reject_a_pair(stroll, assignments, wrong, reason):
     assert (edge.verdict, edge.reason) == (Verdict.REJECTED, reason)
     assert not edge.in_graph
     assert np.isfinite(edge.overlap)
+
+
+def test_a_pair_is_rejected_if_one_visit_saw_through_what_the_other_one_saw(stroll):
+    made = registrar(stroll)
+    edge = made.register([pair(stroll, 0, 3)], Silent())[0]
+    elsewhere = edge.evolve(T_i_j=edge.T_i_j @ SE3.from_rpy(0, 0, 0, t=[1.5, 0, 0]))
+    most = Settings().graph.max_seen_through
+
+    assert made.checked(edge, most) == edge
+    assert made.checked(elsewhere, most).reason is Reason.SEEN_THROUGH
 
 
 def test_a_pair_without_overlap_keeps_its_initial_pose(stroll):

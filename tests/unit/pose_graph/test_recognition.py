@@ -131,11 +131,18 @@ def test_a_rejected_edge_shortens_nothing():
 WALK = straight(41)
 
 
-def places_of(graph):
-    """A place at every node."""
-    nodes = np.arange(len(graph))
+def places_of(graph, *, every=1):
+    """A place at every n-th node."""
+    nodes = np.arange(0, len(graph), every)
     bounds = relative_bounds(graph, nodes, leveled=True)
     return Places(graph, nodes, np.arange(len(graph), dtype=float), (), np.zeros((41, 1)), bounds)
+
+
+def test_the_drift_at_a_node_is_that_of_a_meter_of_path():
+    places = places_of(straight(41), every=4)
+
+    assert places.drift_at(13)[0] == pytest.approx(0.1, rel=0.05)
+    assert places.drift_between(2, 22)[0] == pytest.approx(2.0, rel=0.05)
 
 
 def chain(first, *, off_m=(0.0, 0.0, 0.0), nodes=5, bad=0):
@@ -152,8 +159,8 @@ def chain(first, *, off_m=(0.0, 0.0, 0.0), nodes=5, bad=0):
     return RecognizedChain(place=first, earlier=0, edges=edges)
 
 
-def reasons(*chains, settings=SETTINGS):
-    judged = judge_chains(places_of(WALK), chains, settings=settings)
+def reasons(*chains, settings=SETTINGS, walk=WALK):
+    judged = judge_chains(places_of(walk), chains, settings=settings)
     out, at = [], 0
     for one in chains:
         out.append({e.reason for e in judged[at : at + len(one.edges)]} - {Reason.SEEN_THROUGH})
@@ -197,3 +204,21 @@ def test_chains_that_agree_support_each_other():
     apart = (chain(26, nodes=2), replace(chain(32, nodes=2), place=32))
 
     assert reasons(*apart) == [{Reason.NONE}, {Reason.NONE}]
+
+
+@pytest.mark.parametrize(("sd_m", "found"), [(0.1, Reason.NONE), (0.005, Reason.UNCONFIRMED)])
+def test_corrections_may_differ_by_the_drift_that_the_graph_states(sd_m, found):
+    walk = straight(41)
+    walk = walk.with_edges(tuple(edge(e.i, e.j, sd_m=sd_m) for e in walk.edges))
+    apart = (chain(26, nodes=2), chain(33, nodes=2, off_m=(0.0, 1.3, 0.0)))
+
+    assert reasons(*apart, walk=walk) == [{found}, {found}]
+
+
+def test_corrections_of_different_storeys_do_not_agree_however_far_the_walk_drifts():
+    walk = straight(41)
+    unsure = np.diag([1e8, 1e8, 1e8, 1.0, 1.0, 1e4])
+    walk = walk.with_edges(tuple(e.evolve(information=unsure) for e in walk.edges))
+    apart = (chain(26, nodes=2), chain(33, nodes=2, off_m=(0.0, 0.0, 3.0)))
+
+    assert reasons(*apart, walk=walk) == [{Reason.UNCONFIRMED}, {Reason.UNCONFIRMED}]

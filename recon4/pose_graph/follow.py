@@ -1,0 +1,177 @@
+"""Recognized places are followed along the path: how far does their correction fit?"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.pose_graph.density import MAX_SHIFT_M
+from recon4.pose_graph.groups import RecognizedChain, contradicts
+from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.places import Places
+from recon4.progress import Progress
+
+_STEP_M, _MAX_STEPS = 1.2, 12
+"""Step along the path at which a correction is tested [m], shorter where the graph states more
+drift; and the largest number of steps."""
+_NEAREST = 5
+"""The best overlap with this many of the nearest nodes counts: on stairs a step changes much."""
+_PARTED_M = 3.0
+"""The two paths have parted where they are farther apart [m]."""
+_CHANGE_M, _CHANGE_RAD = 0.4, 0.07
+"""Largest change of a correction over one step, beside the drift that the graph states."""
+_MAX_STUCK = 2
+"""A correction is followed past this many nodes that contradict it, to count them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _ChainEnd:
+    """Where a chain is followed on."""
+
+    chain: RecognizedChain
+    edge: Edge
+    """Its last edge in this direction."""
+    direction: int
+    """1: along the walk, -1: back."""
+    stuck: int = 0
+    """Number of nodes in a row that contradict it."""
+
+
+class ChainFollower:
+    """Registers further nodes before and after recognized places.
+
+    A true revisit ends where the two paths part. A place that only looks alike ends where the views
+    contradict each other.
+    """
+
+    def __init__(self, places: Places, registrar: PairRegistrar, progress: Progress) -> None:
+        self._places, self._registrar, self._progress = places, registrar, progress
+        self._sd = registrar.settings.recognition.bound_sd
+        self._taken = taken_pairs(places.graph)
+
+    def follow(self, chains: Sequence[RecognizedChain]) -> None:
+        """Add edges to the chains, both ways, as long as the views fit."""
+        self._taken |= {(edge.i, edge.j) for chain in chains for edge in chain.edges}
+        ends = [
+            _ChainEnd(chain, chain.edges[0], direction)
+            for chain in chains
+            if chain.edges[0].in_graph
+            for direction in (-1, 1)
+        ]
+        for _ in range(_MAX_STEPS):
+            ends = self._step(ends)
+            if not ends:
+                return
+
+    def _step(self, ends: Sequence[_ChainEnd]) -> list[_ChainEnd]:
+        """Follow every chain by a step; those that go on are returned."""
+        pairs, kept, choices = [], [], []
+        for end in ends:
+            choice = self._next_pairs(end)
+            pair = self._registrar.most_overlapping(choice) if choice else None
+            if pair is not None and (pair.i, pair.j) not in self._taken:
+                self._taken.add((pair.i, pair.j))
+                pairs.append(pair)
+                kept.append(end)
+                choices.append(choice)
+        edges = self._register(pairs)
+        self._replace_contradicting(pairs, edges, choices)
+        further = []
+        for pair, end, edge in zip(pairs, kept, edges, strict=True):
+            end.chain.edges.append(edge)
+            stuck = end.stuck + 1 if contradicts(edge) else 0
+            if stuck <= _MAX_STUCK:
+                # Without a fit the correction is carried on from its prediction.
+                last = edge if edge.in_graph else edge.evolve(T_i_j=pair.T_i_j)
+                further.append(_ChainEnd(end.chain, last, end.direction, stuck))
+        return further
+
+    def _replace_contradicting(
+        self, pairs: list[Pair], edges: list[Edge], choices: Sequence[Sequence[Pair]]
+    ) -> None:
+        """A node contradicts a correction only if another earlier node does not fit either."""
+        rows, others = [], []
+        for row, (edge, choice) in enumerate(zip(edges, choices, strict=True)):
+            free = [pair for pair in choice if (pair.i, pair.j) not in self._taken]
+            if contradicts(edge) and free:
+                rows.append(row)
+                others.append(self._registrar.most_overlapping(free))
+                self._taken.add((others[-1].i, others[-1].j))
+        for row, pair, edge in zip(rows, others, self._register(others), strict=True):
+            if edge.in_graph:
+                pairs[row], edges[row] = pair, edge
+
+    def _register(self, pairs: Sequence[Pair]) -> list[Edge]:
+        edges = register_recognized(pairs, self._registrar, self._progress)
+        return [self._checked(pair, edge) for pair, edge in zip(pairs, edges, strict=True)]
+
+    def _checked(self, pair: Pair, edge: Edge) -> Edge:
+        """Reject an edge that moved far from where the neighboring one predicted it."""
+        drift = self._places.drift_at(edge.j)
+        across_m, height_m, yaw_rad = (self._sd * _STEP_M * one for one in drift)
+        R_map_i = self._places.graph.T_map_body.R[edge.i]
+        apart_m = R_map_i @ (edge.T_i_j.t - pair.T_i_j.t)
+        turn_rad = (pair.T_i_j.inverse() @ edge.T_i_j).angle()
+        is_near = (
+            np.linalg.norm(apart_m[:2]) < _CHANGE_M + across_m
+            and abs(apart_m[2]) < _CHANGE_M + height_m
+        )
+        if not edge.in_graph or (is_near and turn_rad < _CHANGE_RAD + yaw_rad):
+            return edge
+        return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.UNCONFIRMED)
+
+    def _next_pairs(self, end: _ChainEnd) -> list[Pair]:
+        """The same correction a step along the path; none where the paths part."""
+        graph, path_m, edge = self._places.graph, self._places.path_m, end.edge
+        drift = self._sd * self._places.drift_at(edge.j)[0]
+        step_m = min(_STEP_M, 0.5 * _CHANGE_M / max(drift, 1e-9))
+        ahead = np.flatnonzero(end.direction * (path_m - path_m[edge.j]) >= step_m)
+        if not len(ahead):
+            return []
+        j = int(ahead[0] if end.direction > 0 else ahead[-1])
+        T_corrected = graph.T_map_body[edge.i] @ edge.T_i_j
+        T_map_body = T_corrected @ graph.T_map_body[edge.j].inverse() @ graph.T_map_body[j]
+        near = np.flatnonzero(np.abs(path_m - path_m[edge.i]) <= MAX_SHIFT_M)
+        near = near[path_m[near] < path_m[j] - MAX_SHIFT_M]
+        away_m = np.linalg.norm(graph.T_map_body.t[near] - T_map_body.t, axis=1)
+        return loop_pairs(graph, near[away_m <= _PARTED_M].tolist(), (j, T_map_body))
+
+
+def loop_pairs(graph: PoseGraph, earlier: Sequence[int], later: tuple[int, SE3]) -> list[Pair]:
+    """Pairs of a node, if it had that ``T_map_body``, with the nearest of some earlier nodes."""
+    j, T_map_body = later
+    T = graph.T_map_body
+    nearest = sorted(earlier, key=lambda i: float(np.linalg.norm(T.t[i] - T_map_body.t)))
+    return [Pair(i, j, EdgeKind.LOOP, T[i].inverse() @ T_map_body) for i in nearest[:_NEAREST]]
+
+
+def taken_pairs(graph: PoseGraph) -> set[tuple[int, int]]:
+    """Pairs that are not registered again; better poses may decide what was not clear before."""
+    unclear = (Reason.AMBIGUOUS, Reason.UNCONFIRMED)
+    return {(e.i, e.j) for e in graph.edges if e.in_graph or e.reason not in unclear}
+
+
+def register_recognized(
+    pairs: Sequence[Pair], registrar: PairRegistrar, progress: Progress
+) -> list[Edge]:
+    """Register pairs and compare them with the free space.
+
+    Pairs that ran out of rounds close to a fit continue from there.
+    """
+    if not pairs:
+        return []
+    edges = registrar.register(pairs, progress)
+    again = [k for k, edge in enumerate(edges) if _is_close(edge)]
+    further = [Pair(e.i, e.j, e.kind, e.T_i_j) for e in (edges[k] for k in again)]
+    for k, edge in zip(again, registrar.register(further, progress) if again else [], strict=True):
+        edges[k] = edge
+    most = registrar.settings.recognition.max_seen_through
+    return [registrar.checked(edge, most) for edge in edges]
+
+
+def _is_close(edge: Edge) -> bool:
+    return edge.reason is Reason.NOT_CONVERGED and edge.error_m <= edge.limit_m
