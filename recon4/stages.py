@@ -290,7 +290,7 @@ ODOMETRY = Stage(
 )
 CALIBRATION = Stage(
     "calibration",
-    11,
+    12,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,
@@ -303,7 +303,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 19, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 20, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 9, ("map",), _map, MapFigures)
 

@@ -50,7 +50,9 @@ def coarse_clock_s(trajectory: Trajectory, t_ns: Times, p_fix: Array) -> float:
     if not np.isfinite(differ).any():
         return 0.0
     best = int(np.nanargmin(differ))
-    at_stamps = _differ(trajectory, begin_ns, of_fixes, clock_s=0.0)
+    # Of the same fixes: those that another clock leaves out may be worse than the others.
+    same = _inside(trajectory, begin_ns, clock_s=float(grid_s[best]))
+    at_stamps = _differ(trajectory, begin_ns[same], of_fixes[same], clock_s=0.0)
     clear = differ[best] < _CLEARLY * at_stamps or np.isnan(at_stamps)
     return float(grid_s[best]) if clear and abs(grid_s[best]) >= _LEAST_S else 0.0
 
@@ -67,15 +69,22 @@ def _differ(
     trajectory: Trajectory, begin_ns: Times, of_fixes: NDArray[np.complex128], *, clock_s: float
 ) -> float:
     """Mean square difference of the displacements at the best heading [m²]; NaN = no overlap."""
-    moved_ns = begin_ns + round(1e9 * clock_s)
-    inside = (moved_ns >= trajectory.t_ns[0]) & (moved_ns + _STEP_NS <= trajectory.t_ns[-1])
+    inside = _inside(trajectory, begin_ns, clock_s=clock_s)
     if inside.sum() < max(_MIN_STEPS, _MIN_OVERLAP * len(begin_ns)):
         return float("nan")
-    seen = _displacements(moved_ns[inside], trajectory.t_ns, trajectory.T_a_b.t[:, :2])
+    moved_ns = begin_ns[inside] + round(1e9 * clock_s)
+    seen = _displacements(moved_ns, trajectory.t_ns, trajectory.T_a_b.t[:, :2])
     fixed = of_fixes[inside]
     together = abs(np.vdot(seen, fixed))
     total = np.vdot(seen, seen).real + np.vdot(fixed, fixed).real - 2.0 * together
     return float(total) / len(fixed)
+
+
+def _inside(trajectory: Trajectory, begin_ns: Times, *, clock_s: float) -> NDArray[np.bool_]:
+    """Which displacements lie in the trajectory, (K,)."""
+    moved_ns = begin_ns + round(1e9 * clock_s)
+    within = (moved_ns >= trajectory.t_ns[0]) & (moved_ns + _STEP_NS <= trajectory.t_ns[-1])
+    return np.asarray(within, np.bool_)
 
 
 def _displacements(begin_ns: Times, t_ns: Times, p: Array) -> NDArray[np.complex128]:

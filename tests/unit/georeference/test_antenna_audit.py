@@ -182,3 +182,18 @@ def test_ways_across_gaps_between_fixes_are_not_taken_for_straight():
     noise_m = np.random.default_rng(1).normal(0.0, 0.01, (len(t_ns), 2))
 
     assert coarse_clock_s(true, t_ns, true.at(t_ns).t[:, :2] + noise_m) == 0.0
+
+
+def test_a_clock_that_leaves_out_poor_fixes_is_not_taken_for_better():
+    """Out along a street and back at the same speed; the fixes on the second half are poor."""
+    t = np.arange(0.0, 44.0, 0.02)
+    leg_s = t % 22.0
+    speed = 1.2 * np.clip(np.minimum(leg_s, 22.0 - leg_s) - 1.0, 0.0, 1.0)
+    x = np.cumsum(0.02 * np.where(t < 22.0, speed, -speed))
+    still = SE3.identity(len(t)).R
+    true = Trajectory((t * 1e9).astype(np.int64), SE3(still, np.outer(x, [1.0, 0.0, 0.0])))
+    t_ns = true.t_ns[::5]
+    sd_m = np.where(t_ns < 22_000_000_000, 0.01, 0.2)
+    noise_m = sd_m[:, None] * np.random.default_rng(1).standard_normal((len(t_ns), 2))
+
+    assert coarse_clock_s(true, t_ns, true.at(t_ns).t[:, :2] + noise_m) == 0.0
