@@ -79,7 +79,11 @@ class ChainFollower:
                 kept.append(end)
                 choices.append(choice)
         edges = self._register(pairs)
-        self._replace_contradicting(pairs, edges, choices)
+        others = self._other_pairs(edges, choices)
+        for row, edge in zip(others, self._register([*others.values()]), strict=True):
+            kept[row].chain.edges.append(edges[row] if edge.in_graph else edge)
+            if edge.in_graph:
+                pairs[row], edges[row] = others[row], edge
         further = []
         for pair, end, edge in zip(pairs, kept, edges, strict=True):
             end.chain.edges.append(edge)
@@ -90,20 +94,17 @@ class ChainFollower:
                 further.append(_ChainEnd(end.chain, last, end.direction, stuck))
         return further
 
-    def _replace_contradicting(
-        self, pairs: list[Pair], edges: list[Edge], choices: Sequence[Sequence[Pair]]
-    ) -> None:
-        """A node contradicts a correction only if another earlier node does not fit either."""
-        rows, others = [], []
+    def _other_pairs(
+        self, edges: Sequence[Edge], choices: Sequence[Sequence[Pair]]
+    ) -> dict[int, Pair]:
+        """By row, for edges that contradict the correction, another earlier node that may fit."""
+        others = {}
         for row, (edge, choice) in enumerate(zip(edges, choices, strict=True)):
             free = [pair for pair in choice if (pair.i, pair.j) not in self._taken]
             if contradicts(edge) and free:
-                rows.append(row)
-                others.append(self._registrar.most_overlapping(free))
-                self._taken.add((others[-1].i, others[-1].j))
-        for row, pair, edge in zip(rows, others, self._register(others), strict=True):
-            if edge.in_graph:
-                pairs[row], edges[row] = pair, edge
+                others[row] = self._registrar.most_overlapping(free)
+                self._taken.add((others[row].i, others[row].j))
+        return others
 
     def _register(self, pairs: Sequence[Pair]) -> list[Edge]:
         edges = register_recognized(pairs, self._registrar, self._progress)
