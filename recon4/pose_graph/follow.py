@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Rows, Verdict
 from recon4.pose_graph.density import MAX_SHIFT_M
 from recon4.pose_graph.groups import RecognizedChain, contradicts
 from recon4.pose_graph.pairs import Pair, PairRegistrar
@@ -100,8 +100,9 @@ class ChainFollower:
         """By row, for edges that contradict the correction, another earlier node that may fit."""
         others = {}
         for row, (edge, choice) in enumerate(zip(edges, choices, strict=True)):
-            free = [pair for pair in choice if (pair.i, pair.j) not in self._taken]
-            if contradicts(edge) and free:
+            if not contradicts(edge):
+                continue
+            if free := [pair for pair in choice if (pair.i, pair.j) not in self._taken]:
                 others[row] = self._registrar.most_overlapping(free)
                 self._taken.add((others[row].i, others[row].j))
         return others
@@ -112,24 +113,19 @@ class ChainFollower:
 
     def _checked(self, pair: Pair, edge: Edge) -> Edge:
         """Reject an edge that moved far from where the neighboring one predicted it."""
-        drift = self._places.drift_at(edge.j)
-        across_m, height_m, yaw_rad = (self._sd * _STEP_M * one for one in drift)
-        R_map_i = self._places.graph.T_map_body.R[edge.i]
-        apart_m = R_map_i @ (edge.T_i_j.t - pair.T_i_j.t)
-        turn_rad = (pair.T_i_j.inverse() @ edge.T_i_j).angle()
-        is_near = (
-            np.linalg.norm(apart_m[:2]) < _CHANGE_M + across_m
-            and abs(apart_m[2]) < _CHANGE_M + height_m
-        )
-        if not edge.in_graph or (is_near and turn_rad < _CHANGE_RAD + yaw_rad):
+        T_map_i = self._places.graph.T_map_body[edge.i]
+        drift = self._places.drift_of_meter(edge.j).times(self._sd * _STEP_M)
+        if not edge.in_graph or drift.explains(
+            T_map_i @ pair.T_i_j, T_map_i @ edge.T_i_j, beside=(_CHANGE_M, _CHANGE_RAD)
+        ):
             return edge
         return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.UNCONFIRMED)
 
     def _next_pairs(self, end: _ChainEnd) -> list[Pair]:
         """The same correction a step along the path; none where the paths part."""
         graph, path_m, edge = self._places.graph, self._places.path_m, end.edge
-        drift = self._sd * self._places.drift_at(edge.j)[0]
-        step_m = min(_STEP_M, 0.5 * _CHANGE_M / max(drift, 1e-9))
+        drift_m = self._sd * self._places.drift_of_meter(edge.j).across_m
+        step_m = min(_STEP_M, 0.5 * _CHANGE_M / max(drift_m, 1e-9))
         ahead = np.flatnonzero(end.direction * (path_m - path_m[edge.j]) >= step_m)
         if not len(ahead):
             return []
@@ -138,16 +134,22 @@ class ChainFollower:
         T_map_body = T_corrected @ graph.T_map_body[edge.j].inverse() @ graph.T_map_body[j]
         near = np.flatnonzero(np.abs(path_m - path_m[edge.i]) <= MAX_SHIFT_M)
         near = near[path_m[near] < path_m[j] - MAX_SHIFT_M]
-        away_m = np.linalg.norm(graph.T_map_body.t[near] - T_map_body.t, axis=1)
-        return loop_pairs(graph, near[away_m <= _PARTED_M].tolist(), (j, T_map_body))
+        return loop_pairs(graph, near, j=j, T_map_body=T_map_body, within_m=_PARTED_M)
 
 
-def loop_pairs(graph: PoseGraph, earlier: Sequence[int], later: tuple[int, SE3]) -> list[Pair]:
-    """Pairs of a node, if it had that ``T_map_body``, with the nearest of some earlier nodes."""
-    j, T_map_body = later
+def loop_pairs(
+    graph: PoseGraph, earlier: Rows, *, j: int, T_map_body: SE3, within_m: float = np.inf
+) -> list[Pair]:
+    """Pairs of a node, if it had that pose, with the nearest of some earlier nodes."""
     T = graph.T_map_body
-    nearest = sorted(earlier, key=lambda i: float(np.linalg.norm(T.t[i] - T_map_body.t)))
-    return [Pair(i, j, EdgeKind.LOOP, T[i].inverse() @ T_map_body) for i in nearest[:_NEAREST]]
+    away_m = np.linalg.norm(T.t[earlier] - T_map_body.t, axis=1)
+    nearest = np.argsort(away_m, kind="stable")[:_NEAREST]
+    chosen = earlier[nearest[away_m[nearest] <= within_m]].tolist()
+    return [_recognized(i, j, T[i].inverse() @ T_map_body) for i in chosen]
+
+
+def _recognized(i: int, j: int, T_i_j: SE3) -> Pair:
+    return Pair(i, j, EdgeKind.LOOP, T_i_j, recognized=True)
 
 
 def taken_pairs(graph: PoseGraph) -> set[tuple[int, int]]:
@@ -159,19 +161,15 @@ def taken_pairs(graph: PoseGraph) -> set[tuple[int, int]]:
 def register_recognized(
     pairs: Sequence[Pair], registrar: PairRegistrar, progress: Progress
 ) -> list[Edge]:
-    """Register pairs and compare them with the free space.
-
-    Pairs that ran out of rounds close to a fit continue from there.
-    """
+    """Register pairs; those that ran out of rounds close to a fit continue from there."""
     if not pairs:
         return []
     edges = registrar.register(pairs, progress)
     again = [k for k, edge in enumerate(edges) if _is_close(edge)]
-    further = [Pair(e.i, e.j, e.kind, e.T_i_j) for e in (edges[k] for k in again)]
+    further = [_recognized(e.i, e.j, e.T_i_j) for e in (edges[k] for k in again)]
     for k, edge in zip(again, registrar.register(further, progress) if again else [], strict=True):
         edges[k] = edge
-    most = registrar.settings.recognition.max_seen_through
-    return [registrar.checked(edge, most) for edge in edges]
+    return edges
 
 
 def _is_close(edge: Edge) -> bool:

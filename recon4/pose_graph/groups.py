@@ -171,16 +171,10 @@ def _agree(places: Places, a: Edge, b: Edge, *, sd: float) -> bool:
     if path_m > _LINK_M:
         return False
     T_a_b = graph.T_map_body[a.j].inverse() @ graph.T_map_body[b.j]
-    T_map_b = _corrected(graph, a) @ T_a_b
-    apart_m = _corrected(graph, b).t - T_map_b.t
-    turn_rad = (T_map_b.inverse() @ _corrected(graph, b)).angle()
-    across_m, height_m, yaw_rad = (sd * drift for drift in places.drift_between(a.j, b.j))
-    limit_m = _AGREE_M + _AGREE_RATIO * path_m
-    return bool(
-        np.linalg.norm(apart_m[:2]) < limit_m + across_m
-        and abs(apart_m[2]) < limit_m + height_m
-        and turn_rad < _AGREE_RAD + yaw_rad
-    )
+    return places.drift_between(a.j, b.j).times(sd).explains(
+        _corrected(graph, a) @ T_a_b, _corrected(graph, b),
+        beside=(_AGREE_M + _AGREE_RATIO * path_m, _AGREE_RAD),
+    )  # fmt: skip
 
 
 def _corrected(graph: PoseGraph, edge: Edge) -> SE3:

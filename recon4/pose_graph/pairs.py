@@ -34,6 +34,8 @@ class Pair:
     j: int
     kind: EdgeKind
     T_i_j: SE3
+    recognized: bool = False
+    """Nothing predicted it: the free space is compared by `RecognitionSettings`."""
 
 
 class PairRegistrar:
@@ -71,19 +73,10 @@ class PairRegistrar:
         """The pair whose views overlap most at their predicted poses."""
         return max(pairs, key=self._overlap)
 
-    def checked(self, edge: Edge, most: float) -> Edge:
-        """Reject an edge if one visit sees points where the other one saw through.
-
-        Args:
-            edge: A registered pair.
-            most: Largest fraction of points of one visit in the free space of the other, 0..1.
-        """
-        if not edge.in_graph:
-            return edge
+    def seen_through(self, edge: Edge) -> float:
+        """Fraction of the points of one node that lie in the free space of the other, 0..1."""
         i, j = self._view(edge.i), self._view(edge.j)
-        if seen_through(i, j, edge.T_i_j, settings=self.settings.overlap) <= most:
-            return edge
-        return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)
+        return seen_through(i, j, edge.T_i_j, settings=self.settings.overlap)
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
         planes = PlaneMap(self.settings.planes)
@@ -169,7 +162,11 @@ class PairRegistrar:
             iterations=found.iterations,
             information=_information(found, self.settings),
         )
-        return edge if edge.kind is EdgeKind.NEIGHBOR else self.checked(edge, g.max_seen_through)
+        of = self.settings.recognition if pair.recognized else g
+        is_loop = edge.in_graph and edge.kind is EdgeKind.LOOP
+        if is_loop and self.seen_through(edge) > of.max_seen_through:
+            return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)
+        return edge
 
 
 def tried_event(edge: Edge) -> EdgeTried:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
 from recon4.pose_graph.density import DensityImage, make_density_image
@@ -20,6 +21,28 @@ _BELOW_M, _ABOVE_M = 0.9, 0.8
 """Points between these heights below and above the body count as walls [m]."""
 _BROKEN_SD_M = 1.0
 """Odometry edges that are less certain do not join the parts of a sub-map [m]."""
+
+
+class StatedDrift(NamedTuple):
+    """How far odometry may be off, as the graph states it."""
+
+    across_m: float
+    height_m: float
+    yaw_rad: float
+
+    def times(self, factor: float) -> StatedDrift:
+        """Of a longer path, or a number of standard deviations."""
+        return StatedDrift(*(factor * one for one in self))
+
+    def explains(self, expected: SE3, found: SE3, *, beside: tuple[float, float]) -> bool:
+        """Whether two poses in the map differ by no more than this and ``beside`` [m], [rad]."""
+        apart_m = found.t - expected.t
+        beside_m, beside_rad = beside
+        return bool(
+            np.linalg.norm(apart_m[:2]) < self.across_m + beside_m
+            and abs(apart_m[2]) < self.height_m + beside_m
+            and (expected.inverse() @ found).angle() < self.yaw_rad + beside_rad
+        )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -41,19 +64,20 @@ class Places:
     def __len__(self) -> int:
         return len(self.node)
 
-    def drift_between(self, a: int, b: int) -> tuple[float, float, float]:
-        """Standard deviations between two nodes: horizontal [m], height [m], yaw [rad]."""
+    def drift_between(self, a: int, b: int) -> StatedDrift:
+        """Standard deviations between two nodes."""
         at = tuple(np.minimum(np.searchsorted(self.node, (a, b)), len(self.node) - 1))
         of = self.bounds
-        return float(of.horizontal_m[at]), float(of.vertical_m[at]), float(of.yaw_rad[at])
+        return StatedDrift(
+            float(of.horizontal_m[at]), float(of.vertical_m[at]), float(of.yaw_rad[at])
+        )
 
-    def drift_at(self, node: int) -> tuple[float, float, float]:
-        """The same for each meter of path at a node [1], [1], [rad/m]."""
+    def drift_of_meter(self, node: int) -> StatedDrift:
+        """Standard deviations of a meter of path at a node."""
         at = max(1, min(int(np.searchsorted(self.node, node)), len(self.node) - 1))
         before, after = self.node[at - 1], self.node[at]
         walked_m = max(float(self.path_m[after] - self.path_m[before]), 0.1)  # parts may meet
-        across, height, yaw = self.drift_between(before, after)
-        return across / walked_m, height / walked_m, yaw / walked_m
+        return self.drift_between(before, after).times(1.0 / walked_m)
 
 
 def make_places(

@@ -35,7 +35,7 @@ _NEAR_M, _NEAR_RAD = 1.5, 0.26
 """Hypotheses of one place that are closer than this are the same."""
 _HEIGHT_M = 1.0
 """Two visits of one place differ in height by less than this, beside the drift [m]."""
-_KNOWN_M, _FLIGHT_M = 1.5, 2.0
+_KNOWN_M, _FLIGHT_M = 0.5, 2.0
 """A height known to less than this [m] is kept, if it is less than a storey."""
 _YAW_RAD = 0.26
 """Rotations that are always tried [rad]."""
@@ -146,14 +146,14 @@ def _hypotheses(
     for k in _candidates(places, place, settings):
         yaws = yaws_within(settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + _YAW_RAD)
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
-        height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place]) + _HEIGHT_M
+        height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place])
         for overlay in overlays(
             places.images[k], places.images[place], yaws=yaws, most=settings.hypotheses
         ):
             T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)
             move_m = T.t - T_map_place.t[place]
             across = float(np.linalg.norm(move_m[:2])) / (likely_m + settings.bound_m)
-            unlikely = max(across, abs(float(move_m[2])) / height_m)
+            unlikely = max(across, abs(float(move_m[2])) / (height_m + _HEIGHT_M))
             if overlay.score >= settings.min_score:
                 found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
     return _distinct(sorted(found, key=lambda one: -one.rank), settings.hypotheses)
@@ -190,7 +190,7 @@ def _moved(T_map_body: SE3, T_map_earlier: SE3, overlay: Overlay, *, height_m: f
     """Pose of a place in the map if it is laid onto an earlier one.
 
     Images from above show no heights: on stairs one place lies above another. A height difference
-    that the graph knows, to less than ``height_m``, stays; else the visits have the same height.
+    that the graph knows (``height_m`` is its drift) stays; else the visits have the same height.
     """
     turn = so3_exp([0.0, 0.0, overlay.yaw_rad])
     above_m = float(T_map_body.t[2] - T_map_earlier.t[2])
@@ -213,10 +213,11 @@ def _pairs(
     for one in hypotheses:
         j, k = int(places.node[one.place]), int(places.node[one.earlier])
         around = np.flatnonzero(np.abs(places.path_m - places.path_m[k]) <= MAX_SHIFT_M)
-        near = [int(i) for i in around[around < j] if (int(i), j) not in taken]
-        if not near:
+        near = np.array([i for i in around[around < j] if (i, j) not in taken], np.intp)
+        if not len(near):
             continue
-        pairs.append(registrar.most_overlapping(loop_pairs(graph, near, (j, one.T_map_body))))
+        choice = loop_pairs(graph, near, j=j, T_map_body=one.T_map_body)
+        pairs.append(registrar.most_overlapping(choice))
         taken.add((pairs[-1].i, j))
         kept.append(one)
     return pairs, kept

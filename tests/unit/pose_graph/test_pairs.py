@@ -103,14 +103,24 @@ def test_each_reason_to_reject_a_pair(stroll, assignments, wrong, reason):
     assert np.isfinite(edge.overlap)
 
 
-def test_a_pair_is_rejected_if_one_visit_saw_through_what_the_other_one_saw(stroll):
+def test_a_wrong_pose_has_points_where_the_other_visit_saw_through(stroll):
     made = registrar(stroll)
     edge = made.register([pair(stroll, 0, 3)], Silent())[0]
     elsewhere = edge.evolve(T_i_j=edge.T_i_j @ SE3.from_rpy(0, 0, 0, t=[1.5, 0, 0]))
     most = Settings().graph.max_seen_through
 
-    assert made.checked(edge, most) == edge
-    assert made.checked(elsewhere, most).reason is Reason.SEEN_THROUGH
+    assert made.seen_through(edge) < 0.1 * most
+    assert made.seen_through(elsewhere) > most
+
+
+def test_recognized_pairs_have_a_limit_of_their_own(stroll):
+    made = registrar(stroll, "recognition.max_seen_through=-0.1")
+    predicted = pair(stroll, 0, 3)
+
+    first, second = made.register([predicted, replace(predicted, recognized=True)], Silent())
+
+    assert first.reason is Reason.NONE
+    assert second.reason is Reason.SEEN_THROUGH
 
 
 def test_a_pair_without_overlap_keeps_its_initial_pose(stroll):

@@ -141,8 +141,8 @@ def places_of(graph, *, every=1):
 def test_the_drift_at_a_node_is_that_of_a_meter_of_path():
     places = places_of(straight(41), every=4)
 
-    assert places.drift_at(13)[0] == pytest.approx(0.1, rel=0.05)
-    assert places.drift_between(2, 22)[0] == pytest.approx(2.0, rel=0.05)
+    assert places.drift_of_meter(13).across_m == pytest.approx(0.1, rel=0.05)
+    assert places.drift_between(2, 22).across_m == pytest.approx(2.0, rel=0.05)
 
 
 def chain(first, *, off_m=(0.0, 0.0, 0.0), nodes=5, bad=0):
