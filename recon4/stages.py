@@ -280,7 +280,7 @@ def _refine_lines(
     return found.save(context.out)
 
 
-FRAMES = Stage("frames", 8, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 9, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     34,
@@ -303,7 +303,7 @@ REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 20, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 21, ("level", "gnss", "verification"), _level, LevelFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 9, ("map",), _map, MapFigures)
 

@@ -24,6 +24,8 @@ from recon4.model.figures import AntennaFigures, LevelFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.rejected_fixes import disputed_m, rejected_runs
+from recon4.model.rig import Rig
+from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.error_model import CALIBRATED
 from recon4.pose_graph.files import save_graph
@@ -33,7 +35,7 @@ from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
-from recon4.settings import Settings
+from recon4.settings import GnssSettings, Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore
@@ -143,8 +145,9 @@ def level_and_georeference(
     dense = Trajectory(trajectory.t_ns, leveling.T_level_odom @ trajectory.T_a_b)
     nodes = nodes.with_poses(leveling.T_level_odom @ nodes.T_map_body)
     progress.advance()
-    placed = georeference(nodes, dense, frames.gnss, rig=frames.rig, settings=settings.gnss)
-    antenna = _audit_antenna(frames, dense, placed)
+    fixes = _above_ellipsoid(frames.gnss, settings.gnss)
+    placed = georeference(nodes, dense, fixes, rig=frames.rig, settings=settings.gnss)
+    antenna = _audit_antenna(fixes, dense, placed, rig=frames.rig)
     dense = apply_corrections(
         dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body
     )
@@ -198,14 +201,21 @@ def _uncertainty(
     return pose_uncertainty(graph, positions=placed.positions, model=model, known=known)
 
 
+def _above_ellipsoid(fixes: GnssSamples | None, settings: GnssSettings) -> GnssSamples | None:
+    """The fixes with the geoid separation that the settings add to their heights."""
+    if fixes is None or not settings.geoid_separation_m:
+        return fixes
+    return replace(fixes, height_m=fixes.height_m + settings.geoid_separation_m)
+
+
 def _audit_antenna(
-    frames: FrameStore, leveled: Trajectory, placed: GeoreferenceResult
+    fixes: GnssSamples | None, leveled: Trajectory, placed: GeoreferenceResult, *, rig: Rig
 ) -> AntennaFigures | None:
     """Compare the fixes with the trajectory before they bend it."""
-    if placed.origin is None or frames.gnss is None:
+    if placed.origin is None or fixes is None:
         return None
     T_enu_body = Trajectory(leveled.t_ns, placed.T_enu_map @ leveled.T_a_b)
-    return audit_antenna(T_enu_body, frames.gnss, frames.rig, origin=placed.origin)
+    return audit_antenna(T_enu_body, fixes, rig, origin=placed.origin)
 
 
 def find_level(frames: FrameStore, trajectory: Trajectory, *, source: str) -> Leveling:

@@ -10,11 +10,12 @@ from recon4.errors import StoreError
 
 
 class ImportNotes(msgspec.Struct, frozen=True):
-    """Outcome and warnings of reading a recording."""
+    """Outcome, warnings and counts of reading a recording."""
 
     outcome: str = "complete"
     """``complete``, ``lossy`` (salvaged) or ``nothing``."""
     warnings: tuple[str, ...] = ()
+    counts: dict[str, int] = {}
 
 
 def import_notes(report: Mapping[str, object]) -> ImportNotes:

@@ -28,6 +28,7 @@ from recon4.recording.open import Recording, RecordingKind, open_recording, reco
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.samples.heights import compare_heights
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameWriter
@@ -53,13 +54,13 @@ class _Samples:
     poses: list[Trajectory] = field(default_factory=list)
 
     @classmethod
-    def of_files(cls, sources: Sources, out: Path) -> _Samples:
+    def of_files(cls, sources: Sources, out: Path, report: ImportReport) -> _Samples:
         """Those of the CSV files."""
         imu, gnss = sources.imu, sources.gnss
         return cls(
             LineStoreWriter(out),
             imu=[read_imu_csv(imu)] if imu else [],
-            gnss=[read_gnss_csv(gnss)] if gnss else [],
+            gnss=[read_gnss_csv(gnss, report)] if gnss else [],
         )
 
     def keep(self, item: ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans) -> None:
@@ -154,7 +155,7 @@ def ingest(
     report = (live := live or LiveSource()).report
     sources = _sort_out(sources)
     paths = sources.recordings
-    given = _Samples.of_files(sources, out)
+    given = _Samples.of_files(sources, out, report)
     recording = open_recording(
         paths, sources.rig, settings=settings, report=report, open_file=live.open_file
     )
@@ -251,10 +252,12 @@ def _imu(
 def _gnss(
     given: _Samples, found: _Samples, rig: Rig, *, written: _IngestSpan, report: ImportReport
 ) -> GnssSamples | None:
-    samples = join(given.gnss or found.gnss)
+    from_file, recorded = join(given.gnss), join(found.gnss)
+    samples = from_file or recorded
     if samples is None:
         return None
-    if given.gnss and found.gnss:
+    if from_file and recorded:
+        compare_heights(from_file, recorded, report)
         report.derive("GNSS samples are those of the CSV file, not the recording's")
     clean = clean_gnss(samples, offset_s=rig.gnss_time_offset_s, report=report)
     return _covering(clean, written.span, bool(given.gnss), report=report)

@@ -18,6 +18,7 @@ from recon4.pose_graph.uncertainty_files import uncertainty_figures
 from recon4.report.artifacts import Results, path_length_m
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
+from recon4.report.heights import unstated_heights, wrong_heights
 from recon4.report.observability import WeakStretch, held_by_surfaces, weak_stretches
 from recon4.report.places import ambiguous_places, separate_pieces
 from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
@@ -79,7 +80,7 @@ def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> lis
     found += [*_pieces(results), *_look_alike(results.graph), *_turns(results)]
     found += [*_plausibility(results), *_loops(results.graph), *_closed(drift)]
     found += [*_leveled(results), *_contradicted(results), *_rejected_fixes(results)]
-    found += [*_imported(results), *_accuracy(facts)]
+    found += [*_heights(facts, results), *_imported(results), *_accuracy(facts)]
     found += [
         Finding(Level.BAD if text in facts.severe else Level.WARNING, text)
         for text in facts.warnings
@@ -345,6 +346,15 @@ def _rejected_fixes(results: Results) -> list[Finding]:
         )
         for run in results.placement.gnss.rejected_runs[:_MAX_WARNINGS]
     ]
+
+
+def _heights(facts: ReportFacts, results: Results) -> list[Finding]:
+    if not results.placement.gnss.georeferenced:
+        return []
+    wrong = wrong_heights(results.imported, facts.settings.gnss)
+    assumed = unstated_heights(results.imported, facts.settings.gnss)
+    found = [Finding(Level.BAD, wrong)] if wrong else []
+    return found + ([Finding(Level.WARNING, assumed)] if assumed else [])
 
 
 def _imported(results: Results) -> list[Finding]:

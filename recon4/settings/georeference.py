@@ -25,6 +25,12 @@ class GnssSettings:
     crs: str = ""
     """EPSG code of the map's horizontal (and vertical) CRS, as ``EPSG:5514+8357``.
     Empty = UTM zone of the position with ellipsoidal heights."""
+    heights: Literal["as_recorded", "ellipsoidal", "orthometric"] = "as_recorded"
+    """What the heights of the fixes are above: the ellipsoid, or the geoid (above sea level).
+    ``as_recorded``: what the recording says. Where it says nothing they are taken as ellipsoidal,
+    and the verdict is at best *check*."""
+    geoid_separation_m: float = 0.0
+    """Height of the geoid above the ellipsoid at the place, added to orthometric heights [m]."""
     min_quality: Literal["single", "differential", "float", "fixed"] = "single"
     """Fixes of lower quality are not used."""
     correlation_s: float = 5.0
@@ -47,6 +53,16 @@ class GnssSettings:
     """Seed of the random draws of the initial alignment."""
 
     def __post_init__(self) -> None:
+        require(
+            (self.heights == "orthometric") == (self.geoid_separation_m != 0.0),
+            "heights = orthometric needs geoid_separation_m, and only it has one",
+            (self.heights, self.geoid_separation_m),
+        )
+        require(
+            -120.0 < self.geoid_separation_m < 120.0,
+            "geoid_separation_m must be within ±120",
+            self.geoid_separation_m,
+        )
         require(self.correlation_s >= 0.0, "correlation_s must be 0 or more", self.correlation_s)
         require(self.min_sd_m > 0.0, "min_sd_m must be above 0", self.min_sd_m)
         require(self.tilt_sd_rad > 0.0, "tilt_sd_rad must be above 0", self.tilt_sd_rad)

@@ -13,7 +13,8 @@ from recon4.simulation.world import World
 
 IMU_HEADER = "t_ns,gx_rad_s,gy_rad_s,gz_rad_s,ax_m_s2,ay_m_s2,az_m_s2"
 GNSS_HEADER = (
-    "t_ns,lat_deg,lon_deg,height_m,sd_e_m,sd_n_m,sd_u_m,quality,roll_deg,pitch_deg,heading_deg"
+    "t_ns,lat_deg,lon_deg,ellipsoidal_height_m,sd_e_m,sd_n_m,sd_u_m,quality,"
+    "roll_deg,pitch_deg,heading_deg"
 )
 MARKER_HEADER = "id,x_m,y_m,z_m,lat_deg,lon_deg,height_m"
 

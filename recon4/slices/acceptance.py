@@ -49,4 +49,5 @@ def _verdict(report: ControlReport) -> tuple[str, str]:
         level = "note"
         message = f"The map keeps the limits at {points}, but no independent point was checked."
     left = len(report.missing) + len(report.outdated)
-    return level, f"{message} {left} more not checked." if left else message
+    message = f"{message} {left} more not checked." if left else message
+    return level, f"{message} {report.hint}".strip()

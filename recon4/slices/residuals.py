@@ -22,6 +22,10 @@ from recon4.model.plain import finite_or_none
 from recon4.slices.control_points import ControlPoint, Role
 from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
 
+_GEOID_SEPARATION_M = (5.0, 110.0)
+"""Common error of all heights that is taken for a geoid separation; they are -107 to 86 m."""
+_NEARLY_M = 1.0
+"""Largest deviation from it, and largest horizontal error: heights alone are of another kind."""
 RELATIVE_LIMIT_M = 0.05
 """Limit for the error of distances between points of the map (requirements, relative)."""
 
@@ -85,6 +89,8 @@ class ControlReport:
     """Role that decides about acceptance; None = no point was measured."""
     passed: bool | None
     """Whether the deciding points are within all limits; None = no point was measured."""
+    hint: str = ""
+    """What the residuals have in common; empty = nothing."""
 
 
 def residuals(
@@ -119,6 +125,7 @@ def residuals(
         figures=tuple(figures),
         judged_by=figures[0].role if figures else None,
         passed=all(one.holds for one in figures[0].requirements) if figures else None,
+        hint=_height_hint(rows),
     )
 
 
@@ -144,6 +151,8 @@ def residual_csv(report: ControlReport, *, comment: str = "") -> str:
         rows.writerow([safe_cell(name), "found in an earlier map only"])
     for f in report.figures:
         rows.writerow(["RMSE", f.role, *(f"{v:.4f}" for v in f.rmse_m), "", f"{f.rmse_3d_m:.4f}"])
+    if report.hint:
+        out.write(f"# {report.hint}\n")
     rows.writerow([])
     rows.writerow(["limit", "role", "measured_m", "limit_m", "holds"])
     for f in report.figures:
@@ -156,6 +165,25 @@ def residual_csv(report: ControlReport, *, comment: str = "") -> str:
 def safe_cell(text: str) -> str:
     """A cell that spreadsheets do not evaluate as a formula."""
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
+
+
+def _height_hint(rows: Sequence[Residual]) -> str:
+    """Whether all heights are off by the same, as between ellipsoid and sea level."""
+    if not rows:
+        return ""
+    up_m = np.array([row.up_m for row in rows])
+    usual_m = float(np.median(up_m))
+    alike = float(np.abs(up_m - usual_m).max()) < _NEARLY_M
+    low_m, high_m = _GEOID_SEPARATION_M
+    in_place = max(row.d2_m for row in rows) < _NEARLY_M
+    if not (alike and in_place and low_m < abs(usual_m) < high_m):
+        return ""
+    points = f"All {len(rows)} points are" if len(rows) > 1 else "The point is"
+    return (
+        f"{points} {abs(usual_m):.2f} m too {'high' if usual_m > 0 else 'low'} in the map, and "
+        "horizontally in place, as with a geoid: either the map or the survey has heights above "
+        "sea level (orthometric), and the other above the ellipsoid."
+    )
 
 
 def _residual(point: ControlPoint, found_m: Array, cov: Array | None) -> Residual:

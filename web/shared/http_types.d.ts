@@ -193,6 +193,7 @@ export interface ControlReport {
   figures: Array<ResidualStatistics>;
   judged_by: "control" | "check" | null;
   passed: boolean | null;
+  hint: string;
 }
 
 export interface ControlSpec {

@@ -15,13 +15,15 @@ from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFo
 from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.recording.report import ImportReport
+from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
 
 IMU_HEADER = ("t_ns", "gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2")
 GNSS_HEADER = (
     *("t_ns", "lat_deg", "lon_deg", "height_m", "sd_e_m", "sd_n_m", "sd_u_m", "quality"),
     *("roll_deg", "pitch_deg", "heading_deg"),
 )
-_OPTIONAL = {*IMU_HEADER[4:], *GNSS_HEADER[3:]}
+_OPTIONAL = {*IMU_HEADER[4:], *GNSS_HEADER[3:], *STATED_COLUMNS}
 _SEPARATORS = ";\t,"
 MAX_BYTES = 1 << 30
 """About ten million samples: an IMU of 400 Hz for seven hours."""
@@ -42,13 +44,19 @@ def read_imu_csv(path: Path) -> ImuSamples:
     return ImuSamples(t_ns, gyro, accel)
 
 
-def read_gnss_csv(path: Path) -> GnssSamples:
+def read_gnss_csv(path: Path, report: ImportReport | None = None) -> GnssSamples:
     """Read GNSS positions, and attitudes if there are; an empty cell is not measured.
+
+    Heights come from the columns of `recon4.recording.samples.heights`.
+
+    Args:
+        path: The file.
+        report: Gets the counts of heights of unknown kind; None = not wanted.
 
     Raises:
         CorruptFile, UnknownFormat, EmptyRecording: As `read_imu_csv`.
     """
-    t_ns, columns = _read(path, GNSS_HEADER)
+    t_ns, columns = _read(path, (*GNSS_HEADER, *STATED_COLUMNS))
     lat, lon = columns["lat_deg"], columns["lon_deg"]
     outside = np.flatnonzero((np.abs(lat) > 90.0) | (np.abs(lon) > 360.0))
     if len(outside):
@@ -62,7 +70,7 @@ def read_gnss_csv(path: Path) -> GnssSamples:
         t_ns,
         np.deg2rad(lat),
         np.deg2rad(lon),
-        columns["height_m"],
+        height_above_ellipsoid(columns, report or ImportReport()),
         np.column_stack([columns[name] for name in GNSS_HEADER[4:7]]),
         np.clip(quality, 0, 255).astype(np.uint8),
         np.deg2rad(np.column_stack([columns[name] for name in GNSS_HEADER[8:]])),

@@ -2,7 +2,7 @@
 
     {"t_ns": 1790000000000000000, "gx_rad_s": 0.01, "gy_rad_s": 0.0, "gz_rad_s": -0.2,
      "ax_m_s2": 0.1, "ay_m_s2": 0.0, "az_m_s2": 9.8}
-    {"t_ns": …, "lat_deg": 49.2, "lon_deg": 16.6, "height_m": 250.1, "sd_e_m": 0.02, "quality": 4}
+    {"t_ns": …, "lat_deg": 49.2, "lon_deg": 16.6, "ellipsoidal_height_m": 250.1, "sd_e_m": 0.02}
 
 One object a line, one or more lines a datagram. ``t_ns`` is absolute; without it the time of
 arrival counts: in UTC, independent of the recorder's clock, where GPS drives a LiDAR. What is
@@ -21,6 +21,7 @@ import numpy as np
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
+from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
 from recon4.recording.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.velodyne.sensor_clock import SECOND_NS
 
@@ -79,6 +80,7 @@ class SampleDecoder:
             t_ns = int(record.get("t_ns", arrival_ns))
             kind, names = ("imu", IMU_HEADER) if IMU_HEADER[1] in record else ("gnss", GNSS_HEADER)
             values = [float(record.get(name, math.nan)) for name in names[1:]]
+            heights = [float(record.get(name, math.nan)) for name in STATED_COLUMNS]
         except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
             self.report.count("samples_damaged")
             return
@@ -86,6 +88,10 @@ class SampleDecoder:
         if not sound or not 0 < t_ns < 1 << 62:
             self.report.count("samples_damaged")
             return
+        if kind == "gnss":
+            given = {"height_m": values[2], **dict(zip(STATED_COLUMNS, heights, strict=True))}
+            columns = {name: np.array([value]) for name, value in given.items()}
+            values[2] = float(height_above_ellipsoid(columns, self.report)[0])
         yield kind, t_ns, values
 
     def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:

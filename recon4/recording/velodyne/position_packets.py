@@ -13,6 +13,7 @@ from recon4.model.rig import Sensor
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.heights import height_of_gga
 from recon4.recording.velodyne.models import HOUR_US, POSITION_SIZE
 from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock, nearest_hour
 
@@ -32,7 +33,7 @@ class NmeaFix:
     lat_deg: float
     lon_deg: float
     height_m: float
-    """Ellipsoidal height; NaN = not given."""
+    """Ellipsoidal height, above sea level without a geoid separation; NaN = not given."""
     quality: GnssQuality
 
 
@@ -52,7 +53,8 @@ def nmea_text(payload: NDArray[np.uint8]) -> bytes:
 def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> NmeaFix | None:
     """Read an RMC or GGA sentence; None if it has no valid position.
 
-    Counts ``nmea_no_fix`` and ``nmea_damaged`` (checksum, fields, or no place on earth).
+    Counts ``nmea_no_fix``, ``nmea_damaged`` (checksum, fields, or no place on earth), and heights
+    of unknown kind.
 
     Args:
         sentence: From ``$`` to the checksum.
@@ -63,7 +65,7 @@ def parse_fix(sentence: bytes, near_ns: int, report: ImportReport) -> NmeaFix | 
 
     try:
         message: Any = pynmeagps.NMEAReader.parse(sentence + b"\r\n")
-        fix = _fix(message, near_ns)
+        fix = _fix(message, near_ns, report)
     except (
         pynmeagps.NMEAMessageError,
         pynmeagps.NMEAParseError,
@@ -86,7 +88,7 @@ def is_on_earth(lat_deg: float, lon_deg: float) -> bool:
     return abs(lat_deg) <= 90.0 and abs(lon_deg) <= 360.0
 
 
-def _fix(message: Any, near_ns: int) -> NmeaFix | None:
+def _fix(message: Any, near_ns: int, report: ImportReport) -> NmeaFix | None:
     if message.msgID == "RMC":
         if message.status != "A":
             return None
@@ -98,7 +100,7 @@ def _fix(message: Any, near_ns: int) -> NmeaFix | None:
         return None
     of_day = _ns(datetime.combine(datetime(1970, 1, 1), message.time, tzinfo=UTC))
     utc_ns = of_day + round((near_ns - of_day) / _DAY_NS) * _DAY_NS
-    height_m = float(message.alt) + float(message.sep)
+    height_m = height_of_gga(float(message.alt), message.sep, report)
     known = int(message.quality) in set(GnssQuality)
     quality = GnssQuality(message.quality) if known else GnssQuality.SINGLE
     return NmeaFix(utc_ns, float(message.lat), float(message.lon), height_m, quality)

@@ -10,7 +10,9 @@ from recon4.calibration.result import CalibrationResult
 from recon4.calibration.stage import run_calibration
 from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
+from recon4.georeference.stage import RefinedWalk, level_and_georeference
 from recon4.model.figures import CalibrationFigures
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.rig import load_rig, parse_rig
 from recon4.model.samples import GnssSamples
 from recon4.progress import Silent
@@ -58,6 +60,33 @@ def walk(outdoors):
 def agreed():
     """What was found of LiDARs that are where the rig says."""
     return CalibrationResult(figures=CalibrationFigures(outcome="the rig file agrees"))
+
+
+def test_heights_above_sea_level_are_raised_by_the_geoid_that_the_settings_have(walk):
+    rows = np.arange(0, len(walk.trajectory), 20)
+    nodes = walk.trajectory.T_a_b[rows]
+    edges = tuple(
+        Edge(
+            i=i,
+            j=i + 1,
+            T_i_j=nodes[i].inverse() @ nodes[i + 1],
+            kind=EdgeKind.ODOMETRY,
+            verdict=Verdict.ACCEPTED,
+            information=1e5 * np.eye(6),
+        )
+        for i in range(len(rows) - 1)
+    )
+    graph = PoseGraph(rows, walk.trajectory.t_ns[rows], nodes, edges)
+    refined = RefinedWalk(trajectory=walk.trajectory, graph=graph)
+
+    heights_m = []
+    for gnss in (NEAR, replace(NEAR, heights="orthometric", geoid_separation_m=44.2)):
+        made = level_and_georeference(
+            walk.frames, refined, settings=Settings(gnss=gnss), progress=Silent()
+        )
+        heights_m.append(made.georeference.origin.ellipsoidal_height_m)
+
+    assert heights_m[1] - heights_m[0] == pytest.approx(44.2)
 
 
 def test_an_audit_compares_the_receiver_and_changes_nothing(walk, agreed):

@@ -198,6 +198,35 @@ def test_what_makes_a_map_unusable_is_announced(results, usability, reason):
     assert reason in " ".join(verdict.reasons)
 
 
+@pytest.mark.parametrize(
+    ("count", "heights", "usability"),
+    [
+        ("gnss_heights_unstated", "as_recorded", Usability.CHECK),
+        ("gnss_heights_orthometric", "as_recorded", Usability.DO_NOT_USE),
+        ("gnss_heights_unstated", "ellipsoidal", Usability.GOOD),
+        ("gnss_samples", "as_recorded", Usability.GOOD),
+    ],
+)
+@pytest.mark.parametrize("georeferenced", [True, False])
+def test_heights_that_may_be_above_sea_level_are_announced(
+    count, heights, usability, georeferenced
+):
+    settings = preset("outdoor")
+    given = replace(
+        facts(), settings=replace(settings, gnss=replace(settings.gnss, heights=heights))
+    )
+    results = Results(
+        imported={"counts": {count: 201}},
+        steps=steps([0.1] * 50),
+        georeference={"georeference": {"georeferenced": georeferenced}},
+    )
+
+    verdict = map_verdict(find(given, results, None))
+
+    assert verdict.usability is (usability if georeferenced else Usability.GOOD)
+    assert len(verdict.reasons) == int(verdict.usability is not Usability.GOOD)
+
+
 def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> Results:
     """A walk of 13.5 m whose last pose is known least."""
     final = walk(1.5)

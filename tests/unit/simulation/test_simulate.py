@@ -179,7 +179,8 @@ def test_gnss_positions_are_those_of_the_antenna(tmp_path):
     origin = json.loads((tmp_path / "out" / "world.json").read_text())["origin"]
     lat0, lon0 = np.deg2rad(origin["lat_deg"]), np.deg2rad(origin["lon_deg"])
 
-    xyz = geocentric(np.deg2rad(rows["lat_deg"]), np.deg2rad(rows["lon_deg"]), rows["height_m"])
+    lat, lon = np.deg2rad(rows["lat_deg"]), np.deg2rad(rows["lon_deg"])
+    xyz = geocentric(lat, lon, rows["ellipsoidal_height_m"])
     offset = xyz - geocentric(lat0, lon0, origin["height_m"])
     east = [-np.sin(lon0), np.cos(lon0), 0.0]
     up = [np.cos(lat0) * np.cos(lon0), np.cos(lat0) * np.sin(lon0), np.sin(lat0)]

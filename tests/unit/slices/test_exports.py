@@ -325,6 +325,32 @@ def test_control_and_check_points_are_judged_apart():
     assert [one.holds for one in control.requirements] == [False, True, False, True]
 
 
+@pytest.mark.parametrize(
+    ("up_m", "east_m", "said"),
+    [
+        ((-44.1, -44.2), 0.1, "All 2 points are 44.15 m too low in the map"),
+        ((44.1,), 0.1, "The point is 44.10 m too high in the map"),
+        ((-44.1, -40.0), 0.1, ""),
+        ((-44.1, -44.2), 3.0, ""),
+        ((-0.4, -0.4), 0.1, ""),
+    ],
+    ids=["geoid", "one point", "unlike heights", "wrong place", "small"],
+)
+def test_heights_above_sea_level_are_told_by_the_points(up_m, east_m, said):
+    points = [ControlPoint(str(k), (10.0 * k, 0.0, 300.0)) for k in range(len(up_m))]
+    measured = {
+        point.id: np.add(point.xyz_m, (east_m, 0.0, up))
+        for point, up in zip(points, up_m, strict=True)
+    }
+
+    found = residuals(points, measured)
+
+    assert found.hint.startswith(said) and bool(found.hint) == bool(said)
+    assert found.hint in residual_csv(found)
+    sheet = AcceptanceText(project="a", frame="b", sources="c", approval="d")
+    assert found.hint in render_acceptance(found, sheet)
+
+
 def test_only_places_in_this_map_count():
     points = [ControlPoint("A", (0.0, 0.0, 0.0)), ControlPoint("B", (1.0, 0.0, 0.0))]
 
