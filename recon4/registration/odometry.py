@@ -109,6 +109,8 @@ class Odometry:
         """The first frame until the second one comes, and the state at its start."""
         self._begun: MotionState | None = None
         self._end_ns: int | None = None
+        self._fixes: GnssAiding | None = None
+        """The aiding, if the odometry began in its frame."""
         self._piece = self._resets = self._tracked_frames = 0
 
     def remember_imu(self, before: Odometry) -> None:
@@ -270,9 +272,7 @@ class Odometry:
 
     def _follow_lost(self, frame: Multiframe, step: OdometryStep) -> None:
         """Without an IMU: once the scans since tracking was lost are sure, begin a new piece."""
-        if self._chain is None:
-            return
-        if not step.lost:
+        if self._chain is None or not step.lost:
             self._fresh = None
             return
         if self._fresh is None:
@@ -310,17 +310,19 @@ class Odometry:
         return T[1]
 
     def _place(self, frame: Multiframe) -> SE3 | None:
-        """Without an IMU: pose at the middle of a frame by registration to the last good scan."""
+        """Without an IMU: pose at the middle of a frame by the last good scan, else by fixes."""
         if self._chain is None:
             return None
         found = self._chain.locate(body_points(frame, self._rig), frame.t_mid_ns)
         if self._state is None:
             return None
-        if found is None:
+        before, before_ns = self._chain.last
+        middle = before @ found if found else None
+        if not self._chain.is_sure and self._fixes:
+            middle = self._fixes.pose(frame.t_mid_ns) or middle
+        if middle is None:
             self._state = self._free.at_rest(self._state, frame.t_ns)
             return None
-        before, before_ns = self._chain.last
-        middle = before @ found
         if self._tracked_frames < 2 or self._lost_frames:  # velocity and turn rate are not known
             T = SE3.stack([before, middle])
             self._state = self._free.between(T, (before_ns, frame.t_mid_ns), frame.t_ns)
@@ -354,6 +356,7 @@ class Odometry:
         T_enu_body = self._aiding.pose(t_ns) if self._aiding else None
         if self._aiding is None or T_enu_body is None:
             return state
+        self._fixes = self._aiding
         return state.at_pose(
             T_enu_body,
             sd_rad=self._aiding.attitude_sd_rad,
@@ -380,12 +383,8 @@ class Odometry:
         if len(segments) == 0:
             return
         self._last_keyframe = T_dense[-1]
-        ends_odom = np.concatenate(
-            [
-                place_points(t_s, T_dense.R, T_dense.t, segments.a_s, segments.a_body),
-                place_points(t_s, T_dense.R, T_dense.t, segments.b_s, segments.b_body),
-            ]
-        )
+        ends = (segments.a_s, segments.a_body), (segments.b_s, segments.b_body)
+        ends_odom = np.concatenate([place_points(t_s, T_dense.R, T_dense.t, *end) for end in ends])
         seen_from = T_dense.t[-1].copy()
         self._map.add(ends_odom, seen_from)
         self._keyframes.append((ends_odom, seen_from))
