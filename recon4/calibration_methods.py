@@ -37,7 +37,6 @@ from recon4.recording.sources import Sources
 from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, CloudSlice
 from recon4.report.rig import DISPLAY_UNITS
 from recon4.settings import EntropySettings, Settings, override, preset
-from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import is_project, read_artifacts
 
@@ -321,9 +320,8 @@ def _walk(task: _Task) -> tuple[RecordedWalk, Settings]:
 
 def _recorded(folder: Path) -> RecordedWalk:
     made = read_artifacts(folder)
-    lost = load_arrays(made["odometry"] / "steps.npz", ["lost"])["lost"].astype(bool)
-    trajectory = load_trajectory(made["odometry"] / "trajectory.npz")
-    return RecordedWalk(FrameStore.open(made["frames"]), trajectory, lost)
+    frames = FrameStore.open(made["frames"])
+    return RecordedWalk.of(frames, made["odometry"], Settings().odometry)
 
 
 def _reference(rig: Rig, settings: Settings) -> int:

@@ -290,7 +290,7 @@ ODOMETRY = Stage(
 )
 CALIBRATION = Stage(
     "calibration",
-    12,
+    13,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,

@@ -14,7 +14,7 @@ from recon4.model.trajectory import Times, Trajectory
 def choose_windows(
     trajectory: Trajectory,
     t_mid_ns: Times,
-    lost: NDArray[np.bool_],
+    unusable: NDArray[np.bool_],
     *,
     count: int,
     length: int,
@@ -22,12 +22,12 @@ def choose_windows(
     """Multiframes of windows spread over the walk, where the body turns most about its axes.
 
     The walk is divided into equal parts; in each the window is chosen with the largest turning
-    about the axis it turns least about. Windows in which tracking was lost are left out.
+    about the axis it turns least about. Windows with unusable multiframes are left out.
 
     Args:
         trajectory: ``T_odom_body``, dense.
         t_mid_ns: Middle of each multiframe [ns], (N,).
-        lost: Whether tracking was lost, (N,).
+        unusable: Multiframes that no window may have, (N,).
         count: Largest number of windows.
         length: Multiframes of a window.
     """
@@ -36,8 +36,8 @@ def choose_windows(
     if len(starts) == 0:
         return []
     excitation = _excitation(trajectory, t_mid_ns, length)
-    lost_before = np.concatenate([[0], np.cumsum(lost)])
-    usable = lost_before[starts + length] == lost_before[starts]
+    before = np.concatenate([[0], np.cumsum(unusable)])
+    usable = before[starts + length] == before[starts]
     parts = min(count, max(1, total // length))
     edges = np.linspace(0, total, parts + 1).astype(int)
     chosen = []

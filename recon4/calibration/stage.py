@@ -32,7 +32,6 @@ from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.settings import Settings
-from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
 _SAME_RAD, _SAME_M = 0.1, 0.1
@@ -52,8 +51,7 @@ def run_calibration(
     """
     if settings.calibration.mode == "off":
         return CalibrationResult(figures=CalibrationFigures(outcome="switched off"))
-    lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"].astype(bool)
-    walk = RecordedWalk(frames, load_trajectory(odometry / "trajectory.npz"), lost)
+    walk = RecordedWalk.of(frames, odometry, settings.odometry)
     reference = reference_of(frames.rig, settings.calibration)
     if reference is None:
         return CalibrationResult(figures=CalibrationFigures(outcome="no LiDAR is enabled"))

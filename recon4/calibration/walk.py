@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +13,12 @@ from recon4.calibration.window import POINTS_OF_FRAME, Window, cut_window
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.model.usability import WEAK_SD_M
 from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
 from recon4.registration.passes import dense_trajectory
-from recon4.settings import Settings
+from recon4.settings import OdometrySettings, Settings
+from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
 
@@ -28,6 +31,27 @@ class RecordedWalk:
     """``T_odom_body``, dense."""
     lost: NDArray[np.bool_]
     """Multiframes where tracking was lost, (N,)."""
+    unobserved: NDArray[np.bool_]
+    """Multiframes whose pose along some direction nothing measured, (N,). It follows one of the
+    LiDARs there, and the others seem to be off: no window has them."""
+
+    @classmethod
+    def of(cls, frames: FrameStore, odometry: Path, settings: OdometrySettings) -> RecordedWalk:
+        """A recording with the results of the stage ``odometry``.
+
+        Args:
+            frames: The multiframes with IMU and GNSS.
+            odometry: Folder of that stage.
+            settings: Whether it used the IMU.
+
+        Raises:
+            StoreError: If a file is missing or damaged.
+        """
+        steps = load_arrays(odometry / "steps.npz", ["lost", "weak_sd_m"])
+        with_imu = frames.imu is not None and settings.use_imu
+        unobserved = (steps["weak_sd_m"] > WEAK_SD_M) & (not with_imu)
+        trajectory = load_trajectory(odometry / "trajectory.npz")
+        return cls(frames, trajectory, steps["lost"].astype(bool), unobserved)
 
     @property
     def start_ns(self) -> int:
@@ -50,8 +74,8 @@ class RecordedWalk:
         if len(t_ns) < 2:
             return []
         length = max(2, round(seconds / (float(np.median(np.diff(t_ns))) * 1e-9)))
-        lost = np.zeros_like(self.lost) if with_lost else self.lost
-        return choose_windows(self.trajectory, t_ns, lost, count=count, length=length)
+        unusable = self.unobserved if with_lost else self.unobserved | self.lost
+        return choose_windows(self.trajectory, t_ns, unusable, count=count, length=length)
 
     def windows(self, count: int, seconds: float) -> list[Window]:
         """Windows with the trajectory of the odometry."""

@@ -29,7 +29,6 @@ from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.settings import EntropySettings
-from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from tests.benchmarks.calibration import SETTINGS, true_rig
 
@@ -51,11 +50,8 @@ def main() -> None:
 
 def recorded(folder: Path) -> RecordedWalk:
     """A walk that `tests.benchmarks.calibration` made."""
-    odometry = folder / "odometry"
-    lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"].astype(bool)
-    return RecordedWalk(
-        FrameStore.open(folder / "frames"), load_trajectory(odometry / "trajectory.npz"), lost
-    )
+    frames = FrameStore.open(folder / "frames")
+    return RecordedWalk.of(frames, folder / "odometry", SETTINGS.odometry)
 
 
 def error(found: SE3, folder: Path) -> str:

@@ -17,7 +17,6 @@ from recon4.model.rig import load_rig, parse_rig
 from recon4.model.samples import GnssSamples
 from recon4.progress import Silent
 from recon4.settings import GnssSettings, Settings
-from recon4.store.arrays import load_trajectory
 from tests.unit.calibration.conftest import CALIBRATION
 
 ARM = np.array([-0.2, 0.1, 0.6])
@@ -52,8 +51,7 @@ def outdoors(dance, right):
 
 @pytest.fixture(scope="module")
 def walk(outdoors):
-    trajectory = load_trajectory(outdoors.odometry / "trajectory.npz")
-    return RecordedWalk(outdoors.frames, trajectory, np.zeros(len(outdoors.frames), bool))
+    return RecordedWalk.of(outdoors.frames, outdoors.odometry, Settings().odometry)
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,6 @@
 """Bad input of a calibration: a clear error or "not observable", and the old rig stays."""
 
+import shutil
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +13,9 @@ from recon4.model.rig import format_rig, load_rig
 from recon4.progress import Silent
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_imu
+from recon4.store.arrays import load_arrays, save_arrays
 from recon4.store.frames import FrameStore, FrameWriter
-from tests.unit.calibration.conftest import AUTO, mounted, store, tracked
+from tests.unit.calibration.conftest import AUTO, SETTINGS, mounted, store, tracked
 
 WRONG = {"turn_deg": (0.9, -0.8, 0.9), "shift_m": (0.012, -0.010, 0.012)}
 
@@ -49,6 +51,20 @@ def test_a_walk_of_five_seconds_shows_nothing_and_changes_nothing(dance, tmp_pat
     assert not found.figures.applied
     assert found.rig is None
     assert "nothing of the rig: 14 parameters are not observable" in found.figures.outcome
+
+
+@pytest.mark.parametrize(("with_imu", "windows"), [(True, 3), (False, 0)])
+def test_poses_that_nothing_holds_compare_no_sensors(right, tmp_path, with_imu, windows):
+    """Without an IMU they follow one of the LiDARs along what the multiframe does not observe."""
+    odometry = tmp_path / "odometry"
+    shutil.copytree(right.odometry, odometry)
+    steps = load_arrays(odometry / "steps.npz")
+    save_arrays(odometry / "steps.npz", steps | {"weak_sd_m": np.full(len(steps["lost"]), 0.06)})
+    frames = right.frames if with_imu else replace(right.frames, imu=None)
+
+    found = run(replace(right, frames=frames, odometry=odometry), SETTINGS)
+
+    assert found.figures.windows == windows
 
 
 def test_samples_that_are_no_numbers_are_left_out_and_counted(dance, tmp_path):

@@ -196,7 +196,7 @@ def test_entropy_finds_a_rotation_back(dance):
 
 def test_two_maps_give_the_mount(dance):
     wrong = mounted(dance.rig, 1, turn_deg=(3.0, -2.0, 2.0), shift_m=(0.05, 0.0, -0.05))
-    walk = RecordedWalk(replace(dance, rig=wrong), dance.truth, np.zeros(len(dance), bool))
+    walk = RecordedWalk(replace(dance, rig=wrong), dance.truth, *np.zeros((2, len(dance)), bool))
     found = align_maps(walk, wrong, 1, reference=0, settings=SETTINGS)
 
     true = dance.rig.sensors[1].T_body_sensor

@@ -22,7 +22,7 @@ def test_a_wrong_mount_shows_two_walls_where_the_right_one_shows_one(dance, tmp_
         for frame in dance:
             writer.append(frame)
     frames = FrameStore.open(tmp_path)
-    walk = RecordedWalk(frames, dance.truth, np.zeros(len(frames), bool))
+    walk = RecordedWalk(frames, dance.truth, *np.zeros((2, len(frames)), bool))
     wrong = mounted(dance.rig, 1, shift_m=(0.3, -0.2, 0.0))
 
     right = slice_points(walk, dance.rig, thickness_m=0.2)

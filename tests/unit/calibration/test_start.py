@@ -20,7 +20,7 @@ EXCHANGED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 
 def start_of(dance, **change):
     imu = replace(dance.imu, **change)
-    walk = RecordedWalk(replace(dance, imu=imu), dance.truth, np.zeros(len(dance), bool))
+    walk = RecordedWalk(replace(dance, imu=imu), dance.truth, *np.zeros((2, len(dance)), bool))
     return find_start(walk, reference=0, settings=SETTINGS)
 
 
