@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -68,7 +69,24 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
         measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
     surveyed = [ControlPoint(**point.model_dump()) for point in state.points]
     outdated = state.picks.keys() - here.keys()
-    return residuals(surveyed, measured, covariances=covariances, outdated=outdated)
+    return residuals(
+        surveyed,
+        measured,
+        covariances=covariances,
+        outdated=outdated,
+        map_heights_m=_heights(artifacts, own.to_crs if state.frame == "crs" else None),
+    )
+
+
+def _heights(
+    artifacts: Artifacts, to_crs: Callable[[Array], Array] | None
+) -> tuple[float, float] | None:
+    """Lowest and highest height of the map in the survey's coordinates; None = it is empty."""
+    corners = np.array(tiles_of(artifacts["map"]).bounds_m)
+    if not np.isfinite(corners).all():
+        return None
+    low, high = (to_crs(corners) if to_crs else corners)[:, 2]
+    return float(low), float(high)
 
 
 def _covariances(artifacts: Artifacts, measured: dict[str, Array]) -> dict[str, Array]:

@@ -26,6 +26,10 @@ _GEOID_SEPARATION_M = (5.0, 110.0)
 """Common error of all heights that is taken for a geoid separation; they are -107 to 86 m."""
 _NEARLY_M = 1.0
 """Largest deviation from it, and largest horizontal error: heights alone are of another kind."""
+_TWO_HEIGHTS = (
+    "This is as with a geoid: either the map or the survey has heights above sea level "
+    "(orthometric), and the other above the ellipsoid."
+)
 RELATIVE_LIMIT_M = 0.05
 """Limit for the error of distances between points of the map (requirements, relative)."""
 
@@ -99,6 +103,7 @@ def residuals(
     *,
     covariances: Mapping[str, Array] = MappingProxyType({}),
     outdated: Collection[str] = (),
+    map_heights_m: tuple[float, float] | None = None,
 ) -> ControlReport:
     """Compute the residual table, control and check points separately.
 
@@ -107,6 +112,7 @@ def residuals(
         measured: Id -> position in the map, in the coordinates of the survey [m], (3,).
         covariances: Id -> covariance of the map there, east, north, up [m²], (3, 3).
         outdated: Ids of points found in an earlier map.
+        map_heights_m: Lowest and highest height of the map in the survey's coordinates [m].
     """
     rows = tuple(
         _residual(p, measured[p.id], covariances.get(p.id)) for p in points if p.id in measured
@@ -125,7 +131,7 @@ def residuals(
         figures=tuple(figures),
         judged_by=figures[0].role if figures else None,
         passed=all(one.holds for one in figures[0].requirements) if figures else None,
-        hint=_height_hint(rows),
+        hint=_common_height(rows) if rows else _beside_map(points, map_heights_m),
     )
 
 
@@ -167,10 +173,8 @@ def safe_cell(text: str) -> str:
     return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 
 
-def _height_hint(rows: Sequence[Residual]) -> str:
+def _common_height(rows: Sequence[Residual]) -> str:
     """Whether all heights are off by the same, as between ellipsoid and sea level."""
-    if not rows:
-        return ""
     up_m = np.array([row.up_m for row in rows])
     usual_m = float(np.median(up_m))
     alike = float(np.abs(up_m - usual_m).max()) < _NEARLY_M
@@ -181,8 +185,23 @@ def _height_hint(rows: Sequence[Residual]) -> str:
     points = f"All {len(rows)} points are" if len(rows) > 1 else "The point is"
     return (
         f"{points} {abs(usual_m):.2f} m too {'high' if usual_m > 0 else 'low'} in the map, and "
-        "horizontally in place, as with a geoid: either the map or the survey has heights above "
-        "sea level (orthometric), and the other above the ellipsoid."
+        f"horizontally in place. {_TWO_HEIGHTS}"
+    )
+
+
+def _beside_map(points: Sequence[ControlPoint], heights_m: tuple[float, float] | None) -> str:
+    """Whether all points lie as far below or above the map as sea level and ellipsoid are apart."""
+    if not points or heights_m is None:
+        return ""
+    z_m = [point.xyz_m[2] for point in points]
+    below_m, above_m = heights_m[0] - max(z_m), min(z_m) - heights_m[1]
+    low_m, high_m = _GEOID_SEPARATION_M
+    if not low_m < max(below_m, above_m) < high_m:
+        return ""
+    return (
+        f"All {len(points)} points of the survey are {'below' if below_m > 0 else 'above'} the map "
+        f"by {max(below_m, above_m):.0f} m and more: their heights are {min(z_m):.1f} to "
+        f"{max(z_m):.1f} m, the map's {heights_m[0]:.1f} to {heights_m[1]:.1f} m. {_TWO_HEIGHTS}"
     )
 
 

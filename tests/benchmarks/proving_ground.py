@@ -58,8 +58,12 @@ DEGRADATIONS = (
 OF_LIDARS = {"extrinsics", "lidar-clock", "swap-lidars", "wrong-model"}
 """What the audit of the rig finds of a LiDAR is part of the covariances."""
 ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss", "vehicles"}
-GENERIC = ("No loop closure was accepted", "no IMU: motion within a frame")
-"""Reasons that say nothing but that nobody came back to a place, or that there is no IMU."""
+GENERIC = (
+    "No loop closure was accepted",
+    "no IMU: motion within a frame",
+    "Nothing says whether the heights",
+)
+"""Reasons that say only what the walk or the recording lacks, right or wrong."""
 _REASON_LENGTH = 160
 
 

@@ -296,6 +296,23 @@ def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     expect(sheet.value.get_by_text("does not keep the limits at 3 check points")).to_be_visible()
 
 
+@looks("phone dark")
+def test_a_survey_with_heights_above_sea_level_is_explained(server, page, screenshot):
+    opened(page, server)
+
+    page.get_by_text("Control and check points").click()
+    data = b"ID;E;N;Z\nA;0,02;5;-42,7\nB;16,01;4;-43,0\n"
+    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
+    page.get_by_label("Survey file").set_input_files(survey)
+    page.get_by_role("button", name="Use, in the map's frame").click()
+
+    hint = page.get_by_text("All 2 points of the survey are below the map by")
+    expect(hint).to_contain_text("heights above sea level (orthometric)")
+    hint.scroll_into_view_if_needed()
+    fits(page)
+    screenshot(page, "slices-other-heights")
+
+
 @looks("desktop dark")
 def test_two_tabs_measure_control_points_and_neither_overwrites_the_other(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")

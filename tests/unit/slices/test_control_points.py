@@ -1,0 +1,163 @@
+"""Survey files, and residuals of the map at their points."""
+
+import math
+
+import numpy as np
+import pytest
+
+from recon4.errors import CorruptFile
+from recon4.slices.acceptance import AcceptanceText, render_acceptance
+from recon4.slices.control_points import ControlPoint, read_control
+from recon4.slices.residuals import residual_csv, residuals
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "ID,X,Y,Z\nA,1.5,2.5,3.5\n",
+        "\ufeffID;X;Y;Z;Radius\nA;1,5;2,5;3,5;0,1\n",
+        "A\t1,5\t2,5\t3,5\n",
+        "name,height,north,east\nA,3.5,2.5,1.5\n",
+        '"A","1.5","2.5","3.5"\r\n',
+    ],
+)
+def test_surveys_of_all_kinds_are_understood(text):
+    found = read_control(text.encode())
+
+    assert found.points[0].xyz_m == (1.5, 2.5, 3.5) and found.skipped == ()
+    assert bool(found.question) == ("north" not in text)
+
+
+def test_the_order_is_asked_for_and_can_be_turned():
+    data = b"A,5400000.0,600000.0,300\n"
+
+    found, turned = read_control(data), read_control(data, order="NE")
+
+    assert "is 5400000.000 the easting" in found.question
+    assert turned.points[0].xyz_m == (600000.0, 5400000.0, 300.0) and turned.question == ""
+
+
+def test_lines_that_say_nothing_are_named_not_dropped():
+    found = read_control(b"ID,X,Y,Z\nA,1,2,3\nB,1,x,3\nA,9,9,9\nC,1,inf,3\n")
+
+    assert [point.id for point in found.points] == ["A"]
+    assert [words.split(":")[0] for words in found.skipped] == ["line 3", "line 4", "line 5"]
+
+
+@pytest.mark.parametrize("data", [b"", b"\0\0\0", b"a,b\n", "žluťoučký".encode("utf-16")])
+def test_a_file_without_points_is_refused(data):
+    with pytest.raises(CorruptFile):
+        read_control(data, name="p.csv")
+
+
+def test_control_and_check_points_are_judged_apart():
+    points = [
+        ControlPoint("A", (0.0, 0.0, 0.0), "control"),
+        ControlPoint("B", (10.0, 0.0, 0.0)),
+        ControlPoint("C", (0.0, 10.0, 0.0)),
+        ControlPoint("D", (5.0, 5.0, 5.0)),
+    ]
+    measured = {
+        "A": np.array([1.0, 0.0, 0.0]),
+        "B": np.array([10.03, 0.04, 0.0]),
+        "C": np.array([0.03, 10.04, -0.25]),
+    }
+
+    found = residuals(points, measured)
+
+    check, control = found.figures
+    assert found.judged_by == "check" and found.missing == ("D",)
+    assert (check.role, check.points, control.points) == ("check", 2, 1)
+    assert check.mean_2d_m == pytest.approx(0.05) and check.max_up_m == pytest.approx(0.25)
+    assert check.rmse_m == pytest.approx((0.03, 0.04, 0.25 / math.sqrt(2)))
+    assert [(one.label, one.limit_m, one.holds) for one in check.requirements] == [
+        ("mean horizontal", 0.14, True),
+        ("mean height", 0.12, False),
+        ("largest horizontal", 0.28, True),
+        ("largest height", 0.24, False),
+        ("distances between points", 0.05, True),
+    ]
+    assert check.relative_m < 0.01 and found.passed is False
+    assert [one.holds for one in control.requirements] == [False, True, False, True]
+
+
+@pytest.mark.parametrize(
+    ("up_m", "east_m", "said"),
+    [
+        ((-44.1, -44.2), 0.1, "All 2 points are 44.15 m too low in the map"),
+        ((44.1,), 0.1, "The point is 44.10 m too high in the map"),
+        ((-44.1, -40.0), 0.1, ""),
+        ((-44.1, -44.2), 3.0, ""),
+        ((-0.4, -0.4), 0.1, ""),
+    ],
+    ids=["geoid", "one point", "unlike heights", "wrong place", "small"],
+)
+def test_heights_above_sea_level_are_told_by_the_points(up_m, east_m, said):
+    points = [ControlPoint(str(k), (10.0 * k, 0.0, 300.0)) for k in range(len(up_m))]
+    measured = {
+        point.id: np.add(point.xyz_m, (east_m, 0.0, up))
+        for point, up in zip(points, up_m, strict=True)
+    }
+
+    found = residuals(points, measured)
+
+    assert found.hint.startswith(said) and bool(found.hint) == bool(said)
+    assert found.hint in residual_csv(found)
+    sheet = AcceptanceText(project="a", frame="b", sources="c", approval="d")
+    assert found.hint in render_acceptance(found, sheet)
+
+
+@pytest.mark.parametrize(
+    ("heights_m", "said"),
+    [
+        ((340.0, 352.0), "All 2 points of the survey are below the map by 36 m and more"),
+        ((250.0, 260.0), "All 2 points of the survey are above the map by 40 m and more"),
+        ((299.0, 310.0), ""),
+        ((600.0, 610.0), ""),
+        (None, ""),
+    ],
+    ids=["below", "above", "in the map", "farther than any geoid", "not known"],
+)
+def test_a_survey_below_or_above_the_map_has_other_heights(heights_m, said):
+    points = [ControlPoint("A", (0.0, 0.0, 300.0)), ControlPoint("B", (9.0, 0.0, 304.0))]
+
+    found = residuals(points, {}, map_heights_m=heights_m)
+
+    assert found.hint.startswith(said) and bool(found.hint) == bool(said)
+
+
+def test_only_places_in_this_map_count():
+    points = [ControlPoint("A", (0.0, 0.0, 0.0)), ControlPoint("B", (1.0, 0.0, 0.0))]
+
+    found = residuals(points, {}, outdated=["B"])
+
+    assert (found.missing, found.outdated, found.passed) == (("A",), ("B",), None)
+
+
+def test_a_name_that_looks_like_a_formula_is_defused():
+    found = residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], {"=1+1": np.zeros(3)})
+
+    table = residual_csv(found, comment="of a\nhouse")
+
+    assert table.splitlines()[0] == "# recon4 control and check points of a house"
+    assert table.splitlines()[2].startswith("'=1+1,check,0.0000")
+    assert "largest height,check,0.0000,0.24,yes" in table
+
+
+@pytest.mark.parametrize(
+    ("up_m", "role", "words"),
+    [
+        (0.05, "check", "✓ The map keeps the limits at 1 check point. 1 more not checked."),
+        (0.25, "check", "✕ The map does not keep the limits"),
+        (0.05, "control", "no independent point was checked"),
+    ],
+)
+def test_the_sheet_says_what_was_measured_against_which_limit(up_m, role, words):
+    points = [ControlPoint("<A>", (0.0, 0.0, 0.0), role), ControlPoint("B", (1.0, 0.0, 0.0))]
+    about = AcceptanceText(project="Dům & dvůr", frame="local", sources="map 12", approval="By Eva")
+
+    sheet = render_acceptance(residuals(points, {"<A>": np.array([0.0, 0.0, up_m])}), about)
+
+    assert words in sheet and "&lt;A&gt;" in sheet and "Dům &amp; dvůr" in sheet
+    assert f"<td>mean height</td><td>{100 * up_m:.1f}</td><td>12</td>" in sheet
+    assert "not found in the map" in sheet and "By Eva" in sheet
