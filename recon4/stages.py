@@ -283,7 +283,7 @@ def _refine_lines(
 FRAMES = Stage("frames", 9, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    35,
+    36,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

@@ -3,14 +3,23 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import median_filter
 
+from recon4.geometry.se3 import Array
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.ins_attitudes import attitudes, ins_mount
 from recon4.georeference.receiver_clock import receiver_clock_s
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
 from recon4.settings import OdometrySettings
+
+_AROUND = 11
+"""Fixes whose median shows that the one in their middle jumps."""
+_JUMP_M, _TURN_S = 0.2, 0.06
+"""Distance of such a fix from the median [m], and what turns and starts add at a speed [s]."""
 
 
 def make_gnss_aiding(
@@ -43,11 +52,32 @@ def make_gnss_aiding(
     R_ins_body = ins_mount(gnss, rig, imu=imu, usual=np.eye(3)).T
     t_ns, R_enu_body = gnss.t_ns[good], attitudes(gnss.rpy_ned_rad[good]) @ R_ins_body
     clock_s = receiver_clock_s(t_ns, R_enu_body, imu=imu, rig=rig) if imu is not None else 0.0
+    steady = ~jumping(p_enu, t_ns)
     return GnssAiding(
-        t_ns=t_ns + round(1e9 * clock_s),
-        p_enu=p_enu,
-        sd_m=sd_m,
-        R_enu_body=R_enu_body,
+        t_ns=(t_ns + round(1e9 * clock_s))[steady],
+        p_enu=p_enu[steady],
+        sd_m=sd_m[steady],
+        R_enu_body=R_enu_body[steady],
         attitude_sd_rad=settings.heading_sd_rad,
         p_body_antenna=rig.p_body_antenna,
     )
+
+
+def jumping(p_enu: Array, t_ns: Times) -> NDArray[np.bool_]:
+    """Fixes that lie beside the median of those around them, as by reflected signals, (N,).
+
+    Who walks on lies on that median himself, whatever the speed; a turn bends it a little.
+
+    Args:
+        p_enu: Positions [m], (N, 3).
+        t_ns: Their times [ns], increasing, (N,).
+    """
+    if len(t_ns) < _AROUND:
+        return np.zeros(len(t_ns), np.bool_)
+    median = median_filter(p_enu, size=(_AROUND, 1), mode="nearest")
+    around_s = _AROUND * 1e-9 * float(np.median(np.diff(t_ns)))
+    moved_m = np.linalg.norm(median[_AROUND // 2 :] - median[: -(_AROUND // 2)], axis=1)
+    speed_m_s = float(np.median(moved_m)) / (0.5 * around_s)
+    beside_m = np.linalg.norm(p_enu - median, axis=1)
+    beside_m[: _AROUND // 2] = beside_m[-(_AROUND // 2) :] = 0.0  # half a window is no median
+    return np.asarray(beside_m > _JUMP_M + _TURN_S * speed_m_s)

@@ -224,15 +224,15 @@ class Odometry:
         """Covariance of the motion that neither LiDAR nor GNSS nor standing still excludes."""
         seconds = 1e-9 * frame.duration_ns
         aided = self._aiding and self._aiding.pose(frame.t_ns + frame.duration_ns)
-        if aided or fit.stationary:
+        with_imu = self._chain is None
+        if fit.stationary or (aided and with_imu):
             return np.zeros((6, 6))
         moved_m = float(np.linalg.norm(fit.T_dense.t[-1] - fit.T_dense.t[0]))
-        with_imu = self._chain is None
         unknown_m = seconds * unknown_speed_sd(moved_m / seconds, with_imu=with_imu)
         return weak_motion_cov(
             fit.match.weak_direction,
             fit.weak_sd_m,
-            unknown_m=unknown_m,
+            unknown_m=min(unknown_m, self._settings.odometry.gnss_sd_m) if aided else unknown_m,
             converged=with_imu or fit.converged,
         )
 
