@@ -8,6 +8,10 @@ import msgspec
 
 from recon4.errors import StoreError
 
+HEIGHTS_UNSTATED, HEIGHTS_ORTHOMETRIC = "gnss_heights_unstated", "gnss_heights_orthometric"
+"""Counts of fixes whose height is taken as ellipsoidal because nothing says what it is above, and
+of those above sea level without a geoid separation."""
+
 
 class ImportNotes(msgspec.Struct, frozen=True):
     """Outcome, warnings and counts of reading a recording."""

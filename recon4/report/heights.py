@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from recon4.model.import_notes import import_notes
+from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED, import_notes
 from recon4.settings import GnssSettings
 
 _REMEDY = "by the setting gnss.heights, or in the recording by the names of the columns"
@@ -20,7 +20,7 @@ def wrong_heights(imported: Mapping[str, object], settings: GnssSettings) -> str
     Raises:
         StoreError: If the report is not as written.
     """
-    fixes = import_notes(imported).counts.get("gnss_heights_orthometric", 0)
+    fixes = import_notes(imported).counts.get(HEIGHTS_ORTHOMETRIC, 0)
     if not fixes or settings.heights != "as_recorded":
         return ""
     return (
@@ -40,7 +40,7 @@ def unstated_heights(imported: Mapping[str, object], settings: GnssSettings) -> 
     Raises:
         StoreError: If the report is not as written.
     """
-    fixes = import_notes(imported).counts.get("gnss_heights_unstated", 0)
+    fixes = import_notes(imported).counts.get(HEIGHTS_UNSTATED, 0)
     if not fixes or settings.heights != "as_recorded":
         return ""
     return (

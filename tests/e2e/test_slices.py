@@ -296,7 +296,7 @@ def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     expect(sheet.value.get_by_text("does not keep the limits at 3 check points")).to_be_visible()
 
 
-@looks("phone dark")
+@looks("desktop light")
 def test_a_survey_with_heights_above_sea_level_is_explained(server, page, screenshot):
     opened(page, server)
 

@@ -139,7 +139,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, text);
     table.replaceChildren(
       verdict(found),
-      found.hint ? make("p", { className: "verdict bad" }, `✕ ${found.hint}`) : "",
+      found.hint ? make("p", { className: "bad" }, `✕ ${found.hint}`) : "",
       ...found.figures.map(figures),
       make(
         "div",

@@ -7,14 +7,12 @@ from collections.abc import Mapping
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
 from recon4.model.samples import GnssSamples
 from recon4.recording.report import ImportReport
 
 STATED_COLUMNS = ("ellipsoidal_height_m", "orthometric_height_m", "geoid_separation_m")
 """Columns that say what heights are above; ``height_m`` does not."""
-UNSTATED, ORTHOMETRIC = "gnss_heights_unstated", "gnss_heights_orthometric"
-"""Counts of fixes whose height is taken as ellipsoidal because nothing says what it is above, and
-of those above sea level without a geoid separation."""
 _SEPARATION_M = (5.0, 110.0)
 """Geoid separations are -107 to 86 m; below 5 m other errors look alike."""
 _SPREAD_M = 2.0
@@ -27,15 +25,15 @@ def height_above_ellipsoid(columns: Mapping[str, Array], report: ImportReport) -
 
     Args:
         columns: ``height_m`` and those of `STATED_COLUMNS`, (N,) each; NaN = not given.
-        report: Gets the counts `UNSTATED` and `ORTHOMETRIC`.
+        report: Gets the counts `HEIGHTS_UNSTATED` and `HEIGHTS_ORTHOMETRIC`.
     """
     stated, above_sea, separation = (columns[name] for name in STATED_COLUMNS)
     out = np.where(np.isfinite(stated), stated, above_sea + separation)
     only_above_sea = ~np.isfinite(out) & np.isfinite(above_sea)
     out = np.where(only_above_sea, above_sea, out)
     unstated = ~np.isfinite(out) & np.isfinite(columns["height_m"])
-    report.count(ORTHOMETRIC, int(np.count_nonzero(only_above_sea)))
-    report.count(UNSTATED, int(np.count_nonzero(unstated)))
+    report.count(HEIGHTS_ORTHOMETRIC, int(np.count_nonzero(only_above_sea)))
+    report.count(HEIGHTS_UNSTATED, int(np.count_nonzero(unstated)))
     return np.where(unstated, columns["height_m"], out)
 
 
@@ -49,10 +47,10 @@ def height_of_gga(altitude_m: float, separation: object, report: ImportReport) -
         report: Gets the counts.
     """
     if separation in ("", None):
-        report.count(ORTHOMETRIC)
+        report.count(HEIGHTS_ORTHOMETRIC)
         return altitude_m
     separation_m = float(str(separation))
-    report.count(UNSTATED, int(separation_m == 0.0))
+    report.count(HEIGHTS_UNSTATED, int(separation_m == 0.0))
     return altitude_m + separation_m
 
 

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC as ORTHOMETRIC
+from recon4.model.import_notes import HEIGHTS_UNSTATED as UNSTATED
 from recon4.model.samples import GnssSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv
@@ -10,7 +12,6 @@ from recon4.recording.samples.datagrams import SampleDecoder
 from recon4.recording.samples.heights import compare_heights, height_of_gga
 
 SEPARATION_M = 44.2
-UNSTATED, ORTHOMETRIC = "gnss_heights_unstated", "gnss_heights_orthometric"
 
 
 @pytest.mark.parametrize(
