@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +14,7 @@ from recon4.result_files import covariances_of
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
+from recon4.slices.frames import MapFrame
 from recon4.slices.residuals import ControlReport, residual_csv, residuals
 from recon4.slices.sheet import source_text
 
@@ -74,18 +74,16 @@ def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
         measured,
         covariances=covariances,
         outdated=outdated,
-        map_heights_m=_heights(artifacts, own.to_crs if state.frame == "crs" else None),
+        map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
     )
 
 
-def _heights(
-    artifacts: Artifacts, to_crs: Callable[[Array], Array] | None
-) -> tuple[float, float] | None:
-    """Lowest and highest height of the map in the survey's coordinates; None = it is empty."""
+def _heights(artifacts: Artifacts, frame: MapFrame | None) -> tuple[float, float] | None:
+    """Lowest and highest height of the map, in a CRS if a frame is given; None = it is empty."""
     corners = np.array(tiles_of(artifacts["map"]).bounds_m)
     if not np.isfinite(corners).all():
         return None
-    low, high = (to_crs(corners) if to_crs else corners)[:, 2]
+    low, high = (frame.to_crs(corners) if frame and frame.to_crs else corners)[:, 2]
     return float(low), float(high)
 
 

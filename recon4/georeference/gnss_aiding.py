@@ -75,9 +75,9 @@ def jumping(p_enu: Array, t_ns: Times) -> NDArray[np.bool_]:
     if len(t_ns) < _AROUND:
         return np.zeros(len(t_ns), np.bool_)
     median = median_filter(p_enu, size=(_AROUND, 1), mode="nearest")
-    around_s = _AROUND * 1e-9 * float(np.median(np.diff(t_ns)))
-    moved_m = np.linalg.norm(median[_AROUND // 2 :] - median[: -(_AROUND // 2)], axis=1)
-    speed_m_s = float(np.median(moved_m)) / (0.5 * around_s)
+    half = _AROUND // 2
+    moved_m = np.linalg.norm(median[half:] - median[:-half], axis=1)
+    speed_m_s = float(np.median(moved_m / (1e-9 * (t_ns[half:] - t_ns[:-half]))))
     beside_m = np.linalg.norm(p_enu - median, axis=1)
-    beside_m[: _AROUND // 2] = beside_m[-(_AROUND // 2) :] = 0.0  # half a window is no median
+    beside_m[:half] = beside_m[-half:] = 0.0  # half a window is no median
     return np.asarray(beside_m > _JUMP_M + _TURN_S * speed_m_s)

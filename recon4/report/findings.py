@@ -18,7 +18,7 @@ from recon4.pose_graph.uncertainty_files import uncertainty_figures
 from recon4.report.artifacts import Results, path_length_m
 from recon4.report.drift import DriftClosed
 from recon4.report.facts import ReportFacts
-from recon4.report.heights import unstated_heights, wrong_heights
+from recon4.report.heights import height_remarks
 from recon4.report.observability import WeakStretch, held_by_surfaces, weak_stretches
 from recon4.report.places import ambiguous_places, separate_pieces
 from recon4.report.plausibility import MAX_SPEED_M_S, too_fast
@@ -351,10 +351,9 @@ def _rejected_fixes(results: Results) -> list[Finding]:
 def _heights(facts: ReportFacts, results: Results) -> list[Finding]:
     if not results.placement.gnss.georeferenced:
         return []
-    wrong = wrong_heights(results.imported, facts.settings.gnss)
-    assumed = unstated_heights(results.imported, facts.settings.gnss)
-    found = [Finding(Level.BAD, wrong)] if wrong else []
-    return found + ([Finding(Level.WARNING, assumed)] if assumed else [])
+    remarks = height_remarks(results.imported, facts.settings.gnss)
+    levels = zip((Level.BAD, Level.WARNING), remarks, strict=True)
+    return [Finding(level, text) for level, text in levels if text]
 
 
 def _imported(results: Results) -> list[Finding]:

@@ -19,11 +19,10 @@ from recon4.evaluation.markers import (
 )
 from recon4.geometry.se3 import Array
 from recon4.model.plain import finite_or_none
+from recon4.model.samples import GEOID_SEPARATION_M
 from recon4.slices.control_points import ControlPoint, Role
 from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
 
-_GEOID_SEPARATION_M = (5.0, 110.0)
-"""Common error of all heights that is taken for a geoid separation; they are -107 to 86 m."""
 _NEARLY_M = 1.0
 """Largest deviation from it, and largest horizontal error: heights alone are of another kind."""
 _TWO_HEIGHTS = (
@@ -178,7 +177,7 @@ def _common_height(rows: Sequence[Residual]) -> str:
     up_m = np.array([row.up_m for row in rows])
     usual_m = float(np.median(up_m))
     alike = float(np.abs(up_m - usual_m).max()) < _NEARLY_M
-    low_m, high_m = _GEOID_SEPARATION_M
+    low_m, high_m = GEOID_SEPARATION_M
     in_place = max(row.d2_m for row in rows) < _NEARLY_M
     if not (alike and in_place and low_m < abs(usual_m) < high_m):
         return ""
@@ -195,7 +194,7 @@ def _beside_map(points: Sequence[ControlPoint], heights_m: tuple[float, float] |
         return ""
     z_m = [point.xyz_m[2] for point in points]
     below_m, above_m = heights_m[0] - max(z_m), min(z_m) - heights_m[1]
-    low_m, high_m = _GEOID_SEPARATION_M
+    low_m, high_m = GEOID_SEPARATION_M
     if not low_m < max(below_m, above_m) < high_m:
         return ""
     return (

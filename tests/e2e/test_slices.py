@@ -266,14 +266,18 @@ def test_a_double_wall_is_listed_in_slices_near_it(server, page):
     assert found == pytest.approx([0.5, 4.0, 2.0])
 
 
+def choose_survey(page, data):
+    """Open the control points and choose a survey file with these bytes."""
+    page.get_by_text("Control and check points").click()
+    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
+    page.get_by_label("Survey file").set_input_files(survey)
+
+
 @looks("desktop light", "phone dark")
 def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     opened(page, server)
 
-    page.get_by_text("Control and check points").click()
-    data = b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\nC;8;0,15;1,4\nD;8;5;20\n"
-    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
-    page.get_by_label("Survey file").set_input_files(survey)
+    choose_survey(page, b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\nC;8;0,15;1,4\nD;8;5;20\n")
     expect(page.get_by_text("is 0.020 the easting")).to_be_visible()
     page.get_by_role("button", name="Use, in the map's frame").click()
     expect(page.locator(".verdict")).to_contain_text("No check point measured yet")
@@ -300,10 +304,7 @@ def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
 def test_a_survey_with_heights_above_sea_level_is_explained(server, page, screenshot):
     opened(page, server)
 
-    page.get_by_text("Control and check points").click()
-    data = b"ID;E;N;Z\nA;0,02;5;-42,7\nB;16,01;4;-43,0\n"
-    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
-    page.get_by_label("Survey file").set_input_files(survey)
+    choose_survey(page, b"ID;E;N;Z\nA;0,02;5;-42,7\nB;16,01;4;-43,0\n")
     page.get_by_role("button", name="Use, in the map's frame").click()
 
     hint = page.get_by_text("All 2 points of the survey are below the map by")
@@ -317,10 +318,7 @@ def test_a_survey_with_heights_above_sea_level_is_explained(server, page, screen
 def test_two_tabs_measure_control_points_and_neither_overwrites_the_other(server, page):
     opened(page, server, "?kind=horizontal&z=1.5")
     other = page.context.new_page()  # its browser complains of the 409
-    data = b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\n"
-    survey = {"name": "p.csv", "mimeType": "text/csv", "buffer": data}
-    page.get_by_text("Control and check points").click()
-    page.get_by_label("Survey file").set_input_files(survey)
+    choose_survey(page, b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\n")
     page.get_by_role("button", name="Use, in the map's frame").click()
     expect(page.locator(".verdict")).to_contain_text("2 not measured yet")
     opened(other, server, "?kind=horizontal&z=1.5")

@@ -28,6 +28,7 @@ from recon4.recording.velodyne.sensor_clock import SECOND_NS
 _UTC_WITHIN_NS = 5 * SECOND_NS // 2
 """Largest difference between an NMEA time and its arrival at which the time is used."""
 _GST_LASTS_NS = 3 * SECOND_NS
+_GNSS_KEYS = (*GNSS_HEADER, *STATED_COLUMNS)
 
 
 @dataclass(slots=True)
@@ -78,9 +79,8 @@ class SampleDecoder:
         try:
             record = json.loads(line)
             t_ns = int(record.get("t_ns", arrival_ns))
-            kind, names = ("imu", IMU_HEADER) if IMU_HEADER[1] in record else ("gnss", GNSS_HEADER)
+            kind, names = ("imu", IMU_HEADER) if IMU_HEADER[1] in record else ("gnss", _GNSS_KEYS)
             values = [float(record.get(name, math.nan)) for name in names[1:]]
-            heights = [float(record.get(name, math.nan)) for name in STATED_COLUMNS]
         except (ValueError, TypeError, AttributeError, OverflowError, RecursionError):
             self.report.count("samples_damaged")
             return
@@ -89,9 +89,9 @@ class SampleDecoder:
             self.report.count("samples_damaged")
             return
         if kind == "gnss":
-            given = {"height_m": values[2], **dict(zip(STATED_COLUMNS, heights, strict=True))}
-            columns = {name: np.array([value]) for name, value in given.items()}
+            columns = {name: np.array([x]) for name, x in zip(names[1:], values, strict=True)}
             values[2] = float(height_above_ellipsoid(columns, self.report)[0])
+            values = values[: len(GNSS_HEADER) - 1]
         yield kind, t_ns, values
 
     def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:

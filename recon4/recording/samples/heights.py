@@ -8,13 +8,11 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
-from recon4.model.samples import GnssSamples
+from recon4.model.samples import GEOID_SEPARATION_M, GnssSamples
 from recon4.recording.report import ImportReport
 
 STATED_COLUMNS = ("ellipsoidal_height_m", "orthometric_height_m", "geoid_separation_m")
 """Columns that say what heights are above; ``height_m`` does not."""
-_SEPARATION_M = (5.0, 110.0)
-"""Geoid separations are -107 to 86 m; below 5 m other errors look alike."""
 _SPREAD_M = 2.0
 _NEAR_NS = 600_000_000
 _LEAST = 5
@@ -74,7 +72,8 @@ def compare_heights(given: GnssSamples, found: GnssSamples, report: ImportReport
         return
     usual_m = float(np.median(apart_m))
     spread_m = float(np.median(np.abs(apart_m - usual_m)))
-    if _SEPARATION_M[0] < abs(usual_m) < _SEPARATION_M[1] and spread_m < _SPREAD_M:
+    low_m, high_m = GEOID_SEPARATION_M
+    if low_m < abs(usual_m) < high_m and spread_m < _SPREAD_M:
         report.warn(
             f"heights of the GNSS file lie {abs(usual_m):.1f} m (± {spread_m:.1f} m) "
             f"{'above' if usual_m > 0 else 'below'} those in the recording, as a geoid does: one "
