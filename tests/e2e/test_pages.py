@@ -186,6 +186,26 @@ def test_a_page_without_link_shows_the_outcome_of_its_job_later(server, context,
         page.close()  # before the link goes
 
 
+@looks("desktop light")
+def test_a_job_known_before_the_stream_has_its_outcome_shown_too(server, context, tmp_path):
+    page = context.new_page()  # its browser complains of the 503
+    leave_out_viewer(page)
+    page.route("**/api/events", lambda route: route.fulfill(status=503))
+    recording = recording_with_gate(tmp_path / "walk")
+    job = server.start("office", recording)
+    server.wait_at_gate(job)
+    page.goto(f"{server.url}/projects/office/")
+    expect(page.locator("job-status")).to_contain_text("Odometry")
+    gate = open_gate(recording)
+    server.wait_state(job, "succeeded")
+    os.close(gate)
+
+    page.unroute("**/api/events")
+
+    expect(page.locator("#state")).to_contain_text("Finished")
+    page.close()
+
+
 @looks("desktop dark", "phone light")
 def test_a_rejected_request_shows_its_message(server, page, look):
     page.goto(server.url)

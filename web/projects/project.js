@@ -149,15 +149,16 @@ document.querySelector("project-tools").addEventListener("renamed", (event) => {
   project = /** @type {CustomEvent} */ (event).detail;
   draw();
 });
+const receive = watchJobs(onJob, (linked) => {
+  document.querySelector("page-head").linked = linked;
+});
+
 /** Finds the newest job, with its log, also when it succeeded: the stream sends only the others. */
 async function findJob() {
   const [newest] = await listJobsOf(id);
-  if (newest && !view) onJob(newest);
+  if (newest && !view) receive(newest);
 }
 
-watchJobs(onJob, (linked) => {
-  document.querySelector("page-head").linked = linked;
-});
 reload();
 findJob().catch((error) => {
   lacking ??= error;

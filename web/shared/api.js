@@ -122,6 +122,7 @@ const RECONNECT_MS = 3000;
 /**
  * Calls `onJob` with every job now and at each change, `onLink` with whether the server answers.
  * The stream does not repeat jobs that finished while it was cut: those are requested.
+ * Returns a function for views that came another way, so that these jobs are requested too.
  */
 export function watchJobs(onJob, onLink) {
   const newest = new Map(); // project -> its newest job among those received
@@ -159,6 +160,7 @@ export function watchJobs(onJob, onLink) {
     });
   };
   connect();
+  return receive;
 }
 
 // -- review
