@@ -20,6 +20,7 @@ from recon4.errors import ConfigError, WrongSettings
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, parse_beams
 from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
+from recon4.model.serial_device import parse_serial_device
 from recon4.names import visible
 
 LARGEST_M = 10.0
@@ -137,8 +138,7 @@ def _problems(content: RigContent) -> Iterator[Problem]:
     yield from _port_problems(content.imu.port, "imu.port", "IMU")
     yield from _distance_problems(content.gnss.lever_arm_m, "gnss.lever_arm_m", "GNSS antenna")
     yield from _port_problems(content.gnss.port, "gnss.port", "GNSS")
-    if content.gnss.serial and not content.gnss.port:
-        yield "gnss.serial", "GNSS: a serial line needs a port, to which its sentences are recorded"
+    yield from _serial_problems(content.gnss)
 
 
 def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[Problem]:
@@ -182,6 +182,17 @@ def _distance_problems(xyz_m: Triple, field: str, label: str) -> Iterator[Proble
 def _port_problems(port: int, field: str, label: str) -> Iterator[Problem]:
     if not 0 <= port <= _LARGEST_PORT:
         yield field, f"{label}: port must be 0 to {_LARGEST_PORT}, got {port}"
+
+
+def _serial_problems(gnss: GnssContent) -> Iterator[Problem]:
+    if not gnss.serial.strip():
+        return
+    try:
+        parse_serial_device(gnss.serial.strip())
+    except ConfigError as error:
+        yield "gnss.serial", visible(str(error), most=300)
+    if not gnss.port:
+        yield "gnss.serial", "GNSS: a serial line needs a port, to which its sentences are recorded"
 
 
 def _is_address(text: str) -> bool:

@@ -12,6 +12,7 @@ from app.rigs.model import RigContent
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError
 from recon4.model.rig import MAX_RIG_BYTES, format_rig, parse_rig
+from recon4.model.serial_device import parse_serial_device
 from recon4.names import visible
 
 
@@ -28,15 +29,17 @@ class CheckedRig(BaseModel):
 
 
 def check_rig(text: str) -> CheckedRig:
-    """Read the text of a rig file.
+    """Read the text of a rig file that is to be stored.
 
     Raises:
-        ConfigError: If it is no rig.
+        ConfigError: If it is no rig, or its receiver is on something else than a serial line.
     """
     size = len(text.encode("utf-8", "replace"))
     if size > MAX_RIG_BYTES:
         raise ConfigError(f"the rig file: expected at most {MAX_RIG_BYTES} bytes, got {size}")
     rig = parse_rig(text, where="the rig file")
+    if rig.gnss_serial:
+        parse_serial_device(rig.gnss_serial)
     return CheckedRig(
         toml=text,
         name=visible(rig.name),

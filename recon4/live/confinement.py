@@ -6,7 +6,6 @@ import shutil
 from pathlib import Path
 
 from recon4.live.session import CaptureSession
-from recon4.model.rig import Rig
 from recon4.sandbox import Confinement, Network, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import cached_elsewhere, private_cache
@@ -15,16 +14,13 @@ _MEMORY_FRACTION = 0.7
 _OPEN_FILES = 1024
 
 
-def confine_recorder(session: CaptureSession, rig: Rig) -> Confinement:
+def confine_recorder(session: CaptureSession) -> Confinement:
     """Allow this process to write the recording and to receive datagrams, nothing else.
 
-    With a serial GNSS receiver it may also open devices: a receiver that is plugged in again gets
-    another file in ``/dev``.
+    It opens no device: `DeviceOpener` hands it the descriptor of a serial receiver.
     """
-    restart_with_one_thread()
-    devices = (Path("/dev"),) if rig.gnss_serial else ()
     policy = Policy(
-        write=(session.capture.parent, session.folder, _sockets(session), *devices),
+        write=(session.capture.parent, session.folder, _sockets(session)),
         read=(session.project,),
         network=Network.RECEIVE,
         memory_bytes=_memory_bytes(),

@@ -27,8 +27,7 @@ from app.jobs.limits import prepare_worker, worker_policy
 from app.viewer.process import viewer_policy
 from recon4.live.confinement import confine_mapper, confine_recorder
 from recon4.live.session import CaptureSession
-from recon4.model.rig import load_rig
-from recon4.sandbox import confine, refuse_new_sockets
+from recon4.sandbox import confine, refuse_new_sockets, restart_with_one_thread
 from recon4.sandbox.private_cache import is_compiled
 
 PTRACE_SEIZE = 0x4206
@@ -103,6 +102,7 @@ def deeds(facts: dict[str, Any]) -> dict[str, Callable[[], object]]:
         "link to the key by name": lambda: (mine / "log.txt.link").symlink_to(key),
         "link to the key": lambda: os.link(key, mine / "hard"),
         "make a pipe the server would wait for": lambda: os.mkfifo(mine / "outcome.json.fifo"),
+        "open a terminal": lambda: os.close(os.open("/dev/ptmx", os.O_RDWR | os.O_NOCTTY)),
         "write compiled kernels": lambda: open(facts["kernel"], "r+b").close(),
         "fork bomb": fork_bomb,
         "start a program": lambda: subprocess.run(["/bin/true"], check=True),
@@ -157,7 +157,8 @@ def confine_as(kind: str, facts: dict[str, Any]) -> None:
         case "viewer":
             confine(viewer_policy(project, project / "jobs", mine, socket=mine))
         case "recorder":
-            confine_recorder(session, load_rig("4recon"))
+            restart_with_one_thread()
+            confine_recorder(session)
             refuse_new_sockets()
         case "mapper":
             confine_mapper(session)

@@ -113,7 +113,7 @@ def test_hostile_code_gets_nowhere(root, ports, kind, monkeypatch):
     found = attack(root, ports, kind)
 
     assert succeeded(found) == set()
-    assert len(found["outcomes"]) == 28
+    assert len(found["outcomes"]) == 29
     assert found["outcomes"]["secrets in the environment"] == ""
     assert heard(ports) == 0
     assert (root / "other" / "project.json").read_text() == "{}"

@@ -129,6 +129,18 @@ def test_an_invalid_field_is_named(shared, field, value, *, place, text):
     assert len(shared.get("/api/rigs/field").json()["versions"]) == 1
 
 
+def test_only_a_serial_device_is_stored_as_receiver(shared):
+    content = content_of(shared)
+
+    def problems(serial):
+        content["gnss"]["serial"] = serial
+        return shared.post("/api/rigs/check", json=content).json()["problems"]
+
+    assert "with a serial device" in problems("/dev/pts/3:9600")["gnss.serial"]
+    assert changed(shared, content).status_code == 422
+    assert not problems("/dev/ttyUSB0:115200")
+
+
 def test_malformed_requests_name_the_field(shared):
     content = content_of(shared)
     content["sensors"][0]["xyz_m"] = [0.0, 1.0]
@@ -149,6 +161,7 @@ def test_malformed_requests_name_the_field(shared):
         (TOML.replace("VLP-16", "VLP-17"), "model must be one of"),
         (TOML.replace("0.3]", "nan]"), "xyz_m must be 3 finite numbers"),
         (TOML + "x = " + "[" * 5000, "nested too deeply"),
+        (TOML + '[gnss]\nserial = "/dev/pts/3:9600"\n', "with a serial device"),
     ],
 )
 def test_a_file_that_is_no_rig_is_rejected(shared, toml, text):

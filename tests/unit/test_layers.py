@@ -106,7 +106,7 @@ NOBODY_IMPORTS = {
 """The two ends of the program, and who may call them."""
 
 ONLY_HERE = {
-    "serial": {"recon4/live/recorder/serial_line.py"},
+    "serial": {"recon4/live/recorder/serial_port.py"},
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/geometry/raycast.py"},
     "laspy": {"recon4/export/laz.py", "recon4/recording/formats/reference_clouds.py"},

@@ -10,8 +10,9 @@ from ipaddress import IPv4Address
 
 from recon4.errors import ConfigError
 from recon4.live.recorder.capture_file import Datagram
-from recon4.live.recorder.serial_line import parse_device
+from recon4.live.recorder.serial_port import check_serial_device
 from recon4.model.rig import Rig, Sensor
+from recon4.model.serial_device import parse_serial_device
 
 POSITION_PORT = 8308
 """Velodyne's position packets."""
@@ -74,11 +75,11 @@ def check_sources(rig: Rig) -> None:
     Raises:
         ConfigError: If the kinds of sensors cannot be mapped together, two sensors use one port
             without different addresses, an address is invalid, or the serial line of the receiver
-            is invalid or has no port.
+            is none, is a console, or has no port.
     """
     _check_kinds(rig)
     if rig.gnss_serial:
-        parse_device(rig.gnss_serial)
+        check_serial_device(parse_serial_device(rig.gnss_serial))
         if not rig.gnss_port:
             raise ConfigError("gnss: serial needs a port, to which its sentences are recorded")
     ports: dict[int, list[Sensor]] = {}

@@ -40,13 +40,16 @@ from recon4.live.protocol import (
     fields_of,
 )
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
+from recon4.live.recorder.device_opener import DeviceOpener
 from recon4.live.recorder.disk import DiskWatch
-from recon4.live.recorder.ports import Port, open_ports
+from recon4.live.recorder.ports import Port, check_sources, open_ports
 from recon4.live.recorder.serial_line import SerialLine
+from recon4.live.recorder.serial_port import open_serial_device
 from recon4.live.session import CaptureSession, load_session, stretched
 from recon4.model.rig import Rig, load_rig
+from recon4.model.serial_device import SerialDevice, parse_serial_device
 from recon4.recording.velodyne.models import DATA_SIZE
-from recon4.sandbox import refuse_new_sockets
+from recon4.sandbox import refuse_new_sockets, restart_with_one_thread
 from recon4.store.atomic import write_json
 
 STATUS_EVERY_S = 0.5
@@ -59,8 +62,15 @@ _AT_ONCE = 256
 class Recorder:
     """Writes datagrams of sockets to a file and reports its status. Runs in one event loop."""
 
-    def __init__(self, session: CaptureSession, rig: Rig) -> None:
+    def __init__(
+        self, session: CaptureSession, rig: Rig, *, opener: DeviceOpener | None = None
+    ) -> None:
         """Open ports and file.
+
+        Args:
+            session: What is recorded where.
+            rig: The sensors.
+            opener: Opens the serial line of the GNSS receiver; None = it has none.
 
         Raises:
             ConfigError: If a port cannot be opened.
@@ -71,7 +81,7 @@ class Recorder:
         self._lines = LineServer(initial_messages=self._initial_messages, on_request=self._handle)
         self._ports = open_ports(rig, address=session.address)
         self._file = CaptureFile(session.capture, on_written=self._written)
-        self._serial = self._open_serial(rig)
+        self._serial = self._read_serial(opener)
         self._counts: Counter[tuple[str, int]] = Counter()
         self._counted: Counter[tuple[str, int]] = Counter()
         self._data: Counter[tuple[str, int]] = Counter()
@@ -91,14 +101,15 @@ class Recorder:
         self._over = asyncio.Event()
         self._why = "stopped"
 
-    def _open_serial(self, rig: Rig) -> SerialLine | None:
-        if not rig.gnss_serial:
+    def _read_serial(self, opener: DeviceOpener | None) -> SerialLine | None:
+        if opener is None:
             return None
 
         def take(datagram: Datagram) -> None:
             self._loop.call_soon_threadsafe(self._take, datagram)
 
-        return SerialLine(rig.gnss_serial, rig.gnss_port, take=take)
+        rig = self._rig
+        return SerialLine(rig.gnss_serial, opener, port=rig.gnss_port, take=take)
 
     async def run(self, on_ready: Callable[[], None]) -> None:
         """Record until a request or signal to stop."""
@@ -241,26 +252,41 @@ def _append(path: Path, line: str) -> None:
         os.close(file)
 
 
-def main(project: Path) -> int:
-    """Record a prepared session; print ``ready`` once the ports are open."""
+def main(project: Path, *, open_device: Callable[[SerialDevice], int] = open_serial_device) -> int:
+    """Record a prepared session; print ``ready`` once the ports are open.
+
+    Args:
+        project: Its folder.
+        open_device: Opens the serial line of a GNSS receiver.
+    """
 
     def report_ready() -> None:
         refuse_new_sockets()  # before the first datagram is read
         sys.stdout.write("ready\n")
         sys.stdout.flush()
 
-    async def run() -> None:
-        await Recorder(session, rig).run(report_ready)
+    async def run(opener: DeviceOpener | None) -> None:
+        await Recorder(session, rig, opener=opener).run(report_ready)
 
     session = load_session(project)
     try:
         rig = load_rig(session.rig)
-        confine_recorder(session, rig)
-        asyncio.run(run())
+        check_sources(rig)
+        restart_with_one_thread()
+        opener = _device_opener(rig, open_device)
+        confine_recorder(session)
+        asyncio.run(run(opener))
     except (Recon4Error, OSError) as error:
         sys.stderr.write(f"{error}\n")
         return 1
     return 0
+
+
+def _device_opener(rig: Rig, open_device: Callable[[SerialDevice], int]) -> DeviceOpener | None:
+    if not rig.gnss_serial:
+        return None
+    device = parse_serial_device(rig.gnss_serial)
+    return DeviceOpener(lambda: open_device(device))
 
 
 if __name__ == "__main__":

@@ -2,40 +2,39 @@
 
 from __future__ import annotations
 
+import os
+import select
 import threading
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
 
-from recon4.errors import ConfigError
 from recon4.live.recorder.capture_file import Datagram
-
-if TYPE_CHECKING:
-    from serial import Serial
+from recon4.live.recorder.device_opener import DeviceOpener
 
 RETRY_S = 1.0
+_POLL_S = 0.2
+_AT_ONCE = 4096
 _LONGEST = 1024
 """Bytes passed on as one sentence if no line end comes."""
-_USUAL_BAUD = 9600
 
 
 class SerialLine:
     """Reads sentences in a separate thread; reopens the device after it was unplugged."""
 
-    def __init__(self, device: str, port: int, *, take: Callable[[Datagram], None]) -> None:
-        """Prepare.
+    def __init__(
+        self, name: str, opener: DeviceOpener, *, port: int, take: Callable[[Datagram], None]
+    ) -> None:
+        """Start reading.
 
         Args:
-            device: Device and baud rate, ``/dev/ttyUSB0:115200``; default rate 9600.
+            name: Of the device, for messages.
+            opener: Opens it; closed with this.
             port: UDP port of the datagrams the sentences are recorded as.
             take: Called from the thread with every sentence.
-
-        Raises:
-            ConfigError: If the device is not ``DEVICE:BAUD``.
         """
-        self.name, self.baud = parse_device(device)
         self.problem = "not opened yet"
         """Why the device is not open; empty = it is open."""
+        self._name, self._opener = name, opener
         self._port, self._take = port, take
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._run, name="serial", daemon=True)
@@ -45,24 +44,30 @@ class SerialLine:
         """End the thread."""
         self._ending.set()
         self._thread.join()
+        self._opener.close()
 
     def _run(self) -> None:
-        import serial
-
         while not self._ending.is_set():
             try:
-                with serial.Serial(self.name, self.baud, timeout=0.2) as line:
+                line = self._opener.open()
+                try:
                     self.problem = ""
                     self._read(line)
-            except (OSError, ValueError) as error:  # SerialException is an OSError
-                self.problem = f"{self.name}: {error}"
+                finally:
+                    os.close(line)
+            except OSError as error:
+                self.problem = f"{self._name}: {error}"
             self._ending.wait(RETRY_S)
 
-    def _read(self, line: Serial) -> None:
+    def _read(self, line: int) -> None:
         rest = b""
         while not self._ending.is_set():
-            rest += line.read(max(1, line.in_waiting))
-            *whole, rest = rest.split(b"\n")
+            if not select.select([line], [], [], _POLL_S)[0]:
+                continue
+            data = os.read(line, _AT_ONCE)
+            if not data:
+                raise OSError("the device is gone")
+            *whole, rest = (rest + data).split(b"\n")
             for sentence in [*whole, *([rest] if len(rest) > _LONGEST else [])]:
                 if sentence.strip():
                     datagram = Datagram(
@@ -70,19 +75,3 @@ class SerialLine:
                     )
                     self._take(datagram)
             rest = rest if len(rest) <= _LONGEST else b""
-
-
-def parse_device(text: str) -> tuple[str, int]:
-    """Split device and baud rate: ``("/dev/ttyUSB0", 115200)`` of ``/dev/ttyUSB0:115200``.
-
-    Raises:
-        ConfigError: If the baud rate is not a number.
-    """
-    name, colon, baud = text.rpartition(":")
-    if not colon:
-        return text, _USUAL_BAUD
-    if not name or not baud.isdigit() or not 0 < int(baud) < 10_000_000:
-        raise ConfigError(
-            f"gnss: serial must be DEVICE:BAUD, for example /dev/ttyUSB0:115200, got {text!r}"
-        )
-    return name, int(baud)

@@ -12,9 +12,9 @@ from recon4.recording.report import ImportReport
 
 
 @contextmanager
-def recording(session):
+def recording(session, module="recon4.live.recorder.process"):
     process = subprocess.Popen(
-        [sys.executable, "-m", "recon4.live.recorder.process", str(session.project)],
+        [sys.executable, "-m", module, str(session.project)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

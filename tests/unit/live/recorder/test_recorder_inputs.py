@@ -1,20 +1,14 @@
-"""Ports, serial devices and rigs that a recorder listens to."""
+"""Ports and rigs that a recorder listens to."""
 
-import os
 import socket
 import subprocess
 import sys
 
-import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
 from recon4.live.recorder.ports import check_sources, open_ports, wanted_ports
-from recon4.live.recorder.serial_line import parse_device
 from recon4.model.rig import load_rig, parse_rig
-from recon4.recording.formats.pcap import read_pcap
-from recon4.recording.report import ImportReport
-from tests.unit.live.recorder.recorder_process import recording
 
 
 def test_a_port_in_use_is_named_with_what_it_is_for(session):
@@ -29,29 +23,6 @@ def test_a_port_in_use_is_named_with_what_it_is_for(session):
     assert "UDP port 2368 (lidar) cannot be opened" in done.stderr
 
 
-def test_sentences_of_a_serial_receiver_are_in_the_capture(session):
-    ours, theirs = os.openpty()
-    name = os.ttyname(theirs)
-    session.rig.write_text(
-        f'name = "test"\n[[sensor]]\nname = "lidar"\n[gnss]\nserial = "{name}:115200"\n'
-    )
-    sentence = b"$GPGGA,120000.00,4912.0,N,01636.0,E,4,12,0.8,250.0,M,44.0,M,1.0,0001*7B"
-    with recording(session) as (process, talk):
-        talk.hear("status", lambda message: message["serial"] == "")
-        os.write(ours, sentence[:30])
-        os.write(ours, sentence[30:] + b"\r\n" + sentence + b"\r\n")
-        talk.hear("status", lambda message: message["file"]["datagrams"] == 2)
-        os.close(ours)  # pulled out
-        os.close(theirs)
-        talk.hear("status", lambda message: name in message["serial"])
-        talk.send(do="stop")
-        process.wait(20)
-
-    (batch,) = read_pcap(session.capture, ImportReport())
-    assert batch.port.tolist() == [8310, 8310]
-    assert batch.payloads(np.array([1]), len(sentence)).tobytes() == sentence
-
-
 @pytest.mark.parametrize(
     ("sensors", "gnss", "said"),
     [
@@ -59,8 +30,9 @@ def test_sentences_of_a_serial_receiver_are_in_the_capture(session):
         (("10.0.0.1", ""), "", "all send to port 2368"),
         (("10.0.0.1", "10.0.0.1"), "", "all send to port 2368"),
         (("10.0.0.1", "10.0.0"), "", "second: address must be like 192.168.1.201"),
-        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/x:fast"', "DEVICE:BAUD"),
-        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/x"\nport = 0', "serial needs a port"),
+        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/ttyUSB7:fast"', "DEVICE:BAUD"),
+        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/pts/0"', "with a serial device"),
+        (("10.0.0.1", "10.0.0.2"), 'serial = "/dev/ttyUSB7"\nport = 0', "serial needs a port"),
     ],
 )
 def test_a_rig_that_cannot_be_listened_to_is_refused_with_what_to_do(sensors, gnss, said):
@@ -79,13 +51,6 @@ def test_why_a_port_cannot_be_opened_is_said():
 
     with pytest.raises(ConfigError, match="no network card of this computer has that address"):
         open_ports(rig, address="192.0.2.1")
-
-
-@pytest.mark.parametrize("text", ["/dev/x:fast", ":9600", "/dev/x:0"])
-def test_a_serial_device_that_is_none_is_refused(text):
-    with pytest.raises(ConfigError, match="DEVICE:BAUD"):
-        parse_device(text)
-    assert parse_device("/dev/ttyUSB0") == ("/dev/ttyUSB0", 9600)
 
 
 LASER, PROFILER, LIDAR = (
