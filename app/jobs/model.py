@@ -48,6 +48,8 @@ class Inputs:
     """CSV file; empty = what the recording has."""
     settings: tuple[str, ...] = ()
     """``group.field=value`` texts over the preset."""
+    title: str = ""
+    """Display name of a new project; empty = the name of its folder."""
     remake: bool = False
     """Only make the map again with the current decisions; the other inputs are unchanged."""
 

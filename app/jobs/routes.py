@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import os
 import secrets
+import threading
 from collections.abc import AsyncIterator, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Self
 
 from fastapi import APIRouter, Depends, Query, Request
 from fastapi.responses import FileResponse, PlainTextResponse
 from fastapi.sse import EventSourceResponse, ServerSentEvent
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.concurrency import run_in_threadpool
 
 from app.access.audit import audit
@@ -24,6 +25,7 @@ from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
 from app.jobs.status import JobStatus
 from app.jobs.supervisor import now
+from app.names import Name
 from app.network.rate_limit import at_most
 from app.network.request_caller import CalledBy
 from app.rig_files import check_rig_file
@@ -43,6 +45,11 @@ REFUSALS: dict[int | str, dict[str, object]] = {
     status: {"model": ProblemDetail} for status in (403, 429, 507)
 }
 
+_NOT_YET = ".not-yet"
+"""Stands for the folder of a project whose name is not chosen yet."""
+_NAMING = threading.Lock()
+"""Held from the choice of a project's folder to its job: two requests get two folders."""
+
 LONGEST_QUIET_S = 15.0
 """Longest interval between two messages of an event stream [s]."""
 
@@ -52,8 +59,11 @@ class NewJob(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    project: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")
-    """Name of the project's folder; a new one is created, an existing project is run again."""
+    project: str = Field(default="", pattern=r"^([A-Za-z0-9][A-Za-z0-9._-]{0,63})?$")
+    """Name of the project's folder; a new one is created, an existing project is run again.
+    Empty = a new project, its folder is named after the title."""
+    title: Name = Field(default="", max_length=100)
+    """Display name of a new project; any letters."""
     recordings: list[str] = Field(min_length=1, max_length=16)
     """Files or folders of this computer."""
     preset: str = "indoor"
@@ -70,6 +80,12 @@ class NewJob(BaseModel):
     """A project whose finished stages the new one reuses, as far as their inputs match."""
     only_new: bool = False
     """Reject if a project of that name exists; otherwise it is run again."""
+
+    @model_validator(mode="after")
+    def _is_named(self) -> Self:
+        if not self.project and not self.title.strip():
+            raise ValueError("a project needs a name: give project or title")
+        return self
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,12 +137,18 @@ def add_job(new: NewJob, server: ServerParts, request: Request) -> JobView:
     """Add a job to the queue; a rig file must have been checked."""
     inputs = _checked(new, server)
     _refuse_too_many(server)
-    if new.only_new:
-        server.projects.refuse_taken(new.project)
-    if new.clone_of and new.clone_of != new.project:
-        server.projects.clone(new.clone_of, new.project)
-    added = _add(server, new.project, inputs)
-    audit(request, "start job", f"{new.project}: {', '.join(new.recordings)}")
+    with _NAMING:
+        project = new.project or server.projects.free_folder_name(
+            new.title, server.jobs.has_project
+        )
+        if new.only_new:
+            server.projects.refuse_taken(project)
+        if new.clone_of and new.clone_of != project:
+            server.projects.clone(new.clone_of, project)
+            if inputs.title:
+                server.projects.rename(project, inputs.title)
+        added = _add(server, project, inputs)
+    audit(request, "start job", f"{project}: {', '.join(new.recordings)}")
     return added
 
 
@@ -259,8 +281,9 @@ def _checked(new: NewJob, server: ServerParts) -> Inputs:
         imu=resolved(new.imu),
         gnss=resolved(new.gnss),
         settings=tuple(new.settings),
+        title=new.title.strip(),
     )
-    _refuse_if_full(server, new.project, inputs)
+    _refuse_if_full(server, new.project or _NOT_YET, inputs)
     return inputs
 
 

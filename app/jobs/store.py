@@ -116,6 +116,10 @@ class JobStore:
         mine = JOBS.select().where(JOBS.c.project == project)
         return self._select(mine.order_by(JOBS.c.number.desc()))
 
+    def has_project(self, project: str) -> bool:
+        """Whether a job has a project, which may not exist yet."""
+        return bool(self.of_project(project))
+
     def _select(self, query: sa.Select[Any]) -> list[Job]:
         with self._engine.connect() as connection:
             return [_job(row) for row in connection.execute(query).mappings()]

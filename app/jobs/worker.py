@@ -8,7 +8,8 @@ from __future__ import annotations
 import logging
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 from app.jobs.events import EventWriter
@@ -19,7 +20,7 @@ from recon4.errors import Cancelled, ConfigError, NoSpace, Recon4Error, Recordin
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.store.atomic import raise_if_full
-from recon4.store.project import is_project
+from recon4.store.project import Project, discard_unbegun, is_project
 
 log = logging.getLogger("recon4.job")
 
@@ -91,7 +92,27 @@ def process(folder: JobFolder, progress: Progress) -> None:
     )
     settings = override(preset(inputs.preset), list(inputs.settings))
     refuse_if_full(project, sources.paths, reserve_bytes=folder.limits().reserve_bytes)
-    run_pipeline(sources, project, settings=settings, preset=inputs.preset, progress=progress)
+    with titled(project, inputs.title):
+        run_pipeline(sources, project, settings=settings, preset=inputs.preset, progress=progress)
+
+
+@contextmanager
+def titled(project: Path, title: str) -> Iterator[None]:
+    """Give a new project its title before the work; an existing project keeps its own.
+
+    Like the pipeline, it removes a new project that the recording or the rig keeps from its first
+    stage.
+    """
+    if not title or is_project(project):
+        yield
+        return
+    with Project.open(project) as opened:
+        opened.describe(name=title)
+    try:
+        yield
+    except (RecordingError, ConfigError):
+        discard_unbegun(project)
+        raise
 
 
 def _full(error: Exception, path: Path) -> str | None:

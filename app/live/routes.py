@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Literal, Self
 
 from fastapi import APIRouter, Depends, WebSocket, WebSocketDisconnect
 from fastapi.responses import HTMLResponse
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
@@ -46,13 +46,19 @@ class NewCapture(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    project: str = Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$")
-    """Name of the new project's folder."""
+    project: str = Field(default="", pattern=r"^([A-Za-z0-9][A-Za-z0-9._-]{0,63})?$")
+    """Name of the new project's folder; empty = named after the place."""
     rig: str = "4recon"
     """Name of a shipped rig or path of a rig file on the server."""
     preset: str = "indoor"
     place: Name = Field(default="", max_length=200)
-    """Name of the place."""
+    """Name of the place: display name of the project; any letters."""
+
+    @model_validator(mode="after")
+    def _is_named(self) -> Self:
+        if not self.project and not self.place.strip():
+            raise ValueError("a capture needs a name: give project or place")
+        return self
 
 
 class NewMark(BaseModel):
@@ -125,13 +131,16 @@ async def start_capture(
         file = await run_in_threadpool(server.projects.importable, new.rig)
         await check_rig_file(server.compute_pool, caller, file)
         rig = str(file)
+    project = new.project or await run_in_threadpool(
+        server.projects.free_folder_name, new.place, server.jobs.has_project
+    )
     capture = await server.current_capture.start(
-        new.project, rig, preset=new.preset, address=server.settings.sensor_bind_address
+        project, rig, preset=new.preset, address=server.settings.sensor_bind_address
     )
     if new.place:
         await capture.request(AddMark("place", new.place, who.name))
-        await run_in_threadpool(server.projects.rename, new.project, new.place)
-    audit(caller.request, "live.start", new.project)
+        await run_in_threadpool(server.projects.rename, project, new.place)
+    audit(caller.request, "live.start", project)
     return _view(server.current_capture, may_capture=True)
 
 

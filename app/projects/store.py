@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 import os
 import re
+from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from app.errors import Conflict, NotFound
 from app.projects.clone import clone_artifacts
+from app.projects.folder_names import free_folder_name
 from app.projects.import_folders import ImportFolders
 from app.projects.model import (
     RESULTS,
@@ -89,6 +91,17 @@ class ProjectStore:
                 f"there is a project or folder {name} already: choose another name, or run the "
                 "project again from its own page"
             )
+
+    def free_folder_name(self, title: str, is_promised: Callable[[str], bool]) -> str:
+        """A folder name for a new project of this title.
+
+        Args:
+            title: Its display name.
+            is_promised: Whether a project that does not exist yet will have a name.
+        """
+        return free_folder_name(
+            title, lambda name: (self._root / name).exists() or is_promised(name)
+        )
 
     def result(self, project_id: str, name: str) -> Path:
         """A result file; one of an approved map only if it is unchanged since the approval.

@@ -130,12 +130,11 @@ def sending(server, walk):
 def begin(page, url):
     page.goto(f"{url}/live")
     page.get_by_role("button", name="Start…").click()
-    page.get_by_label("Place", exact=True).fill("Town hall")
-    page.get_by_label("Project name").fill("walk")
+    page.locator("#begin").get_by_label("Name").fill("Walk")
     expect(page.get_by_label("Rig").locator("option:checked")).to_contain_text("ours.toml")
-    page.get_by_label("Project name").press("Enter")
+    page.locator("#begin").get_by_label("Name").press("Enter")
     expect(page.locator("#state")).to_have_text("Recording")
-    expect(page.locator("#place")).to_have_text("Town hall")
+    expect(page.locator("#place")).to_have_text("Walk")
 
 
 def fits(page, inside="main"):

@@ -29,10 +29,9 @@ def server(tmp_path):
 def begin(page, server, rig):
     page.goto(f"{server.url}/live")
     page.get_by_role("button", name="Start…").click()
-    page.get_by_label("Place", exact=True).fill("Hall")
-    page.get_by_label("Project name").fill("walk")
+    page.locator("#begin").get_by_label("Name").fill("Walk")
     page.get_by_label("Rig").select_option(rig)
-    page.get_by_label("Project name").press("Enter")
+    page.locator("#begin").get_by_label("Name").press("Enter")
     expect(page.locator("#state")).to_have_text("Recording")
 
 

@@ -41,7 +41,7 @@ def test_an_uploaded_recording_fills_in_the_form(server, page, capture, screensh
 
     expect(page.locator("upload-box")).to_contain_text("On the server")
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
-    expect(page.get_by_label("Project name")).to_have_value("ranni-pochuzka")
+    expect(page.get_by_label("Project name")).to_have_value("Ranní pochůzka")
     screenshot(page, "upload")
     page.get_by_text("All settings").click()
     page.get_by_label("Find a setting").fill("voxel")

@@ -18,7 +18,7 @@ import numpy as np
 
 from app.jobs.folder import JobFolder
 from app.jobs.limits import worker_policy
-from app.jobs.worker import main
+from app.jobs.worker import main, titled
 from recon4.errors import EmptyRecording
 from recon4.progress import Progress
 from recon4.sandbox import Policy
@@ -82,7 +82,11 @@ DEEDS = {
 
 def work(folder: JobFolder, progress: Progress) -> None:
     root, inputs = folder.request()
-    recording = Path(inputs.recordings[0])
+    with titled(root, inputs.title):
+        _process(root, Path(inputs.recordings[0]), progress)
+
+
+def _process(root: Path, recording: Path, progress: Progress) -> None:
     if recording.is_file():
         raise EmptyRecording(f"{recording.name} holds no points; record again")
     with Project.open(root) as project:

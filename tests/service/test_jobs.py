@@ -54,6 +54,27 @@ def test_an_error_of_the_recording_is_reported_with_its_message(server, tmp_path
     assert view["job"]["note"] == "empty.pcap holds no points; record again"
 
 
+def test_a_project_has_any_title_and_a_folder_made_from_it(server, recording):
+    request = {"title": "Brno, Veveří 2. patro", "recordings": [str(recording)]}
+
+    jobs = [server.post("/api/jobs", json=request).json()["job"] for _ in range(2)]
+
+    assert [job["project"] for job in jobs] == ["brno-veveri-2-patro", "brno-veveri-2-patro-2"]
+    server.wait_at_gate(jobs[0]["id"])
+    (card,) = server.get("/api/projects").json()
+    assert (card["id"], card["name"]) == ("brno-veveri-2-patro", "Brno, Veveří 2. patro")
+
+
+def test_a_titled_job_that_cannot_start_leaves_no_project(server, tmp_path):
+    (tmp_path / "empty.pcap").write_bytes(b"")
+    request = {"title": "Hall 3", "recordings": [str(tmp_path / "empty.pcap")]}
+
+    view = server.wait_state(server.post("/api/jobs", json=request).json()["job"]["id"], "failed")
+
+    assert view["resumable"] is False
+    assert not (server.root / "hall-3").exists()
+
+
 def test_a_job_that_cannot_start_leaves_no_project_and_its_name_is_free(server, tmp_path):
     (tmp_path / "empty.pcap").write_bytes(b"")
 
@@ -228,6 +249,9 @@ def test_a_new_project_does_not_take_the_name_of_another(server, recording):
     ("change", "status", "words"),
     [
         ({"project": "../evil"}, 422, "pattern"),
+        ({"project": ""}, 422, "give project or title"),
+        ({"project": "", "title": " "}, 422, "give project or title"),
+        ({"title": "Office\u202e"}, 422, "invisible characters"),
         ({"recordings": ["/etc/passwd"]}, 403, "may only lie in"),
         ({"recordings": ["walk/../../.."]}, 403, "may only lie in"),
         ({"recordings": []}, 422, "at least 1"),

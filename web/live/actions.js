@@ -32,14 +32,9 @@ function dialog(id, act) {
   };
 }
 
-const showStart = dialog("begin", ({ project, rig, preset, place }) => {
+const showStart = dialog("begin", ({ rig, preset, place }) => {
   keep({ rig: rig.value, preset: preset.value });
-  return startCapture({
-    project: project.value,
-    rig: rig.value,
-    preset: preset.value,
-    place: place.value,
-  });
+  return startCapture({ rig: rig.value, preset: preset.value, place: place.value });
 });
 const showMark = dialog("note", (form) => {
   const ago = Math.max(0, (performance.now() - touched) / 1000);
@@ -80,7 +75,7 @@ async function begin() {
     kept().preset,
   );
   const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
-  form.project.value = `walk-${now.slice(0, 16).replace(/[:T]/g, "-")}`;
+  form.place.value = `Walk ${now.slice(0, 16).replace("T", " ")}`;
   showStart();
 }
 

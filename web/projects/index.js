@@ -56,7 +56,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
       "a",
       { href: projectUrl(id), className: "cover" },
       thumbnail,
-      make("strong", {}, project?.name ?? id),
+      make("strong", {}, project?.name ?? (view?.job.inputs.title || id)),
     ),
     open ? null : badge(stateOf(project, view)),
     project && project.name !== id ? make("p", { className: "quiet" }, id) : null,

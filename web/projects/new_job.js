@@ -11,14 +11,13 @@ import "./upload_box.js";
 const field = (text, control, hint) =>
   make("label", {}, make("span", {}, text), control, hint ? make("small", {}, hint) : null);
 
-const slug = (path) =>
+/** The name of a file or folder without its ending. */
+const titleOf = (path) =>
   path
     .split("/")
     .at(-1)
-    .replace(/\.[^.]*$/, "")
-    .replace(/[^A-Za-z0-9._-]+/g, "-")
-    .replace(/^[^A-Za-z0-9]+/, "")
-    .slice(0, 64);
+    .replace(/\.[A-Za-z0-9]+$/, "")
+    .slice(0, 90);
 
 const text = (name, more = {}) =>
   make("input", { name, autocomplete: "off", spellcheck: false, ...more });
@@ -29,8 +28,7 @@ export class NewJob extends HTMLElement {
   #found = make("recording-look");
   #project = text("project", {
     required: true,
-    pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}",
-    title: "Letters, digits, dot, dash and underscore",
+    maxLength: 100,
     oninput: () => this.#touched.add("project"),
   });
   #preset = make("select", {
@@ -67,8 +65,8 @@ export class NewJob extends HTMLElement {
           ? []
           : [
               make("upload-box", {
-                onrecording: (event) => this.#choose(event.detail),
-                onchosen: (event) => this.#suggest({ project: slug(event.detail).toLowerCase() }),
+                onrecording: (event) => this.#choose(event.detail, { isNamed: true }),
+                onchosen: (event) => this.#suggest({ project: titleOf(event.detail) }),
               }),
             ]),
         field(
@@ -113,7 +111,7 @@ export class NewJob extends HTMLElement {
       (await attempt(this.#message, () =>
         Promise.all([readChoices(), this.#again ? [] : listProjects(), listRigs()]),
       )) ?? [];
-    this.#taken = new Set(projects?.map((one) => one.id));
+    this.#taken = new Set(projects?.flatMap(({ id, name }) => [id, name]));
     const option = (name) => make("option", { value: name }, name);
     this.#preset.append(...(choices?.presets ?? []).map(option));
     this.#rig.append(
@@ -140,19 +138,20 @@ export class NewJob extends HTMLElement {
     if (inputs.settings.length) this.#settings.open = true;
   }
 
-  #choose(path) {
+  /** @param {{isNamed?: boolean}} [known] whether it has a name from its sender */
+  #choose(path, known) {
     this.#recording.value = path;
     this.#others = [];
-    this.#look();
+    this.#look(known);
   }
 
-  async #look() {
+  async #look({ isNamed = false } = {}) {
     const path = this.#recording.value.trim();
-    this.#suggest({ project: slug(path) });
+    if (!isNamed) this.#suggest({ project: titleOf(path) });
     const looked = Promise.all([this.#found.look(path), this.#offered]);
     this.#checked = { path, found: looked.then(([found]) => found) };
     const found = await this.#checked.found;
-    if (found) this.#suggest(found);
+    if (found) this.#suggest(isNamed ? { ...found, project: undefined } : found);
   }
 
   /** Whether the recording can be read; looks at it unless that was done. */
@@ -186,7 +185,7 @@ export class NewJob extends HTMLElement {
   /** The name, with a number if there is a project of that name. */
   #free(project) {
     let found = project;
-    for (let n = 2; this.#taken.has(found); n += 1) found = `${project.slice(0, 60)}-${n}`;
+    for (let n = 2; this.#taken.has(found); n += 1) found = `${project}-${n}`;
     return found;
   }
 
@@ -206,17 +205,18 @@ export class NewJob extends HTMLElement {
   }
 
   #job() {
+    const name = this.#project.value.trim();
+    const repeats = this.#again?.project === name;
     return {
-      project: this.#project.value,
+      project: repeats ? name : "",
+      title: repeats ? "" : name,
       recordings: [this.#recording.value.trim(), ...this.#others],
       preset: this.#preset.value,
       rig: this.#rig.value,
       imu: this.#imu.value,
       gnss: this.#gnss.value,
       settings: this.#editor.texts(),
-      only_new: !this.#again,
-      clone_of:
-        this.#again && this.#again.project !== this.#project.value ? this.#again.project : "",
+      clone_of: this.#again && !repeats ? this.#again.project : "",
     };
   }
 

@@ -351,6 +351,7 @@ export interface Inputs {
   imu: string;
   gnss: string;
   settings: Array<string>;
+  title: string;
   remake: boolean;
 }
 
@@ -452,7 +453,7 @@ export interface Move {
 }
 
 export interface NewCapture {
-  project: string;
+  project?: string;
   rig?: string;
   preset?: string;
   place?: string;
@@ -472,7 +473,8 @@ export interface NewInvitation {
 }
 
 export interface NewJob {
-  project: string;
+  project?: string;
+  title?: string;
   recordings: Array<string>;
   preset?: string;
   rig?: string;
