@@ -259,6 +259,8 @@ def _describe_laser2d(info: RecordingInfo, path: Path) -> RecordingInfo:
         gaps=tuple(g for g in _gaps(path.name, scans.t_ns) if g.seconds > _LASER_GAP_S),
         derived=tuple(report.derived),
         missing=() if scans.odometry is not None else ("odometry",),
+        lost=tuple(report.lost()),
+        repaired=tuple(report.repaired()),
         warnings=tuple(report.warnings),
     )
 
@@ -329,7 +331,7 @@ def _with_head(
     try:
         recording = open_recording([path], None, settings=settings, report=report)
         rig = recording.rig
-        rates, has_imu, has_gnss = _read_head(recording)
+        rates, has_imu, has_gnss = _read_head(recording, whole=info.bytes <= _WHOLE_BYTES)
     except ConfigError as error:
         missing.append(f"rig: {error}")
     except RecordingError as error:
@@ -354,26 +356,32 @@ def _with_head(
         samples=tuple(samples),
         missing=tuple(missing),
         derived=tuple(report.derived),
+        lost=tuple(report.lost()),
+        repaired=tuple(report.repaired()),
         warnings=tuple(report.warnings),
     )
 
 
-def _read_head(recording: Recording) -> tuple[dict[int, float], bool, bool]:
-    """Rotation rate of each sensor row; whether there are IMU samples and positions."""
+def _read_head(recording: Recording, *, whole: bool) -> tuple[dict[int, float], bool, bool]:
+    """Rotation rate of each sensor row; whether there are IMU samples and positions.
+
+    Args:
+        recording: Read up to its first second.
+        whole: Read the rest too, for the counts of the report.
+    """
     shots: dict[int, list[Shots]] = {}
-    has_imu = has_gnss = False
+    has_imu = has_gnss = beyond = False
     start_ns: int | None = None
     for number, item in enumerate(recording.read()):
         has_imu |= isinstance(item, ImuSamples)
         has_gnss |= isinstance(item, GnssSamples)
-        if isinstance(item, Shots) and len(item):
+        if isinstance(item, Shots) and len(item) and not beyond:
             shots.setdefault(item.sensor, []).append(item)
             start_ns = int(item.t_ns[0]) if start_ns is None else start_ns
-            if int(item.t_ns[-1]) - start_ns > _HEAD_NS and len(shots) == len(
-                recording.rig.sensors
-            ):
-                break
-        if isinstance(item, Multiframe) or number >= _HEAD_ITEMS:
+            everyone = len(shots) == len(recording.rig.sensors)
+            beyond = everyone and int(item.t_ns[-1]) - start_ns > _HEAD_NS
+        beyond |= isinstance(item, Multiframe) or number >= _HEAD_ITEMS
+        if beyond and not whole:
             break
     rates = {
         row: rotation_rate(

@@ -53,6 +53,10 @@ class RecordingInfo:
     derived: tuple[str, ...] = ()
     """What recon4 derives because the recording lacks it."""
     missing: tuple[str, ...] = ()
+    lost: tuple[str, ...] = ()
+    """Counts of data that is not used, in words; of a large recording, at its head."""
+    repaired: tuple[str, ...] = ()
+    """Counts of repaired data."""
     warnings: tuple[str, ...] = ()
 
     @property
@@ -78,6 +82,8 @@ class RecordingInfo:
             lines.append(f"gap       … {len(self.gaps)} in all")
         lines += [f"derived   {text}" for text in self.derived]
         lines += [f"missing   {text}" for text in self.missing]
+        lines += [f"lost      {text}" for text in self.lost]
+        lines += [f"repaired  {text}" for text in self.repaired]
         lines += [f"warning   {text}" for text in self.warnings]
         return lines
 

@@ -107,7 +107,7 @@ def _usable_rows(t_ns: Times, name: str, report: ImportReport) -> Rows:
     order = np.argsort(t_ns, kind="stable")
     shuffled = int((np.diff(t_ns) < 0).sum())
     if shuffled:
-        report.count("scans_out_of_order", shuffled)
+        report.count("scans_unsorted", shuffled)
         report.warn(f"{name}: {shuffled} scans are earlier than the one before: sorted by time")
     later = np.diff(t_ns[order], prepend=t_ns[order[0]] - 1) > 0
     if not later.all():

@@ -74,12 +74,12 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
     seconds = 1e-9 * (seen.t_last_ns - seen.t_first_ns)
     sensors: tuple[SensorInfo, ...] = (_profiler(tables.lines.name, seen, part),)
     missing, samples = _absent(tables, has_head), []
-    warnings: tuple[str, ...] = ()
+    report = ImportReport()
     if tables.laser2d is not None:
         try:
-            sensors += (_laser2d(tables.laser2d),)
+            sensors += (_laser2d(tables.laser2d, report),)
         except RecordingError as error:
-            warnings = (str(error),)
+            report.warn(str(error))
     if tables.imu is not None:
         imu_ns = read_imu_csv(tables.imu).t_ns
         samples.append(f"{tables.imu.name}: {len(imu_ns)} IMU samples")
@@ -92,7 +92,9 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
         samples=tuple(samples),
         gaps=seen.gaps,
         missing=missing,
-        warnings=warnings,
+        lost=tuple(report.lost()),
+        repaired=tuple(report.repaired()),
+        warnings=tuple(report.warnings),
     )
 
 
@@ -134,8 +136,8 @@ def _profiler(name: str, seen: _Seen, part: float) -> SensorInfo:
     )
 
 
-def _laser2d(path: Path) -> SensorInfo:
-    scans = read_laser2d([path], ImportReport())
+def _laser2d(path: Path, report: ImportReport) -> SensorInfo:
+    scans = read_laser2d([path], report)
     seconds = 1e-9 * float(scans.t_ns[-1] - scans.t_ns[0])
     field_deg = abs(np.rad2deg(scans.angle_step_rad)) * (scans.range_m.shape[1] - 1)
     return SensorInfo(

@@ -281,6 +281,7 @@ class _ScanRows:
         place = (scan["beam_deg"] - layout.first_deg) / layout.step_deg
         beam = np.rint(np.nan_to_num(place, nan=-1.0))
         used = (np.abs(place - beam) < _OFF_GRID) & (beam >= 0) & (beam < layout.beams)
+        self._report.count("beams", len(used))
         self._report.count("beams_off_grid", int(np.count_nonzero(~used)))
         if not used.any():
             self._report.count("scans_of_another_layout")

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
+from recon4.model.import_counts import losses, repairs
+
 MAX_TEXTS = 200
 """Number of different remarks kept; further ones are counted."""
 MAX_TEXT_CHARACTERS = 1000
@@ -17,6 +19,8 @@ class ImportReport:
     counts: Counter[str] = field(default_factory=Counter)
     """Number of packets, messages, points and samples by result,
     for example ``packets``, ``packets_duplicate``, ``points_nan``."""
+    details: dict[str, str] = field(default_factory=dict)
+    """What is known of a count besides, by its name, for example a port."""
     derived: list[str] = field(default_factory=list)
     """What the recording lacks and was derived."""
     warnings: list[str] = field(default_factory=list)
@@ -41,6 +45,20 @@ class ImportReport:
     def warn(self, text: str) -> None:
         """Add a warning once."""
         self._remember(self.warnings, text)
+
+    def warn_of_losses(self) -> None:
+        """Add a warning for each large loss that no reader warned of; call once, at the end."""
+        for loss in losses(self.counts, self.details):
+            if loss.is_warned:
+                self.warn(loss.text)
+
+    def lost(self) -> list[str]:
+        """All counts of lost data, in words."""
+        return [loss.text for loss in losses(self.counts, self.details)]
+
+    def repaired(self) -> list[str]:
+        """All counts of repaired data, in words."""
+        return repairs(self.counts)
 
     def _remember(self, texts: list[str], text: str) -> None:
         if text in texts:

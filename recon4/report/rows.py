@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from typing import Any
 
 from recon4.evaluation.table import number
+from recon4.model.import_counts import count_label
 
 Rows = list[tuple[str, str]]
 _SOURCES = {
@@ -45,7 +46,7 @@ def imported_rows(report: Mapping[str, Any]) -> Rows:
         if name == "sensors":
             out += [(f"sensor {one.get('name', '')}", _sensor(one)) for one in value]
         elif name == "counts":
-            out += _rows(value, "count: ")
+            out += [_count_row(count, value) for count in value]
         elif name == "gaps":
             out.append(("gaps", f"{len(value)}" if value else "none"))
         elif name in {"imu", "gnss"}:
@@ -55,6 +56,11 @@ def imported_rows(report: Mapping[str, Any]) -> Rows:
         else:
             out += _rows({name: value}, "")
     return out
+
+
+def _count_row(name: str, counts: Mapping[str, int]) -> tuple[str, str]:
+    """A count in words; one of an earlier version by its name."""
+    return f"count: {count_label(name)}", _text(counts[name], 0)
 
 
 def quantity(name: str, value: Any) -> tuple[str, str]:

@@ -57,6 +57,7 @@ def import_scans(recordings: Sequence[Path], out: Path, *, progress: Progress) -
         report.count("scans_mirrored", len(scans))
         report.warn(mirrored)
     _report_gaps(scans, report)
+    report.warn_of_losses()
     progress.advance(len(recordings))
     writer = LineStoreWriter(out)
     writer.append_scans(scans)

@@ -123,11 +123,6 @@ class Assembler:
         frames = self._cut(final=True)
         for stream in self._streams:
             self._report.count("points_late", stream.late)
-            if stream.late > 0.05 * stream.points:
-                self._report.warn(
-                    f"{stream.name}: {stream.late} of {stream.points} points came after their "
-                    "frame was done and are left out: are the clocks of the sensors the same?"
-                )
         held, self._held = self._held, None
         return frames if held is None or self._too_small(held) else [*frames, held]
 

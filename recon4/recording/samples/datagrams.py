@@ -45,8 +45,8 @@ class SampleDecoder:
     ) -> tuple[ImuSamples | None, GnssSamples | None]:
         """Decode the samples of datagrams.
 
-        Counts ``imu_samples``, ``gnss_samples``, ``samples_damaged``, ``samples_out_of_order``,
-        ``nmea_damaged`` and ``nmea_no_fix``.
+        Counts ``sample_datagrams``, ``imu_samples``, ``gnss_samples``, ``samples_damaged``,
+        ``samples_out_of_order``, ``nmea_damaged`` and ``nmea_no_fix``.
 
         Args:
             t_arrival_ns: Times of arrival [ns].
@@ -55,6 +55,7 @@ class SampleDecoder:
         rows: dict[str, list[list[float]]] = {"imu": [], "gnss": []}
         times: dict[str, list[int]] = {"imu": [], "gnss": []}
         ahead_ns = self.report.utc_ahead_ns
+        self.report.count("sample_datagrams", len(texts))
         for arrival_ns, text in zip(t_arrival_ns, texts, strict=True):
             for kind, t_ns, values in self._lines(arrival_ns + ahead_ns, text):
                 if t_ns <= self._last_ns.get(kind, -1):

@@ -132,7 +132,7 @@ def test_scans_out_of_order_and_duplicates_are_repaired_and_counted(tmp_path):
     assert (scans.t_ns // 10**9).tolist() == [1, 2, 3, 4, 5]
     assert scans.range_m[:, 0].tolist() == [1.0, 2.0, 5.0, 4.0, 6.0]
     assert report.counts["scans_duplicate"] == 1
-    assert report.counts["scans_out_of_order"] == 1
+    assert report.counts["scans_unsorted"] == 1
     assert len(report.warnings) == 2
 
 

@@ -78,7 +78,7 @@ def test_import_names_each_sensor_and_what_is_missing():
     assert rows == [
         ("sensor lidar", "VLP-16, port 2368, 699\u202f704 points"),
         ("length of a multiframe", "50.0 ms"),
-        ("count: points near", "696"),
+        ("count: points: nearer than ingest.min_range_m", "696"),
         ("gaps", "none"),
         ("IMU", "none"),
     ]

@@ -1,0 +1,305 @@
+"""The counts of an import in words: what each means, and whether data was lost.
+
+Readers count what they find (`ImportReport.count`). Each name of a count is listed here, so that
+`recon4 info`, the report and the verdict say the same of it; a test finds names without words.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+WARNED_RATIO = 0.01
+"""From this ratio on a loss is a warning; smaller ones stand in `recon4 info` and the report."""
+
+
+class CountKind(StrEnum):
+    """Meaning of a count."""
+
+    READ = "read"
+    """How much there was."""
+    USUAL = "usual"
+    """As expected of a good recording, or a part of another count."""
+    REPAIRED = "repaired"
+    """Damage that was repaired, or data that was converted: nothing is missing."""
+    LOST = "lost"
+    """Data that was in the recording, or should have been, and is not used."""
+
+
+@dataclass(frozen=True, slots=True)
+class CountWording:
+    """One count in words."""
+
+    kind: CountKind
+    text: str
+    """What is counted (`READ`), or what became of it."""
+    of: str = ""
+    """Name of the count of all of them; empty = none."""
+    apart: bool = False
+    """Whether the count `of` leaves these out."""
+    stated: bool = False
+    """Whether the reader itself warns, with the place."""
+    noun: str = ""
+    """What is counted, where there is no count `of`."""
+
+
+def _read(text: str) -> CountWording:
+    return CountWording(CountKind.READ, text)
+
+
+def _usual(of: str, text: str, *, noun: str = "") -> CountWording:
+    return CountWording(CountKind.USUAL, text, of, noun=noun)
+
+
+def _repaired(of: str, text: str, *, noun: str = "") -> CountWording:
+    return CountWording(CountKind.REPAIRED, text, of, noun=noun)
+
+
+def _lost(of: str, text: str, *, apart: bool = False, stated: bool = False) -> CountWording:
+    return CountWording(CountKind.LOST, text, of, apart, stated)
+
+
+def _stated(text: str, *, noun: str) -> CountWording:
+    return CountWording(CountKind.LOST, text, stated=True, noun=noun)
+
+
+_CAPTURES = {
+    "records": _read("captured packets"),
+    "records_not_udp": _usual("records", "no UDP over IPv4, not read"),
+    "records_fragment": _lost(
+        "records", "IP fragments, which are not put together: lower the size of the datagrams"
+    ),
+    "records_cut": _lost(
+        "records", "cut when they were captured (snap length): capture again with tcpdump -s 0"
+    ),
+    "records_without_time": _lost("records", "without a time of capture, dropped", apart=True),
+    "files_cut": _stated("end inside a packet, or are damaged: read up to there", noun="files"),
+}
+_PACKETS = {
+    "packets": _read("data packets"),
+    "packets_wrong_length": _lost("packets", "not 1206 bytes long, dropped", apart=True),
+    "packets_wrong_flag": _lost("packets", "blocks without the flag 0xEEFF, dropped"),
+    "packets_hdl64": _lost("packets", "blocks of the lower lasers of an HDL-64E, dropped"),
+    "packets_wrong_azimuth": _lost("packets", "an azimuth above 360°, dropped"),
+    "packets_wrong_time": _lost("packets", "a time past the end of the hour, dropped"),
+    "packets_other_product": _lost("packets", "another product byte than the first ones, dropped"),
+    "packets_wrong_clock": _lost("packets", "a time more than 1 s off, dropped"),
+    "packets_late": _lost("packets", "arrived after their place had passed, dropped"),
+    "packets_missing": _lost("packets", "never arrived: check cable and recorder", apart=True),
+    "packets_past_hour": _repaired("packets", "a time past the end of the hour, continued"),
+    "packets_duplicate": _repaired("packets", "received twice, the copies dropped"),
+    "packets_out_of_order": _repaired("packets", "out of order, sorted"),
+    "azimuth_jumps": _usual("packets", "azimuth jumps, the step before is used"),
+    "positions": _read("position packets"),
+    "positions_wrong_time": _lost("positions", "a time more than 1 s off, dropped"),
+    "positions_out_of_order": _lost("positions", "earlier than the one before, dropped"),
+    "clock_jumps": _repaired("", "jumps, the times go on without them", noun="clocks"),
+    "clock_jumps_back": _repaired("", "set back, the times go on", noun="clocks"),
+}
+_POINTS = {
+    "points": _read("points"),
+    "points_no_return": _usual("", "without an echo", noun="shots"),
+    "points_near": _usual("", "nearer than ingest.min_range_m", noun="points"),
+    "points_far": _usual("", "farther than ingest.max_range_m", noun="points"),
+    "points_invalid": _usual("", "not finite or at the origin: no echo", noun="points"),
+    "points_wrong_time": _lost(
+        "points", "a time more than two revolutions from the others, dropped", apart=True
+    ),
+    "points_late": _lost(
+        "points", "came after their frame was done, dropped: are the clocks of the sensors equal?"
+    ),
+    "points_of_beams_without_correction": _usual(
+        "points", "of beams that the rig file does not correct"
+    ),
+    "points_of_incomplete_frames": _usual("points", "of the incomplete first or last frame"),
+    "intensity_wrong": _repaired("points", "an intensity that is no number, 0 is stored"),
+    "intensity_clipped": _repaired("points", "an intensity outside 0..65535, clipped"),
+    "rings_wrong": _repaired("points", "a ring that is no number from 0 to 255, from elevation"),
+    "frames_empty": _usual("", "without points, left out", noun="frames"),
+    "frames_incomplete_dropped": _usual("", "incomplete, at the start or end", noun="frames"),
+    "frames_moved": _repaired("", "not later than the one before, moved behind it", noun="frames"),
+    "frames_without_": _usual("", "without points of this sensor", noun="frames"),
+    "packets_missing_": _usual("", "never arrived of this sensor", noun="data packets"),
+    "gaps": _stated("gaps in the data", noun="times"),
+    "files": _read("files"),
+    "files_corrupt": _lost("files", "cannot be read, left out", stated=True),
+    "files_damaged": _stated("damaged, left out", noun="files"),
+    "files_missing": _stated("named in metadata.yaml, not there", noun="files"),
+}
+_MESSAGES = {
+    "messages": _read("messages"),
+    "messages_corrupt": _lost("messages", "cannot be decoded, left out", stated=True),
+    "messages_missing": _lost("messages", "missing of those listed", apart=True, stated=True),
+    "messages_salvaged": _usual("", "salvaged from a damaged file", noun="messages"),
+    "chunks_damaged": _stated("damaged, left out", noun="chunks of a bag"),
+    "clouds": _read("clouds"),
+    "stamps_missing": _repaired("clouds", "without a stamp, the time of recording is used"),
+    "stamps_wrong": _repaired("clouds", "a stamp of another time, the time of recording is used"),
+    "remarks_more": _usual("", "left out here", noun="different remarks"),
+}
+_SAMPLES = {
+    "imu_samples": _read("IMU samples received"),
+    "imu_kept": _read("IMU samples used"),
+    "imu_nan": _lost("imu_kept", "no numbers, dropped", apart=True),
+    "imu_wrong_time": _lost("imu_kept", "a stamp of another time, dropped", apart=True),
+    "imu_duplicate": _lost("imu_kept", "the time of another, dropped", apart=True),
+    "imu_repeated": _lost("imu_kept", "repeated by the driver, dropped", apart=True, stated=True),
+    "imu_unsorted": _repaired("imu_kept", "earlier than the one before, sorted"),
+    "imu_jumps_back": _repaired("", "jumps back with the LiDARs", noun="times"),
+    "imu_accel_scaled": _repaired("imu_kept", "accelerations in g, stored in m/s²"),
+    "gnss_samples": _read("GNSS positions received"),
+    "gnss_kept": _read("GNSS positions used"),
+    "gnss_nan": _lost("gnss_kept", "no place on earth, dropped", apart=True),
+    "gnss_no_fix": _usual("", "without a fix", noun="GNSS positions"),
+    "gnss_wrong_time": _lost("gnss_kept", "a stamp of another time, dropped", apart=True),
+    "gnss_duplicate": _lost("gnss_kept", "the time of another, dropped", apart=True),
+    "gnss_unsorted": _repaired("gnss_kept", "earlier than the one before, sorted"),
+    "gnss_heights_unstated": _usual("", "with a height of unknown kind", noun="GNSS positions"),
+    "gnss_heights_orthometric": _usual(
+        "", "with a height above sea level alone", noun="GNSS positions"
+    ),
+    "nmea_damaged": _lost("gnss_samples", "damaged sentences, dropped", apart=True),
+    "nmea_no_fix": _usual("", "without a fix", noun="NMEA sentences"),
+    "sample_datagrams": _read("datagrams of IMU and GNSS"),
+    "samples_damaged": _lost("sample_datagrams", "damaged samples, dropped"),
+    "samples_out_of_order": _lost("sample_datagrams", "earlier than the one before, dropped"),
+    "poses": _read("poses for comparison"),
+}
+_SCANS = {
+    "scans": _read("scans of the 2-D laser"),
+    "scans_damaged": _lost("scans", "cannot be decoded, left out", apart=True),
+    "scans_out_of_order": _lost(
+        "scans", "earlier than the one before, left out", apart=True, stated=True
+    ),
+    "scans_unsorted": _repaired("scans", "earlier than the one before, sorted"),
+    "scans_duplicate": _lost("scans", "the time of another, left out", apart=True),
+    "scans_of_another_layout": _lost("scans", "another layout, left out", apart=True),
+    "scans_of_the_rear_laser": _usual("", "of the rear laser, not used", noun="scans"),
+    "scans_without_returns": _usual("scans", "without any return"),
+    "scans_mirrored": _repaired("scans", "beams in the other direction, turned round"),
+    "scans_converted": _repaired("scans", "ranges in millimeters, converted"),
+    "beams": _read("beams"),
+    "beams_off_grid": _lost("beams", "between the places of the layout, left out"),
+    "ranges_not_numbers": _stated("negative or no numbers, left out", noun="ranges"),
+    "lines": _read("line scans"),
+    "lines_converted": _repaired("lines", "ranges in another unit, converted"),
+    "lines_empty": _usual("", "without a return", noun="line scans"),
+    "lines_missing": _lost("lines", "never arrived", apart=True),
+    "lines_out_of_order": _lost("lines", "earlier than the one before, left out", apart=True),
+    "lines_without_angle": _lost("lines", "without an angle of the head, left out", stated=True),
+    "head_angles_invalid": _lost("messages", "angles of the head that are no numbers, left out"),
+    "head_stands": _stated("the head stands still", noun="times"),
+}
+COUNT_WORDINGS: dict[str, CountWording] = {
+    **_CAPTURES,
+    **_PACKETS,
+    **_POINTS,
+    **_MESSAGES,
+    **_SAMPLES,
+    **_SCANS,
+}
+"""Name of a count -> its words; a name that ends with ``_`` is followed by that of a sensor."""
+
+
+@dataclass(frozen=True, slots=True)
+class Loss:
+    """A count of data that is not used."""
+
+    name: str
+    number: int
+    ratio: float
+    """Of all of its kind, 0 to 1; NaN = unknown."""
+    text: str
+
+    @property
+    def is_warned(self) -> bool:
+        """Whether it is a warning of its own: large, and nobody else says it."""
+        return not wording(self.name)[0].stated and not self.ratio < WARNED_RATIO
+
+
+def wording(name: str) -> tuple[CountWording, str]:
+    """The words of a count, and the sensor it is of; empty = of all.
+
+    Raises:
+        KeyError: If it has none.
+    """
+    if name in COUNT_WORDINGS:
+        return COUNT_WORDINGS[name], ""
+    for start, found in COUNT_WORDINGS.items():
+        if start.endswith("_") and name.startswith(start):
+            return found, name[len(start) :]
+    raise KeyError(name)
+
+
+def count_label(name: str) -> str:
+    """What a count counts, such as ``points: a time …, dropped``; its name if it has no words."""
+    try:
+        words, sensor = wording(name)
+    except KeyError:
+        return name.replace("_", " ")
+    if words.kind is CountKind.READ:
+        return words.text
+    return f"{_noun(words)}: {words.text}{f' ({sensor})' if sensor else ''}"
+
+
+def count_text(name: str, counts: Mapping[str, int], *, detail: str = "") -> str:
+    """A count as text, such as ``3 of 30000 points: a time …, dropped``.
+
+    Args:
+        name: Of the count.
+        counts: All counts.
+        detail: What the reader knows besides, such as a port.
+    """
+    number, total = counts.get(name, 0), _total(name, counts)
+    of_all = f" of {total}" if total else ""
+    return f"{number}{of_all} {count_label(name)}{f' ({detail})' if detail else ''}"
+
+
+def losses(counts: Mapping[str, int], details: Mapping[str, str] | None = None) -> list[Loss]:
+    """All counts of data that is not used, the largest ratio first.
+
+    Args:
+        counts: Of an import; names of other versions are passed over.
+        details: What the reader knows of a count besides.
+    """
+    found = [_loss(name, counts, details or {}) for name in _of_kind(counts, CountKind.LOST)]
+    return sorted(found, key=lambda loss: -loss.ratio if loss.ratio == loss.ratio else -1.0)
+
+
+def repairs(counts: Mapping[str, int]) -> list[str]:
+    """All counts of repaired data, in words."""
+    return [count_text(name, counts) for name in _of_kind(counts, CountKind.REPAIRED)]
+
+
+def _of_kind(counts: Mapping[str, int], kind: CountKind) -> Iterator[str]:
+    for name, number in counts.items():
+        found = _words(name)
+        if number and found is not None and found.kind is kind:
+            yield name
+
+
+def _loss(name: str, counts: Mapping[str, int], details: Mapping[str, str]) -> Loss:
+    number, total = counts[name], _total(name, counts)
+    ratio = number / total if total else float("nan")
+    return Loss(name, number, ratio, count_text(name, counts, detail=details.get(name, "")))
+
+
+def _total(name: str, counts: Mapping[str, int]) -> int:
+    """How many there were in all; 0 = unknown."""
+    words = _words(name)
+    if words is None or not words.of:
+        return 0
+    left_out = counts[name] if words.apart else 0
+    return max(counts.get(words.of, 0) + left_out, counts[name])
+
+
+def _words(name: str) -> CountWording | None:
+    try:
+        return wording(name)[0]
+    except KeyError:
+        return None
+
+
+def _noun(words: CountWording) -> str:
+    return COUNT_WORDINGS[words.of].text if words.of else words.noun
