@@ -133,6 +133,12 @@ _MESSAGES = {
     "messages_missing": _lost("messages", "missing of those listed", apart=True, stated=True),
     "messages_salvaged": _usual("", "salvaged from a damaged file", noun="messages"),
     "chunks_damaged": _stated("damaged, left out", noun="chunks of a bag"),
+    "transforms_invalid": _stated("make no sense, left out", noun="transforms (tf)"),
+    "transforms_beyond_limit": _stated("more than are read, left out", noun="transforms (tf)"),
+    "transforms_contradictory": _usual(
+        "", "stated in different ways or against others", noun="transforms (tf)"
+    ),
+    "robot_descriptions_refused": _stated("not read", noun="descriptions of a robot (URDF)"),
     "clouds": _read("clouds"),
     "stamps_missing": _repaired("clouds", "without a stamp, the time of recording is used"),
     "stamps_wrong": _repaired("clouds", "a stamp of another time, the time of recording is used"),

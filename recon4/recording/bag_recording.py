@@ -30,8 +30,10 @@ from recon4.recording.formats.bags import (
 )
 from recon4.recording.formats.cloud_files import Table
 from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
+from recon4.recording.mount_check import mounted_rig
+from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream, assign_topics, choose_rig
+from recon4.recording.rig_choice import Stream
 from recon4.recording.velodyne.data_packets import PacketDecoder
 from recon4.recording.velodyne.models import likely_model
 from recon4.settings import IngestSettings
@@ -70,14 +72,16 @@ class BagRecording:
             self.seconds = bag.seconds
             self.topics = bag.topics
             self.streams = lidar_streams(bag, report)
+            self.imu_topic = most_messages(self.topics, IMU, report)
+            self.fix_topic = most_messages(self.topics, NAVSATFIX, report)
+            lidars = [stream.topic for stream in self.streams]
+            mounts = read_mounts(bag, [*lidars, self.imu_topic, self.fix_topic], report)
         if not self.streams:
             names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[:_NAMES_LISTED])
             names += " …" * (len(self.topics) > _NAMES_LISTED)
             raise EmptyRecording(f"{paths[0].name}: no LiDAR data; topics: {names}")
-        chosen = rig or choose_rig(self.streams, report)
-        self.rig = assign_topics(chosen, self.streams, report)
-        self.imu_topic = most_messages(self.topics, IMU, report)
-        self.fix_topic = most_messages(self.topics, NAVSATFIX, report)
+        samples = SampleTopics(self.imu_topic, self.fix_topic)
+        self.rig = mounted_rig(rig, self.streams, samples, mounts=mounts, report=report)
         self.odometry_topic = most_messages(self.topics, ODOMETRY, report)
 
     def read(self) -> Iterator[Item]:

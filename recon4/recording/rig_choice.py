@@ -28,8 +28,13 @@ class Stream:
     topic: str = ""
 
 
-def choose_rig(streams: Sequence[Stream], report: ImportReport) -> Rig:
+def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = "") -> Rig:
     """Choose the rig of a recording without a given one; noted in the report.
+
+    Args:
+        streams: The LiDARs.
+        report: Receives what was chosen.
+        why: Why the recording itself does not say how they are mounted.
 
     Raises:
         ConfigError: If there are several LiDARs of unknown mounting.
@@ -45,7 +50,8 @@ def choose_rig(streams: Sequence[Stream], report: ImportReport) -> Rig:
         )
         return thesis
     raise ConfigError(
-        f"{len(streams)} LiDARs ({_names(streams)}) and no rig: how they are mounted is unknown; "
+        f"{len(streams)} LiDARs ({_names(streams)}) and no rig: how they are mounted is unknown"
+        f"{f' ({why})' * bool(why)}; "
         "give a rig file (--rig FILE, or --rig 4recon for the rig of the thesis)"
     )
 

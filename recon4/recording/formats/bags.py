@@ -38,10 +38,14 @@ CLOUD = "sensor_msgs/msg/PointCloud2"
 IMU = "sensor_msgs/msg/Imu"
 NAVSATFIX = "sensor_msgs/msg/NavSatFix"
 ODOMETRY = "nav_msgs/msg/Odometry"
+TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
+"""Of ROS 2 and late ROS 1, of early ROS 1."""
+TEXT = "std_msgs/msg/String"
 
 _DEFINITIONS = {
     "velodyne_msgs/msg/VelodynePacket": "builtin_interfaces/Time stamp\nuint8[1206] data\n",
     SCAN: "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n",
+    **dict.fromkeys(TRANSFORMS, "geometry_msgs/TransformStamped[] transforms\n"),
 }
 STORAGE_SUFFIXES = (".db3", ".mcap")
 
@@ -283,7 +287,8 @@ def _typestore(ros1: bool) -> Any:
 
     store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
     for name, text in _DEFINITIONS.items():
-        store.register(get_types_from_msg(text, name))
+        if name not in store.types:
+            store.register(get_types_from_msg(text, name))
     return store
 
 

@@ -11,11 +11,21 @@ MAX_SAMPLE_BYTES = 64 << 10
 """One message of an IMU, a GNSS receiver or a pose has less than 1 kB."""
 MAX_SCAN_BYTES = 8 << 20
 """Raw packets of one revolution; the largest have 1 MB."""
+MAX_TRANSFORMS_BYTES = 2 << 20
+"""One message of the frames of a robot; a transform has about 100 bytes."""
+MAX_TEXT_BYTES = 4 << 20
+"""A text, as the description of a robot."""
 MAX_FIELDS = 100
 MAX_CLOUD_POINTS = 5_000_000
 """128 beams x 4096 columns are 524 288."""
 _CLOUD = "sensor_msgs/msg/PointCloud2"
-_SCAN = "velodyne_msgs/msg/VelodyneScan"
+_MOST_BYTES = {
+    "velodyne_msgs/msg/VelodyneScan": MAX_SCAN_BYTES,
+    "tf2_msgs/msg/TFMessage": MAX_TRANSFORMS_BYTES,
+    "tf/msg/tfMessage": MAX_TRANSFORMS_BYTES,
+    "std_msgs/msg/String": MAX_TEXT_BYTES,
+}
+"""Of other types `MAX_SAMPLE_BYTES`."""
 
 
 def check_message(kind: str, data: bytes, *, ros1: bool) -> None:
@@ -29,7 +39,7 @@ def check_message(kind: str, data: bytes, *, ros1: bool) -> None:
         if count > MAX_FIELDS:
             raise CorruptFile(f"a cloud: expected at most {MAX_FIELDS} fields, got {count}")
         return
-    most = MAX_SCAN_BYTES if kind == _SCAN else MAX_SAMPLE_BYTES
+    most = _MOST_BYTES.get(kind, MAX_SAMPLE_BYTES)
     if len(data) > most:
         raise CorruptFile(f"a message {kind}: expected at most {most} bytes, got {len(data)}")
 

@@ -1,0 +1,218 @@
+"""The frames of a robot in a bag: static transforms, constant ones of ``/tf``, fixed joints.
+
+What a bag states is hostile until proven: numbers, names and sizes are checked, and everything that
+is left out is counted.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import islice
+from math import isfinite
+from typing import Any
+
+from recon4.errors import CorruptFile
+from recon4.geometry.se3 import SE3
+from recon4.recording.formats.bags import TEXT, TRANSFORMS, Bag, BagTopic
+from recon4.recording.formats.limits import clean_name
+from recon4.recording.formats.urdf import fixed_joints
+from recon4.recording.frame_graph import (
+    WORLD_FRAMES,
+    FrameGraph,
+    StatedTransform,
+    is_same,
+    last_name,
+)
+from recon4.recording.report import ImportReport
+
+MAX_TRANSFORMS = 10_000
+"""Pairs of frames; the largest robots have some hundred."""
+MAX_MESSAGES = 20_000
+"""Messages of one kind that are read: some minutes of the transforms of a robot that moves."""
+MAX_DESCRIPTIONS = 20
+_LONGEST_M = 100.0
+"""A part of a robot is not farther from another one [m]."""
+_UNIT = 0.01
+"""A quaternion whose squared length differs from 1 by more is refused, as by tf2."""
+
+_Numbers = tuple[float, ...]
+"""x, y, z [m] and quaternion x, y, z, w."""
+_Pair = tuple[str, str]
+"""Parent and child."""
+
+
+def has_frames(topics: Sequence[BagTopic]) -> bool:
+    """Whether a bag may state transforms between frames."""
+    return any(t.messages and (t.type in TRANSFORMS or _is_description(t)) for t in topics)
+
+
+def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameGraph:
+    """Read what a bag states about its frames.
+
+    Static transforms come first, then the fixed joints of a robot description, then those
+    transforms of ``/tf`` that do not change. ``/tf`` is only read if the others do not connect all
+    frames.
+
+    Args:
+        bag: An open bag.
+        frames: The frames of the sensors.
+        report: Counts what is left out.
+    """
+    names = [t.name for t in bag.topics if t.type in TRANSFORMS and t.messages]
+    static = [name for name in names if last_name(name) == "tf_static"]
+    moving = [name for name in names if name not in static]
+    stated = _Statements(report)
+    for name in static:
+        stated.add_static(name, _messages(bag, name, most=MAX_MESSAGES, report=report))
+    for topic in filter(_is_description, bag.topics):
+        stated.add_description(
+            topic.name, _messages(bag, topic.name, most=MAX_DESCRIPTIONS, report=report)
+        )
+    graph = stated.graph()
+    if graph.connected(frames) or not moving:
+        return graph
+    for name in moving:
+        stated.add_constant(name, _messages(bag, name, most=MAX_MESSAGES, report=report))
+    return stated.graph()
+
+
+def frame_name(raw: str) -> str:
+    """The name of a frame; a slash at its front, as in ROS 1, means nothing."""
+    return clean_name(raw.strip().lstrip("/"))
+
+
+def _is_description(topic: BagTopic) -> bool:
+    return topic.type == TEXT and last_name(topic.name) == "robot_description"
+
+
+def _messages(bag: Bag, name: str, *, most: int, report: ImportReport) -> Iterator[Any]:
+    """The first messages of a topic, decoded; says so where there are more."""
+    number = 0
+    for number, message in enumerate(islice(bag.messages([name]), most), start=1):
+        content = bag.decode(message)
+        if content is not None:
+            yield content
+    if number == most:
+        report.derive(f"{name}: its first {most} messages are read")
+
+
+@dataclass(slots=True)
+class _Statement:
+    """What one topic says about two frames."""
+
+    numbers: _Numbers
+    count: int = 1
+    differs: bool = False
+    """Whether it is stated in different ways."""
+
+
+class _Statements:
+    """Collects transforms, each pair of frames once."""
+
+    def __init__(self, report: ImportReport) -> None:
+        self._report = report
+        self._stated: list[StatedTransform] = []
+        self._children: set[str] = set()
+        """Frames with a static parent: what others state about them is not asked for."""
+
+    def graph(self) -> FrameGraph:
+        """The frames so far."""
+        return FrameGraph(self._stated)
+
+    def add_static(self, name: str, messages: Iterator[Any]) -> None:
+        """Add static transforms; of several between two frames the last counts, as in tf2."""
+        found = self._collect(name, messages, last=True)
+        for pair, one in found.items():
+            self._report.count("transforms_contradictory", int(one.differs))
+            self._keep(pair, one, name)
+        self._children |= {child for _, child in found}
+
+    def add_constant(self, name: str, messages: Iterator[Any]) -> None:
+        """Add the transforms of ``/tf`` that are the same all the time."""
+        for pair, one in self._collect(name, messages, last=False).items():
+            is_pose = last_name(pair[0]) in WORLD_FRAMES or one.differs or one.count < 2
+            if not is_pose and pair[1] not in self._children:
+                self._keep(pair, one, name)
+
+    def add_description(self, name: str, messages: Iterator[Any]) -> None:
+        """Add the fixed joints of a robot description; of several the last counts."""
+        texts = [str(content.data) for content in messages]
+        if not texts:
+            return
+        try:
+            joints = fixed_joints(texts[-1])
+        except CorruptFile as error:
+            self._report.count("robot_descriptions_refused")
+            self._report.derive(f"{name}: the robot description is not read: {error}")
+            return
+        for joint in joints:
+            turn = SE3.from_rpy(*joint.rpy_rad, t=joint.xyz_m)
+            numbers = (*joint.xyz_m, *turn.quat_xyzw().tolist())
+            pair = self._pair(name, (joint.parent, joint.child), numbers)
+            if pair is not None and len(self._stated) < MAX_TRANSFORMS:
+                self._keep(pair, _Statement(numbers), name)
+
+    def _keep(self, pair: _Pair, one: _Statement, source: str) -> None:
+        T_parent_child = SE3.from_quat(one.numbers[3:], one.numbers[:3])
+        self._stated.append(StatedTransform(*pair, T_parent_child, source, one.differs))
+
+    def _collect(
+        self, name: str, messages: Iterator[Any], *, last: bool
+    ) -> dict[_Pair, _Statement]:
+        found: dict[_Pair, _Statement] = {}
+        for content in messages:
+            for one in content.transforms:
+                numbers = _numbers(one.transform)
+                pair = self._pair(name, (one.header.frame_id, one.child_frame_id), numbers)
+                if pair is None:
+                    continue
+                if pair in found:
+                    _repeat(found[pair], numbers, last=last)
+                elif len(found) + len(self._stated) < MAX_TRANSFORMS:
+                    found[pair] = _Statement(numbers)
+                else:
+                    self._report.count("transforms_beyond_limit")
+                    self._report.derive(f"{name}: expected at most {MAX_TRANSFORMS} transforms")
+        return found
+
+    def _pair(self, name: str, pair: _Pair, numbers: _Numbers) -> _Pair | None:
+        """The frames of a transform; None (counted) = it makes no sense."""
+        pair = frame_name(pair[0]), frame_name(pair[1])
+        wrong = _fault(pair, numbers)
+        if not wrong:
+            return pair
+        self._report.count("transforms_invalid")
+        self._report.derive(f"{name}: transforms are left out: {pair[0]!r} -> {pair[1]!r}: {wrong}")
+        return None
+
+
+def _numbers(transform: Any) -> _Numbers:
+    t, q = transform.translation, transform.rotation
+    return t.x, t.y, t.z, q.x, q.y, q.z, q.w
+
+
+def _fault(pair: _Pair, numbers: _Numbers) -> str:
+    """Why a transform makes no sense; empty = it does."""
+    if not all(pair):
+        return "expected two names of frames"
+    if pair[0] == pair[1]:
+        return "expected two frames"
+    if not all(map(isfinite, numbers)):
+        return "expected numbers"
+    if abs(sum(value * value for value in numbers[3:]) - 1.0) > _UNIT:
+        return f"expected a quaternion of length 1, got {[*numbers[3:]]}"
+    # Poses on the earth are no fault, but no mount either.
+    if max(map(abs, numbers[:3])) > _LONGEST_M and last_name(pair[0]) not in WORLD_FRAMES:
+        return f"expected at most {_LONGEST_M:g} m, got {[*numbers[:3]]}"
+    return ""
+
+
+def _repeat(one: _Statement, numbers: _Numbers, *, last: bool) -> None:
+    one.count += 1
+    if numbers == one.numbers or (one.differs and not last):
+        return
+    before, now = (SE3.from_quat(n[3:], n[:3]) for n in (one.numbers, numbers))
+    one.differs |= not is_same(before, now)
+    if last:
+        one.numbers = numbers
