@@ -21,7 +21,7 @@ from starlette.exceptions import HTTPException
 
 from app.errors import AppError
 from app.pages import html_of
-from recon4.errors import Recon4Error, WrongSettings
+from recon4.errors import Recon4Error, UnknownFormat, WrongSettings
 
 log = logging.getLogger(__name__)
 
@@ -50,6 +50,8 @@ class ProblemDetail(BaseModel):
     """What is wrong and what to do, as text for users."""
     problems: dict[str, str] = {}
     """Field -> its problem, where several fields have one."""
+    candidates: list[str] = []
+    """Paths of recordings in a folder that is none itself: one of them may be meant."""
 
 
 def install(app: FastAPI) -> None:
@@ -59,19 +61,17 @@ def install(app: FastAPI) -> None:
     async def known(request: Request, error: AppError) -> Response:
         if _wants_page(request):
             return _page(error.status, str(error), error.headers)
-        return _problem(error.status, type(error).__name__, str(error), headers=error.headers)
-
-    @app.exception_handler(WrongSettings)
-    async def wrong_settings(_: Request, error: WrongSettings) -> JSONResponse:
-        return _problem(422, type(error).__name__, str(error), problems=error.problems)
+        problem = ProblemDetail(error=type(error).__name__, detail=str(error))
+        return _problem(error.status, problem, error.headers)
 
     @app.exception_handler(Recon4Error)
     async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
-        return _problem(422, type(error).__name__, str(error))
+        return _problem(422, _input_problem(error))
 
     @app.exception_handler(RequestValidationError)
     async def wrong_form(_: Request, error: RequestValidationError) -> JSONResponse:
-        return _problem(422, "Invalid", "; ".join(_field_message(one) for one in error.errors()))
+        detail = "; ".join(_field_message(one) for one in error.errors())
+        return _problem(422, ProblemDetail(error="Invalid", detail=detail))
 
     @app.exception_handler(HTTPException)
     async def refused(request: Request, error: HTTPException) -> Response:
@@ -79,9 +79,8 @@ def install(app: FastAPI) -> None:
         message = FRAMEWORK_MESSAGES.get(status, str(error.detail))
         if _wants_page(request):
             return _page(status, message, error.headers)
-        return _problem(
-            status, status.phrase.title().replace(" ", ""), message, headers=error.headers
-        )
+        name = status.phrase.title().replace(" ", "")
+        return _problem(status, ProblemDetail(error=name, detail=message), error.headers)
 
     @app.exception_handler(Exception)
     async def our_own(request: Request, error: Exception) -> Response:
@@ -90,7 +89,17 @@ def install(app: FastAPI) -> None:
         message = f"internal error {number}: the server log has the cause under this number"
         if _wants_page(request):
             return _page(500, message, HEADERS_OF_FAILURES)
-        return _problem(500, "InternalError", message, headers=HEADERS_OF_FAILURES)
+        problem = ProblemDetail(error="InternalError", detail=message)
+        return _problem(500, problem, HEADERS_OF_FAILURES)
+
+
+def _input_problem(error: Recon4Error) -> ProblemDetail:
+    problem = ProblemDetail(error=type(error).__name__, detail=str(error))
+    if isinstance(error, WrongSettings):
+        problem.problems = error.problems
+    elif isinstance(error, UnknownFormat):
+        problem.candidates = [str(path) for path in error.candidates]
+    return problem
 
 
 def _field_message(problem: Mapping[str, Any]) -> str:
@@ -114,14 +123,8 @@ def _page(status: int, detail: str, headers: Mapping[str, str] | None) -> HTMLRe
 
 
 def _problem(
-    status: int,
-    error: str,
-    detail: str,
-    *,
-    headers: Mapping[str, str] | None = None,
-    problems: Mapping[str, str] | None = None,
+    status: int, problem: ProblemDetail, headers: Mapping[str, str] | None = None
 ) -> JSONResponse:
-    problem = ProblemDetail(error=error, detail=detail, problems=dict(problems or {}))
     return JSONResponse(
         problem.model_dump(exclude_defaults=True), status_code=status, headers=headers
     )

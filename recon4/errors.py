@@ -21,6 +21,8 @@ A measurement that turns out bad is not an error: it is a value
 
 from __future__ import annotations
 
+from pathlib import Path
+
 
 class Recon4Error(Exception):
     """Base of the tree above; the message can be shown to an operator."""
@@ -48,6 +50,11 @@ class RecordingError(Recon4Error):
 
 class UnknownFormat(RecordingError):
     """No reader recognizes the file."""
+
+    def __init__(self, message: str, *, candidates: tuple[Path, ...] = ()) -> None:
+        super().__init__(message)
+        self.candidates = candidates
+        """Recordings in a folder that is none itself: one of them may be meant."""
 
 
 class EmptyRecording(RecordingError):

@@ -13,6 +13,7 @@ from recon4.model.figures import CalibrationFigures
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.pipeline_2d import is_2d, process_2d, remake_2d
 from recon4.progress import Progress, Silent
+from recon4.recording.kinds import located_sources
 from recon4.recording.sources import Sources
 from recon4.results import Summary, publish
 from recon4.results_2d import Summary2d
@@ -90,7 +91,7 @@ def process(
 
     A new project that the recording or the rig keeps from its first stage is removed again.
     """
-    sources.require()
+    sources = located_sources(sources)
     progress = progress or Silent()
     settings = settings or settings_of(preset)
     is_new = not is_project(out)
@@ -138,7 +139,7 @@ def calibrate_recording(
     Raises:
         Recon4Error: Whatever stops a stage.
     """
-    sources.require()
+    sources = located_sources(sources)
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)
         inputs = _inputs(project, sources, progress)
@@ -161,7 +162,7 @@ def track_lines(sources: Sources, out: Path, *, settings: Settings, progress: Pr
     Raises:
         Recon4Error: Whatever stops a stage.
     """
-    sources.require()
+    sources = located_sources(sources)
     with Project.open(out) as project:
         runner = StageRunner(project, settings, progress)
         frames = runner.run(stages.FRAMES, **_inputs(project, sources, progress))

@@ -11,13 +11,14 @@ import pickle  # only what the server sends is unpickled, and only in the child
 import struct
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any, get_type_hints
 
 from pydantic import BaseModel, TypeAdapter
 
 from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
-from recon4.errors import ConfigError, Recon4Error, WrongSettings
+from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
 
 LENGTH = struct.Struct("<Q")
 """Header of each message to a child: number of bytes that follow."""
@@ -53,6 +54,7 @@ class CallError(BaseModel):
     name: str
     message: str
     problems: dict[str, str] = {}
+    candidates: list[str] = []
 
 
 def encode_request(request: ChildSetup | Call) -> bytes:
@@ -108,7 +110,9 @@ def encode_error(error: Exception) -> bytes:
     problems = error.problems if isinstance(error, WrongSettings) else {}
     name = f"{type(error).__module__}.{type(error).__qualname__}"
     message = str(error)[:MAX_MESSAGE]
-    return CallError(name=name, message=message, problems=problems).model_dump_json().encode()
+    candidates = list(map(str, error.candidates)) if isinstance(error, UnknownFormat) else []
+    reply = CallError(name=name, message=message, problems=problems, candidates=candidates)
+    return reply.model_dump_json().encode()
 
 
 def decode_error(data: bytes) -> Exception:
@@ -119,6 +123,8 @@ def decode_error(data: bytes) -> Exception:
         return ComputeFailed("the error of the helper process is malformed")
     if error.problems:
         return WrongSettings(error.problems)
+    if error.candidates:
+        return UnknownFormat(error.message, candidates=tuple(map(Path, error.candidates)))
     for known in _subclasses(Recon4Error):
         if f"{known.__module__}.{known.__qualname__}" == error.name:
             return known(error.message)

@@ -113,7 +113,7 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
     """Rig, IMU and GNSS files, recognized by their content."""
     from recon4.errors import Recon4Error
     from recon4.model.rig import load_rig
-    from recon4.recording.open import RecordingKind, recognize
+    from recon4.recording.kinds import RecordingKind, recognize
 
     found: dict[str, str] = {}
     for file in files:

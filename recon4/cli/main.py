@@ -123,12 +123,13 @@ def process(  # noqa: PLR0913 - an argument for each option
     from recon4.model.events import Warned
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
+    from recon4.recording.kinds import located_elsewhere
     from recon4.recording.nearby_samples import unread_samples
     from recon4.terminal import describe_summary, watcher
 
     with watcher() as progress:
         sources = Sources(tuple(recordings), load_rig(rig) if rig else None, imu, gnss)
-        for text in unread_samples(sources):
+        for text in (*unread_samples(sources), *located_elsewhere(sources)):
             progress.event(Warned(text=text))
         summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
     if as_json:

@@ -25,7 +25,7 @@ from recon4.live.session import stretched
 from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
 from recon4.recording.formats.pcap import address_text, read_pcap
-from recon4.recording.open import pcap_files
+from recon4.recording.kinds import pcap_files
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_replay import datagrams_of_scans, has_scans
 from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE

@@ -17,7 +17,7 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.assembler import TimeGap, drop_invalid
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
-from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
+from recon4.recording.formats.cloud_files import is_cloud_file, is_mesh, read_cloud
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
 from recon4.recording.frame_times import ASSUMED_NS, frame_times
 from recon4.recording.report import ImportReport
@@ -182,5 +182,6 @@ def _pose_at(t_ns: int, path: Path) -> Trajectory:
 
 def _cloud_files(folder: Path) -> list[Path]:
     found = [f for f in folder.iterdir() if f.suffix.lower() in CLOUD_SUFFIXES and f.is_file()]
+    found = [f for f in found if not is_mesh(f)]
     # A damaged file among good ones must be counted: only BIN is detected by content.
     return [f for f in found if f.suffix.lower() != ".bin" or is_cloud_file(f)]

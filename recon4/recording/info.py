@@ -24,19 +24,19 @@ from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, 
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
 from recon4.recording.info_records import RecordingInfo, SensorInfo
-from recon4.recording.laser2d import is_laser2d, read_laser2d
-from recon4.recording.line_info import describe_line_tables
-from recon4.recording.line_topics import line_topics
-from recon4.recording.open import (
+from recon4.recording.kinds import (
+    BAGS,
     RECORDINGS,
-    Recording,
     RecordingKind,
     bag_paths,
-    frames_model,
-    open_recording,
+    located,
     pcap_files,
     recognize,
 )
+from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.line_info import describe_line_tables
+from recon4.recording.line_topics import line_topics
+from recon4.recording.open import Recording, frames_model, open_recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.scan_capture import ScanStreams, scan_streams
@@ -53,7 +53,7 @@ _PROBED_MESSAGES = 50
 _HEAD_ITEMS = 40
 _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
-_BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
+
 _HEAD_NS = 1_000_000_000
 _SCAN_CAPTURE = "capture of scans (pcap)"
 
@@ -65,10 +65,13 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
         RecordingError: If it cannot be read or is nothing that recon4 knows.
     """
     settings = settings or IngestSettings()
+    given, path = path, located(path)
     kind = recognize(path)
-    info = RecordingInfo(path=path.name, kind=str(kind), bytes=_size(path))
+    info = RecordingInfo(
+        path=path.relative_to(given.parent).as_posix(), kind=str(kind), bytes=_size(path)
+    )
     planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
-    if kind in planar or (kind in (*_BAGS, RecordingKind.PCAP) and is_laser2d(path)):
+    if kind in planar or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path)):
         if kind is RecordingKind.PCAP:
             info = replace(info, kind=_SCAN_CAPTURE)
         return _describe_laser2d(info, path)

@@ -25,7 +25,8 @@ from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
-from recon4.recording.open import Recording, RecordingKind, open_recording, recognize
+from recon4.recording.kinds import RecordingKind, recognize
+from recon4.recording.open import Recording, open_recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv

@@ -22,9 +22,9 @@ from recon4.recording.bag_recording import (
 )
 from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
+from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
 from recon4.recording.line_tables import is_laser_table, read_laser_table
-from recon4.recording.open import RecordingKind, bag_paths, pcap_files, recognize
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures

@@ -7,7 +7,7 @@ from itertools import islice
 from pathlib import Path
 
 from recon4.errors import RecordingError
-from recon4.recording.open import RecordingKind, recognize
+from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.sources import Sources
 
 _MOST_FILES = 50

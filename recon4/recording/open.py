@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from enum import StrEnum
 from functools import partial
 from pathlib import Path
 
-from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
+from recon4.errors import ConfigError, RecordingError, UnknownFormat
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
@@ -19,25 +18,27 @@ from recon4.recording.assembly.assembler import LONGEST_WAIT_S, TimeGap
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import BagRecording
 from recon4.recording.cloud_points import model_of_points
-from recon4.recording.folders import CLOUD_SUFFIXES, folder_gaps, list_frames, natural, read_frames
-from recon4.recording.formats.bags import STORAGE_SUFFIXES, Bag
-from recon4.recording.formats.carmen import is_carmen
-from recon4.recording.formats.cloud_files import is_cloud_file, read_cloud
-from recon4.recording.formats.columns import column_names
-from recon4.recording.formats.pcap import OpenFile, is_pcap, open_plain
-from recon4.recording.formats.poses import pose_format
+from recon4.recording.folders import folder_gaps, list_frames, read_frames
+from recon4.recording.formats.bags import Bag
+from recon4.recording.formats.cloud_files import read_cloud
+from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.kinds import (
+    BAGS,
+    RECORDINGS,
+    TABLES,
+    RecordingKind,
+    bag_paths,
+    contents_of,
+    pcap_files,
+    recognize,
+)
 from recon4.recording.line_recording import WUERZBURG, LineRecording, profiler_rig
 from recon4.recording.line_tables import (
-    LASER_COLUMNS,
-    LINE_COLUMNS,
     LineTableRecording,
     LineTables,
-    is_line_table,
-    table_in,
 )
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
-from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.scan_capture import ScanCapture, scan_streams
 from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
 from recon4.recording.velodyne.position_packets import PositionSamples
@@ -45,57 +46,6 @@ from recon4.recording.velodyne.streams import PacketStream
 from recon4.settings import IngestSettings
 
 Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans
-
-
-class RecordingKind(StrEnum):
-    """Kinds of recordings; the value is shown to users."""
-
-    PCAP = "Velodyne pcap"
-    BAG1 = "rosbag1"
-    BAG2 = "rosbag2"
-    FRAMES = "frames (PCD, PLY, KITTI BIN or 3DTK)"
-    IMU_CSV = "IMU samples (CSV)"
-    GNSS_CSV = "GNSS samples (CSV)"
-    POSES = "poses (TUM or KITTI)"
-    CARMEN = "CARMEN log of a 2-D laser"
-    LINE_TABLES = "line scans (CSV or NPZ)"
-    LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
-
-
-RECORDINGS = (
-    *(RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES),
-    RecordingKind.LINE_TABLES,
-)
-"""Kinds with points."""
-_BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
-_KIND_OF_COLUMNS = {
-    frozenset(LINE_COLUMNS): RecordingKind.LINE_TABLES,
-    frozenset(LASER_COLUMNS): RecordingKind.LASER_TABLE,
-    frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
-    frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_CSV,
-}
-_KIND_OF_SUFFIX = {
-    **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
-    **dict.fromkeys(CLOUD_SUFFIXES, RecordingKind.FRAMES),
-    ".bag": RecordingKind.BAG1,
-}
-"""In folders, where not every file is opened."""
-_TABLES = {RecordingKind.LINE_TABLES, RecordingKind.LASER_TABLE, RecordingKind.IMU_CSV}
-
-_OTHERS = {
-    b"\xff\xd8\xff": "a JPEG image",
-    b"\x89PNG": "a PNG image",
-    b"PK\x03\x04": "a zip archive: unpack it first",
-    b"\x1f\x8b": "gzip compressed: unpack it first",
-    b"\xfd7zXZ": "xz compressed: unpack it first",
-    b"\x28\xb5\x2f\xfd": "zstd compressed: unpack it first",
-    b"BZh": "bzip2 compressed: unpack it first",
-    b"7z\xbc\xaf": "a 7z archive: unpack it first",
-    b"%PDF": "a PDF document",
-    b"LASF": "a LAS/LAZ point cloud: a finished map, not a recording",
-    b"ASTM-E57": "an E57 point cloud: a finished scan, not a recording",
-    b"\x7fELF": "a program",
-}
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,22 +62,6 @@ class Recording:
     """Gaps known before reading."""
     wait_s: float = LONGEST_WAIT_S
     """Largest lead of one sensor's shots over another's [s], see `Assembler`."""
-
-
-def recognize(path: Path) -> RecordingKind:
-    """Detect the kind of recording at a path.
-
-    Raises:
-        UnknownFormat: If no reader supports it; the message lists the supported kinds.
-        EmptyRecording: If the file or folder is empty.
-        RecordingError: If there is no such path.
-    """
-    if not path.exists():
-        raise RecordingError(f"{path} does not exist")
-    try:
-        return _folder_kind(path) if path.is_dir() else _file_kind(path)
-    except OSError as error:
-        raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
 
 
 def open_recording(
@@ -152,6 +86,9 @@ def open_recording(
         ConfigError: If the rig is wrong or cannot be chosen.
     """
     kind = _one_kind(paths, rig)
+    for folder in filter(Path.is_dir, paths):
+        for text in contents_of(folder).passed_over():
+            report.derive(text)
     if kind is RecordingKind.PCAP:
         files = [f for path in paths for f in pcap_files(path)]
         scanning = _scan_rig(files, rig, report)
@@ -187,7 +124,7 @@ def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
     if not paths:
         raise ConfigError("no recording given")
     kinds = [recognize(path) for path in paths]
-    if RecordingKind.LINE_TABLES in kinds and set(kinds) <= _TABLES:
+    if RecordingKind.LINE_TABLES in kinds and set(kinds) <= TABLES:
         return RecordingKind.LINE_TABLES
     kind = kinds[0]
     if kind in (RecordingKind.CARMEN, RecordingKind.LASER_TABLE):
@@ -196,7 +133,7 @@ def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
         )
     if kind not in RECORDINGS:
         raise UnknownFormat(f"{paths[0].name}: {kind} alone is no recording: it has no points")
-    with_lines = (*_BAGS, RecordingKind.PCAP)
+    with_lines = (*BAGS, RecordingKind.PCAP)
     if rig is not None and rig.row_of("profiler") is not None and kind not in with_lines:
         raise UnknownFormat(
             f"{paths[0].name}: line scans are read from bags, tables or captures, got {kind}"
@@ -226,26 +163,6 @@ def _scan_rig(files: Sequence[Path], rig: Rig | None, report: ImportReport) -> R
     return load_rig(WUERZBURG)
 
 
-def bag_paths(path: Path) -> list[Path]:
-    """A bag file or rosbag2 folder itself; of a folder of rosbag1 files, those."""
-    if path.is_file() or not list(path.glob("*.bag")):
-        return [path]
-    return sorted(path.glob("*.bag"), key=natural)
-
-
-def pcap_files(path: Path) -> list[Path]:
-    """The file itself, or the capture files of a folder.
-
-    Raises:
-        RecordingError: If there is no such path.
-    """
-    if path.is_file():
-        return [path]
-    if not path.is_dir():
-        raise RecordingError(f"{path} does not exist")
-    return sorted(filter(_is_pcap_file, path.iterdir()), key=natural)
-
-
 def lidars_of_packets(
     files: Sequence[Path], settings: IngestSettings, report: ImportReport
 ) -> list[Stream]:
@@ -256,74 +173,6 @@ def lidars_of_packets(
     """
     found = VelodynePcap(files, None, settings=settings, report=report).rig.sensors
     return [Stream(f"{s.address}:{s.port}", s.model, s.address, s.port) for s in found]
-
-
-def _file_kind(path: Path) -> RecordingKind:
-    with path.open("rb") as file:
-        head = file.read(4096)
-    if not head:
-        raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
-    if is_pcap(path):
-        return RecordingKind.PCAP
-    if head.startswith(b"#ROSBAG V"):
-        return RecordingKind.BAG1
-    if head.startswith((b"SQLite format 3\0", b"\x89MCAP")):
-        return RecordingKind.BAG2
-    if is_cloud_file(path):
-        return RecordingKind.FRAMES
-    if is_carmen(path):
-        return RecordingKind.CARMEN
-    columns = column_names(path)
-    for wanted, kind in _KIND_OF_COLUMNS.items():
-        if wanted <= columns:
-            return kind
-    if pose_format(path):
-        return RecordingKind.POSES
-    what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
-    looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
-    raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")
-
-
-def _folder_kind(path: Path) -> RecordingKind:
-    names = sorted(child.name for child in path.iterdir())
-    if not names:
-        raise EmptyRecording(f"{path.name}: the folder is empty")
-    kinds = _kinds_in(path, names)
-    if len(kinds) > 1:
-        held = ", ".join(f"{name} ({kind})" for kind, name in kinds.items())
-        raise UnknownFormat(
-            f"{path.name}: holds recordings of {len(kinds)} kinds: {held}; give one"
-        )
-    if kinds:
-        return next(iter(kinds))
-    raise UnknownFormat(
-        f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
-        f"{' …' if len(names) > 8 else ''}; {_known()}"
-    )
-
-
-def _kinds_in(path: Path, names: Sequence[str]) -> dict[RecordingKind, str]:
-    """The kinds of recordings in a folder, each with the first file that is of it."""
-    kinds: dict[RecordingKind, str] = {}
-    for name in names:
-        kind = _KIND_OF_SUFFIX.get(Path(name).suffix.lower())
-        if name == "metadata.yaml":
-            kind = RecordingKind.BAG2
-        elif kind is None and RecordingKind.PCAP not in kinds and _is_pcap_file(path / name):
-            kind = RecordingKind.PCAP
-        if kind is not None:
-            kinds.setdefault(kind, name)
-    if (lines := table_in(path, "lines")) and is_line_table(lines):
-        kinds[RecordingKind.LINE_TABLES] = lines.name
-    return kinds
-
-
-def _is_pcap_file(path: Path) -> bool:
-    return path.is_file() and is_pcap(path)
-
-
-def _known() -> str:
-    return f"known: {', '.join(RecordingKind)}"
 
 
 def stream_seconds(streams: Sequence[PacketStream]) -> float:

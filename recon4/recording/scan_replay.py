@@ -14,15 +14,13 @@ from recon4.errors import UnknownFormat
 from recon4.model.rig import LASER2D_PORT, Rig
 from recon4.recording.bag_recording import imu_row, most_messages, stamp_ns
 from recon4.recording.formats.bags import IMU, Bag
+from recon4.recording.kinds import BAGS, RecordingKind, bag_paths, recognize
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.line_recording import LASER_SCAN, LineRecording, profiler_rig
-from recon4.recording.open import RecordingKind, bag_paths, recognize
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import IMU_HEADER
 from recon4.recording.scan_datagrams import encode_head, encode_scan, encode_scans_row
 from recon4.recording.scan_messages import usual_angles
-
-_BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,7 +45,7 @@ def has_scans(recording: Path, rig: Rig | None) -> bool:
         return False
     if kind in (RecordingKind.CARMEN, RecordingKind.LASER_TABLE):
         return True
-    return kind in _BAGS and (is_laser2d(recording) or _line_rig(recording, rig) is not None)
+    return kind in BAGS and (is_laser2d(recording) or _line_rig(recording, rig) is not None)
 
 
 def datagrams_of_scans(recording: Path, rig: Rig | None) -> Iterator[ScanDatagram]:
@@ -61,7 +59,7 @@ def datagrams_of_scans(recording: Path, rig: Rig | None) -> Iterator[ScanDatagra
         RecordingError: If it cannot be read.
         ConfigError: If the angles of the profiler's head are missing.
     """
-    is_bag = recognize(recording) in _BAGS
+    is_bag = recognize(recording) in BAGS
     lines = _line_rig(recording, rig) if is_bag else None
     if lines is not None:
         return _of_lines(recording, lines)

@@ -128,6 +128,23 @@ def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path):
     assert (folder / "clouds" / "000011.bin").stat().st_size == 176
 
 
+@looks("desktop light", "phone dark")
+def test_a_folder_of_several_recordings_offers_each_as_a_button(server, page, capture, tmp_path):
+    walks = tmp_path / "walks"
+    for name in ("monday", "tuesday"):
+        (walks / name).mkdir(parents=True)
+        shutil.copy(capture, walks / name / "walk.pcap")
+    page.goto(server.url)
+
+    chooser(page, folder=True).set_input_files(walks)
+    expect(page.locator("recording-look")).to_contain_text("holds 2 recordings: monday, tuesday")
+    page.get_by_role("button", name="Use tuesday").click()
+
+    expect(page.locator("recording-look")).to_contain_text("VLP-16")
+    assert page.get_by_label("Or a recording on the server").input_value().endswith("/tuesday")
+    fits(page)
+
+
 @looks("desktop light")
 def test_a_dropped_file_is_uploaded(server, page):
     page.goto(server.url)

@@ -25,7 +25,7 @@ const text = (name, more = {}) =>
 export class NewJob extends HTMLElement {
   #recording = text("recording", { required: true, onchange: () => this.#look() });
   #browser = make("folder-browser", { onpick: (event) => this.#choose(event.detail) });
-  #found = make("recording-look");
+  #found = make("recording-look", { onpick: (event) => this.#choose(event.detail) });
   #project = text("project", {
     required: true,
     maxLength: 100,

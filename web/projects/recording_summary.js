@@ -24,10 +24,25 @@ export class RecordingLook extends HTMLElement {
       this.#show(found);
       return found;
     } catch (error) {
-      if (mine === this.#asked)
-        this.replaceChildren(make("p", { className: "error" }, error.message));
+      if (mine === this.#asked) this.#refuse(path, error);
       return null;
     }
+  }
+
+  /** The reason, and a button for each recording in the folder. */
+  #refuse(folder, { message, candidates = [] }) {
+    const choose = (path) => this.dispatchEvent(new CustomEvent("pick", { detail: path }));
+    const label = (path) => (path.startsWith(`${folder}/`) ? path.slice(folder.length + 1) : path);
+    this.replaceChildren(
+      make("p", { className: "error" }, message),
+      make(
+        "div",
+        { className: "buttons" },
+        ...candidates.map((path) =>
+          make("button", { type: "button", onclick: () => choose(path) }, `Use ${label(path)}`),
+        ),
+      ),
+    );
   }
 
   #show(found) {

@@ -5,13 +5,15 @@ export const NO_RESPONSE = "The server does not answer. Is it still running?";
 export class ApiError extends Error {
   /**
    * @param {number} status HTTP status, 0 if there was no response
-   * @param {{error?: string, detail: string, problems?: Record<string, string>}} problem
+   * @param {{error?: string, detail: string, problems?: Record<string, string>,
+   *   candidates?: string[]}} problem
    */
-  constructor(status, { error, detail, problems = {} }) {
+  constructor(status, { error, detail, problems = {}, candidates = [] }) {
     super(detail);
     this.name = error ?? "Invalid";
     this.status = status;
     this.problems = problems;
+    this.candidates = candidates; // recordings in a folder that is none itself
   }
 }
 

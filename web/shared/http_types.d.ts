@@ -616,6 +616,7 @@ export interface ProblemDetail {
   error: string;
   detail: string;
   problems: Record<string, string>;
+  candidates: Array<string>;
 }
 
 export interface ProjectCard {

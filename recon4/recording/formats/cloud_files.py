@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import io
 import os
+import re
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -46,6 +47,16 @@ def is_cloud_file(path: Path) -> bool:
     if is_ply(head) or is_pcd(head) or path.suffix.lower() == SCAN_SUFFIX:
         return True
     return path.suffix.lower() == ".bin" and _is_bin(head, path.stat().st_size)
+
+
+def is_mesh(path: Path) -> bool:
+    """Whether the content is that of a PLY file with faces: the model of a surface, no scan."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as file:
+        head = file.read(HEADER_BYTES)
+    faces = re.search(rb"^element face (\d+)", head.split(b"end_header", 1)[0], re.MULTILINE)
+    return is_ply(head) and faces is not None and int(faces[1]) > 0
 
 
 def read_cloud(path: Path) -> Table:

@@ -1,11 +1,23 @@
 """Folders with files of several kinds, and samples beside a recording."""
 
 import pytest
+import trimesh
 
 from recon4.errors import UnknownFormat
+from recon4.recording.folders import list_frames
+from recon4.recording.info import describe
+from recon4.recording.kinds import (
+    RecordingKind,
+    located,
+    located_elsewhere,
+    located_sources,
+    recognize,
+)
 from recon4.recording.nearby_samples import unread_samples
-from recon4.recording.open import RecordingKind, recognize
+from recon4.recording.open import open_recording
+from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
+from recon4.settings import IngestSettings
 from tests.builders import room_cloud, write_pcd
 from tests.unit.recording.ingested import frame_folder, imu_csv
 
@@ -19,6 +31,72 @@ def test_a_folder_with_recordings_of_two_kinds_is_refused_and_both_are_named(tmp
 
     assert "model.pcd (frames" in str(caught.value)
     assert "recording.pcap (Velodyne pcap)" in str(caught.value)
+
+
+def test_a_mesh_beside_a_recording_is_passed_over_and_said(tmp_path, pcap):
+    folder = walk_with_model(tmp_path, pcap)
+    report = ImportReport()
+
+    recording = open_recording([folder], None, settings=IngestSettings(), report=report)
+
+    assert recording.kind is RecordingKind.PCAP
+    assert "model.ply is a mesh, not a recording: passed over" in report.derived
+
+
+def test_a_mesh_alone_is_no_recording(tmp_path, pcap):
+    folder = walk_with_model(tmp_path, pcap)
+
+    with pytest.raises(UnknownFormat, match="a mesh: a finished model"):
+        recognize(folder / "model.ply")
+
+
+def test_a_folder_of_frames_passes_over_the_model_of_the_place(tmp_path):
+    folder = frame_folder(tmp_path / "walk", ["0.ply", "1.ply"])
+    write_mesh(folder / "model.ply")
+
+    assert [file.name for file in list_frames(folder).files] == ["0.ply", "1.ply"]
+
+
+def test_the_only_recording_in_a_subfolder_is_read_and_said(tmp_path, pcap):
+    walk = walk_with_model(tmp_path, pcap)
+    sources = Sources((tmp_path,))
+
+    assert located_sources(sources).recordings == (walk,)
+    assert located_elsewhere(sources) == [f"{tmp_path}: its only recording is read, {walk}"]
+    assert describe(tmp_path).path.endswith("/walk")
+    assert located(walk) == walk
+
+
+def test_a_folder_of_several_recordings_names_them_as_candidates(tmp_path, pcap):
+    for name in ("monday", "tuesday"):
+        walk_with_model(tmp_path, pcap, name)
+
+    with pytest.raises(UnknownFormat, match="holds 2 recordings: monday, tuesday; give one") as two:
+        recognize(tmp_path)
+
+    assert two.value.candidates == (tmp_path / "monday", tmp_path / "tuesday")
+
+
+def test_files_of_two_kinds_are_candidates_where_each_is_a_recording(tmp_path, pcap):
+    folder = frame_folder(tmp_path / "walk", ["map.pcd"])
+    (folder / "walk.pcap").write_bytes(pcap.read_bytes())
+
+    with pytest.raises(UnknownFormat) as caught:
+        recognize(folder)
+
+    assert set(caught.value.candidates) == {folder / "map.pcd", folder / "walk.pcap"}
+
+
+def walk_with_model(folder, pcap, name="walk"):
+    walk = folder / name
+    walk.mkdir()
+    (walk / "recording.pcap").write_bytes(pcap.read_bytes())
+    write_mesh(walk / "model.ply")
+    return walk
+
+
+def write_mesh(path):
+    trimesh.creation.box().export(path)
 
 
 def test_samples_in_a_folder_of_frames_leave_its_kind(tmp_path):

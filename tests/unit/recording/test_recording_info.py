@@ -4,7 +4,7 @@ import pytest
 
 from recon4.errors import UnknownFormat
 from recon4.recording.info import describe
-from recon4.recording.open import RecordingKind, recognize
+from recon4.recording.kinds import RecordingKind, recognize
 from tests.builders import write_room_bag
 from tests.unit.recording.ingested import frame_folder, imu_csv, run
 

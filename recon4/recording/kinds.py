@@ -1,0 +1,290 @@
+"""Detects the kind of a recording by its content."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from recon4.errors import EmptyRecording, RecordingError, UnknownFormat
+from recon4.recording.folders import CLOUD_SUFFIXES, natural
+from recon4.recording.formats.bags import STORAGE_SUFFIXES
+from recon4.recording.formats.carmen import is_carmen
+from recon4.recording.formats.cloud_files import is_cloud_file, is_mesh
+from recon4.recording.formats.columns import column_names
+from recon4.recording.formats.pcap import is_pcap
+from recon4.recording.formats.poses import pose_format
+from recon4.recording.line_tables import LASER_COLUMNS, LINE_COLUMNS, is_line_table, table_in
+from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
+from recon4.recording.sources import Sources
+
+
+class RecordingKind(StrEnum):
+    """Kinds of recordings; the value is shown to users."""
+
+    PCAP = "Velodyne pcap"
+    BAG1 = "rosbag1"
+    BAG2 = "rosbag2"
+    FRAMES = "frames (PCD, PLY, KITTI BIN or 3DTK)"
+    IMU_CSV = "IMU samples (CSV)"
+    GNSS_CSV = "GNSS samples (CSV)"
+    POSES = "poses (TUM or KITTI)"
+    CARMEN = "CARMEN log of a 2-D laser"
+    LINE_TABLES = "line scans (CSV or NPZ)"
+    LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
+
+
+RECORDINGS = (
+    *(RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES),
+    RecordingKind.LINE_TABLES,
+)
+"""Kinds with points."""
+BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
+_KIND_OF_COLUMNS = {
+    frozenset(LINE_COLUMNS): RecordingKind.LINE_TABLES,
+    frozenset(LASER_COLUMNS): RecordingKind.LASER_TABLE,
+    frozenset(IMU_HEADER[:4]): RecordingKind.IMU_CSV,
+    frozenset(GNSS_HEADER[:3]): RecordingKind.GNSS_CSV,
+}
+_KIND_OF_SUFFIX = {
+    **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
+    **dict.fromkeys(CLOUD_SUFFIXES, RecordingKind.FRAMES),
+    ".bag": RecordingKind.BAG1,
+}
+"""In folders, where not every file is opened."""
+TABLES = {RecordingKind.LINE_TABLES, RecordingKind.LASER_TABLE, RecordingKind.IMU_CSV}
+
+_DEPTH = 3
+"""Levels of subfolders in which recordings are searched."""
+_MOST_FOLDERS = 50
+"""Subfolders that are looked at in a folder, and candidates that are named."""
+_OTHERS = {
+    b"\xff\xd8\xff": "a JPEG image",
+    b"\x89PNG": "a PNG image",
+    b"PK\x03\x04": "a zip archive: unpack it first",
+    b"\x1f\x8b": "gzip compressed: unpack it first",
+    b"\xfd7zXZ": "xz compressed: unpack it first",
+    b"\x28\xb5\x2f\xfd": "zstd compressed: unpack it first",
+    b"BZh": "bzip2 compressed: unpack it first",
+    b"7z\xbc\xaf": "a 7z archive: unpack it first",
+    b"%PDF": "a PDF document",
+    b"LASF": "a LAS/LAZ point cloud: a finished map, not a recording",
+    b"ASTM-E57": "an E57 point cloud: a finished scan, not a recording",
+    b"\x7fELF": "a program",
+}
+
+
+@dataclass(frozen=True, slots=True)
+class FolderContents:
+    """What in a folder may be a recording."""
+
+    folder: Path
+    kinds: dict[RecordingKind, list[str]]
+    """Kinds of recordings directly in it, each with the names of its files."""
+    meshes: tuple[str, ...]
+    """Models of surfaces directly in it: no recordings."""
+    folders: tuple[Path, ...]
+    """Subfolders that are recordings."""
+
+    def candidates(self) -> tuple[Path, ...]:
+        """Files and subfolders that can be given as a recording on their own."""
+        files = [
+            self.folder / name
+            for kind, names in self.kinds.items()
+            for name in names
+            if name != "metadata.yaml" and (kind is not RecordingKind.FRAMES or len(names) == 1)
+        ]
+        return (*files[:_MOST_FOLDERS], *self.folders)
+
+    def passed_over(self) -> list[str]:
+        """Sentences on what is not read because the folder itself is a recording."""
+        texts = [f"{name} is a mesh, not a recording: passed over" for name in self.meshes]
+        if self.folders:
+            names = ", ".join(str(one.relative_to(self.folder)) for one in self.folders[:8])
+            texts.append(f"recordings in subfolders are not read: {names}")
+        return texts
+
+
+def recognize(path: Path) -> RecordingKind:
+    """Detect the kind of recording at a path.
+
+    Raises:
+        UnknownFormat: If no reader supports it; the message lists the supported kinds.
+        EmptyRecording: If the file or folder is empty.
+        RecordingError: If there is no such path.
+    """
+    if not path.exists():
+        raise RecordingError(f"{path} does not exist")
+    try:
+        return _folder_kind(path) if path.is_dir() else _file_kind(path)
+    except OSError as error:
+        raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
+
+
+def bag_paths(path: Path) -> list[Path]:
+    """A bag file or rosbag2 folder itself; of a folder of rosbag1 files, those."""
+    if path.is_file() or not list(path.glob("*.bag")):
+        return [path]
+    return sorted(path.glob("*.bag"), key=natural)
+
+
+def pcap_files(path: Path) -> list[Path]:
+    """The file itself, or the capture files of a folder.
+
+    Raises:
+        RecordingError: If there is no such path.
+    """
+    if path.is_file():
+        return [path]
+    if not path.is_dir():
+        raise RecordingError(f"{path} does not exist")
+    return sorted(filter(_is_pcap_file, path.iterdir()), key=natural)
+
+
+def _file_kind(path: Path) -> RecordingKind:
+    with path.open("rb") as file:
+        head = file.read(4096)
+    if not head:
+        raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
+    if is_mesh(path):
+        raise UnknownFormat(f"{path.name}: a mesh: a finished model, not a recording; {_known()}")
+    for has_content, kind in _BY_CONTENT:
+        if has_content(path):
+            return kind
+    columns = column_names(path)
+    for wanted, kind in _KIND_OF_COLUMNS.items():
+        if wanted <= columns:
+            return kind
+    if pose_format(path):
+        return RecordingKind.POSES
+    what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
+    looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
+    raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")
+
+
+def _begins(*magic: bytes) -> Callable[[Path], bool]:
+    def has_content(path: Path) -> bool:
+        with path.open("rb") as file:
+            return file.read(16).startswith(magic)
+
+    return has_content
+
+
+_BY_CONTENT = (
+    (is_pcap, RecordingKind.PCAP),
+    (_begins(b"#ROSBAG V"), RecordingKind.BAG1),
+    (_begins(b"SQLite format 3\0", b"\x89MCAP"), RecordingKind.BAG2),
+    (is_cloud_file, RecordingKind.FRAMES),
+    (is_carmen, RecordingKind.CARMEN),
+)
+
+
+def located(path: Path) -> Path:
+    """The folder itself, or the only recording in its subfolders if it holds none itself."""
+    if not path.is_dir():
+        return path
+    contents = contents_of(path)
+    alone = not contents.kinds and len(contents.folders) == 1
+    return contents.folders[0] if alone else path
+
+
+def located_sources(sources: Sources) -> Sources:
+    """The sources with each folder replaced by the only recording in its subfolders, if it is so.
+
+    Raises:
+        RecordingError: If no recording is given, or a file or folder does not exist.
+    """
+    sources.require()
+    return replace(sources, recordings=tuple(map(located, sources.recordings)))
+
+
+def located_elsewhere(sources: Sources) -> list[str]:
+    """A sentence for each folder in whose place a subfolder is read."""
+    pairs = [(path, located(path)) for path in sources.recordings]
+    return [f"{path}: its only recording is read, {used}" for path, used in pairs if used != path]
+
+
+def contents_of(folder: Path) -> FolderContents:
+    """Find the recordings of a folder and, to a depth of `_DEPTH`, of its subfolders.
+
+    Raises:
+        OSError: If the folder cannot be listed.
+    """
+    kinds, meshes = _kinds_in(folder)
+    found: list[Path] = []
+    _collect_folders(folder, found, depth=_DEPTH)
+    return FolderContents(folder, kinds, tuple(meshes), tuple(found))
+
+
+def _collect_folders(folder: Path, found: list[Path], *, depth: int) -> None:
+    """Append the subfolders that are recordings; nothing is searched inside of these."""
+    inside = [child for child in folder.iterdir() if not child.name.startswith(".")]
+    below = sorted(child for child in inside if child.is_dir() and not child.is_symlink())
+    for child in below[:_MOST_FOLDERS]:
+        if len(found) >= _MOST_FOLDERS:
+            return
+        try:
+            kinds, _ = _kinds_in(child)
+        except OSError:
+            continue
+        if len(kinds) == 1:
+            found.append(child)
+        elif depth > 1:
+            _collect_folders(child, found, depth=depth - 1)
+
+
+def _folder_kind(path: Path) -> RecordingKind:
+    contents = contents_of(path)
+    kinds = contents.kinds
+    if len(kinds) == 1:
+        return next(iter(kinds))
+    names = sorted(child.name for child in path.iterdir())
+    if not names:
+        raise EmptyRecording(f"{path.name}: the folder is empty")
+    candidates = contents.candidates()
+    if kinds:
+        held = ", ".join(f"{files[0]} ({kind})" for kind, files in kinds.items())
+        raise UnknownFormat(
+            f"{path.name}: holds recordings of {len(kinds)} kinds: {held}; give one",
+            candidates=candidates,
+        )
+    if candidates:
+        held = ", ".join(str(one.relative_to(path)) for one in candidates[:8])
+        raise UnknownFormat(
+            f"{path.name}: holds {len(candidates)} recordings: {held}"
+            f"{' …' if len(candidates) > 8 else ''}; give one",
+            candidates=candidates,
+        )
+    raise UnknownFormat(
+        f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
+        f"{' …' if len(names) > 8 else ''}; {_known()}"
+    )
+
+
+def _kinds_in(path: Path) -> tuple[dict[RecordingKind, list[str]], list[str]]:
+    """The kinds of recordings in a folder, each with its files, and the files that are meshes."""
+    kinds: dict[RecordingKind, list[str]] = {}
+    meshes: list[str] = []
+    for name in sorted(child.name for child in path.iterdir()):
+        kind = _KIND_OF_SUFFIX.get(Path(name).suffix.lower())
+        if name == "metadata.yaml":
+            kind = RecordingKind.BAG2
+        elif kind is RecordingKind.FRAMES and is_mesh(path / name):
+            meshes.append(name)
+            continue
+        elif kind is None and _is_pcap_file(path / name):
+            kind = RecordingKind.PCAP
+        if kind is not None:
+            kinds.setdefault(kind, []).append(name)
+    if (lines := table_in(path, "lines")) and is_line_table(lines):
+        kinds[RecordingKind.LINE_TABLES] = [lines.name]
+    return kinds, meshes
+
+
+def _is_pcap_file(path: Path) -> bool:
+    return path.is_file() and is_pcap(path)
+
+
+def _known() -> str:
+    return f"known: {', '.join(RecordingKind)}"
