@@ -15,7 +15,10 @@ from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
 from recon4.slices.frames import MapFrame
-from recon4.slices.residuals import ControlReport, residual_csv, residuals
+from recon4.slices.limits import ControlLimits
+from recon4.slices.measured import MeasuredPosition, orthonormal
+from recon4.slices.residual_table import residual_csv
+from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text
 
 
@@ -57,24 +60,29 @@ def control_file(
 def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
     own = map_frame(artifacts)
     here = state.of_map(Path(artifacts["map"]).name)
-    measured = {name: np.array(p_map) for name, p_map in here.items()}
+    measured = {
+        name: MeasuredPosition(np.array(p_map), orthonormal(state.along[name]))
+        for name, p_map in here.items()
+    }
     covariances = _covariances(artifacts, measured)
     if state.frame == "crs":
         if own.to_crs is None:
             raise ConfigError("the map is local: CRS coordinates cannot be converted")
-        for name, cov in covariances.items():
-            steps = own.to_crs(measured[name] + np.vstack([np.zeros(3), np.eye(3)]))
+        for name, found in measured.items():
+            steps = own.to_crs(found.xyz_m + np.vstack([np.zeros(3), np.eye(3)]))
             R = (steps[1:] - steps[0]).T  # of the axes, within the ppm of the CRS
-            covariances[name] = R @ cov @ R.T
-        measured = {name: own.to_crs(p[None])[0] for name, p in measured.items()}
-    surveyed = [ControlPoint(**point.model_dump()) for point in state.points]
-    outdated = state.picks.keys() - here.keys()
+            measured[name] = found.turned(R, steps[0])
+            if name in covariances:
+                covariances[name] = R @ covariances[name] @ R.T
     return residuals(
-        surveyed,
+        [ControlPoint(**point.model_dump()) for point in state.points],
         measured,
-        covariances=covariances,
-        outdated=outdated,
-        map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
+        ControlContext(
+            covariances=covariances,
+            outdated=state.picks.keys() - here.keys(),
+            map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
+            limits=ControlLimits(**state.limits.model_dump()),
+        ),
     )
 
 
@@ -87,11 +95,14 @@ def _heights(artifacts: Artifacts, frame: MapFrame | None) -> tuple[float, float
     return float(low), float(high)
 
 
-def _covariances(artifacts: Artifacts, measured: dict[str, Array]) -> dict[str, Array]:
+def _covariances(artifacts: Artifacts, measured: dict[str, MeasuredPosition]) -> dict[str, Array]:
     """Covariances of the map at places; none where the map states none."""
     covariances_at = covariances_of(Path(artifacts["level"])) if "level" in artifacts else None
     if covariances_at is None:
         return {}
     tiles = tiles_of(artifacts["map"])
-    places = {name: place_covariance(tiles, p, covariances_at) for name, p in measured.items()}
+    places = {
+        name: place_covariance(tiles, found.xyz_m, covariances_at)
+        for name, found in measured.items()
+    }
     return {name: cov for name, cov in places.items() if cov is not None}

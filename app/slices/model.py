@@ -5,12 +5,14 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Annotated, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from app.names import Name
 from recon4.mapping.tiles import Surface
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
+from recon4.slices.limits import MOST_M, ControlLimits
+from recon4.slices.measured import orthonormal
 from recon4.slices.reference import ReferenceFacts
 from recon4.slices.slice_plane import (
     MAX_SLICES,
@@ -27,6 +29,8 @@ Xyz = tuple[Coordinate, Coordinate, Coordinate]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
 """A coordinate u or v of a slice [m]; its origin is arbitrary."""
 MAX_SIDE_PX = 4096
+Limit = Annotated[float, Field(gt=0.0, le=MOST_M, allow_inf_nan=False)]
+USUAL_LIMITS = ControlLimits()
 
 
 class Strict(BaseModel):
@@ -149,6 +153,9 @@ class PickView(BaseModel):
     p_crs: Xyz | None = None
     uv: Xy = (0.0, 0.0)
     about: dict[str, float] = {}
+    along: list[Xyz] = []
+    """Directions in which it is measured, in the map: the two of the slice, and the normal of a
+    surface."""
 
 
 class CompareRequest(Strict):
@@ -205,6 +212,17 @@ class ControlSpec(Strict):
     radius_m: float = Field(default=0.0, ge=0.0, le=10.0)
 
 
+class LimitsSpec(Strict):
+    """Limits of a job at its points [m]; None = not required. See `ControlLimits`."""
+
+    mean_horizontal_m: Limit | None = USUAL_LIMITS.mean_horizontal_m
+    mean_height_m: Limit | None = USUAL_LIMITS.mean_height_m
+    max_horizontal_m: Limit | None = USUAL_LIMITS.max_horizontal_m
+    max_height_m: Limit | None = USUAL_LIMITS.max_height_m
+    distances_m: Limit | None = USUAL_LIMITS.distances_m
+    survey_sd_m: Limit = USUAL_LIMITS.survey_sd_m
+
+
 class ControlState(Strict):
     """Control and check points of a project, and their positions in the map."""
 
@@ -212,15 +230,33 @@ class ControlState(Strict):
     frame: Literal["map", "crs"] = "map"
     picks: dict[Name, Xyz] = {}
     """Id -> position in the map frame [m]."""
+    along: dict[Name, Annotated[list[Xyz], Field(min_length=1, max_length=3)]] = {}
+    """Id -> directions in which the position was measured, in the map frame. A new position
+    without them is taken as measured in all three."""
+    limits: LimitsSpec = LimitsSpec()
     found_in: dict[str, str] = {}
     """Id -> key of the map it was found in; set by the server, never taken from a request."""
     version: int | None = Field(default=None, ge=0, le=1 << 53)
     """Version of the stored points when they were read: a newer version is not overwritten.
     None = overwrite any version."""
 
+    @field_validator("along")
+    @classmethod
+    def _directions(cls, along: dict[str, list[Xyz]]) -> dict[str, list[Xyz]]:
+        for directions in along.values():
+            orthonormal(directions)  # refuses directions that are none
+        return along
+
     def of_map(self, key: str) -> dict[str, Xyz]:
-        """Positions found in this map; positions found in an earlier map are left out."""
-        return {name: at for name, at in self.picks.items() if self.found_in.get(name) == key}
+        """Positions found in this map, of which it is known what they measured.
+
+        Left out are positions found in an earlier map, and those of an earlier version.
+        """
+        return {
+            name: at
+            for name, at in self.picks.items()
+            if self.found_in.get(name) == key and name in self.along
+        }
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -298,4 +334,6 @@ class SurfacePoint:
     p_map: Xyz
     """Position in the map [m]."""
     surface: Xyz | None
-    """Nearest point of the map's surface [m]; None = there is none nearby."""
+    """Its foot on the nearest surface of the map [m]; None = no flat surface nearby."""
+    normal: Xyz | None
+    """Normal of the surface: the only direction in which the foot is a measurement."""

@@ -23,7 +23,7 @@ from app.review.checks import ApprovalChecks
 from app.settings import ServerSettings
 from app.slices import work
 from app.slices.exports import Exports
-from app.slices.model import ControlState, ListedReference, OtherMap
+from app.slices.model import ControlState, ListedReference, OtherMap, Xyz
 from recon4.bounded import read_text_limited
 from recon4.errors import StoreError
 from recon4.review.approved import Approval, approval_of, approval_of_map
@@ -267,12 +267,16 @@ class Slices:
         assert before.version is not None
         if state.version not in (None, before.version):
             raise Conflict("the control points were changed by another user; read them again")
-        found_in = {
-            name: before.found_in.get(name, "") if before.picks.get(name) == at else key
-            for name, at in state.picks.items()
-        }
-        version = before.version + 1
-        kept = state.model_copy(update={"found_in": found_in, "version": version})
+        kept = state.model_copy(
+            update={
+                "found_in": {
+                    name: before.found_in.get(name, "") if before.picks.get(name) == at else key
+                    for name, at in state.picks.items()
+                },
+                "along": _measured_along(before, state),
+                "version": before.version + 1,
+            }
+        )
         folder = self._folder(project_id)
         folder.mkdir(exist_ok=True)
         with changing(self._projects.folder(project_id), CONTROL):
@@ -349,6 +353,17 @@ class Slices:
         self._projects.map_artifact(project_id)  # raises if there is no map
         found = read_artifacts(self._projects.folder(project_id))
         return {stage: str(folder) for stage, folder in found.items()}
+
+
+def _measured_along(before: ControlState, state: ControlState) -> dict[str, list[Xyz]]:
+    """The directions in which each position was measured.
+
+    A position that was there before without directions is of an earlier version: it stays without.
+    """
+    every: list[Xyz] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+    usual = {name: every for name, at in state.picks.items() if before.picks.get(name) != at}
+    known = before.along | usual | state.along
+    return {name: known[name] for name in state.picks if name in known}
 
 
 def _name_of(reference: Path) -> str:

@@ -37,7 +37,7 @@ from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.imports import import_reference, set_alignment
-from recon4.slices.pick import nearest_surface, pick
+from recon4.slices.pick import measured_directions, nearest_surface, pick
 from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import (
     Method,
@@ -186,7 +186,8 @@ def overview(map_folder: str, image: str, about: str) -> None:
 def pick_point(artifacts: Artifacts, ask: PickRequest) -> PickView:
     """The point of the map nearest to a position on a slice."""
     tiles = tiles_of(artifacts["map"]).on(ask.surface)
-    found = pick(tiles, ask.plane.slice_plane(), ask.uv, radius_m=ask.radius_m)
+    plane = ask.plane.slice_plane()
+    found = pick(tiles, plane, ask.uv, radius_m=ask.radius_m)
     if found is None:
         return PickView(found=False)
     return PickView(
@@ -195,6 +196,7 @@ def pick_point(artifacts: Artifacts, ask: PickRequest) -> PickView:
         p_crs=_in_crs(map_frame(artifacts), found.p_map),
         uv=found.uv,
         about=found.about,
+        along=[_xyz(row) for row in measured_directions(tiles, plane, np.array(found.p_map))],
     )
 
 
@@ -255,7 +257,9 @@ def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:
     if frame == "crs":
         p = map_frame(artifacts).from_crs(p[None])[0]
     found = nearest_surface(tiles_of(artifacts["map"]), p)
-    return SurfacePoint(_xyz(p), None if found is None else _xyz(found))
+    if found is None:
+        return SurfacePoint(_xyz(p), None, None)
+    return SurfacePoint(_xyz(p), _xyz(found.p_map), _xyz(found.normal))
 
 
 def references_in(folder: Path) -> list[ListedReference]:

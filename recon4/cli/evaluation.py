@@ -18,9 +18,9 @@ from recon4.terminal import write
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density
     from recon4.evaluation.evaluate import Evaluation
-    from recon4.evaluation.markers import MarkerTable
     from recon4.evaluation.relations import RelationErrors
     from recon4.geometry.se3 import Array
+    from recon4.slices.residuals import ControlReport
 
 evaluation = typer.Typer()
 RELATIONS_SUFFIX = ".relations"
@@ -38,7 +38,16 @@ MarkersOption = Annotated[
     tuple[Path, Path] | None,
     typer.Option(
         metavar="SURVEYED MEASURED",
-        help="Two CSV files (name, x_m, y_m, z_m, role): surveyed and measured in the map.",
+        help="Two CSV files (name, x_m, y_m, z_m, role): surveyed and measured in the map. "
+        "A coordinate that was not measured is empty or -.",
+    ),
+]
+LimitsOption = Annotated[
+    str,
+    typer.Option(
+        metavar="MEAN_H,MEAN_V,MAX_H,MAX_V,DISTANCE",
+        help="Limits of --markers in cm: mean and largest, horizontal and height, and of "
+        "distances; - = not required. Usual: 14,12,28,24,5.",
     ),
 ]
 PatchOption = Annotated[
@@ -56,20 +65,21 @@ JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for program
 
 
 @evaluation.command()
-def evaluate(
+def evaluate(  # noqa: PLR0913 - options of a command
     result: ResultArgument,
     *,
     truth: TruthOption = None,
     model: ModelOption = None,
     floor: FloorOption = False,
     markers: MarkersOption = None,
+    limits: LimitsOption = "",
     patch: PatchOption = "",
     report: ReportOption = None,
     as_json: JsonOption = False,
 ) -> None:
     """Evaluate a result: ATE, KITTI drift, relations, e_r in slices, density, survey markers."""
     confine_command(write=[report.parent] if report else [])
-    from recon4.evaluation.text import density_text, marker_text, relations_text
+    from recon4.evaluation.text import density_text, relations_text
 
     if truth is None and markers is None and not patch:
         raise typer.BadParameter("expected --truth, --markers or --patch")
@@ -87,9 +97,11 @@ def evaluate(
         if report is not None:
             _write_report(result, found, report)
     if markers is not None:
-        table = _marker_table(*markers)
-        record["markers"] = asdict(table) | {"within_limits": table.within_limits}
-        texts.append(marker_text(table))
+        from recon4.slices.residual_table import residual_text
+
+        table = _marker_table(*markers, limits=limits)
+        record["markers"] = asdict(table)
+        texts.append(residual_text(table))
     if patch:
         density = _patch_density(result, patch)
         record["patch"] = asdict(density)
@@ -134,11 +146,21 @@ def _write_report(project: Path, found: Evaluation, path: Path) -> None:
     write_report(path, assess(project_facts(project, found)))
 
 
-def _marker_table(surveyed: Path, measured: Path) -> MarkerTable:
-    from recon4.evaluation.markers import compare_markers, read_markers
+def _marker_table(surveyed: Path, measured: Path, *, limits: str) -> ControlReport:
+    import numpy as np
 
-    positions = {marker.name: marker.xyz_m for marker in read_markers(measured)}
-    return compare_markers(positions, read_markers(surveyed))
+    from recon4.evaluation.markers import read_markers
+    from recon4.slices.control_points import ControlPoint
+    from recon4.slices.limits import parse_limits
+    from recon4.slices.measured import MeasuredPosition
+    from recon4.slices.residuals import ControlContext, residuals
+
+    points = [ControlPoint(m.name, tuple(m.xyz_m.tolist()), m.role) for m in read_markers(surveyed)]
+    positions = {
+        m.name: MeasuredPosition(np.nan_to_num(m.xyz_m), np.eye(3)[np.isfinite(m.xyz_m)])
+        for m in read_markers(measured, partial=True)
+    }
+    return residuals(points, positions, ControlContext(limits=parse_limits(limits)))
 
 
 def _patch_density(project: Path, text: str) -> Density:

@@ -9,7 +9,6 @@ from recon4.evaluation.ate import AbsoluteError, Spread
 from recon4.evaluation.density import Density
 from recon4.evaluation.floor import ErrorFloor
 from recon4.evaluation.kitti import Drift
-from recon4.evaluation.markers import MarkerTable
 from recon4.evaluation.relations import RelationErrors
 from recon4.evaluation.slices import RelativeError, SliceError
 from recon4.evaluation.table import number, percentage, text_table
@@ -157,31 +156,6 @@ def density_text(density: Density) -> str:
     return (
         f"Patch: {density.points} points on {density.area_m2:.4f} m², "
         f"{number(density.points_per_cm2)} points/cm²"
-    )
-
-
-def marker_text(table: MarkerTable) -> str:
-    """Errors at markers in the form of V Table 3.3."""
-    rows = [
-        (
-            f"{row.name} ({row.role})",
-            *(
-                number(value, 1, _CM)
-                for value in (row.dx_m, row.dy_m, row.horizontal_m, row.dz_m, row.total_m)
-            ),
-        )
-        for row in table.rows
-    ]
-    body = text_table(("Marker", "dX cm", "dY cm", "H cm", "dZ cm", "total cm"), rows)
-    verdict = "within" if table.within_limits else "NOT within"
-    if table.missing:
-        body += f"\nnot measured: {', '.join(table.missing)}"
-    return (
-        f"{body}\nby {table.judged_by} points: "
-        f"mean H {number(table.mean_horizontal_m, 1, _CM)} cm, "
-        f"mean V {number(table.mean_vertical_m, 1, _CM)} cm, "
-        f"max H {number(table.max_horizontal_m, 1, _CM)} cm, "
-        f"max V {number(table.max_vertical_m, 1, _CM)} cm: {verdict} the limits"
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
+from recon4.slices.residual_table import UNKNOWN
 from recon4.slices.residuals import ControlReport
 
 
@@ -31,23 +32,8 @@ def render_acceptance(report: ControlReport, text: AcceptanceText) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["cm"] = lambda length_m: f"{100.0 * length_m:.1f}"
+    environment.filters["cm"] = lambda length_m: (
+        UNKNOWN if length_m is None else f"{100.0 * length_m:.1f}"
+    )
     template = environment.get_template("acceptance.html.jinja")
-    return template.render(report=report, text=text, verdict=_verdict(report))
-
-
-def _verdict(report: ControlReport) -> tuple[str, str]:
-    """Level and message of the verdict."""
-    if report.passed is None:
-        return "note", "Nothing was checked: no point has a place in this map."
-    count = report.figures[0].points
-    points = f"{count} {report.judged_by} point{'s' if count != 1 else ''}"
-    level, message = "good", f"The map keeps the limits at {points}."
-    if not report.passed:
-        level, message = "bad", f"The map does not keep the limits at {points}."
-    elif report.judged_by == "control":
-        level = "note"
-        message = f"The map keeps the limits at {points}, but no independent point was checked."
-    left = len(report.missing) + len(report.outdated)
-    message = f"{message} {left} more not checked." if left else message
-    return level, f"{message} {report.hint}".strip()
+    return template.render(report=report, text=text)

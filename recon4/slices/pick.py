@@ -14,6 +14,7 @@ from recon4.slices.slice_plane import SlicePlane, Vector
 _DESCRIBED = ("intensity", "sensor", "ring", "frame_id", "t_ns")
 _PLANE_M = 0.10
 """Radius within which a surface is fitted by a plane [m]."""
+_LEAST_POINTS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,12 +54,50 @@ def pick(
     return Picked((x, y, z), (float(uvd[0]), float(uvd[1])), off_m, about)
 
 
-def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> Array | None:
-    """The nearest point of the map's surface to given coordinates [m], (3,).
+@dataclass(frozen=True, slots=True, eq=False)
+class SurfaceFoot:
+    """The foot of a point on a flat surface of the map."""
 
-    The foot of the point on the plane through the points within 10 cm of the nearest one; the
-    nearest map point itself where they are not flat. None if there is none within the radius.
+    p_map: Array
+    """[m], (3,)."""
+    normal: Array
+    """Unit normal, of either sign, (3,): the only direction in which the foot is a measurement."""
+
+
+def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> SurfaceFoot | None:
+    """The foot of given coordinates [m], (3,), on the nearest surface of the map.
+
+    The surface is the plane through the points within 10 cm of the nearest one. None if there is
+    no point within the radius, if they are not flat (an edge, a pole: no point of it is known to
+    be the surveyed one), or if the foot lies beside them, where the plane is only extrapolated.
     """
+    points = _points_near(tiles, p_map, radius_m)
+    if not len(points):
+        return None
+    nearest = points[np.argmin(np.linalg.norm(points - p_map, axis=1))]
+    plane = _plane_at(_points_near(tiles, nearest, _PLANE_M))
+    if plane is None:
+        return None
+    middle, n = plane
+    foot: Array = p_map - n * (n @ (p_map - middle))
+    if np.linalg.norm(foot - nearest) > _PLANE_M:
+        return None
+    return SurfaceFoot(foot, n)
+
+
+def measured_directions(tiles: TileSet, plane: SlicePlane, p_map: Array) -> Array:
+    """The directions in which a point picked on a slice is measured, rows of (2..3, 3).
+
+    A person sees the two of the slice. Across it the point is any of the slab, unless it lies on
+    a surface: then also across the surface.
+    """
+    surface = _plane_at(_points_near(tiles, p_map, _PLANE_M))
+    seen = plane.axes[:2]
+    return seen if surface is None else np.vstack([seen, surface[1]])
+
+
+def _points_near(tiles: TileSet, p_map: Array, radius_m: float) -> Array:
+    """Points of the map in a ball [m], (N, 3)."""
     low, high = p_map - radius_m, p_map + radius_m
     near = [np.empty((0, 3))]
     for tile in tiles:
@@ -68,18 +107,16 @@ def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> A
         box = np.all(np.abs(xyz - (p_map - tile.origin_m)) <= radius_m, axis=1)
         near.append(xyz[box].astype(np.float64) + tile.origin_m)
     points = np.concatenate(near)
-    off = np.linalg.norm(points - p_map, axis=1)
-    points, off = points[off <= radius_m], off[off <= radius_m]
-    if not len(points):
+    out: Array = points[np.linalg.norm(points - p_map, axis=1) <= radius_m]
+    return out
+
+
+def _plane_at(around: Array) -> tuple[Array, Array] | None:
+    """Middle and unit normal of points that lie on a plane; None if they do not."""
+    if len(around) < _LEAST_POINTS:
         return None
-    nearest = points[np.argmin(off)]
-    around = points[np.linalg.norm(points - nearest, axis=1) <= _PLANE_M]
-    if len(around) < 8:
-        return np.asarray(nearest)
     middle = around.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov((around - middle).T))
     if values[1] < 9.0 * values[0]:
-        return np.asarray(nearest)
-    n = vectors[:, 0]
-    foot: Array = p_map - n * (n @ (p_map - middle))
-    return foot
+        return None
+    return middle, vectors[:, 0]

@@ -1,79 +1,95 @@
-"""Residuals at control and check points, compared with the limits."""
+"""Residuals at control and check points, and their statistics.
+
+A residual has a figure only where it was measured: a point on a wall measures the wall's position,
+not the height of the point. What was not measured is None and counts in no statistic.
+"""
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import astuple, dataclass
-from types import MappingProxyType
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
 
 import numpy as np
 
-from recon4.evaluation.markers import (
-    MAX_HORIZONTAL_LIMIT_M,
-    MAX_VERTICAL_LIMIT_M,
-    MEAN_HORIZONTAL_LIMIT_M,
-    MEAN_VERTICAL_LIMIT_M,
-)
 from recon4.geometry.se3 import Array
-from recon4.model.plain import finite_or_none
-from recon4.model.samples import GEOID_SEPARATION_M
 from recon4.slices.control_points import ControlPoint, Role
-from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
-
-_NEARLY_M = 1.0
-"""Largest deviation from it, and largest horizontal error: heights alone are of another kind."""
-_TWO_HEIGHTS = (
-    "This is as with a geoid: either the map or the survey has heights above sea level "
-    "(orthometric), and the other above the ellipsoid."
+from recon4.slices.control_verdict import (
+    ControlVerdict,
+    Requirement,
+    control_verdict,
+    requirements_of,
 )
-RELATIVE_LIMIT_M = 0.05
-"""Limit for the error of distances between points of the map (requirements, relative)."""
+from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
+from recon4.slices.height_hints import beside_map, common_height
+from recon4.slices.limits import ControlLimits
+from recon4.slices.measured import MeasuredPosition
+
+ROLES: tuple[Role, Role] = ("check", "control")
+OUTLIER_SIGMAS = (3.0, 3.4393, 3.7625)
+"""Limits of `Residual.sigmas` for one, two and three measured directions: a good residual exceeds
+them with a probability of 0.27 % (square roots of the quantiles of χ²)."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Residual:
-    """Residual of one point: map minus survey."""
+    """Residual of one point, map minus survey [m]; None = not measured."""
 
     id: str
     role: Role
-    east_m: float
-    north_m: float
-    up_m: float
-    d2_m: float
-    d3_m: float
+    east_m: float | None
+    north_m: float | None
+    up_m: float | None
+    d2_m: float | None
+    """Horizontal length, of points measured in east and north."""
+    d3_m: float | None
+    """Length in space, of points measured in all directions."""
+    directions: int
+    """How many directions were measured, 1 to 3."""
+    across_m: float
+    """Residual in the measured directions: its length, or its value across the one surface."""
     stated: ErrorEllipse | None
     """How well the map says it is known there; None = not stated."""
+    sigmas: float | None
+    """``across_m`` in standard deviations of point and map together; None = not stated."""
+    outlier: bool
+    """Whether ``sigmas`` exceeds `OUTLIER_SIGMAS`."""
+
+    @property
+    def known_2d_m(self) -> float | None:
+        """Horizontal length, or what is known to be the least of it [m]."""
+        known = [abs(d) for d in (self.east_m, self.north_m) if d is not None]
+        return self.d2_m if self.d2_m is not None else max(known, default=None)
 
 
 @dataclass(frozen=True, slots=True)
-class Requirement:
-    """One line of the acceptance table."""
+class AxisStatistics:
+    """Statistics of one component over the points that measured it."""
 
-    label: str
-    value_m: float
-    limit_m: float
-    holds: bool
+    axis: Literal["E", "N", "U"]
+    points: int
+    rmse_m: float | None
+    mean_m: float | None
+    """Signed mean, a common offset of the map."""
 
 
 @dataclass(frozen=True, slots=True)
 class ResidualStatistics:
-    """Statistics of the residuals of one role."""
+    """Statistics of the residuals of one role. None = measured at no point."""
 
     role: Role
     points: int
-    rmse_m: tuple[float, float, float]
+    axes: tuple[AxisStatistics, AxisStatistics, AxisStatistics]
     """East, north, up."""
-    mean_2d_m: float
-    mean_up_m: float
+    mean_2d_m: float | None
+    mean_up_m: float | None
     """Of ``|dU|``."""
-    max_2d_m: float
-    max_up_m: float
-    rmse_3d_m: float
+    max_2d_m: float | None
+    max_up_m: float | None
+    rmse_3d_m: float | None
     relative_m: float | None
-    """Largest error of the distance between two of the points; None with one point."""
+    """Largest error of the distance between two points that are measured in all directions."""
     requirements: tuple[Requirement, ...]
 
 
@@ -85,170 +101,178 @@ class ControlReport:
     missing: tuple[str, ...]
     """Points not yet found in the map."""
     outdated: tuple[str, ...]
-    """Points found in an earlier map only; they are not used for this one."""
+    """Points found in an earlier map, or by an earlier version that did not record what it
+    measured; they are not used."""
     figures: tuple[ResidualStatistics, ...]
     """Statistics of check points, then of control points; a role without points is omitted."""
     judged_by: Role | None
     """Role that decides about acceptance; None = no point was measured."""
     passed: bool | None
-    """Whether the deciding points are within all limits; None = no point was measured."""
+    """Whether the deciding points are within all limits; None = no verdict."""
+    verdict: ControlVerdict
+    limits: str
+    """The limits of the job as one phrase."""
     hint: str = ""
     """What the residuals have in common; empty = nothing."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlContext:
+    """What is known beside the points and their positions."""
+
+    covariances: Mapping[str, Array] = field(default_factory=dict)
+    """Id -> covariance of the map there, east, north, up [m²], (3, 3)."""
+    outdated: Collection[str] = ()
+    """Ids of points found in an earlier map."""
+    map_heights_m: tuple[float, float] | None = None
+    """Lowest and highest height of the map in the survey's coordinates [m]."""
+    limits: ControlLimits = field(default_factory=ControlLimits)
+
+
 def residuals(
     points: Sequence[ControlPoint],
-    measured: Mapping[str, Array],
-    *,
-    covariances: Mapping[str, Array] = MappingProxyType({}),
-    outdated: Collection[str] = (),
-    map_heights_m: tuple[float, float] | None = None,
+    measured: Mapping[str, MeasuredPosition],
+    context: ControlContext = ControlContext(),
 ) -> ControlReport:
     """Compute the residual table, control and check points separately.
 
     Args:
         points: Surveyed points.
-        measured: Id -> position in the map, in the coordinates of the survey [m], (3,).
-        covariances: Id -> covariance of the map there, east, north, up [m²], (3, 3).
-        outdated: Ids of points found in an earlier map.
-        map_heights_m: Lowest and highest height of the map in the survey's coordinates [m].
+        measured: Id -> position in the coordinates of the survey.
+        context: Stated covariances, limits, heights of the map.
     """
+    found = [point for point in points if point.id in measured]
     rows = tuple(
-        _residual(p, measured[p.id], covariances.get(p.id)) for p in points if p.id in measured
+        _residual(
+            p,
+            measured[p.id],
+            cov=context.covariances.get(p.id),
+            survey_sd_m=context.limits.survey_sd_m,
+        )
+        for p in found
     )
-    figures = []
-    for role in ("check", "control"):
-        mine = [row for row in rows if row.role == role]
-        if mine:
-            figures.append(
-                _figures(mine, [p for p in points if p.id in measured and p.role == role])
-            )
+    figures = tuple(_figures(role, rows, found, limits=context.limits) for role in ROLES)
+    figures = tuple(one for one in figures if one.points)
+    missing = tuple(p.id for p in points if p.id not in measured and p.id not in context.outdated)
+    outdated = tuple(p.id for p in points if p.id not in measured and p.id in context.outdated)
+    judge = figures[0] if figures else None
     return ControlReport(
         rows=rows,
-        missing=tuple(p.id for p in points if p.id not in measured and p.id not in outdated),
-        outdated=tuple(p.id for p in points if p.id not in measured and p.id in outdated),
-        figures=tuple(figures),
-        judged_by=figures[0].role if figures else None,
-        passed=all(one.holds for one in figures[0].requirements) if figures else None,
-        hint=_common_height(rows) if rows else _beside_map(points, map_heights_m),
+        missing=missing,
+        outdated=outdated,
+        figures=figures,
+        judged_by=judge.role if judge else None,
+        passed=_all_hold(judge.requirements) if judge else None,
+        verdict=control_verdict(
+            judge.role if judge else None,
+            judge.requirements if judge else (),
+            outliers=[(row.id, row.across_m, row.sigmas or 0.0) for row in rows if row.outlier],
+            tested=sum(row.sigmas is not None for row in rows),
+            left=len(missing) + len(outdated),
+        ),
+        limits=context.limits.text,
+        hint=_hint(rows, points, context),
     )
 
 
-def residual_csv(report: ControlReport, *, comment: str = "") -> str:
-    """The residuals in meters, and after an empty line each limit with the measured value.
-
-    Args:
-        report: The table.
-        comment: Text of the first line: project, map, frame.
-    """
-    out = io.StringIO()
-    out.write(f"# recon4 control and check points {' '.join(comment.split())}".rstrip() + "\n")
-    rows = csv.writer(out, lineterminator="\n")
-    stated = ["sd_major_m", "sd_minor_m", "azimuth_deg", "sd_up_m"]
-    rows.writerow(["id", "role", "dE_m", "dN_m", "dU_m", "d2D_m", "d3D_m", *stated])
-    for row in report.rows:
-        values = (row.east_m, row.north_m, row.up_m, row.d2_m, row.d3_m)
-        values += astuple(row.stated) if row.stated else ()
-        rows.writerow([safe_cell(row.id), row.role, *(f"{value:.4f}" for value in values)])
-    for name in report.missing:
-        rows.writerow([safe_cell(name), "not found in the map"])
-    for name in report.outdated:
-        rows.writerow([safe_cell(name), "found in an earlier map only"])
-    for f in report.figures:
-        rows.writerow(["RMSE", f.role, *(f"{v:.4f}" for v in f.rmse_m), "", f"{f.rmse_3d_m:.4f}"])
-    if report.hint:
-        out.write(f"# {report.hint}\n")
-    rows.writerow([])
-    rows.writerow(["limit", "role", "measured_m", "limit_m", "holds"])
-    for f in report.figures:
-        for one in f.requirements:
-            holds = "yes" if one.holds else "NO"
-            rows.writerow([one.label, f.role, f"{one.value_m:.4f}", f"{one.limit_m:.2f}", holds])
-    return out.getvalue()
-
-
-def safe_cell(text: str) -> str:
-    """A cell that spreadsheets do not evaluate as a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
-
-
-def _common_height(rows: Sequence[Residual]) -> str:
-    """Whether all heights are off by the same, as between ellipsoid and sea level."""
-    up_m = np.array([row.up_m for row in rows])
-    usual_m = float(np.median(up_m))
-    alike = float(np.abs(up_m - usual_m).max()) < _NEARLY_M
-    low_m, high_m = GEOID_SEPARATION_M
-    in_place = max(row.d2_m for row in rows) < _NEARLY_M
-    if not (alike and in_place and low_m < abs(usual_m) < high_m):
-        return ""
-    points = f"All {len(rows)} points are" if len(rows) > 1 else "The point is"
-    return (
-        f"{points} {abs(usual_m):.2f} m too {'high' if usual_m > 0 else 'low'} in the map, and "
-        f"horizontally in place. {_TWO_HEIGHTS}"
+def _residual(
+    point: ControlPoint, found: MeasuredPosition, *, cov: Array | None, survey_sd_m: float
+) -> Residual:
+    d = found.offset(np.array(point.xyz_m))
+    east, north, up = (float(x) if known else None for x, known in zip(d, found.axes, strict=True))
+    directions = len(found.along)
+    d2 = None if east is None or north is None else math.hypot(east, north)
+    d3 = float(np.linalg.norm(d)) if directions == 3 else None
+    across = float(found.along[0] @ d) if directions == 1 else float(np.linalg.norm(d))
+    sigmas = None if cov is None else _sigmas(found.along, d, cov + survey_sd_m**2 * np.eye(3))
+    return Residual(
+        id=point.id,
+        role=point.role,
+        east_m=east,
+        north_m=north,
+        up_m=up,
+        d2_m=d2,
+        d3_m=d3,
+        directions=directions,
+        across_m=across,
+        stated=None if cov is None else error_ellipse(cov),
+        sigmas=sigmas,
+        outlier=sigmas is not None and sigmas > OUTLIER_SIGMAS[directions - 1],
     )
 
 
-def _beside_map(points: Sequence[ControlPoint], heights_m: tuple[float, float] | None) -> str:
-    """Whether all points lie as far below or above the map as sea level and ellipsoid are apart."""
-    if not points or heights_m is None:
-        return ""
-    z_m = [point.xyz_m[2] for point in points]
-    below_m, above_m = heights_m[0] - max(z_m), min(z_m) - heights_m[1]
-    low_m, high_m = GEOID_SEPARATION_M
-    if not low_m < max(below_m, above_m) < high_m:
-        return ""
-    return (
-        f"All {len(points)} points of the survey are {'below' if below_m > 0 else 'above'} the map "
-        f"by {max(below_m, above_m):.0f} m and more: their heights are {min(z_m):.1f} to "
-        f"{max(z_m):.1f} m, the map's {heights_m[0]:.1f} to {heights_m[1]:.1f} m. {_TWO_HEIGHTS}"
-    )
+def _sigmas(along: Array, d: Array, cov: Array) -> float:
+    """Length of a residual in units of its standard deviation (Mahalanobis)."""
+    offset = along @ d
+    return float(np.sqrt(offset @ np.linalg.solve(along @ cov @ along.T, offset)))
 
 
-def _residual(point: ControlPoint, found_m: Array, cov: Array | None) -> Residual:
-    east, north, up = (float(d) for d in np.asarray(found_m, dtype=np.float64) - point.xyz_m)
-    d2 = math.hypot(east, north)
-    stated = None if cov is None else error_ellipse(cov)
-    return Residual(point.id, point.role, east, north, up, d2, math.hypot(d2, up), stated)
-
-
-def _figures(rows: list[Residual], points: list[ControlPoint]) -> ResidualStatistics:
-    d = np.array([(row.east_m, row.north_m, row.up_m) for row in rows])
-    flat, up = np.hypot(d[:, 0], d[:, 1]), np.abs(d[:, 2])
-    relative = _relative(np.array([p.xyz_m for p in points]), d)
-    rmse = np.sqrt((d**2).mean(axis=0))
+def _figures(
+    role: Role, rows: Sequence[Residual], points: Sequence[ControlPoint], *, limits: ControlLimits
+) -> ResidualStatistics:
+    mine = [(row, point) for row, point in zip(rows, points, strict=True) if row.role == role]
+    own = [row for row, _ in mine]
+    flat = _known(row.d2_m for row in own)
+    up = [abs(d) for d in _known(row.up_m for row in own)]
+    space = _known(row.d3_m for row in own)
+    relative = _relative([(row, point) for row, point in mine if row.d3_m is not None])
     return ResidualStatistics(
-        role=rows[0].role,
-        points=len(rows),
-        rmse_m=(float(rmse[0]), float(rmse[1]), float(rmse[2])),
-        mean_2d_m=float(flat.mean()),
-        mean_up_m=float(up.mean()),
-        max_2d_m=float(flat.max()),
-        max_up_m=float(up.max()),
-        rmse_3d_m=float(np.sqrt((d**2).sum(axis=1).mean())),
-        relative_m=finite_or_none(relative),
-        requirements=_requirements(flat, up, relative),
+        role=role,
+        points=len(own),
+        axes=(
+            _axis("E", [row.east_m for row in own]),
+            _axis("N", [row.north_m for row in own]),
+            _axis("U", [row.up_m for row in own]),
+        ),
+        mean_2d_m=_mean(flat),
+        mean_up_m=_mean(up),
+        max_2d_m=max(flat, default=None),
+        max_up_m=max(up, default=None),
+        rmse_3d_m=_rms(space),
+        relative_m=relative,
+        requirements=requirements_of(own, (relative, len(space)), limits),
     )
 
 
-def _requirements(flat_m: Array, up_m: Array, relative_m: float) -> tuple[Requirement, ...]:
-    """The limits of V §3.3, and the limit of distances if there are two points."""
-    lines = [
-        ("mean horizontal", float(flat_m.mean()), MEAN_HORIZONTAL_LIMIT_M),
-        ("mean height", float(up_m.mean()), MEAN_VERTICAL_LIMIT_M),
-        ("largest horizontal", float(flat_m.max()), MAX_HORIZONTAL_LIMIT_M),
-        ("largest height", float(up_m.max()), MAX_VERTICAL_LIMIT_M),
-    ]
-    if math.isfinite(relative_m):
-        lines.append(("distances between points", relative_m, RELATIVE_LIMIT_M))
-    return tuple(Requirement(name, value, limit, value <= limit) for name, value, limit in lines)
+def _all_hold(lines: Iterable[Requirement]) -> bool | None:
+    """Whether all limits hold: False if one does not, None if one has no verdict."""
+    holds = [line.holds for line in lines]
+    if False in holds:
+        return False
+    return None if None in holds or not holds else True
 
 
-def _relative(true_m: Array, d: Array) -> float:
+def _axis(axis: Literal["E", "N", "U"], residuals_m: Iterable[float | None]) -> AxisStatistics:
+    known = _known(residuals_m)
+    return AxisStatistics(axis, len(known), _rms(known), _mean(known))
+
+
+def _known(values: Iterable[float | None]) -> list[float]:
+    return [value for value in values if value is not None]
+
+
+def _mean(values: Sequence[float]) -> float | None:
+    return float(np.mean(values)) if values else None
+
+
+def _rms(values: Sequence[float]) -> float | None:
+    return float(np.sqrt(np.mean(np.square(values)))) if values else None
+
+
+def _relative(full: Sequence[tuple[Residual, ControlPoint]]) -> float | None:
     """Largest ``| |p_i - p_j| measured - surveyed |`` [m]; of at most 500 points."""
-    true_m, d = true_m[:500], d[:500]
-    if len(true_m) < 2:
-        return float("nan")
-    i, j = np.triu_indices(len(true_m), k=1)
-    surveyed = np.linalg.norm(true_m[i] - true_m[j], axis=1)
-    measured = np.linalg.norm((true_m + d)[i] - (true_m + d)[j], axis=1)
-    return float(np.abs(measured - surveyed).max())
+    if len(full) < 2:
+        return None
+    surveyed = np.array([point.xyz_m for _, point in full[:500]])
+    d = np.array([(row.east_m, row.north_m, row.up_m) for row, _ in full[:500]], dtype=np.float64)
+    i, j = np.triu_indices(len(surveyed), k=1)
+    true_m = np.linalg.norm(surveyed[i] - surveyed[j], axis=1)
+    found_m = np.linalg.norm((surveyed + d)[i] - (surveyed + d)[j], axis=1)
+    return float(np.abs(found_m - true_m).max())
+
+
+def _hint(rows: Sequence[Residual], points: Sequence[ControlPoint], context: ControlContext) -> str:
+    if not rows:
+        return beside_map(points, context.map_heights_m)
+    horizontal = _known(row.known_2d_m for row in rows)
+    return common_height(_known(row.up_m for row in rows), horizontal)

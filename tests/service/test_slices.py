@@ -4,7 +4,6 @@ import base64
 import io
 import json
 import threading
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import ezdxf
@@ -14,7 +13,6 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from recon4.store.seal import changing
 from tests.project_builder import ROOM_M, approve_project, build_project
 from tests.service.running import server_thread
 
@@ -287,69 +285,11 @@ def test_double_walls_are_looked_for_once_a_map(server):
     assert first["walls"] == [] and first["points"] == 120_000
 
 
-def test_control_points_are_looked_at_kept_and_judged(server):
-    text = "\ufeffID;X;Y;Z\nA;0,02;5;1,5\nB;16;5,01;1,5\n"
-    file = {"name": "p.csv", "base64": base64.b64encode(text.encode()).decode()}
+def test_a_pick_on_a_slice_comes_with_what_it_measures(server):
+    found = sent(server, "/pick", {"plane": Z1, "uv": [0.0, 5.0], "radius_m": 0.3}).json()
 
-    preview = sent(server, "/control/preview", file).json()
-    state = {"points": preview["points"], "picks": {"A": [0, 5, 1.5], "B": [16, 5, 1.5]}}
-    kept = httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
-    report = server.get(f"{BASE}/control/report").json()
-    near = server.get(f"{BASE}/control/surface", params={"point": "A"}).json()
-
-    assert preview["question"].startswith("Point A: is 0.020 the easting")
-    assert kept.status_code == 200
-    assert report["rows"][0]["east_m"] == pytest.approx(-0.02)
-    assert report["passed"] and report["outdated"] == []
-    assert report["figures"][0]["role"] == "check"
-    assert near["surface"][0] == pytest.approx(0.0, abs=0.01)
-
-
-def test_the_table_of_control_points_is_downloaded(server):
-    state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
-    httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
-
-    table = server.get(f"{BASE}/control/report.csv")
-    sheet = server.get(f"{BASE}/control/report.html")
-
-    assert "attachment" in table.headers["Content-Disposition"]
-    assert "A,check,-0.0200,0.0000,0.0000" in table.text and "Not approved" in table.text
-    assert "The map keeps the limits at 1 check point" in sheet.text
-    assert "sandbox" in sheet.headers["Content-Security-Policy"]
-
-
-def test_of_two_who_keep_control_points_the_second_does_not_overwrite_the_first(server):
-    url = f"{server.url}{BASE}/control"
-    state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {}}
-    read = httpx.put(url, json=state, timeout=30).json()
-
-    def keep(k):
-        return httpx.put(url, json=read | {"picks": {"A": [k / 10, 5, 1.5]}}, timeout=30)
-
-    with ThreadPoolExecutor(8) as people:
-        answers = list(people.map(keep, range(8)))
-    now = server.get(f"{BASE}/control").json()
-
-    (first,) = [answer.json() for answer in answers if answer.status_code == 200]
-    assert sorted(answer.status_code for answer in answers) == [200] + [409] * 7
-    assert now == first and now["version"] == read["version"] + 1
-
-
-def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):
-    path = server.root / "office" / "slices" / "control.json"
-    state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
-    url = f"{server.url}{BASE}/control"
-    kept = httpx.put(url, json=state | {"found_in": {"A": "of another map"}}, timeout=30).json()
-    with changing(server.root / "office", "slices/control.json"):
-        path.write_text(path.read_text().replace(kept["found_in"]["A"], "ab" * 32))
-
-    earlier = server.get(f"{BASE}/control/report").json()
-    moved = httpx.put(url, json=state | {"picks": {"A": [0.01, 5, 1.5]}}, timeout=30).json()
-    again = server.get(f"{BASE}/control/report").json()
-
-    assert kept["found_in"]["A"] == server.get(BASE).json()["key"] == moved["found_in"]["A"]
-    assert (earlier["outdated"], earlier["rows"], earlier["passed"]) == (["A"], [], None)
-    assert again["outdated"] == [] and again["rows"][0]["east_m"] == pytest.approx(-0.01)
+    assert len(found["along"]) == 3 and found["along"][:2] == [[1, 0, 0], [0, 1, 0]]
+    assert np.linalg.matrix_rank(found["along"], tol=0.1) == 2  # on a wall nothing is the height
 
 
 def test_another_project_can_be_set_beside(server):

@@ -72,6 +72,13 @@ export interface Assignments {
   settings?: Array<string>;
 }
 
+export interface AxisStatistics {
+  axis: "E" | "N" | "U";
+  points: number;
+  rmse_m: number | null;
+  mean_m: number | null;
+}
+
 export interface BeamsContent {
   range_m: Array<number>;
   elevation_deg: Array<number>;
@@ -193,6 +200,8 @@ export interface ControlReport {
   figures: Array<ResidualStatistics>;
   judged_by: "control" | "check" | null;
   passed: boolean | null;
+  verdict: ControlVerdict;
+  limits: string;
   hint: string;
 }
 
@@ -207,8 +216,15 @@ export interface ControlState {
   points?: Array<ControlSpec>;
   frame?: "map" | "crs";
   picks?: Record<string, [number, number, number]>;
+  along?: Record<string, Array<[number, number, number]>>;
+  limits?: LimitsSpec;
   found_in?: Record<string, string>;
   version?: number | null;
+}
+
+export interface ControlVerdict {
+  level: "good" | "warning" | "bad" | "note";
+  text: string;
 }
 
 export interface Credentials {
@@ -398,6 +414,15 @@ export interface LidarSlicesView {
   name: string;
   before: Array<[number, number]>;
   after: Array<[number, number]>;
+}
+
+export interface LimitsSpec {
+  mean_horizontal_m?: number | null;
+  mean_height_m?: number | null;
+  max_horizontal_m?: number | null;
+  max_height_m?: number | null;
+  distances_m?: number | null;
+  survey_sd_m?: number;
 }
 
 export interface ListedReference {
@@ -599,6 +624,7 @@ export interface PickView {
   p_crs: [number, number, number] | null;
   uv: [number, number];
   about: Record<string, number>;
+  along: Array<[number, number, number]>;
 }
 
 export interface PointPairs {
@@ -684,31 +710,38 @@ export interface Rename {
 
 export interface Requirement {
   label: string;
-  value_m: number;
+  component: "horizontal" | "east" | "north" | "height" | "distances";
+  points: number;
+  value_m: number | null;
   limit_m: number;
-  holds: boolean;
+  holds: boolean | null;
+  text: string;
 }
 
 export interface Residual {
   id: string;
   role: "control" | "check";
-  east_m: number;
-  north_m: number;
-  up_m: number;
-  d2_m: number;
-  d3_m: number;
+  east_m: number | null;
+  north_m: number | null;
+  up_m: number | null;
+  d2_m: number | null;
+  d3_m: number | null;
+  directions: number;
+  across_m: number;
   stated: ErrorEllipse | null;
+  sigmas: number | null;
+  outlier: boolean;
 }
 
 export interface ResidualStatistics {
   role: "control" | "check";
   points: number;
-  rmse_m: [number, number, number];
-  mean_2d_m: number;
-  mean_up_m: number;
-  max_2d_m: number;
-  max_up_m: number;
-  rmse_3d_m: number;
+  axes: [AxisStatistics, AxisStatistics, AxisStatistics];
+  mean_2d_m: number | null;
+  mean_up_m: number | null;
+  max_2d_m: number | null;
+  max_up_m: number | null;
+  rmse_3d_m: number | null;
   relative_m: number | null;
   requirements: Array<Requirement>;
 }
@@ -982,6 +1015,7 @@ export interface SupersededEffect {
 export interface SurfacePoint {
   p_map: [number, number, number];
   surface: [number, number, number] | null;
+  normal: [number, number, number] | null;
 }
 
 export interface Token {

@@ -9,15 +9,14 @@ import {
   readSurface,
 } from "../shared/api.js";
 import { attempt, make } from "../shared/dom.js";
+import { limitsForm } from "./limits.js";
+import { combined } from "./measured.js";
+import { figures, residualCells } from "./residual_table.js";
 
 const MAX_ROWS = 300;
 const MAX_NAMED = 10;
-const cm = (m) => (m * 100).toFixed(1);
-/** Error ellipse and height: long axis x short axis at the azimuth of the long one, height. */
-const stated = (one) =>
-  one
-    ? `${cm(one.major_m)} × ${cm(one.minor_m)} at ${one.azimuth_deg.toFixed(0)}°, ${cm(one.up_m)}`
-    : "–";
+const without = (record, key) =>
+  Object.fromEntries(Object.entries(record).filter(([name]) => name !== key));
 const named = (ids) =>
   ids.slice(0, MAX_NAMED).join(", ") +
   (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
@@ -28,7 +27,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   const table = make("div", {});
   const file = make("input", { type: "file", accept: ".csv,.txt", ariaLabel: "Survey file" });
   /** @type {import("../shared/http_types").ControlState} */
-  let kept = { points: [], frame: "map", picks: {}, version: 0 };
+  let kept = { points: [], frame: "map", picks: {}, along: {}, version: 0 };
+  let mapKey = "";
   let last = Promise.resolve();
   let georeferenced = false;
 
@@ -56,7 +56,8 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       );
     const button = (text, action) =>
       make("button", { type: "button", onclick: () => attempt(message, action) }, text);
-    const use = (frame) => () => keep(() => ({ points: found.points, frame, picks: {} }));
+    const use = (frame) => () =>
+      keep((now) => ({ points: found.points, frame, picks: {}, along: {}, limits: now.limits }));
     preview.replaceChildren(
       make(
         "p",
@@ -111,7 +112,24 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     return report();
   }
 
-  const put = (places) => keep((now) => ({ ...now, picks: { ...now.picks, ...places } }));
+  /** Stores measurements {id: {p, along}}, each joined with what was measured there before. */
+  const put = (measurements) =>
+    keep((now) => {
+      const [picks, along] = [{ ...now.picks }, { ...now.along }];
+      for (const [name, one] of Object.entries(measurements)) {
+        const here = now.found_in?.[name] === mapKey && along[name];
+        const joined = combined(here ? { p: picks[name], along: along[name] } : null, one);
+        [picks[name], along[name]] = [joined.p, joined.along];
+      }
+      return { ...now, picks, along };
+    });
+
+  const drop = (name) =>
+    keep((now) => ({
+      ...now,
+      picks: without(now.picks, name),
+      along: without(now.along, name),
+    }));
 
   async function report() {
     if (!kept.points.length) {
@@ -127,9 +145,10 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const found = /** @type {any} */ (await readControlReport(id));
     const residuals = new Map(found.rows.map((one) => [one.id, one]));
     const earlier = new Set(found.outdated);
-    const head = ["Point", "Role", "dE", "dN", "dU", "2D", "3D", "1 σ stated [cm]", ""].map(
-      (text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text),
-    );
+    const head = [
+      ...["Point", "Role", "dE", "dN", "dU", "2D", "3D", "Across"],
+      ...["1 σ stated [cm]", "Residual / σ", ""],
+    ].map((text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text));
     const all = make(
       "button",
       { type: "button", onclick: () => attempt(message, () => everySurface(all)) },
@@ -138,7 +157,16 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const file = (ending, text, more) =>
       make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, text);
     table.replaceChildren(
-      verdict(found),
+      make("p", { className: `verdict ${found.verdict.level}` }, found.verdict.text),
+      earlier.size
+        ? make(
+            "p",
+            {},
+            `Measured in an earlier map or version only, not counted: ${named(found.outdated)}. `,
+            "Measure them again.",
+          )
+        : "",
+      limitsForm(kept.limits, found.limits, setLimits),
       found.hint ? make("p", { className: "bad" }, `✕ ${found.hint}`) : "",
       ...found.figures.map(figures),
       make(
@@ -157,6 +185,13 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
           ),
         ),
       ),
+      make(
+        "p",
+        { className: "quiet" },
+        "Map minus survey [cm]. – = not measured, counts nowhere: a point on a surface is ",
+        "measured across it only (Across); a point picked in a slice, in the plane of the slice. ",
+        "Pick it in a second slice for the third component.",
+      ),
       kept.points.length > MAX_ROWS
         ? make(
             "p",
@@ -174,25 +209,9 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     );
   }
 
-  function verdict({ passed, judged_by, missing, outdated }) {
-    const left = [
-      missing.length ? `${missing.length} not measured yet` : "",
-      outdated.length
-        ? `${outdated.length} measured in an earlier map only, not counted: measure them again`
-        : "",
-    ].filter(Boolean);
-    const text =
-      passed === null
-        ? "– No check point measured yet"
-        : passed
-          ? `✓ Within the limits at the ${judged_by} points`
-          : `✕ Outside the limits at the ${judged_by} points`;
-    return make(
-      "p",
-      { className: `verdict ${passed === null ? "" : passed ? "good" : "bad"}` },
-      [text, ...left].join(" · "),
-    );
-  }
+  /** null = the usual limits. */
+  const setLimits = (limits) =>
+    attempt(message, () => keep((now) => (limits ? { ...now, limits } : without(now, "limits"))));
 
   async function everySurface(button) {
     button.disabled = true;
@@ -200,20 +219,15 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     const without = [];
     for (const one of kept.points) {
       button.textContent = `${one.id}…`;
-      const { surface } = await readSurface(id, one.id);
-      if (surface) places[one.id] = surface;
+      const { surface, normal } = await readSurface(id, one.id);
+      if (surface) places[one.id] = { p: surface, along: [normal] };
       else without.push(one.id);
     }
     await put(places);
-    if (without.length) message.textContent = `No surface within 30 cm of ${named(without)}`;
+    if (without.length) message.textContent = `No flat surface within 30 cm of ${named(without)}`;
   }
 
   function row(one, residual, earlier) {
-    const values = residual
-      ? [residual.east_m, residual.north_m, residual.up_m, residual.d2_m, residual.d3_m]
-          .map(cm)
-          .concat(stated(residual.stated))
-      : ["", "", "", "", "", ""];
     const role = make(
       "select",
       { ariaLabel: `Role of ${one.id}` },
@@ -245,9 +259,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       {},
       make("th", { scope: "row" }, one.id),
       make("td", {}, role),
-      ...(earlier
-        ? [make("td", { colSpan: values.length, className: "quiet" }, "found in an earlier map")]
-        : values.map((text) => make("td", { className: "number" }, text))),
+      ...residualCells(residual, earlier),
       make(
         "td",
         {},
@@ -257,6 +269,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
           button("Go", () => go(one), `Go to ${one.id}`),
           button("Here", () => pick(one), `${one.id} is the picked point`),
           button("Surface", () => surface(one), `${one.id} on the nearest surface`),
+          residual || earlier ? button("Clear", () => drop(one.id), `Clear ${one.id}`) : "",
         ),
       ),
     );
@@ -271,57 +284,14 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   async function pick(one) {
     const picked = measured();
     if (!picked) throw new Error(`Pick ${one.id} in the slice first`);
-    await put({ [one.id]: picked.p_map });
+    await put({ [one.id]: { p: picked.p_map, along: picked.along } });
   }
 
   async function surface(one) {
-    const { surface: at } = await readSurface(id, one.id);
-    if (!at) throw new Error(`No surface within 30 cm of ${one.id}`);
-    await put({ [one.id]: at });
-  }
-
-  /** The limits of one role, with what was measured. */
-  function figures(one) {
-    const cell = (text) => make("td", { className: "number" }, text);
-    const line = (limit) =>
-      make(
-        "tr",
-        {},
-        make("th", { scope: "row" }, limit.label),
-        make(
-          "td",
-          { className: limit.holds ? "good" : "bad" },
-          limit.holds ? "✓ holds" : "✕ exceeded",
-        ),
-        cell(cm(limit.value_m)),
-        cell(`≤ ${Math.round(limit.limit_m * 100)}`),
-      );
-    const head = [
-      `${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`,
-      "",
-      "Measured [cm]",
-      "Limit",
-    ].map((text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text));
-    return make(
-      "div",
-      { className: "figures" },
-      make(
-        "div",
-        { className: "scroll" },
-        make(
-          "table",
-          {},
-          make("thead", {}, make("tr", {}, ...head)),
-          make("tbody", {}, ...one.requirements.map(line)),
-        ),
-      ),
-      make(
-        "p",
-        { className: "quiet" },
-        `RMSE ${one.rmse_m.map((rmse, axis) => `${"ENU"[axis]} ${cm(rmse)}`).join("  ")}  ` +
-          `3D ${cm(one.rmse_3d_m)} cm`,
-      ),
-    );
+    const { surface: at, normal } = await readSurface(id, one.id);
+    if (!at)
+      throw new Error(`No flat surface within 30 cm of ${one.id}: pick it in the slice, then Here`);
+    await put({ [one.id]: { p: at, along: [normal] } });
   }
 
   attempt(message, async () => {
@@ -330,6 +300,6 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   });
   return {
     element: make("div", {}, file, preview, message, table),
-    facts: (facts) => (georeferenced = Boolean(facts.crs)),
+    facts: (facts) => ([georeferenced, mapKey] = [Boolean(facts.crs), facts.key]),
   };
 }

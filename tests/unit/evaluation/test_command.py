@@ -25,16 +25,37 @@ def test_markers_are_compared_and_missing_ones_named(tmp_path, markers, capsys):
     text = capsys.readouterr().out
     assert "A (check)" in text and "5.0" in text
     assert "not measured: C" in text
-    assert "by check points: mean H 5.0 cm, mean V 10.0 cm" in text
+    assert "– No verdict at the check points: horizontal – (1 point, 3 needed)" in text
+    assert "mean 14 cm horizontal, 12 cm height" in text
 
 
 def test_markers_as_json_have_the_verdict(tmp_path, markers, capsys):
     assert main(["evaluate", str(tmp_path), *markers, "--json"]) == 0
 
     table = json.loads(capsys.readouterr().out)["markers"]
-    assert table["within_limits"] is True
+    assert table["passed"] is None
     assert table["missing"] == ["C"]
-    assert table["rows"][0]["dz_m"] == pytest.approx(0.1)
+    assert table["rows"][0]["up_m"] == pytest.approx(0.1)
+
+
+def test_markers_are_judged_by_the_given_limits_where_they_were_measured(tmp_path, capsys):
+    names = "ABCD"
+    surveyed, measured = tmp_path / "surveyed.csv", tmp_path / "measured.csv"
+    surveyed.write_text(
+        "name,x_m,y_m,z_m\n" + "".join(f"{n},{k},{k * k},0\n" for k, n in enumerate(names))
+    )
+    measured.write_text("name,x_m,y_m,z_m\n" + "".join(f"{n},,-,0.03\n" for n in names))
+    ask = ["evaluate", str(tmp_path), "--markers", str(surveyed), str(measured), "--limits"]
+
+    assert main([*ask, "-,2,-,-,-"]) == 0
+    strict = capsys.readouterr().out
+    assert main([*ask, "-,4,-,5,-", "--json"]) == 0
+    loose = json.loads(capsys.readouterr().out)["markers"]
+
+    assert "✕ Outside the limits at the check points: height ✕ (4 points" in strict
+    assert loose["passed"] is True and loose["rows"][1]["east_m"] is None
+    assert loose["figures"][0]["axes"][0]["rmse_m"] is None
+    assert main([*ask, "1,2"]) == 1 and "expected five numbers" in capsys.readouterr().err
 
 
 def test_the_density_of_a_patch_of_the_map(tmp_path, capsys):

@@ -8,7 +8,10 @@ import pytest
 from recon4.errors import CorruptFile
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint, read_control
-from recon4.slices.residuals import residual_csv, residuals
+from recon4.slices.limits import ControlLimits
+from recon4.slices.measured import MeasuredPosition
+from recon4.slices.residual_table import residual_csv
+from recon4.slices.residuals import ControlContext, residuals
 
 
 @pytest.mark.parametrize(
@@ -50,35 +53,45 @@ def test_a_file_without_points_is_refused(data):
         read_control(data, name="p.csv")
 
 
+def full(measured):
+    return {name: MeasuredPosition.full(xyz) for name, xyz in measured.items()}
+
+
 def test_control_and_check_points_are_judged_apart():
     points = [
         ControlPoint("A", (0.0, 0.0, 0.0), "control"),
         ControlPoint("B", (10.0, 0.0, 0.0)),
         ControlPoint("C", (0.0, 10.0, 0.0)),
         ControlPoint("D", (5.0, 5.0, 5.0)),
+        ControlPoint("E", (5.0, 5.0, 0.0)),
     ]
     measured = {
-        "A": np.array([1.0, 0.0, 0.0]),
-        "B": np.array([10.03, 0.04, 0.0]),
-        "C": np.array([0.03, 10.04, -0.25]),
+        "A": [1.0, 0.0, 0.0],
+        "B": [10.03, 0.04, 0.0],
+        "C": [0.03, 10.04, -0.45],
+        "E": [5.03, 5.04, 0.0],
     }
 
-    found = residuals(points, measured)
+    found = residuals(points, full(measured))
 
     check, control = found.figures
     assert found.judged_by == "check" and found.missing == ("D",)
-    assert (check.role, check.points, control.points) == ("check", 2, 1)
-    assert check.mean_2d_m == pytest.approx(0.05) and check.max_up_m == pytest.approx(0.25)
-    assert check.rmse_m == pytest.approx((0.03, 0.04, 0.25 / math.sqrt(2)))
+    assert (check.role, check.points, control.points) == ("check", 3, 1)
+    assert check.mean_2d_m == pytest.approx(0.05) and check.max_up_m == pytest.approx(0.45)
+    assert [one.rmse_m for one in check.axes] == pytest.approx((0.03, 0.04, 0.45 / math.sqrt(3)))
+    assert [one.mean_m for one in check.axes] == pytest.approx((0.03, 0.04, -0.15))
     assert [(one.label, one.limit_m, one.holds) for one in check.requirements] == [
         ("mean horizontal", 0.14, True),
-        ("mean height", 0.12, False),
         ("largest horizontal", 0.28, True),
+        ("mean height", 0.12, False),
         ("largest height", 0.24, False),
         ("distances between points", 0.05, True),
     ]
-    assert check.relative_m < 0.01 and found.passed is False
-    assert [one.holds for one in control.requirements] == [False, True, False, True]
+    assert check.relative_m < 0.05 and found.passed is False
+    assert found.verdict.level == "bad"
+    assert "height ✕ (3 points, mean height 15.0 of 12.0 cm" in found.verdict.text
+    assert [one.holds for one in control.requirements] == [None] * 4 + [None] * 1
+    assert control.requirements[0].text == "– 1 of 3 points needed, above the limit"
 
 
 @pytest.mark.parametrize(
@@ -99,7 +112,7 @@ def test_heights_above_sea_level_are_told_by_the_points(up_m, east_m, said):
         for point, up in zip(points, up_m, strict=True)
     }
 
-    found = residuals(points, measured)
+    found = residuals(points, full(measured))
 
     assert found.hint.startswith(said) and bool(found.hint) == bool(said)
     assert found.hint in residual_csv(found)
@@ -121,7 +134,7 @@ def test_heights_above_sea_level_are_told_by_the_points(up_m, east_m, said):
 def test_a_survey_below_or_above_the_map_has_other_heights(heights_m, said):
     points = [ControlPoint("A", (0.0, 0.0, 300.0)), ControlPoint("B", (9.0, 0.0, 304.0))]
 
-    found = residuals(points, {}, map_heights_m=heights_m)
+    found = residuals(points, {}, ControlContext(map_heights_m=heights_m))
 
     assert found.hint.startswith(said) and bool(found.hint) == bool(said)
 
@@ -129,35 +142,74 @@ def test_a_survey_below_or_above_the_map_has_other_heights(heights_m, said):
 def test_only_places_in_this_map_count():
     points = [ControlPoint("A", (0.0, 0.0, 0.0)), ControlPoint("B", (1.0, 0.0, 0.0))]
 
-    found = residuals(points, {}, outdated=["B"])
+    found = residuals(points, {}, ControlContext(outdated=["B"]))
 
     assert (found.missing, found.outdated, found.passed) == (("A",), ("B",), None)
 
 
 def test_a_name_that_looks_like_a_formula_is_defused():
-    found = residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], {"=1+1": np.zeros(3)})
+    found = residuals([ControlPoint("=1+1", (0.0, 0.0, 0.0))], full({"=1+1": np.zeros(3)}))
 
-    table = residual_csv(found, comment="of a\nhouse")
+    lines = residual_csv(found, comment="of a\nhouse").splitlines()
 
-    assert table.splitlines()[0] == "# recon4 control and check points of a house"
-    assert table.splitlines()[2].startswith("'=1+1,check,0.0000")
-    assert "largest height,check,0.0000,0.24,yes" in table
+    assert lines[0] == "# recon4 control and check points of a house"
+    assert lines[4].startswith("'=1+1,check,0.0000")
+    assert "largest height,check,1,0.0000,0.240,–" in lines
 
 
 @pytest.mark.parametrize(
-    ("up_m", "role", "words"),
+    ("up_m", "role", "count", "words"),
     [
-        (0.05, "check", "✓ The map keeps the limits at 1 check point. 1 more not checked."),
-        (0.25, "check", "✕ The map does not keep the limits"),
-        (0.05, "control", "no independent point was checked"),
+        (0.05, "check", 3, "✓ Within the limits at the check points: horizontal ✓ (3 points)"),
+        (0.25, "check", 3, "✕ Outside the limits at the check points: horizontal ✓ (3 points)"),
+        (0.05, "control", 3, "no independent point was checked: horizontal ✓"),
+        (0.05, "check", 2, "– No verdict at the check points: horizontal – (2 points, 3 needed)"),
+        (0.25, "check", 2, "height – (2 points, 3 needed, mean height 25.0 of 12.0 cm"),
     ],
 )
-def test_the_sheet_says_what_was_measured_against_which_limit(up_m, role, words):
-    points = [ControlPoint("<A>", (0.0, 0.0, 0.0), role), ControlPoint("B", (1.0, 0.0, 0.0))]
+def test_the_sheet_says_what_was_measured_against_which_limit(up_m, role, count, words):
+    points = [ControlPoint(f"<A{k}>", (9.0 * k, 0.0, 0.0), role) for k in range(count)]
+    measured = {point.id: np.add(point.xyz_m, (0.0, 0.0, up_m)) for point in points}
+    points.append(ControlPoint("B", (1.0, 0.0, 0.0)))
     about = AcceptanceText(project="Dům & dvůr", frame="local", sources="map 12", approval="By Eva")
 
-    sheet = render_acceptance(residuals(points, {"<A>": np.array([0.0, 0.0, up_m])}), about)
+    sheet = render_acceptance(residuals(points, full(measured)), about)
 
-    assert words in sheet and "&lt;A&gt;" in sheet and "Dům &amp; dvůr" in sheet
-    assert f"<td>mean height</td><td>{100 * up_m:.1f}</td><td>12</td>" in sheet
+    assert words in sheet and "&lt;A0&gt;" in sheet and "Dům &amp; dvůr" in sheet
+    assert f"<td>mean height</td><td>{count}</td><td>{100 * up_m:.1f}</td><td>12.0</td>" in sheet
     assert "not found in the map" in sheet and "By Eva" in sheet
+    assert "1 more not measured" in sheet and "largest 28 cm horizontal, 24 cm height" in sheet
+
+
+def test_limits_of_the_job_decide_and_are_named():
+    points = [ControlPoint(str(k), (9.0 * k, k * k, 0.0)) for k in range(4)]
+    measured = full({point.id: np.add(point.xyz_m, (0.03, 0.0, 0.0)) for point in points})
+    strict = ControlLimits(mean_horizontal_m=0.02, distances_m=None)
+
+    usual = residuals(points, measured)
+    found = residuals(points, measured, ControlContext(limits=strict))
+
+    assert usual.passed is True and "(usual limits)" in residual_csv(usual)
+    assert found.passed is False and "mean horizontal 3.0 of 2.0 cm" in found.verdict.text
+    assert "mean 2 cm horizontal" in residual_csv(found)
+    assert (
+        "distances not required; σ of survey and picking 1 cm (limits of this job)"
+        in residual_csv(found)
+    )
+    assert "distances" not in [line.component for line in found.figures[0].requirements]
+
+
+def test_the_points_of_the_thesis_have_its_figures_and_are_too_few_for_a_verdict():
+    """V Table 3.3."""
+    points = [ControlPoint("pt1", (100.0, 200.0, 300.0)), ControlPoint("pt2", (0.0, 0.0, 0.0))]
+    measured = full({"pt1": [99.941, 199.988, 299.848], "pt2": [-0.056, 0.005, -0.047]})
+
+    found = residuals(points, measured)
+
+    row, (check,) = found.rows[0], found.figures
+    assert (row.east_m, row.north_m, row.up_m) == pytest.approx((-0.059, -0.012, -0.152))
+    assert row.d2_m == pytest.approx(0.060, abs=5e-4)
+    assert row.d3_m == pytest.approx(0.163, abs=5e-4)
+    assert check.mean_2d_m == pytest.approx(0.058, abs=5e-4)
+    assert (check.mean_up_m, check.max_up_m) == pytest.approx((0.0995, 0.152))
+    assert found.passed is None

@@ -8,7 +8,9 @@ from recon4.mapping.deviation import PoseCovariances
 from recon4.settings import MapSettings
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.error_ellipses import error_ellipse, place_covariance
-from recon4.slices.residuals import residual_csv, residuals
+from recon4.slices.measured import MeasuredPosition
+from recon4.slices.residual_table import residual_csv
+from recon4.slices.residuals import ControlContext, residuals
 from tests.room_walks import room_walk
 
 
@@ -56,13 +58,17 @@ def test_a_place_without_points_has_no_covariance(room):
 
 def test_residuals_carry_what_the_map_states_of_their_place():
     points = [ControlPoint("A", (0.0, 0.0, 0.0)), ControlPoint("B", (1.0, 0.0, 0.0))]
-    measured = {"A": np.array([0.01, 0.0, 0.0]), "B": np.array([1.0, 0.0, 0.0])}
+    measured = {
+        "A": MeasuredPosition.full(np.array([0.01, 0.0, 0.0])),
+        "B": MeasuredPosition.full(np.array([1.0, 0.0, 0.0])),
+    }
+    stated = {"A": np.diag([0.02, 0.01, 0.03]) ** 2}
 
-    report = residuals(points, measured, covariances={"A": np.diag([0.02, 0.01, 0.03]) ** 2})
+    report = residuals(points, measured, ControlContext(covariances=stated))
 
     first, second = report.rows
     assert first.stated.major_m == pytest.approx(0.02) and first.stated.azimuth_deg == 90.0
     assert second.stated is None
-    assert "A,check,0.0100,0.0000,0.0000,0.0100,0.0100,0.0200,0.0100,90.0000,0.0300" in (
-        residual_csv(report).splitlines()
+    assert "A,check,0.0100,0.0000,0.0000,0.0100,0.0100,0.0200,0.0100,90.0000,0.0300,3,0.0100" in (
+        residual_csv(report)
     )

@@ -248,5 +248,6 @@ def test_the_nearest_point_of_the_slice_is_picked(tiles):
 def test_the_foot_on_the_surface_is_found(tiles):
     foot = nearest_surface(tiles, np.array([1.08, 2.0, 1.0]))
 
-    assert foot == pytest.approx([1.0, 2.0, 1.0], abs=0.008)
+    assert foot.p_map == pytest.approx([1.0, 2.0, 1.0], abs=0.008)
+    assert np.abs(foot.normal) == pytest.approx([1.0, 0.0, 0.0], abs=0.05)
     assert nearest_surface(tiles, np.array([3.0, 2.0, 1.0])) is None

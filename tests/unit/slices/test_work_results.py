@@ -19,6 +19,7 @@ from recon4.review.queue import AlternativePath
 from recon4.review.solve import Difference, EdgeConflict, Move
 from recon4.slices.compare import ComparedSlice, Comparison
 from recon4.slices.control_points import ControlPoint
+from recon4.slices.measured import MeasuredPosition
 from recon4.slices.residuals import residuals
 
 WORK = [
@@ -60,10 +61,13 @@ def test_records_come_back_as_they_were():
     )  # fmt: skip
     row = ComparedSlice.of(ROW)
     table = Comparison((row,), row, None, 0.5, tuple(range(100)), "model", "plane")
-    report = residuals([ControlPoint("A", (0.0, 0.0, 0.0))], {"A": np.array([0.01, 0.0, 0.0])})
+    report = residuals(
+        [ControlPoint("A", (0.0, 0.0, 0.0))],
+        {"A": MeasuredPosition.full(np.array([0.01, 0.0, 0.0]))},
+    )
 
     assert decode_result(preview, encode_result(preview, effect)) == effect
     assert decode_result(pair_facts, encode_result(pair_facts, pair)) == pair
     assert decode_result(comparison, encode_result(comparison, table)) == table
     again = decode_result(control_report, encode_result(control_report, report))
-    assert again.rows == report.rows and again.passed is report.passed
+    assert again == report
