@@ -163,6 +163,11 @@ def write_bin(path: Path, table):
     return path
 
 
+def noisy(values, k):
+    """The k-th sample of a real sensor at rest: values that differ from sample to sample, (3,)."""
+    return np.array(values) + 1e-3 * np.sin((k + 1) * np.array([1.0, 2.0, 3.0]))
+
+
 # -- bags
 
 
@@ -170,6 +175,7 @@ class Bag:
     """Writes a bag of kind ``bag1``, ``db3`` or ``mcap``."""
 
     def __init__(self, path: Path, kind: str) -> None:
+        self.frame = "x"
         self.ros1 = kind == "bag1"
         self.store = get_typestore(Stores.ROS1_NOETIC if self.ros1 else Stores.ROS2_HUMBLE)
         header = "std_msgs/Header header\n"
@@ -207,9 +213,10 @@ class Bag:
         sec, nanosec = divmod(int(t_ns), 1_000_000_000)
         return self.make("builtin_interfaces/msg/Time", sec=sec, nanosec=nanosec)
 
-    def header(self, t_ns):
+    def header(self, t_ns, frame=None):
         extra = {"seq": 0} if self.ros1 else {}
-        return self.make("std_msgs/msg/Header", stamp=self.time(t_ns), frame_id="x", **extra)
+        frame = self.frame if frame is None else frame
+        return self.make("std_msgs/msg/Header", stamp=self.time(t_ns), frame_id=frame, **extra)
 
     def scan(self, topic, t_ns, payloads):
         packets = [
@@ -219,18 +226,19 @@ class Bag:
         message = self.make(_SCAN, header=self.header(t_ns[0]), packets=packets)
         self.write(topic, _SCAN, int(t_ns[-1]), message)
 
-    def imu(self, topic, t_ns, gyro, accel):
+    def imu(self, topic, t_ns, gyro, accel, *, absent=()):
+        """A sample; ``absent`` = names of quantities that are declared as not measured."""
         vector = "geometry_msgs/msg/Vector3"
-        zeros = np.zeros(9)
+        zeros, declared = np.zeros(9), np.array([-1.0, *np.zeros(8)])
         message = self.make(
             "sensor_msgs/msg/Imu",
             header=self.header(t_ns),
             orientation=self.make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0),
             orientation_covariance=zeros,
             angular_velocity=self.make(vector, x=gyro[0], y=gyro[1], z=gyro[2]),
-            angular_velocity_covariance=zeros,
+            angular_velocity_covariance=declared if "gyro" in absent else zeros,
             linear_acceleration=self.make(vector, x=accel[0], y=accel[1], z=accel[2]),
-            linear_acceleration_covariance=zeros,
+            linear_acceleration_covariance=declared if "accel" in absent else zeros,
         )
         self.write(topic, "sensor_msgs/msg/Imu", int(t_ns), message)
 
@@ -313,7 +321,8 @@ def write_room_bag(folder: Path, kind: str, *, seconds=1.0, topics=("/velodyne_p
             start = int(t_ns[first])
             bag.odometry("/odom", start, first / 75)
             for k in range(10):
-                bag.imu("/imu", start + k * 10_000_000, (0.0, 0.0, 0.1), (0.0, 0.0, 9.8))
+                gyro, accel = (noisy((0.0, 0.0, z), first + k) for z in (0.1, 9.8))
+                bag.imu("/imu", start + k * 10_000_000, gyro, accel)
             if first % 150 == 0:
                 bag.fix("/fix", start, 50.0, 14.0, 300.0 + first)
     return path

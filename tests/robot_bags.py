@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from tests.builders import T0_NS, Bag, bag_path, room_cloud
+from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud
 
 TF2, TF1 = "tf2_msgs/msg/TFMessage", "tf/msg/tfMessage"
 MESSAGE = "geometry_msgs/TransformStamped[] transforms\n"
@@ -20,16 +20,9 @@ class RobotBag(Bag):
         from rosbags.typesys import get_types_from_msg
 
         super().__init__(path, kind)
-        self.frame = "x"
         for name in (TF1, TF2):
             if name not in self.store.types:
                 self.store.register(get_types_from_msg(MESSAGE, name))
-
-    def header(self, t_ns, frame=None):
-        header = super().header(t_ns)
-        extra = {"seq": 0} if self.ros1 else {}
-        frame = self.frame if frame is None else frame
-        return self.make("std_msgs/msg/Header", stamp=header.stamp, frame_id=frame, **extra)
 
     def tf(self, *transforms, topic="/tf_static", t_ns=T0_NS, kind=TF2):
         """Write transforms: parent, child and mount, or numbers x y z qx qy qz qw."""
@@ -134,8 +127,9 @@ def write_walk(folder, transforms=(), *, kind="db3", lidars=("os_lidar",), secon
                 bag.cloud(f"/{lidar.strip('/')}/points", t_ns, room_cloud())
             bag.frame = frames.get("imu", "")
             for i in range(10 * ("imu" in frames)):
-                bag.imu("/imu", t_ns + i * 10_000_000, (0.0, 0.0, 0.0), (0.0, 0.0, 9.81))
+                gyro, accel = (noisy((0.0, 0.0, z), 10 * k + i) for z in (0.0, 9.81))
+                bag.imu("/imu", t_ns + i * 10_000_000, gyro, accel)
             if "gnss" in frames:
                 bag.frame = frames["gnss"]
-                bag.fix("/fix", t_ns, 50.0, 14.0, 300.0)
+                bag.fix("/fix", t_ns, 50.0 + 1e-7 * k, 14.0, 300.0)
     return path

@@ -153,10 +153,16 @@ _SAMPLES = {
     "imu_repeated": _lost("imu_kept", "repeated by the driver, dropped", apart=True, stated=True),
     "imu_unsorted": _repaired("imu_kept", "earlier than the one before, sorted"),
     "imu_jumps_back": _repaired("", "jumps back with the LiDARs", noun="times"),
+    "imu_accel_interpolated": _repaired("imu_kept", "without an acceleration, interpolated"),
+    "imu_accel_missing": _lost(
+        "imu_kept", "without an acceleration for too long, dropped", apart=True, stated=True
+    ),
     "imu_accel_scaled": _repaired("imu_kept", "accelerations in g, stored in m/s²"),
     "gnss_samples": _read("GNSS positions received"),
     "gnss_kept": _read("GNSS positions used"),
     "gnss_nan": _lost("gnss_kept", "no place on earth, dropped", apart=True),
+    "gnss_at_zero": _lost("gnss_kept", "at latitude and longitude 0, dropped", apart=True),
+    "gnss_constant": _lost("gnss_kept", "one position for all, dropped", apart=True, stated=True),
     "gnss_no_fix": _usual("", "without a fix", noun="GNSS positions"),
     "gnss_wrong_time": _lost("gnss_kept", "a stamp of another time, dropped", apart=True),
     "gnss_duplicate": _lost("gnss_kept", "the time of another, dropped", apart=True),

@@ -34,6 +34,7 @@ from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
+from recon4.recording.samples.measured import declared_absent
 from recon4.recording.velodyne.data_packets import PacketDecoder
 from recon4.recording.velodyne.models import likely_model
 from recon4.settings import IngestSettings
@@ -47,7 +48,12 @@ _PROBED_MESSAGES = 50
 """Messages of a topic that are decoded to detect its content."""
 _NAMES_LISTED = 20
 _FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-_FIX_QUALITY = {0: GnssQuality.SINGLE, 1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED}
+_FIX_QUALITY = {
+    **{-2: GnssQuality.SINGLE, 0: GnssQuality.SINGLE},
+    **{1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED},
+}
+"""Of each ``NavSatStatus``; -2 is a driver that does not tell."""
+_NOTHING = (np.nan,) * 3
 
 
 class BagRecording:
@@ -312,9 +318,12 @@ def stamp_ns(stamp: Any) -> int:
 
 
 def imu_row(message: Any) -> tuple[float, ...]:
-    """Six numbers of a ``sensor_msgs/Imu``."""
+    """Six numbers of a ``sensor_msgs/Imu``; NaN = declared as not measured."""
     w, a = message.angular_velocity, message.linear_acceleration
-    return w.x, w.y, w.z, a.x, a.y, a.z
+    turns, forces = (w.x, w.y, w.z), (a.x, a.y, a.z)
+    turns = _NOTHING if declared_absent(message.angular_velocity_covariance) else turns
+    forces = _NOTHING if declared_absent(message.linear_acceleration_covariance) else forces
+    return *turns, *forces
 
 
 def join_imu(t_ns: Times, rows: NDArray[np.float64]) -> ImuSamples:

@@ -23,6 +23,10 @@ RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")
 INTENSITY_FIELDS = ("intensity", "i", "reflectivity", "signal", "scalar_intensity")
 
 _BANDS = 64
+_MANY_POINTS = 100
+"""Fewer points may have one intensity or ring."""
+_ONE_BEAM_RAD = np.deg2rad(5.0)
+"""A tilted beam spreads over less elevation."""
 _ABSOLUTE = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
 """From this value on a time is absolute; nanoseconds of one unit."""
 _FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
@@ -109,6 +113,9 @@ class CloudDecoder:
             self._report.derive(f"{self._name}: no intensity field, 0 is stored")
             return np.zeros(count, np.uint16)
         values = table[key]
+        if count >= _MANY_POINTS and _is_constant(values):
+            text = f"{key} is {values[0]:g} in all points of a cloud: it was not measured"
+            self._report.derive(f"{self._name}: {text}")
         if values.dtype.kind == "f":
             finite = np.nan_to_num(values, nan=0.0, posinf=65535.0, neginf=0.0)
             if len(finite) and finite.max() <= 1.0 and np.any(finite % 1.0):
@@ -127,7 +134,9 @@ class CloudDecoder:
         key = find_field(table, RING_FIELDS)
         elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
         if not key:
-            return self._rings_from_elevation(elevation)
+            return self._rings_from_elevation(elevation, "no ring field")
+        if _is_flat(table[key], elevation):
+            return self._rings_from_elevation(elevation, f"{key} is {table[key][0]:g} everywhere")
         rings = np.clip(table[key], 0, 255).astype(np.uint8)
         if self._ring_of is None and len(rings):
             self._ring_of = _upwards(rings, elevation)
@@ -135,13 +144,13 @@ class CloudDecoder:
                 self._report.derive(f"{self._name}: {key} renumbered, 0 = lowest elevation")
         return rings if self._ring_of is None else self._ring_of[rings]
 
-    def _rings_from_elevation(self, elevation: NDArray[np.floating]) -> NDArray[np.uint8]:
+    def _rings_from_elevation(self, elevation: NDArray[np.floating], why: str) -> NDArray[np.uint8]:
         beams = _beams(self._model, elevation)
         if beams is None:
-            self._report.derive(f"{self._name}: no ring field, {_BANDS} bands of elevation instead")
+            self._report.derive(f"{self._name}: {why}, {_BANDS} bands of elevation instead")
             beams = np.deg2rad(np.linspace(-25.0, 15.0, _BANDS))
         else:
-            self._report.derive(f"{self._name}: no ring field, ring from elevation")
+            self._report.derive(f"{self._name}: {why}, ring from elevation")
         middles = (beams[1:] + beams[:-1]) / 2.0
         return np.searchsorted(middles, elevation).astype(np.uint8)
 
@@ -225,6 +234,17 @@ def _xyz(table: Table, name: str) -> NDArray[np.float32]:
         raise UnknownFormat(f"{name}: a cloud needs x, y and z; it has {sorted(table)}")
     with np.errstate(over="ignore", invalid="ignore"):
         return np.column_stack([table[k] for k in ("x", "y", "z")]).astype(np.float32)
+
+
+def _is_constant(values: NDArray[Any]) -> bool:
+    return bool(np.all((values == values[0]) | (values != values)))
+
+
+def _is_flat(rings: NDArray[Any], elevation: NDArray[np.floating]) -> bool:
+    """Whether all points have one ring, but not the elevation of one beam."""
+    if len(rings) < _MANY_POINTS or not _is_constant(rings):
+        return False
+    return bool(np.ptp(np.percentile(elevation, [5, 95])) > _ONE_BEAM_RAD)
 
 
 def _upwards(rings: NDArray[np.uint8], elevation: NDArray[np.floating]) -> NDArray[np.uint8]:

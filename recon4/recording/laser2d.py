@@ -204,6 +204,9 @@ def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportRepo
     pose = np.concatenate([from_se3(walk.T_a_b) for walk in walks])
     first = np.concatenate([[True], np.diff(np.maximum.accumulate(t_ns)) > 0])
     t_ns, pose = t_ns[first], pose[first]
+    if len(pose) > 1 and not np.ptp(pose, axis=0).any():
+        report.derive("the odometry never changes: it is not used")
+        return None
     slack_ns = 500_000_000
     if scans.t_ns[0] < t_ns[0] - slack_ns or scans.t_ns[-1] > t_ns[-1] + slack_ns:
         report.warn("the odometry does not cover all scans: it is not used")

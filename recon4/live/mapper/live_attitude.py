@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, proper
 from recon4.kernels.imu_chain import level_by_gravity
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.recording.samples.measured import feels_gravity
 from recon4.registration.motion import imu_in_body, level_rotation
 
 _GAIN_PER_S = 0.15
@@ -21,6 +23,8 @@ _MIN_UPRIGHT = 0.5
 """Cosine of the largest tilt at the start, 60 degrees."""
 IMU_WRONG = "is it mounted as in the rig file (upside down?)"
 NOT_UPRIGHT = f"the IMU does not measure gravity upward and is not used: {IMU_WRONG}"
+NO_FORCES = "the IMU has no accelerometer and is not used"
+_MOST_SILENT = 100
 _SURE_NS = 10_000_000
 """Samples may be missing for this time at the end; the motion is extrapolated [ns]."""
 
@@ -43,12 +47,15 @@ class LiveAttitude:
         """End of the last time without samples [ns]."""
         self._last: tuple[Array, Array] | None = None
         """Turn rate and specific force of the last sample."""
+        self._silent = 0
+        """Number of samples without accelerations."""
         self.remark = ""
         """Why the IMU is not used; empty = it is."""
 
     def extend(self, imu: ImuSamples) -> None:
         """Add samples; those that are not later than the ones before are left out."""
-        known = np.isfinite(imu.gyro_rad_s).all(axis=1) & np.isfinite(imu.accel_m_s2).all(axis=1)
+        known = np.isfinite(imu.gyro_rad_s).all(axis=1) & feels_gravity(imu.accel_m_s2)
+        self._expect_forces(known)
         t_ns = imu.t_ns + self._offset_ns
         known &= t_ns > (self._t_ns[-1] if len(self._t_ns) else -1)
         if self.remark or not known.any():
@@ -74,6 +81,12 @@ class LiveAttitude:
     def trajectory(self) -> Trajectory:
         """``R_world_body`` of the last seconds; positions are zero."""
         return Trajectory(self._t_ns, SE3(self._R, np.zeros((len(self._t_ns), 3))))
+
+    def _expect_forces(self, known: NDArray[np.bool_]) -> None:
+        """Give up an IMU that begins without accelerations."""
+        self._silent += int(np.count_nonzero(~known))
+        if self._last is None and not known.any() and self._silent > _MOST_SILENT:
+            self.remark = NO_FORCES
 
     def _begin(self, t_ns: Times, gyro: Array, accel: Array) -> None:
         up = accel.mean(axis=0)

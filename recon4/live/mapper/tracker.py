@@ -13,6 +13,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.samples.clean import join
+from recon4.recording.samples.measured import feels_gravity, imu_channels
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.settings import Settings
@@ -23,6 +24,7 @@ _BAD_FRAMES = 8
 """Number of them, lost or with a large residual, that starts a check."""
 _FAR_M = 0.08
 _BETTER = 0.75
+_CLOCK = "its clock the same?"
 _EARLY_FRAMES = 100
 """If the IMU is rejected before this multiframe, the map made with it is reset."""
 _INTERRUPTED_NS = 2_000_000_000
@@ -44,6 +46,8 @@ class Tracker:
         self._since_check = self._frames = 0
         self._end_ns: int | None = None
         """End of the last multiframe."""
+        self._with_forces: bool | None = None
+        """Whether the odometry began with accelerations; None = it has not begun."""
         self._imu_ns: int | None = None
         self._imu_hole_ns = 0
         """Longest time without an IMU sample since the last multiframe."""
@@ -60,7 +64,9 @@ class Tracker:
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Add IMU samples."""
-        imu = ImuSamples(imu.t_ns + self._offset_ns, imu.gyro_rad_s, imu.accel_m_s2)
+        imu = self._measured(ImuSamples(imu.t_ns + self._offset_ns, imu.gyro_rad_s, imu.accel_m_s2))
+        if not len(imu):
+            return
         self._imu.append(imu)
         if self._imu_ns is not None:
             self._imu_hole_ns = max(self._imu_hole_ns, int(imu.t_ns[0]) - self._imu_ns)
@@ -69,6 +75,15 @@ class Tracker:
             self._waiting.append(imu)
         else:
             self._odometry.extend_imu(imu)
+
+    def _measured(self, imu: ImuSamples) -> ImuSamples:
+        """The samples as the odometry began with them: all with accelerations, or all without."""
+        if self._with_forces is None:
+            return imu
+        if not self._with_forces:
+            return replace(imu, accel_m_s2=np.full_like(imu.accel_m_s2, np.nan))
+        rows = feels_gravity(imu.accel_m_s2)
+        return ImuSamples(imu.t_ns[rows], imu.gyro_rad_s[rows], imu.accel_m_s2[rows])
 
     def interrupted(self, frame: Multiframe) -> bool:
         """Whether the motion between the last multiframe and this one is unknown."""
@@ -95,6 +110,13 @@ class Tracker:
     def _begin(self) -> Odometry:
         imu = join(self._waiting)
         self._waiting.clear()
+        if imu is not None:
+            channels = imu_channels(imu)
+            self._with_forces = not channels.no_accelerometer
+            imu = self._measured(imu)
+            self._imu = deque([imu], maxlen=self._imu.maxlen)
+            if channels.no_accelerometer:
+                self.remark = f"the IMU has no accelerometer ({channels.no_accelerometer})"
         self.with_imu = imu is not None and len(imu) > 1
         if self.with_imu and imu is not None and not _upright(imu, self._rig):
             self.with_imu, imu = False, None
@@ -123,15 +145,16 @@ class Tracker:
     def _check_imu(self, step: OdometryStep) -> OdometryStep:
         """Continue without the IMU if the recent multiframes fit clearly better without it."""
         frames = [frame for frame, _ in self._recent]
-        with_imu, _, _ = self._tried(frames, join(list(self._imu)))
+        imu = join(list(self._imu))
+        with_imu, _, _ = self._tried(frames, imu)
         without, odometry, last = self._tried(frames, None)
         if not without < _BETTER * with_imu:
             return step
         T_map_body = self.T_map_odom @ step.T_odom_body
         self._odometry, self.with_imu = odometry, False
-        self.remark = (
-            f"the IMU contradicts the LiDARs and is not used: {IMU_WRONG}, its clock the same?"
-        )
+        fault = imu_channels(imu).no_gyroscope if imu is not None else ""
+        why = f"its gyroscope does not measure ({fault})" if fault else f"{IMU_WRONG}, {_CLOCK}"
+        self.remark = f"the IMU contradicts the LiDARs and is not used: {why}"
         self.map_reset = self._frames < _EARLY_FRAMES
         if self.map_reset:
             self.T_map_odom = SE3.identity()

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.measured import imu_channels, with_forces, without_unmeasured
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
@@ -21,6 +23,11 @@ _FASTEST_RAD_S = 12.0
 _LEAST_REPEATED, _MOVING_RAD_S = 10, 0.1
 """Noise changes each sample of a sensor that works. A few equal ones are those of a slower sensor;
 at rest they do no harm."""
+_LEAST_STUCK = 50
+"""The same of accelerations alone, which some drivers repeat for a faster gyroscope."""
+_GRAVITY_M_S2 = (7.0, 13.0)
+_CONSTANT = 0.5
+_BY_FLOOR = "the map is leveled by its floor"
 
 
 def join(parts: Sequence[Samples]) -> Samples | None:
@@ -53,18 +60,23 @@ def clean_imu(
         offset_s: Added to their times [s].
         jumps_ns: How far the clock went back in the LiDARs' times: a jump of the IMU like one of
             these is the same jump, and is carried on by the same amount.
-        report: Gets the counts ``imu_nan``, ``imu_duplicate``, ``imu_unsorted``, ``imu_repeated``.
+        report: Gets the counts ``imu_nan``, ``imu_duplicate``, ``imu_unsorted``, ``imu_repeated``,
+            those of `with_forces`, and what was not measured (`imu_channels`).
 
     Raises:
         ConfigError: If the angular rates cannot be rad/s.
     """
-    imu = _carried_on(imu, jumps_ns, report)
-    finite = np.all(np.isfinite(imu.gyro_rad_s), axis=1)
-    whole = np.isfinite(imu.accel_m_s2).sum(axis=1)
-    finite &= (whole == 3) | (whole == 0)
-    report.count("imu_nan", int(np.count_nonzero(~finite)))
-    imu = _sorted(_take(imu, finite), offset_s, "imu", report=report)
-    imu = _without_repeated(imu, report)
+    channels = imu_channels(_carried_on(imu, jumps_ns, report))
+    if channels.no_gyroscope:
+        report.warn(f"the IMU has no gyroscope ({channels.no_gyroscope}): it is not used")
+        return None
+    turns, alone = _by_channel(channels.imu, report)
+    imu = _sorted(turns, offset_s, "imu", report=report)
+    imu = _without_stuck_forces(_without_repeated(imu, report))
+    if channels.no_accelerometer:
+        report.warn(f"the IMU has no accelerometer ({channels.no_accelerometer}): {_BY_FLOOR}")
+    else:
+        imu = with_forces(imu, _sorted(alone, offset_s, "imu", report=ImportReport()), report)
     report.count("imu_kept", len(imu))
     if not len(imu):
         report.warn("no usable IMU sample")
@@ -80,12 +92,30 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     report.count("gnss_nan", int(np.count_nonzero(~place)))
     invalid = place & (gnss.quality == GnssQuality.INVALID)
     report.count("gnss_no_fix", int(np.count_nonzero(invalid)))
-    gnss = _sorted(_take(gnss, place & ~invalid), offset_s, "gnss", report=report)
-    report.count("gnss_kept", len(gnss))
-    if not len(gnss):
-        report.warn("no usable GNSS position")
+    usable = without_unmeasured(_take(gnss, place & ~invalid), report)
+    found = _sorted(usable, offset_s, "gnss", report=report)
+    report.count("gnss_kept", len(found))
+    if not len(found):
+        report.warn(
+            f"no usable GNSS position: of {len(gnss)}, {int(invalid.sum())} say that they are no "
+            f"fix and {int((~place).sum())} are no numbers"
+        )
         return None
-    return gnss
+    return found
+
+
+def _by_channel(imu: ImuSamples, report: ImportReport) -> tuple[ImuSamples, ImuSamples]:
+    """The samples with angular rates, and those with accelerations alone; damaged ones are out.
+
+    Samples may have one channel: gyroscope and accelerometer may be two topics, or the
+    accelerometer may be slower or missing.
+    """
+    turns, forces = (np.isfinite(v).sum(axis=1) for v in (imu.gyro_rad_s, imu.accel_m_s2))
+    apart = not np.any((turns == 3) & (forces == 3))
+    damaged = ~np.isin(turns, (0, 3)) | ~np.isin(forces, (0, 3))
+    damaged |= (turns == 0) & ((forces == 0) | (not apart))
+    report.count("imu_nan", int(np.count_nonzero(damaged)))
+    return _take(imu, ~damaged & (turns == 3)), _take(imu, ~damaged & (turns == 0))
 
 
 def _build(record: Samples, column: Any) -> Samples:
@@ -121,11 +151,7 @@ def _carried_on(imu: ImuSamples, jumps_ns: Sequence[int], report: ImportReport) 
 def _without_repeated(imu: ImuSamples, report: ImportReport) -> ImuSamples:
     """Drop what a driver that hangs repeats with new time stamps: a gap is honest."""
     values = np.concatenate([imu.gyro_rad_s, np.nan_to_num(imu.accel_m_s2)], axis=1)
-    same = np.all(values[1:] == values[:-1], axis=1)
-    moving = np.linalg.norm(imu.gyro_rad_s[1:], axis=1) > _MOVING_RAD_S
-    rows = np.flatnonzero(same & moving) + 1
-    runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
-    runs = [run for run in runs if len(run) >= _LEAST_REPEATED]
+    runs = _repeated_in_motion(values, imu, least=_LEAST_REPEATED)
     if not runs:
         return imu
     repeated = np.concatenate(runs)
@@ -140,6 +166,24 @@ def _without_repeated(imu: ImuSamples, report: ImportReport) -> ImuSamples:
     return _take(imu, np.delete(np.arange(len(imu)), repeated))
 
 
+def _without_stuck_forces(imu: ImuSamples) -> ImuSamples:
+    """Accelerations that stay the same while the gyroscope measures a motion become NaN."""
+    runs = _repeated_in_motion(imu.accel_m_s2, imu, least=_LEAST_STUCK)
+    accel = imu.accel_m_s2.copy()
+    for run in runs:
+        accel[run] = np.nan
+    return ImuSamples(imu.t_ns, imu.gyro_rad_s, accel)
+
+
+def _repeated_in_motion(values: Array, imu: ImuSamples, *, least: int) -> list[NDArray[np.intp]]:
+    """Rows that equal the one before while the body turns, in runs of at least a length."""
+    same = np.all(values[1:] == values[:-1], axis=1)
+    moving = np.linalg.norm(imu.gyro_rad_s[1:], axis=1) > _MOVING_RAD_S
+    rows = np.flatnonzero(same & moving) + 1
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
+    return [run for run in runs if len(run) >= least]
+
+
 def _check_rates(imu: ImuSamples) -> None:
     speed = np.linalg.norm(imu.gyro_rad_s, axis=1)
     high = float(np.percentile(speed, 90))
@@ -151,18 +195,21 @@ def _check_rates(imu: ImuSamples) -> None:
 
 
 def _check_gravity(imu: ImuSamples, report: ImportReport) -> ImuSamples:
-    force = np.linalg.norm(imu.accel_m_s2, axis=1)
-    force = force[np.isfinite(force)]
-    if not len(force):
-        report.warn("the IMU has no accelerometer: the map is leveled by its floor")
+    accel = imu.accel_m_s2
+    accel = accel[np.isfinite(accel).all(axis=1)]
+    if not len(accel):
         return imu
-    usual = float(np.median(force))
-    if 0.8 < usual < 1.25:
-        report.count("imu_accel_scaled", len(force))
+    usual = float(np.median(np.linalg.norm(accel, axis=1)))
+    if _GRAVITY_M_S2[0] < usual < _GRAVITY_M_S2[1]:
+        return imu
+    # The vertical stays up in a body: of a walker's motion alone nothing is left on average.
+    constant = float(np.linalg.norm(accel.mean(axis=0)))
+    if 0.8 < usual < 1.25 and constant > _CONSTANT * usual:
+        report.count("imu_accel_scaled", len(accel))
         report.derive("accelerometer was in g (median length near 1), stored in m/s²")
         return ImuSamples(imu.t_ns, imu.gyro_rad_s, imu.accel_m_s2 * STANDARD_GRAVITY_M_S2)
-    if not 7.0 < usual < 13.0:
-        report.warn(
-            f"accelerometer: median length {usual:.2f}, expected about 9.8 m/s² (gravity included)"
-        )
-    return imu
+    report.warn(
+        f"accelerometer: median length {usual:.3g}, expected about 9.8 m/s² (gravity included): it "
+        f"counts as not measured, {_BY_FLOOR}"
+    )
+    return ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))

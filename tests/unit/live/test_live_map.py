@@ -128,6 +128,37 @@ def test_an_imu_that_turns_the_wrong_way_is_found_out_and_the_map_begins_anew(wa
     )
 
 
+def test_accelerations_of_zero_are_said_and_mapping_goes_on_with_the_gyroscope(walk):
+    follower = Follower(walk, imu_axes=[0.0, 0.0, 0.0], gyro_axes=[1.0, 1.0, 1.0])
+
+    message = [follower.push(row) for row in range(60)]
+
+    assert all(pose.imu and not pose.lost for pose, _ in message)
+    assert "no accelerometer (all its values are 0)" in message[0][0].remark
+    assert max(error for _, error in message) < 0.15
+
+
+def test_accelerations_that_fail_on_the_way_do_not_end_the_map(walk):
+    follower = Follower(walk)
+    for row in range(20):
+        follower.push(row)
+    follower.axes[1] = 0.0
+
+    message = [follower.push(row) for row in range(20, 60)]
+
+    assert not any(pose.lost for pose, _ in message)
+    assert max(error for _, error in message) < 0.15
+
+
+def test_a_gyroscope_of_zeros_is_found_out_and_said(walk):
+    follower = Follower(walk, gyro_axes=[0.0, 0.0, 0.0])
+
+    message = [follower.push(row)[0] for row in range(65)]
+
+    assert not message[-1].imu
+    assert "its gyroscope does not measure (all its values are 0)" in message[-1].remark
+
+
 def test_a_long_path_keeps_its_start(walk):
     live_map = LiveMap(walk.store.rig, preset("indoor"))
 

@@ -259,6 +259,16 @@ def test_an_imu_with_a_hole_does_not_cover_it():
     assert not attitude.covers(int(t_ns[-1]), int(t_ns[-1]) + 100_000_000)
 
 
+@pytest.mark.parametrize("accel", [(0.0, 0.0, 0.0), (np.nan, np.nan, np.nan)])
+def test_an_imu_without_accelerometer_is_not_used_and_said(room, accel):
+    start_ns = int(room.scans.t_ns[0])
+
+    _, poses, _ = mapped(room.scans, imu=lambda k: still(k, accel=accel, start_ns=start_ns))
+
+    assert not any(pose.imu for pose in poses)
+    assert poses[-1].remark == "the IMU has no accelerometer and is not used"
+
+
 def test_an_imu_upside_down_is_not_used_and_said(room):
     start_ns = int(room.scans.t_ns[0])
     upside_down = (0.0, 0.0, -9.81)

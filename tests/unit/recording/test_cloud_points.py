@@ -112,6 +112,40 @@ def test_ring_is_worked_out_from_elevation():
     assert any("ring from elevation" in text for text in report.derived)
 
 
+@pytest.mark.parametrize("value", [0, 7])
+def test_a_ring_that_is_the_same_everywhere_is_worked_out_from_elevation(value):
+    table = room_cloud()
+
+    shots, report = decode(table | {"ring": np.full_like(table["ring"], value)}, model="VLP-16")
+
+    assert np.array_equal(shots.ring, decode(table, model="VLP-16")[0].ring)
+    assert f"lidar: ring is {value} everywhere, ring from elevation" in report.derived
+
+
+def test_one_beam_has_one_ring_without_a_word():
+    table = room_cloud()
+    beam = {name: column[table["ring"] == 3] for name, column in table.items()}
+
+    shots, report = decode(beam)
+
+    assert set(shots.ring.tolist()) == {3}
+    assert not any("everywhere" in text for text in report.derived)
+
+
+@pytest.mark.parametrize("value", [0.0, 100.0, np.nan])
+def test_an_intensity_that_is_the_same_everywhere_is_said(value):
+    table = room_cloud()
+    spread = np.linspace(0, 90, len(table["x"])).astype(np.float32)
+
+    _, report = decode(table | {"intensity": np.full_like(spread, value)})
+    _, fine = decode(table | {"intensity": spread})
+
+    assert f"lidar: intensity is {value:g} in all points of a cloud: it was not measured" in (
+        report.derived
+    )
+    assert not any("not measured" in text for text in fine.derived)
+
+
 def test_rings_counted_from_the_top_are_turned_around():
     table = room_cloud()
 
