@@ -41,7 +41,8 @@ MAY_IMPORT = {
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.runtime_folder"}
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
     | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
-    | {"recon4.recording.formats.pcap", "recon4.recording.samples.clean"}
+    | {"recon4.recording.formats.pcap"}
+    | {f"recon4.recording.samples.{name}" for name in ("clean", "measured")}
     | {"recon4.recording.velodyne.models"}
     | {"recon4.slam2d"},
     "recon4/live/project_files.py": STAGE | {"recon4.live", "recon4.stages", "recon4.stages_2d"},
