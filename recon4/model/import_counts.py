@@ -82,7 +82,6 @@ _PACKETS = {
     "packets_wrong_flag": _lost("packets", "blocks without the flag 0xEEFF, dropped"),
     "packets_hdl64": _lost("packets", "blocks of the lower lasers of an HDL-64E, dropped"),
     "packets_wrong_azimuth": _lost("packets", "an azimuth above 360°, dropped"),
-    "packets_wrong_time": _lost("packets", "a time past the end of the hour, dropped"),
     "packets_other_product": _lost("packets", "another product byte than the first ones, dropped"),
     "packets_wrong_clock": _lost("packets", "a time more than 1 s off, dropped"),
     "packets_late": _lost("packets", "arrived after their place had passed, dropped"),

@@ -18,6 +18,7 @@ from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.assembly.rotation import rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import cloud_table, lidar_streams
+from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
@@ -30,7 +31,6 @@ from recon4.recording.kinds import (
     RecordingKind,
     bag_paths,
     located,
-    pcap_files,
     recognize,
 )
 from recon4.recording.laser2d import is_laser2d, read_laser2d
@@ -39,23 +39,14 @@ from recon4.recording.line_topics import line_topics
 from recon4.recording.open import Recording, frames_model, open_recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
-from recon4.recording.scan_capture import ScanStreams, scan_streams
-from recon4.recording.velodyne.models import RETURN_MODES
-from recon4.recording.velodyne.streams import PacketStream, scan_pcap
 from recon4.settings import IngestSettings
 
-_WHOLE_BYTES = 64 << 20
-"""Files up to this size are read completely."""
-_HEAD_PACKETS = 4000
-_WHOLE_PACKETS = 100_000
-"""Above this number of datagrams the counts of a small capture file are estimates too."""
 _PROBED_MESSAGES = 50
 _HEAD_ITEMS = 40
 _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
 
 _HEAD_NS = 1_000_000_000
-_SCAN_CAPTURE = "capture of scans (pcap)"
 
 
 def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
@@ -73,7 +64,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
     if kind in planar or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path)):
         if kind is RecordingKind.PCAP:
-            info = replace(info, kind=_SCAN_CAPTURE)
+            info = replace(info, kind=SCAN_CAPTURE)
         return _describe_laser2d(info, path)
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)
@@ -81,7 +72,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     if kind is RecordingKind.LINE_TABLES:
         return describe_line_tables(info, path)
     if kind is RecordingKind.PCAP:
-        info = _describe_pcap(info, path)
+        info = describe_capture(info, path)
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
     else:
@@ -94,64 +85,6 @@ def _size(path: Path) -> int:
     return sum(file.stat().st_size for file in files)
 
 
-# -- capture files
-
-
-def _describe_pcap(info: RecordingInfo, path: Path) -> RecordingInfo:
-    files = pcap_files(path)
-    most = _WHOLE_PACKETS if info.bytes <= _WHOLE_BYTES else _HEAD_PACKETS
-    streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
-    names = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
-    samples = [s for s in streams if s.kind in names]
-    scanners = scan_streams(files)
-    lidars = [_packet_sensor(s) for s in streams if s.kind == "data"]
-    lidars += [_scanner(s, scanners) for s in streams if (s.source, s.port) in scanners.scans]
-    return replace(
-        info,
-        kind=_SCAN_CAPTURE if scanners.scans else info.kind,
-        t_first_ns=min((s.t_first_ns for s in streams), default=0),
-        t_last_ns=max((s.t_end_ns for s in streams), default=0),
-        estimated=not all(s.whole for s in streams),
-        sensors=tuple(lidars),
-        samples=tuple(f"{s.source}:{s.port}: {_total(s)} {names[s.kind]}" for s in samples),
-    )
-
-
-def _total(stream: PacketStream) -> int:
-    """Estimated packets in the file, from the rate at its head."""
-    head_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
-    all_s = (stream.t_end_ns - stream.t_first_ns) / 1e9
-    return stream.packets if stream.whole or head_s <= 0 else round(stream.packets * all_s / head_s)
-
-
-def _packet_sensor(stream: PacketStream) -> SensorInfo:
-    span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
-    mode = RETURN_MODES.get(stream.return_mode, f"return mode 0x{stream.return_mode:02x}")
-    return SensorInfo(
-        label=f"{stream.source}:{stream.port}",
-        model=stream.model or "unknown model",
-        content=f"packets ({mode} return)",
-        count=_total(stream),
-        rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
-        rotation_hz=stream.rotation_hz,
-        remarks=stream.remarks,
-    )
-
-
-def _scanner(stream: PacketStream, found: ScanStreams) -> SensorInfo:
-    """A sender of scans; one that also sends angles of a head is a profiler."""
-    key = stream.source, stream.port
-    ratio = found.scans[key] / (found.scans[key] + found.heads[key])
-    span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
-    return SensorInfo(
-        label=f"{stream.source}:{stream.port}",
-        model="profiler" if found.heads[key] else "2-D laser",
-        content="line scans" if found.heads[key] else "scans",
-        count=round(ratio * _total(stream)),
-        rate_hz=ratio * (stream.packets - 1) / span_s if span_s > 0 else float("nan"),
-    )
-
-
 # -- bags
 
 
@@ -160,7 +93,7 @@ def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> Reco
         streams = lidar_streams(bag, report)
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
-        whole = info.bytes <= _WHOLE_BYTES
+        whole = info.bytes <= WHOLE_BYTES
         gaps = _bag_gaps(bag, [s.topic for s in streams]) if whole else ()
         lines = line_topics(bag.topics)
         if lines is not None:
@@ -334,7 +267,7 @@ def _with_head(
     try:
         recording = open_recording([path], None, settings=settings, report=report)
         rig = recording.rig
-        rates, has_imu, has_gnss = _read_head(recording, whole=info.bytes <= _WHOLE_BYTES)
+        rates, has_imu, has_gnss = _read_head(recording, whole=info.bytes <= WHOLE_BYTES)
     except ConfigError as error:
         missing.append(f"rig: {error}")
     except RecordingError as error:

@@ -49,6 +49,8 @@ class RecordingInfo:
     sensors: tuple[SensorInfo, ...] = ()
     samples: tuple[str, ...] = ()
     """Description of IMU, GNSS and poses with their rates."""
+    unread: tuple[str, ...] = ()
+    """Senders of packets that are not read, and why."""
     gaps: tuple[TimeGap, ...] = ()
     derived: tuple[str, ...] = ()
     """What recon4 derives because the recording lacks it."""
@@ -75,6 +77,7 @@ class RecordingInfo:
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about)
         lines += [f"samples   {text}" for text in self.samples]
+        lines += [f"not read  {text}" for text in self.unread]
         for gap in self.gaps[:10]:
             since_s = (gap.t_ns - self.t_first_ns) / 1e9
             lines.append(f"gap       {gap.sensor}: {gap.seconds:.3f} s at {since_s:.2f} s")

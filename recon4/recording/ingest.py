@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.events import Warned
-from recon4.model.import_counts import count_text
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
@@ -184,7 +183,7 @@ def ingest(
 
 
 def _without_points(path: Path, report: ImportReport) -> EmptyRecording:
-    counted = "; ".join(count_text(name, report.counts) for name in sorted(report.counts))
+    counted = "; ".join(report.text(name) for name in sorted(report.counts))
     return EmptyRecording(f"{path.name}: no usable points ({counted or 'nothing read'})")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from recon4.model.import_counts import losses, repairs
+from recon4.model.import_counts import count_text, losses, repairs
 
 MAX_TEXTS = 200
 """Number of different remarks kept; further ones are counted."""
@@ -51,6 +51,10 @@ class ImportReport:
         for loss in losses(self.counts, self.details):
             if loss.is_warned:
                 self.warn(loss.text)
+
+    def text(self, name: str) -> str:
+        """A count in words."""
+        return count_text(name, self.counts, detail=self.details.get(name, ""))
 
     def lost(self) -> list[str]:
         """All counts of lost data, in words."""

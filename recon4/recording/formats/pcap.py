@@ -16,6 +16,7 @@ from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.model.trajectory import Times
 from recon4.recording.formats.pcapng import MAGIC as PCAPNG
 from recon4.recording.formats.pcapng import MAX_PACKET_BYTES, Packet, read_packets
+from recon4.recording.formats.unread_records import UnreadRecords
 from recon4.recording.report import ImportReport
 
 _CLASSIC = {
@@ -103,19 +104,20 @@ def read_pcap(
     """Stream the UDP datagrams of a pcap (µs or ns, either byte order) or pcapng file.
 
     Counts ``records`` and, of them, those that are no datagrams for us: ``records_not_udp``,
-    ``records_fragment`` (an IP fragment), ``records_cut`` (longer than what was captured). A file
-    that ends inside a record yields all before it, and ``report.outcome`` becomes ``lossy``.
+    ``records_fragment`` (an IP fragment), ``records_cut`` (longer than what was captured), with
+    ports, sizes and protocols as details of the counts. A file that ends inside a record yields all
+    before it, and ``report.outcome`` becomes ``lossy``.
 
     Raises:
         UnknownFormat: If the file is not a capture of Ethernet, Linux cooked or raw IP packets.
         EmptyRecording: If it holds no packet at all.
     """
-    found, damaged = 0, report.counts["files_cut"]
+    found, damaged, unread = 0, report.counts["files_cut"], UnreadRecords(report)
     with open_file(path) as file:
         for records in _records(file, path.name, report):
             found += len(records.t_ns)
             report.count("records", len(records.t_ns))
-            yield _datagrams(records, report)
+            yield _datagrams(records, unread)
     if not found:
         why = f" ({report.warnings[-1]})" if report.counts["files_cut"] > damaged else ""
         raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
@@ -242,19 +244,24 @@ def _salvaged(report: ImportReport, name: str, why: str) -> None:
     report.warn(f"{name}: salvaged: {why}")
 
 
-def _datagrams(records: _Records, report: ImportReport) -> Datagrams:
+def _datagrams(records: _Records, unread: UnreadRecords) -> Datagrams:
     """The UDP datagrams among the records; the others are counted."""
-    at, is_ip = _ip_header(records)
+    at, ethertype = _ip_header(records)
     end = records.start + records.length
-    fits = is_ip & (at + 28 <= end)
-    is_udp = fits & (_byte(records, at) >> 4 == 4) & (_byte(records, at + 9) == 17)
-    whole = (_word(records, at + 6) & 0x3FFF) == 0
+    headed = (ethertype == 0x0800) & (at + 20 <= end) & (_byte(records, at) >> 4 == 4)
+    protocol = np.where(headed, _byte(records, at + 9), -1)
+    is_udp = protocol == 17
+    fits = is_udp & (at + 28 <= end)
+    fragment = _word(records, at + 6)
+    whole = (fragment & 0x3FFF) == 0
     udp = at + 4 * (_byte(records, at) & 15)
+    port = np.where(fits & ((fragment & 0x1FFF) == 0), _word(records, udp + 2), -1)
     length = _word(records, udp + 4) - 8
-    inside = (length >= 0) & (udp + 8 + length <= end)
-    report.count("records_not_udp", int(np.count_nonzero(~is_udp)))
-    report.count("records_fragment", int(np.count_nonzero(is_udp & ~whole)))
-    report.count("records_cut", int(np.count_nonzero(is_udp & whole & ~inside)))
+    inside = fits & (length >= 0) & (udp + 8 + length <= end)
+    unread.add_others(ethertype[~is_udp], protocol[~is_udp])
+    unread.add_fragments(port[is_udp & ~whole])
+    cut = is_udp & whole & ~inside
+    unread.add_cut(port[cut], records.length[cut])
     kept = np.flatnonzero(is_udp & whole & inside)
     at, udp = at[kept], udp[kept]
     source = (_word(records, at + 12) << 16) | _word(records, at + 14)
@@ -268,8 +275,8 @@ def _datagrams(records: _Records, report: ImportReport) -> Datagrams:
     )
 
 
-def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Offset of the IP header of each record, and whether there is one."""
+def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Offset of the IP header of each record, and its ethertype; -1 = unknown link type."""
     kind = np.minimum(np.searchsorted(_LINK_TYPES, records.link_type), len(_LINK_TYPES) - 1)
     known = _LINK_TYPES[kind] == records.link_type
     at = records.start + _IP_STARTS[kind]
@@ -279,7 +286,7 @@ def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.bool_]]
         tagged = ~plain & ((ethertype == 0x8100) | (ethertype == 0x88A8))
         ethertype = np.where(tagged, _word(records, at + 2), ethertype)
         at = at + 4 * tagged
-    return at, known & (ethertype == 0x0800)
+    return at, np.where(known, ethertype, -1)
 
 
 def _byte(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:

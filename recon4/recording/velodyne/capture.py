@@ -27,6 +27,7 @@ from recon4.recording.velodyne.streams import (
     fits,
     late_stream,
     scan_pcap,
+    unread_text,
 )
 from recon4.settings import IngestSettings
 
@@ -85,22 +86,18 @@ class VelodynePcap:
             ConfigError: If the model of a sensor is not decoded from packets.
         """
         self._report = report
-        self.streams = [s for path in paths for s in scan_pcap(path, open_file=open_file)]
+        heads = ImportReport()
+        scans = (scan_pcap(path, open_file=open_file, report=heads) for path in paths)
+        self.streams = [stream for scan in scans for stream in scan]
         groups = _sensors_of(self.streams)
         if not groups and rig is None:
-            named = self.streams[:_STREAMS_NAMED]
-            seen = ", ".join(f"{s.packets} packets to port {s.port}" for s in named)
-            seen += f" and {len(self.streams) - len(named)} other streams" * (
-                len(self.streams) > len(named)
-            )
-            raise EmptyRecording(
-                f"{paths[0].name}: no Velodyne data packets (1206 bytes of UDP payload); "
-                f"found: {seen or 'no UDP datagrams'}"
-            )
+            found = _found_instead(self.streams, heads)
+            raise EmptyRecording(f"{paths[0].name}: no Velodyne data packets; found: {found}")
         for stream in self.streams:
             for remark in stream.remarks if rig is None else ():
                 report.warn(f"{stream.label}: {remark}")
         self.rig = rig or _rig_of(groups)
+        self._warn_of_others()
         self._settings = settings
         self._channels = self._assign(groups)
         self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
@@ -118,11 +115,6 @@ class VelodynePcap:
                 yield from self._decode(channel, path, datagrams)
         for channel in self._channels:
             yield channel.data.flush()
-        fragments = self._report.counts["records_fragment"]
-        if fragments:
-            self._report.warn(
-                f"{fragments} IP fragments: they are not put together, their packets are lost"
-            )
 
     @property
     def rotation_hz(self) -> dict[str, float]:
@@ -183,12 +175,30 @@ class VelodynePcap:
         for row, sensor in enumerate(self.rig.sensors):
             if row not in chosen:
                 self._report.warn(
-                    f"{sensor.name}: no packets from {sensor.address or 'any address'} "
-                    f"to port {sensor.port}"
+                    f"{sensor.name}: no data packets from {sensor.address or 'any address'} "
+                    f"to port {sensor.port}{self._sent_instead(sensor)}"
                 )
                 continue
             channels.append(self._channel(row, chosen[row]))
         return channels
+
+    def _warn_of_others(self) -> None:
+        """Name senders of much that is not read, such as a LiDAR of another make."""
+        most = max((s.packets for s in self.streams if s.kind == "data"), default=0)
+        for stream in self.streams:
+            known = any(fits(sensor, stream.source, stream.port) for sensor in self.rig.sensors)
+            if stream.refused and not known and stream.packets > _FOREIGN_RATIO * most:
+                self._report.warn(f"not read: {stream.found}")
+            expected = {"IMU": self.rig.imu_port, "GNSS": self.rig.gnss_port}.get(stream.kind)
+            if expected is not None and stream.port != expected:
+                self._report.warn(
+                    f"not read: {stream.found}; the rig expects {stream.kind} at port {expected}: "
+                    f"give [{stream.kind.lower()}] port = {stream.port} in the rig file"
+                )
+
+    def _sent_instead(self, sensor: Sensor) -> str:
+        others = [s for s in self.streams if s.refused and fits(sensor, s.source, s.port)]
+        return f"; found: {'; '.join(s.found for s in others)}" if others else ""
 
     def _channel(self, row: int, streams: tuple[PacketStream, ...]) -> _Channel:
         sensor = self.rig.sensors[row]
@@ -201,6 +211,14 @@ class VelodynePcap:
         data = PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
         positions = PositionDecoder(sensor, clock=clock, report=self._report)
         return _Channel(sensor, streams, data, positions)
+
+
+def _found_instead(streams: Sequence[PacketStream], heads: ImportReport) -> str:
+    """What capture files without data packets have, and why it is not read."""
+    texts = [stream.found for stream in streams[:_STREAMS_NAMED]]
+    more = len(streams) - len(texts)
+    texts += [f"{more} other streams"] * (more > 0)
+    return "; ".join(filter(None, [*texts, unread_text(heads)]))
 
 
 def _sensors_of(streams: list[PacketStream]) -> list[tuple[PacketStream, ...]]:

@@ -13,7 +13,6 @@ from recon4.recording.velodyne.models import (
     BLOCK_FLAG,
     DATA_PACKET,
     DATA_SIZE,
-    HOUR_US,
     LOWER_BLOCK_FLAG,
 )
 
@@ -35,8 +34,8 @@ def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]
 
     Counts ``packets`` and what is dropped: ``packets_wrong_length`` (not 1206 bytes),
     ``packets_hdl64`` (blocks of the lower lasers of an HDL-64E), ``packets_wrong_flag`` (any of
-    the 12 blocks without 0xEEFF), ``packets_wrong_azimuth`` (above 360°, which itself is sent now
-    and then for 0°) and ``packets_wrong_time`` (past the end of the hour).
+    the 12 blocks without 0xEEFF) and ``packets_wrong_azimuth`` (above 360°, which itself is sent
+    now and then for 0°). The time is judged by `SensorClock`.
     """
     report.count("packets", len(payloads))
     if payloads.ndim != 2 or payloads.shape[1] != DATA_SIZE:
@@ -46,8 +45,7 @@ def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]
     flags = packets["blocks"]["flag"]
     flagged = (flags == BLOCK_FLAG).all(axis=1)
     turned = (packets["blocks"]["azimuth_cdeg"] <= 36000).all(axis=1)
-    timed = packets["time_us"] < HOUR_US
-    sound = flagged & turned & timed
+    sound = flagged & turned
     if sound.all():
         return sound
     known = (flags == BLOCK_FLAG) | (flags == LOWER_BLOCK_FLAG)
@@ -55,7 +53,6 @@ def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]
     report.count("packets_hdl64", int(lower.sum()))
     report.count("packets_wrong_flag", int((~flagged & ~lower).sum()))
     report.count("packets_wrong_azimuth", int((flagged & ~turned).sum()))
-    report.count("packets_wrong_time", int((flagged & turned & ~timed).sum()))
     return sound
 
 

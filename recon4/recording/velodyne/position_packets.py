@@ -21,6 +21,9 @@ _DAY_NS = 24 * 3600 * SECOND_NS
 _LONGEST_AGE_NS = 5 * SECOND_NS // 2
 """A sentence tells the last full second and stays in the packets until the next one comes."""
 
+_JUDGED = 100
+"""Position packets whose majority decides whether GPS drives a clock: single ones are damaged."""
+
 _GYRO_RAD_S = np.deg2rad(0.09766)
 _ACCEL_M_S2 = 0.001221 * STANDARD_GRAVITY_M_S2
 
@@ -114,21 +117,26 @@ def _ns(time: datetime) -> int:
 def utc_offset_ns(t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> int | None:
     """UTC minus time of arrival [ns] if GPS drives the sensor's clock, else None.
 
-    It does if a valid sentence is no older than its packet's stamp allows: the stamp, taken in the
-    hour of the sentence, lies 0 to 2.5 s after it. Old firmware has no PPS flag to ask.
+    It does if valid sentences are no older than their packets' stamps allow: the stamp, taken in
+    the hour of the sentence, lies 0 to 2.5 s after it. Old firmware has no PPS flag to ask.
 
     Args:
         t_arrival_ns: Times of arrival of position packets [ns], (N,).
         payloads: The packets, (N, 512).
     """
-    for row in np.flatnonzero(_stamps(payloads) < HOUR_US):
+    offsets_ns, others = list[int](), 0
+    for row in np.flatnonzero(_stamps(payloads) < HOUR_US)[:_JUDGED]:
         sentence = nmea_text(payloads[row])
         arrival = int(t_arrival_ns[row])
         fix = parse_fix(sentence, arrival, ImportReport()) if sentence else None
-        if fix is not None:
-            stamp = int(nearest_hour(_stamps(payloads[row : row + 1]), fix.utc_ns)[0])
-            return stamp - arrival if 0 <= stamp - fix.utc_ns < _LONGEST_AGE_NS else None
-    return None
+        if fix is None:
+            continue
+        stamp = int(nearest_hour(_stamps(payloads[row : row + 1]), fix.utc_ns)[0])
+        if 0 <= stamp - fix.utc_ns < _LONGEST_AGE_NS:
+            offsets_ns.append(stamp - arrival)
+        else:
+            others += 1
+    return offsets_ns[0] if len(offsets_ns) > others else None
 
 
 def _stamps(payloads: NDArray[np.uint8]) -> NDArray[np.uint32]:
@@ -164,10 +172,9 @@ class PositionDecoder:
         """
         assert payloads.shape[1:] == (POSITION_SIZE,)
         self._report.count("positions", len(payloads))
-        timed = _stamps(payloads) < HOUR_US
+        t_ns, timed = self._clock.at(np.asarray(t_arrival_ns), _stamps(payloads))
         self._report.count("positions_wrong_time", int((~timed).sum()))
-        payloads = payloads[timed]
-        t_ns = self._clock.at(np.asarray(t_arrival_ns)[timed], _stamps(payloads))
+        t_ns, payloads = t_ns[timed], payloads[timed]
         return PositionSamples(self._imu(t_ns, payloads), self._gnss(t_ns, payloads))
 
     def _imu(self, t_ns: Times, payloads: NDArray[np.uint8]) -> ImuSamples | None:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
+from recon4.recording.velodyne.models import HOUR_US
 
 SECOND_NS = 1_000_000_000
 HOUR_NS = 3600 * SECOND_NS
@@ -25,6 +26,8 @@ _PAUSE_NS = 60 * SECOND_NS
 _TRACK_NS = 10 * SECOND_NS
 _MAX_RATE = 2e-4
 """Two free-running quartz clocks differ by less than this."""
+_COUNTER_US = 1 << 32
+"""Where a counter that does not start again at the full hour does so [µs]: after 4294.97 s."""
 
 
 def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
@@ -37,7 +40,9 @@ def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
 class SensorClock:
     """Converts the timestamps of one sensor to absolute time by means of arrival times.
 
-    The stamp tells the time within the hour, the time of arrival tells the hour. Then
+    The stamp tells the time within the hour, the time of arrival tells the hour. Without GPS the
+    stamps of some sensors run on past the full hour, up to 2^32 µs: such times are continued, also
+    over the wrap of the counter, and counted (``packets_past_hour``). Then
 
     - a sensor that is synchronized by GPS (its position packets prove it) or that agrees with
       the recorder's clock within half a second keeps its own time;
@@ -71,6 +76,10 @@ class SensorClock:
         self._report = report
         self._packet_ns = round(packet_s * SECOND_NS)
         self._offset_ns: int | None = None
+        self._runs_on = False
+        """Whether stamps past the full hour have been seen."""
+        self._turned_us = 0
+        """Wraps of such a counter so far [µs]."""
         self._shift_ns = 0
         self._base_ns = 0
         """UTC minus the recorder's clock, if GPS drives another sensor and not this one."""
@@ -114,7 +123,30 @@ class SensorClock:
             rows = slice(start, start + _BLOCK - self._filled)
             parts.append(self._push_part(t_arrival_ns[rows], t_us[rows]))
             start = rows.stop
-        return np.concatenate([t for t, _ in parts]), np.concatenate([kept for _, kept in parts])
+        t_ns, kept = (np.concatenate(part) for part in zip(*parts, strict=True))
+        self._count_past_hour(t_us[kept])
+        return t_ns, kept
+
+    def _count_past_hour(self, t_us: NDArray[np.integer]) -> None:
+        past = int(np.count_nonzero(t_us >= HOUR_US))
+        self._report.count("packets_past_hour", past)
+        if past:
+            self._report.derive(
+                f"{self._name}: its timestamps run on past the full hour (3600 s): continued"
+            )
+
+    def _continued(self, t_us: NDArray[np.integer], expected: Times) -> NDArray[np.int64]:
+        """Stamps with the wraps of a counter that runs on past the hour added [µs], (N,)."""
+        raw = np.asarray(t_us, dtype=np.int64)
+        self._runs_on = self._runs_on or bool(np.any(raw >= HOUR_US))
+        stamps = raw + self._turned_us
+        if not self._runs_on:
+            return stamps
+        for turned_us in (self._turned_us + _COUNTER_US, self._turned_us - _COUNTER_US):
+            off_ns = np.abs(nearest_hour(raw + turned_us, expected) - expected)
+            odd = np.abs(nearest_hour(stamps, expected) - expected) > _JUMP_NS
+            stamps = np.where(odd & (off_ns < _JUMP_NS), raw + turned_us, stamps)
+        return stamps
 
     def _push_part(
         self, t_arrival_ns: Times, t_us: NDArray[np.integer]
@@ -122,6 +154,8 @@ class SensorClock:
         """Packets of one block, within which the offset of the clocks is constant."""
         assert self._offset_ns is not None
         expected = t_arrival_ns + self._offset_ns
+        raw, t_us = t_us, self._continued(t_us, expected)
+        self._turned_us = int(t_us[-1]) - int(raw[-1])
         t_sensor = nearest_hour(t_us, expected)
         if np.any(self._odd(t_us, t_sensor, t_sensor - expected)):
             return self._push_one_by_one(t_arrival_ns, t_us)
@@ -129,13 +163,17 @@ class SensorClock:
         self._follow(t_arrival_ns, t_sensor, t_sensor - expected)
         return t_ns, np.ones(len(t_us), dtype=np.bool_)
 
-    def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> Times:
-        """Absolute times of other packets of the sensor [ns], (N,); does not update the offset."""
+    def at(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> tuple[Times, NDArray[np.bool_]]:
+        """Absolute times of other packets of the sensor [ns], and which are valid, (N,) each.
+
+        Does not update the offset of the clocks.
+        """
         if not len(t_us):
-            return np.zeros(0, dtype=np.int64)
+            return np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.bool_)
         offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
-        t_sensor = nearest_hour(t_us, t_arrival_ns + offset)
-        return t_sensor + self._shift(t_sensor)
+        expected = t_arrival_ns + offset
+        t_sensor = nearest_hour(self._continued(t_us, expected), expected)
+        return t_sensor + self._shift(t_sensor), np.abs(t_sensor - expected) <= _JUMP_NS
 
     def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
         t_arrival_ns, t_us = t_arrival_ns[:_FIRST], t_us[:_FIRST]

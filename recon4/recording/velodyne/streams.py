@@ -31,7 +31,14 @@ from recon4.recording.velodyne.position_packets import utc_offset_ns
 from recon4.recording.velodyne.sensor_clock import SECOND_NS, nearest_hour
 
 KINDS = ("data", "position", "IMU", "GNSS", "other")
+_CONTENTS = {
+    "data": "data packets",
+    "position": "position packets",
+    "IMU": "IMU samples",
+    "GNSS": "GNSS samples",
+}
 _SAMPLES_TRIED = 20
+_SIZES_NAMED = 3
 MAX_STREAMS = 256
 """Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
 
@@ -72,11 +79,19 @@ class PacketStream:
     """UTC minus capture time if the GPS of its position packets drives its clock."""
     remarks: tuple[str, ...] = ()
     """Warning, for example about a product byte that contradicts the data."""
+    refused: str = ""
+    """Why its packets are no data packets of a Velodyne; empty for other kinds than ``other``."""
 
     @property
     def label(self) -> str:
         """Sender and port, for messages."""
         return f"{self.source} to port {self.port}"
+
+    @property
+    def found(self) -> str:
+        """What its packets are, for messages that say why there is no data."""
+        what = _CONTENTS.get(self.kind, self.refused)
+        return f"{self.packets} packets from {self.label} ({what})"
 
 
 def address_number(address: str) -> int:
@@ -86,7 +101,11 @@ def address_number(address: str) -> int:
 
 
 def scan_pcap(
-    path: Path, *, max_packets: int = 4000, open_file: OpenFile = open_plain
+    path: Path,
+    *,
+    max_packets: int = 4000,
+    open_file: OpenFile = open_plain,
+    report: ImportReport | None = None,
 ) -> list[PacketStream]:
     """Scan the head of a capture file: data streams first, in order of appearance.
 
@@ -94,12 +113,13 @@ def scan_pcap(
         path: A pcap or pcapng file.
         max_packets: Largest number of datagrams to read.
         open_file: Opens the file.
+        report: Receives the counts of captured packets up to there; None = not wanted.
 
     Raises:
         UnknownFormat: If it is not a capture file.
         EmptyRecording: If it holds no packet.
     """
-    head = _head(path, max_packets, open_file)
+    head = _head(path, max_packets, open_file, report=report or ImportReport())
     keys = head.source.astype(np.int64) << 16 | head.port
     _, first, packets = np.unique(keys, return_index=True, return_counts=True)
     first = first[np.argsort(-packets, kind="stable")[:MAX_STREAMS]]
@@ -107,6 +127,12 @@ def scan_pcap(
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "position"}
     return [_with_utc(stream, offsets.get(stream.source)) for stream in streams]
+
+
+def unread_text(report: ImportReport) -> str:
+    """The captured packets that were not read, and why; empty = all were."""
+    names = ("records_cut", "records_fragment", "records_without_time", "records_not_udp")
+    return "; ".join(report.text(name) for name in names if report.counts[name])
 
 
 def fits(sensor: Sensor, source: str, port: int) -> bool:
@@ -165,9 +191,8 @@ class _Head:
     """Part of the file that was read, 0 to 1."""
 
 
-def _head(path: Path, max_packets: int, open_file: OpenFile) -> _Head:
+def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportReport) -> _Head:
     """Exactly the first ``max_packets`` datagrams, independent of the size of the reads."""
-    report = ImportReport()
     parts: list[tuple[Datagrams, int]] = []
     left, bytes_read, read_ratio = max_packets, 0, 1.0
     for batch in read_pcap(path, report, open_file):
@@ -180,7 +205,9 @@ def _head(path: Path, max_packets: int, open_file: OpenFile) -> _Head:
             break
         bytes_read += len(batch.buffer)
     if left == max_packets:
-        raise EmptyRecording(f"{path.name}: no UDP datagram in it, only other packets")
+        raise EmptyRecording(
+            f"{path.name}: no UDP datagram in it; found: {unread_text(report) or 'nothing'}"
+        )
     return _Head(
         t_ns=np.concatenate([batch.t_ns[:n] for batch, n in parts]),
         source=np.concatenate([batch.source[:n] for batch, n in parts]),
@@ -195,7 +222,7 @@ def _stream(path: Path, head: _Head, mine: NDArray[np.bool_]) -> PacketStream:
     t_ns, length = head.t_ns[mine], head.length[mine]
     first, last = int(t_ns[0]), int(t_ns[-1])
     whole = head.read_ratio > 0.999
-    facts: dict[str, object] = {"kind": "other"}
+    facts: dict[str, object]
     if (length == DATA_SIZE).sum() > len(length) // 2:
         rows = length == DATA_SIZE
         facts = _data_facts(t_ns[rows], head.payloads[mine][rows])
@@ -207,7 +234,8 @@ def _stream(path: Path, head: _Head, mine: NDArray[np.bool_]) -> PacketStream:
         first_rows = np.flatnonzero(mine)[:_SAMPLES_TRIED]
         texts = [head.payloads[k, : head.length[k]].tobytes() for k in first_rows]
         imu, gnss = SampleDecoder(ImportReport()).push(head.t_ns[first_rows].tolist(), texts)
-        facts["kind"] = "IMU" if imu is not None else "GNSS" if gnss is not None else "other"
+        kind = "IMU" if imu is not None else "GNSS" if gnss is not None else "other"
+        facts = {"kind": kind, "refused": _lengths_text(length) if kind == "other" else ""}
     return PacketStream(
         file=path,
         source=address_text(int(head.source[mine][0])),
@@ -225,9 +253,10 @@ def _data_facts(t_ns: Times, payloads: Payloads) -> dict[str, object]:
     flags = as_packets(payloads)["blocks"]["flag"]
     if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() > 0.3:
         return {"kind": "data", "model": "HDL-64E"}
-    rows = np.flatnonzero(sound_packets(payloads, ImportReport()))
+    report = ImportReport()
+    rows = np.flatnonzero(sound_packets(payloads, report))
     if len(rows) < len(payloads) // 2 or not len(rows):
-        return {"kind": "other"}
+        return {"kind": "other", "refused": "; ".join(report.lost())}
     packets = as_packets(payloads[rows])
     product = int(np.bincount(packets["product"]).argmax())
     return_mode = int(np.bincount(packets["return_mode"]).argmax())
@@ -248,6 +277,13 @@ def _data_facts(t_ns: Times, payloads: Payloads) -> dict[str, object]:
         "clock_offset_s": float(np.median(ahead)) / SECOND_NS,
         "remarks": remarks,
     }
+
+
+def _lengths_text(length: NDArray[np.int64]) -> str:
+    sizes, numbers = np.unique(length, return_counts=True)
+    usual = [f"{size} bytes" for size in sizes[np.argsort(-numbers)][:_SIZES_NAMED].tolist()]
+    more = " and others" * (len(sizes) > _SIZES_NAMED)
+    return f"of {', '.join(usual)}{more}; a data packet has {DATA_SIZE}"
 
 
 def _usual_step_s(stamp_ns: Times) -> float:

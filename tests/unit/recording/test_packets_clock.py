@@ -235,3 +235,65 @@ def test_beside_a_sensor_on_gps_one_that_runs_freely_is_put_on_utc_too(wrong_s):
     ahead_s = np.array([report.ahead_ns["lidar"], report.ahead_ns["free"]]) / SECOND_NS
     np.testing.assert_allclose(ahead_s, -wrong_s, atol=0.003)
     assert "free: its clock is" in report.warnings[0]
+
+
+@pytest.mark.parametrize("wrap_us", [1 << 32, 3_600_000_000])
+@pytest.mark.parametrize("batch", [1000, 97, 1])
+def test_a_counter_that_runs_on_past_the_hour_is_continued(wrap_us, batch):
+    """Up to 2^32 µs, or up to the hour as by the manual."""
+    t_ns, arrival, _ = packets(1000)
+    stamps = (wrap_us - 660_000 + (t_ns - t_ns[0]) // 1000) % wrap_us
+    report = ImportReport()
+    clock = a_clock(report)
+
+    parts = [
+        clock.push(arrival[at : at + batch], stamps[at : at + batch])
+        for at in range(0, 1000, batch)
+    ]
+
+    out, kept = (np.concatenate(part) for part in zip(*parts, strict=True))
+    assert kept.all()
+    np.testing.assert_allclose(np.diff(out), np.diff(t_ns), atol=100_000)
+    assert report.counts["clock_jumps"] == 0
+    past = 0 if wrap_us == 3_600_000_000 else int((stamps >= 3_600_000_000).sum())
+    assert report.counts["packets_past_hour"] == past
+
+
+def test_packets_out_of_order_around_the_wrap_of_a_counter_keep_their_places():
+    t_ns, arrival, _ = packets(1000)
+    stamps = ((1 << 32) - 660_000 + (t_ns - t_ns[0]) // 1000) % (1 << 32)
+    order = np.arange(1000)
+    order[490:510] = order[490:510][::-1]
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps[order])
+
+    assert kept.all() and report.counts["clock_jumps"] == 0
+    np.testing.assert_allclose(np.diff(out[np.argsort(order)]), np.diff(t_ns), atol=100_000)
+
+
+def test_damaged_stamps_past_the_hour_are_dropped_one_by_one():
+    t_ns, arrival, stamps = packets(1000)
+    rows = np.arange(600, 1000, 40)
+    stamps[rows] = 0xFFFFFFFF
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert np.flatnonzero(~kept).tolist() == rows.tolist()
+    np.testing.assert_array_equal(out[kept], (t_ns // 1000 * 1000)[kept])
+    assert report.counts["packets_past_hour"] == 0
+
+
+def test_a_sensor_that_starts_again_goes_on_after_the_pause():
+    """Its counter begins at 0 after 20 s without power."""
+    t_ns, arrival, _ = packets(1000)
+    arrival[500:] += 20 * SECOND_NS
+    since_us = (t_ns - t_ns[0]) // 1000
+    stamps = np.where(np.arange(1000) < 500, 3_700_000_000 + since_us, since_us - since_us[500])
+    report = ImportReport()
+
+    out, kept = push_all(a_clock(report), arrival, stamps)
+
+    assert kept.sum() == 993 and report.counts["clock_jumps"] == 1
+    assert (out - t_ns)[-1] - (out - t_ns)[0] == pytest.approx(20e9, abs=10_000_000)

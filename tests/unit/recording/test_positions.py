@@ -151,12 +151,23 @@ def test_inertial_samples_come_in_strict_order_whatever_the_packets_do():
     assert report.counts["positions_out_of_order"] == 3
 
 
-def test_a_stamp_past_the_hour_is_counted_and_left_out():
-    payload = packet(T0_NS, rmc_sentence(T0_NS, lat_deg=49.2, lon_deg=16.6))
-    payload[198:202] = 255
+def test_single_damaged_stamps_are_counted_and_left_out():
+    t_ns = T0_NS + 5_000_000 * np.arange(40)
+    payloads = np.stack([with_words(packet(t), range(1, 13)) for t in t_ns.tolist()])
+    payloads[[7, 20], 198:202] = 255
     report = ImportReport()
 
-    samples = decoder(report).push(np.array([T0_NS]), payload[None])
+    imu = decoder(report).push(t_ns, payloads).imu
 
-    assert (samples.gnss, samples.imu) == (None, None)
-    assert report.counts == {"positions": 1, "positions_wrong_time": 1}
+    assert len(imu) == 38
+    assert report.counts["positions_wrong_time"] == 2
+    assert report.counts["positions_out_of_order"] == 0
+
+
+def test_one_damaged_stamp_does_not_take_gps_from_the_clock():
+    t_ns = T0_NS + 1_000_000_000 * np.arange(5)
+    texts = [rmc_sentence(t, lat_deg=49.2, lon_deg=16.6) for t in t_ns.tolist()]
+    payloads = np.stack([packet(t, text) for t, text in zip(t_ns.tolist(), texts, strict=True)])
+    payloads[0, 198:202] = (0, 0, 0, 1)
+
+    assert utc_offset_ns(t_ns, payloads) == 0

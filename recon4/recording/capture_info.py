@@ -1,0 +1,89 @@
+"""Contents of capture files, for ``recon4 info``."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from recon4.recording.info_records import RecordingInfo, SensorInfo
+from recon4.recording.kinds import pcap_files
+from recon4.recording.scan_capture import ScanStreams, scan_streams
+from recon4.recording.velodyne.models import RETURN_MODES
+from recon4.recording.velodyne.streams import PacketStream, scan_pcap
+
+WHOLE_BYTES = 64 << 20
+"""Files up to this size are read completely."""
+SCAN_CAPTURE = "capture of scans (pcap)"
+_HEAD_PACKETS = 4000
+_WHOLE_PACKETS = 100_000
+"""Above this number of datagrams the counts of a small capture file are estimates too."""
+_UNREAD_LISTED = 10
+
+
+def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
+    """Sensors, samples and unread streams of capture files.
+
+    Raises:
+        RecordingError: If they cannot be read.
+    """
+    files = pcap_files(path)
+    most = _WHOLE_PACKETS if info.bytes <= WHOLE_BYTES else _HEAD_PACKETS
+    streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
+    names = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
+    samples = [s for s in streams if s.kind in names]
+    scanners = scan_streams(files)
+    lidars = [_packet_sensor(s) for s in streams if s.kind == "data"]
+    lidars += [_scanner(s, scanners) for s in streams if (s.source, s.port) in scanners.scans]
+    return replace(
+        info,
+        kind=SCAN_CAPTURE if scanners.scans else info.kind,
+        t_first_ns=min((s.t_first_ns for s in streams), default=0),
+        t_last_ns=max((s.t_end_ns for s in streams), default=0),
+        estimated=not all(s.whole for s in streams),
+        sensors=tuple(lidars),
+        samples=tuple(f"{s.source}:{s.port}: {_total(s)} {names[s.kind]}" for s in samples),
+        unread=tuple(s.found for s in _others(streams, scanners)),
+    )
+
+
+def _others(streams: Sequence[PacketStream], scanners: ScanStreams) -> list[PacketStream]:
+    """The largest streams that are not read."""
+    scans = {*scanners.scans, *scanners.heads}
+    others = [s for s in streams if s.refused and (s.source, s.port) not in scans]
+    return sorted(others, key=lambda s: -s.packets)[:_UNREAD_LISTED]
+
+
+def _total(stream: PacketStream) -> int:
+    """Estimated packets in the file, from the rate at its head."""
+    head_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
+    all_s = (stream.t_end_ns - stream.t_first_ns) / 1e9
+    return stream.packets if stream.whole or head_s <= 0 else round(stream.packets * all_s / head_s)
+
+
+def _packet_sensor(stream: PacketStream) -> SensorInfo:
+    span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
+    mode = RETURN_MODES.get(stream.return_mode, f"return mode 0x{stream.return_mode:02x}")
+    return SensorInfo(
+        label=f"{stream.source}:{stream.port}",
+        model=stream.model or "unknown model",
+        content=f"packets ({mode} return)",
+        count=_total(stream),
+        rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
+        rotation_hz=stream.rotation_hz,
+        remarks=stream.remarks,
+    )
+
+
+def _scanner(stream: PacketStream, found: ScanStreams) -> SensorInfo:
+    """A sender of scans; one that also sends angles of a head is a profiler."""
+    key = stream.source, stream.port
+    ratio = found.scans[key] / (found.scans[key] + found.heads[key])
+    span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
+    return SensorInfo(
+        label=f"{stream.source}:{stream.port}",
+        model="profiler" if found.heads[key] else "2-D laser",
+        content="line scans" if found.heads[key] else "scans",
+        count=round(ratio * _total(stream)),
+        rate_hz=ratio * (stream.packets - 1) / span_s if span_s > 0 else float("nan"),
+    )

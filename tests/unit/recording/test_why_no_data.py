@@ -1,0 +1,166 @@
+"""A capture without data says what was found, and why each part of it was refused."""
+
+import struct
+
+import numpy as np
+import pytest
+
+from recon4.errors import EmptyRecording
+from recon4.recording.info import describe
+from recon4.recording.report import ImportReport
+from recon4.recording.velodyne.capture import VelodynePcap
+from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
+from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture, read
+
+
+def cut_to(path, snap_length):
+    """The capture as tcpdump writes it with a snap length."""
+    data, at, out = path.read_bytes(), 24, [path.read_bytes()[:24]]
+    while at < len(data):
+        seconds, fraction, captured, sent = struct.unpack_from("<IIII", data, at)
+        kept = min(captured, snap_length)
+        out.append(struct.pack("<IIII", seconds, fraction, kept, sent))
+        out.append(data[at + 16 : at + 16 + kept])
+        at += 16 + captured
+    path.write_bytes(b"".join(out))
+    return path
+
+
+def why(path):
+    with pytest.raises(EmptyRecording) as raised:
+        read([path])
+    return str(raised.value)
+
+
+def samples(text, count=100):
+    payload = np.frombuffer(text, np.uint8)
+    return T0_NS + 10_000_000 * np.arange(count), np.tile(payload, (count, 1))
+
+
+def test_packets_cut_by_the_snap_length_are_named_with_their_port(tmp_path):
+    path = cut_to(capture(tmp_path / "cut.pcap", (FIRST, 2368, spin(100))), 1000)
+
+    text = why(path)
+
+    assert "100 of 100 captured packets: cut when they were captured (snap length)" in text
+    assert "tcpdump -s 0 (to 1000 bytes, to port 2368)" in text
+
+
+def test_a_snap_length_inside_the_headers_is_a_snap_length(tmp_path):
+    path = cut_to(capture(tmp_path / "cut.pcap", (FIRST, 2368, spin(100))), 40)
+
+    assert "100 of 100 captured packets: cut" in why(path)
+
+
+def test_one_lidar_that_is_cut_is_a_warning_beside_the_other(tmp_path):
+    path = capture(
+        tmp_path / "two.pcap", (FIRST, 2368, spin(100)), (SECOND, 2369, spin(100, hz=20.0))
+    )
+    data = bytearray(path.read_bytes())
+    at = 24
+    while at < len(data):
+        captured = struct.unpack_from("<I", data, at + 8)[0]
+        if struct.unpack_from(">H", data, at + 16 + 36)[0] == 2369:
+            struct.pack_into("<I", data, at + 8, 900)
+            del data[at + 16 + 900 : at + 16 + captured]
+            captured = 900
+        at += 16 + captured
+    path.write_bytes(data)
+
+    _, points, _, report = read([path])
+
+    assert points[0] > 0 and set(points) == {0}
+    report.warn_of_losses()
+    assert any("100 of 200 captured packets: cut" in text for text in report.warnings)
+    assert any("to port 2369" in text for text in describe(path).lost)
+
+
+def test_damaged_flags_are_the_reason_and_not_the_length(tmp_path):
+    t_ns, payloads = spin(80)
+    payloads[:60, 300] = 0
+
+    text = why(capture(tmp_path / "flags.pcap", (FIRST, 2368, (t_ns, payloads))))
+
+    assert "60 of 80 data packets: blocks without the flag 0xEEFF" in text
+
+
+def test_packets_of_another_make_are_named_by_their_length(tmp_path):
+    other = T0_NS + 1_000_000 * np.arange(90), np.ones((90, 1248), np.uint8)
+
+    text = why(capture(tmp_path / "other.pcap", (FIRST, 6699, other)))
+
+    assert f"90 packets from {FIRST} to port 6699 (of 1248 bytes; a data packet has 1206)" in text
+
+
+def test_a_second_lidar_of_another_make_is_a_warning(tmp_path):
+    other = T0_NS + 1_300_000 * np.arange(90), np.ones((90, 1248), np.uint8)
+    path = capture(tmp_path / "two.pcap", (FIRST, 2368, spin(100)), (SECOND, 6699, other))
+
+    _, _, _, report = read([path])
+
+    assert any(f"not read: 90 packets from {SECOND} to port 6699" in w for w in report.warnings)
+    assert describe(path).unread
+
+
+def test_a_few_datagrams_of_other_programs_are_no_warning(tmp_path):
+    other = T0_NS + 50_000_000 * np.arange(3), np.ones((3, 77), np.uint8)
+    path = capture(tmp_path / "mdns.pcap", (FIRST, 2368, spin(100)), (SECOND, 5353, other))
+
+    _, _, _, report = read([path])
+
+    assert not [text for text in report.warnings if "not read" in text]
+
+
+def test_an_imu_at_a_port_that_the_rig_does_not_name_is_a_warning(tmp_path):
+    imu = samples(b'{"t_ns": 5, "gx_rad_s": 0.1, "gy_rad_s": 0, "gz_rad_s": 0}')
+    path = capture(tmp_path / "imu.pcap", (FIRST, 2368, spin(700)), (SECOND, 7777, imu))
+
+    _, _, _, report = read([path])
+
+    assert any("give [imu] port = 7777 in the rig file" in text for text in report.warnings)
+
+
+def test_a_sensor_of_the_rig_whose_packets_are_refused_says_why(tmp_path):
+    t_ns, payloads = spin(80, hz=20.0)
+    payloads[:, 300] = 0
+    path = capture(
+        tmp_path / "two.pcap", (FIRST, 2368, spin(100)), (SECOND, 2369, (t_ns, payloads))
+    )
+
+    _, _, _, report = read([path], rig(sensor("a", port=2368), sensor("b", port=2369)))
+
+    found = next(text for text in report.warnings if text.startswith("b: no data packets"))
+    assert "80 of 80 data packets: blocks without the flag" in found
+
+
+def test_a_capture_of_other_protocols_names_them(tmp_path):
+    path = capture(tmp_path / "tcp.pcap", (FIRST, 2368, spin(20)))
+    data = bytearray(path.read_bytes())
+    for at in range(24, len(data), 16 + 42 + 1206):
+        data[at + 16 + 23] = 6
+    path.write_bytes(data)
+
+    assert "20 of 20 captured packets: no UDP over IPv4, not read (TCP)" in why(path)
+
+
+def test_a_counter_that_runs_past_the_hour_is_read_and_said(tmp_path):
+    off_ns = 3_599_900_000_000 - T0_NS % 3_600_000_000_000
+    t_ns, payloads = spin(700)
+    stamps = (t_ns - t_ns[0]) // 1000 + (T0_NS % 3_600_000_000_000 + off_ns) // 1000
+    payloads[:, 1200:1204] = stamps.astype("<u4")[:, None].view(np.uint8)
+    path = capture(tmp_path / "past.pcap", (FIRST, 2368, (t_ns, payloads)))
+
+    _, points, _, report = read([path])
+
+    assert points == {0: 700 * 384}
+    assert report.counts["packets_past_hour"] == int((stamps >= 3_600_000_000).sum()) > 500
+    assert any("past the end of the hour" in text for text in describe(path).repaired)
+
+
+def test_counts_of_the_head_are_not_counted_twice(tmp_path):
+    path = cut_to(capture(tmp_path / "cut.pcap", (FIRST, 2368, spin(700))), 1300)
+    report = ImportReport()
+
+    list(VelodynePcap([path], None, settings=WIDE, report=report).read())
+
+    assert report.counts["records"] == report.counts["packets"] == 700
