@@ -77,7 +77,8 @@ from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
 from recon4 import __version__
-from recon4.verify import STATE, open_state, seal_state
+from recon4.review.trusted_keys import STATE, record_own_key
+from recon4.verify import open_state, seal_state
 
 log = logging.getLogger(__name__)
 
@@ -190,6 +191,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     make_state(settings)
     for problem in open_state(settings.state):
         log.error("%s: %s; recon4 verify %s lists all", STATE, problem, settings.root)
+    record_own_key(settings.state)
     parts = app.state.parts = _open_parts(settings)
     app.state.metrics.follow(parts)
     watching = [

@@ -22,12 +22,14 @@ import time
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
+from itertools import pairwise
 from pathlib import Path, PurePosixPath
 
 import msgspec
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress, track
+from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
 from recon4.store.atomic import atomic_file, fsync, raise_if_full, write_json
 from recon4.store.hashing import hash_file, hash_json
 from recon4.store.json_files import read_object
@@ -36,9 +38,9 @@ from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_t
 from recon4.store.sqlite_files import connect, connect_read_only
 
 FORMAT = 1
-STATE = ".recon4"
-SECRETS = ("signing.key", "access.sqlite", "tls")
-"""Secret files of the server: keys, password hashes, sessions. Backed up only on request."""
+SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls")
+"""Files of the server that are secret, or say whom it trusts: keys, password hashes, sessions.
+Backed up and restored only on request, so that a foreign backup makes no key trusted."""
 _DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
 _TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
@@ -240,8 +242,8 @@ def _is_beside(name: str) -> bool:
 
 
 def _is_secret(name: str) -> bool:
-    parts = PurePosixPath(name).parts
-    return len(parts) > 1 and parts[0] == STATE and parts[1] in SECRETS
+    """Whether it belongs to `SECRETS`, of whatever server below the root."""
+    return any(a == STATE and b in SECRETS for a, b in pairwise(PurePosixPath(name).parts))
 
 
 def _copy_all(

@@ -23,7 +23,7 @@ from recon4.store.project import read_artifacts
 _ALWAYS = (0, 2**63 - 1)
 
 
-def export_3dtk(project: Path, folder: Path, *, progress: Progress) -> int:
+def export_3dtk(project: Path, folder: Path, *, progress: Progress, draft: bool = False) -> int:
     """Write one scan with its pose for each node of the pose graph, as 3DTK reads them.
 
     A node is a multiframe or, of a rig with a profiler, a turn of its head. The format has no place
@@ -33,6 +33,7 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress) -> int:
         project: The project folder.
         folder: Folder to make, ``.3dtk``; it must not exist.
         progress: Counts scans.
+        draft: Whatever the approval is.
 
     Returns:
         How many points were written.
@@ -46,7 +47,7 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress) -> int:
     if folder.exists():
         raise ConfigError(f"{folder} exists already: name a new folder")
     artifacts = read_artifacts(project)
-    dense = final_trajectory(project, artifacts)
+    dense = final_trajectory(project, artifacts, draft=draft)
     store = open_frames(artifacts["frames"], artifacts.get("calibration"))
     graph = load_graph(artifacts["verification"])
     scans = _multiframes if store.rig.row_of("profiler") is None else _turns

@@ -28,6 +28,7 @@ from recon4.report.html import write_report
 from recon4.report.verdict import Assessment, assess
 from recon4.result_files import write_graph, write_pose_covariances, write_trajectory
 from recon4.review.approval import put_back
+from recon4.review.approval_state import WRITTEN_AS_DRAFT, ApprovalState, approval_state
 from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.run_summary import (
@@ -163,6 +164,8 @@ class MapExport:
     """Points where they were measured, not on their surfaces."""
     strays: bool = False
     """Also the stray returns, marked as noise; only as LAZ."""
+    draft: bool = False
+    """Without an approval, whether or not there is one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +178,8 @@ class ExportedMap:
     """Stray returns of the map, in the file or left out of it."""
     noise: bool
     """Whether they are in the file, marked as noise."""
+    approval: ApprovalState
+    """Of the map in the file."""
 
     @property
     def text(self) -> str:
@@ -198,7 +203,8 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         How many points were written, and how many stray returns there are.
 
     Raises:
-        Altered: If it was approved and is not what was approved; nothing is written.
+        Altered: If it was approved and is not what was approved, or its approval is not to be
+            trusted (`approval_of`), unless a draft is wanted; nothing is written.
         ConfigError: If the ending is another.
         GeoreferenceError: If a CRS is requested and the map is not georeferenced.
         StoreError: If there is no map yet or the file cannot be written.
@@ -207,7 +213,8 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
     if "map" not in artifacts:
         raise StoreError(f"{project} has no map yet: run recon4 process")
     ending = _ending_of_map(path, strays=wanted.strays)
-    approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
+    keys = {name: folder.name for name, folder in artifacts.items()}
+    approval = None if wanted.draft else approval_of(project, keys)
     checked = None
     if approval:
         approval.evidence.check_frame(artifacts)
@@ -225,7 +232,8 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
             count = export_ply(tiles, temporary, map_to_crs=to_crs, progress=progress)
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
-    return ExportedMap(count, tiles.strays, wanted.strays)
+    state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
+    return ExportedMap(count, tiles.strays, wanted.strays, state)
 
 
 def _ending_of_map(path: Path, *, strays: bool) -> str:
@@ -243,7 +251,7 @@ def _ending_of_map(path: Path, *, strays: bool) -> str:
     return ending
 
 
-def export_poses(project: Path, path: Path) -> int:
+def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:
     """Write the poses ``T_map_body`` of all multiframes as KITTI poses, a line each.
 
     The format has no times and no comments: an approval cannot be noted in it.
@@ -251,6 +259,7 @@ def export_poses(project: Path, path: Path) -> int:
     Args:
         project: The project folder.
         path: File to write, ``.txt``.
+        draft: Whatever the approval is.
 
     Returns:
         How many poses were written.
@@ -262,15 +271,19 @@ def export_poses(project: Path, path: Path) -> int:
     """
     check_name(path, ".txt")
     artifacts = read_artifacts(project)
-    dense = final_trajectory(project, artifacts)
+    dense = final_trajectory(project, artifacts, draft=draft)
     t_ns = FrameStore.open(artifacts["frames"]).t_mid_ns
     with atomic_file(path) as temporary:
         write_kitti(temporary, Trajectory(t_ns, dense.at(t_ns)))
     return len(t_ns)
 
 
-def final_trajectory(project: Path, artifacts: Mapping[str, Path]) -> Trajectory:
+def final_trajectory(
+    project: Path, artifacts: Mapping[str, Path], *, draft: bool = False
+) -> Trajectory:
     """The trajectory ``T_map_body`` of a finished run, compared with its approval if there is one.
+
+    A draft is not compared.
 
     Raises:
         Altered: If it was approved and is not what was approved.
@@ -278,7 +291,8 @@ def final_trajectory(project: Path, artifacts: Mapping[str, Path]) -> Trajectory
     """
     if not {"frames", "level"} <= artifacts.keys():
         raise StoreError(f"{project} has no finished trajectory yet: run recon4 process")
-    approval = approval_of(project, {name: folder.name for name, folder in artifacts.items()})
+    keys = {name: folder.name for name, folder in artifacts.items()}
+    approval = None if draft else approval_of(project, keys)
     if approval:
         for stage in ("frames", "level"):
             approval.evidence.artifact(stage, artifacts[stage]).check_all()

@@ -10,6 +10,7 @@ from pathlib import Path
 from recon4.errors import Recon4Error, StoreError
 from recon4.progress import Progress
 from recon4.review.audit import audit_review
+from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
 from recon4.store.audit import audit, audit_seals
 from recon4.store.hashing import files_below
 from recon4.store.project import is_project, loose_files
@@ -25,11 +26,11 @@ from recon4.store.seal import (
     read_seals,
 )
 
-STATE = ".recon4"
 STATE_FILES = (
     "jobs.sqlite",
     "access.sqlite",
-    "signing.key",
+    SIGNING_KEY,
+    TRUSTED_KEYS,
     "tls",
     "uploads",
     "backups",
@@ -56,6 +57,8 @@ class Verified:
     """Of journals."""
     approvals: tuple[str, ...]
     """Descriptions of the valid approvals."""
+    untrusted: tuple[str, ...] = ()
+    """Approvals with an intact signature of a signer who is not trusted here."""
 
 
 def verify(path: Path, progress: Progress) -> Verified:
@@ -78,6 +81,7 @@ def verify(path: Path, progress: Progress) -> Verified:
         notes=tuple(words for one in found for words in one.notes),
         rows=sum(one.rows for one in found),
         approvals=tuple(words for one in found for words in one.approvals),
+        untrusted=tuple(words for one in found for words in one.untrusted),
     )
 
 
@@ -91,15 +95,22 @@ def verify_project(root: Path, progress: Progress) -> Verified:
     damaged = list(found.damaged)
     rows = 0
     approvals: tuple[str, ...] = ()
+    untrusted: tuple[str, ...] = ()
     try:
         review = audit_review(root, progress)
-        rows, approvals = review.rows, review.approvals
+        rows, approvals, untrusted = review.rows, review.approvals, review.untrusted
         damaged += review.damaged
     except _UNREADABLE as error:
         damaged.append(f"decisions.sqlite cannot be read: {error}")
     damaged = list(dict.fromkeys(damaged))
     return Verified(
-        found.checked + rows, tuple(damaged), found.unknown, found.notes, rows, tuple(approvals)
+        checked=found.checked + rows,
+        damaged=tuple(damaged),
+        unknown=found.unknown,
+        notes=found.notes,
+        rows=rows,
+        approvals=approvals,
+        untrusted=untrusted,
     )
 
 
@@ -143,12 +154,13 @@ def seal_state(state: Path) -> None:
 
 
 @contextmanager
-def state_change(state: Path, name: str) -> Iterator[None]:
-    """Change a file of the state; where a server runs, it seals the file when it ends."""
-    if read_seals(state).get(name, OPEN) == OPEN:
+def state_change(state: Path, *names: str) -> Iterator[None]:
+    """Change files of the state; where a server runs, it seals the files when it ends."""
+    seals = read_seals(state)
+    if not seals or OPEN in seals.values():
         yield
         return
-    with changing(state, name):
+    with changing(state, *names):
         yield
 
 
@@ -194,4 +206,5 @@ def _named(found: Verified, name: Path) -> Verified:
         with_name(found.notes),
         found.rows,
         with_name(found.approvals),
+        with_name(found.untrusted),
     )

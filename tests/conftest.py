@@ -43,6 +43,12 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+@pytest.fixture(scope="session", autouse=True)
+def _no_keys_of_this_person(tmp_path_factory: pytest.TempPathFactory) -> None:
+    """Commands trust no key that the person who runs the tests trusts."""
+    os.environ["XDG_CONFIG_HOME"] = str(tmp_path_factory.mktemp("config"))
+
+
 @pytest.fixture(scope="session")
 def data() -> Callable[[str], Path]:
     """``data("packets/mrpt")`` is that set of real recordings, or the test is skipped.

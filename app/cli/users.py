@@ -31,16 +31,16 @@ RootOption = Annotated[Path, typer.Option(help="The folder given to recon4 serve
 @users.command()
 def add(name: NameArgument, role: RoleOption, root: RootOption = Path()) -> None:
     """Add a person; asks for the password, or reads it from a pipe."""
-    with _access(root) as access:
+    with access_of(root) as access:
         account = access.accounts.add(name, _role(role), _password())
-        _note(access, "add person", f"{account.name}, {account.role}")
+        note(access, "add person", f"{account.name}, {account.role}")
     write(f"{account.name} may sign in as {account.role}")
 
 
 @users.command("list")
 def list_all(root: RootOption = Path()) -> None:
     """List everybody."""
-    with _access(root) as access:
+    with access_of(root) as access:
         for one in access.accounts.all():
             state = "disabled" if one.disabled else ""
             write(f"{one.name:<32} {one.role:<10} {one.created[:10]} {state}".rstrip())
@@ -53,9 +53,9 @@ def role(
     root: RootOption = Path(),
 ) -> None:
     """Give a person another role; ends the person's sessions."""
-    with _access(root) as access:
+    with access_of(root) as access:
         account = access.accounts.set_role(name, _role(role))
-        _note(access, "set role", f"{account.name}, {account.role}")
+        note(access, "set role", f"{account.name}, {account.role}")
     write(f"{account.name} is {account.role} now")
 
 
@@ -66,18 +66,18 @@ def disable(
     again: Annotated[bool, typer.Option("--undo", help="Let the person in again.")] = False,
 ) -> None:
     """Lock a person out; ends the person's sessions."""
-    with _access(root) as access:
+    with access_of(root) as access:
         account = access.accounts.set_disabled(name, not again)
-        _note(access, "enable" if again else "disable", account.name)
+        note(access, "enable" if again else "disable", account.name)
     write(f"{account.name} {'may' if again else 'may not'} sign in")
 
 
 @users.command()
 def password(name: NameArgument, root: RootOption = Path()) -> None:
     """Set a person's password; ends the person's sessions."""
-    with _access(root) as access:
+    with access_of(root) as access:
         account = access.accounts.set_password(name, _password())
-        _note(access, "set password", account.name)
+        note(access, "set password", account.name)
     write(f"the password of {account.name} is set")
 
 
@@ -87,7 +87,7 @@ def audit(
     last: Annotated[int, typer.Option(min=1, help="Number of entries to show.")] = 50,
 ) -> None:
     """Show the audit log and check its chain of hashes; exit code 1 if it was tampered with."""
-    with _access(root) as access:
+    with access_of(root) as access:
         for one in reversed(access.log.newest(last)):
             what = f"{one.person} ({one.address}) {one.action}: {one.object}"
             write(f"{one.number:>6} {one.time} {one.outcome:<8} {what}")
@@ -106,15 +106,15 @@ def metrics_token(
     """Show the token with which a program reads /metrics; made the first time."""
     from app.metrics_routes import make_metrics_token
 
-    with _access(root) as access:
+    with access_of(root) as access:
         token = make_metrics_token(root / ".recon4", renew=renew)
-        _note(access, "show metrics token", "renewed" if renew else "")
+        note(access, "show metrics token", "renewed" if renew else "")
     write(token)
 
 
 @contextmanager
-def _access(root: Path) -> Iterator[Access]:
-    """The access database below a folder of projects."""
+def access_of(root: Path) -> Iterator[Access]:
+    """Open the access database below a folder of projects, to change it."""
     from app.access.login.login_service import open_access
     from app.errors import AppError
     from app.network.listen import make_state
@@ -152,5 +152,6 @@ def _password() -> str:
     return first
 
 
-def _note(access: Access, action: str, what: str) -> None:
+def note(access: Access, action: str, what: str) -> None:
+    """Append what a person did at this computer to the audit log."""
     access.log.add(getpass.getuser(), "this computer", action=action, what=what)

@@ -61,9 +61,9 @@ from recon4.review.pairs import (
     trajectory_nodes,
 )
 from recon4.review.preview import Effect
-from recon4.review.signature import ensure_key
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.review.trusted_keys import SIGNING_KEY, TRUSTED_KEYS, ensure_own_key
 from recon4.store.checked import Altered
 
 T = TypeVar("T")
@@ -252,7 +252,7 @@ async def approve(
     if await run_in_threadpool(_busy, project_id, server):
         raise Conflict("a job of this project is queued or running; approve when it is done")
     signer = {"who": who.name, "role": str(who.role), "why": asked.why}
-    key = server.settings.state / "signing.key"
+    key = server.settings.state / SIGNING_KEY
     try:
         approval = await _sign(root, key, signer, asked=asked, server=server)
     except NotApprovable as error:
@@ -282,10 +282,10 @@ async def _sign(
 
     It is not canceled when the client disconnects: an approval is complete or absent.
     """
-    await run_in_threadpool(ensure_key, key)
+    await run_in_threadpool(ensure_own_key, key.parent)
     terms = Terms(
         person=signer["who"],
-        access=FileAccess(read=(key,), write=(root,)),
+        access=FileAccess(read=(key, key.with_name(TRUSTED_KEYS)), write=(root,)),
         limit_s=SIGNING_LIMIT_S,
     )
     seen = (asked.after_seq, asked.graph)

@@ -15,7 +15,8 @@ backups = typer.Typer()
 KeysOption = Annotated[
     bool,
     typer.Option(
-        "--with-keys", help="Also the signing key, TLS keys, and people with their passwords."
+        "--with-keys",
+        help="Also the signing key, trusted keys, TLS keys, and people with their passwords.",
     ),
 ]
 
@@ -65,3 +66,7 @@ def restore(
     with watcher() as progress:
         files = put(backup, root, with_keys=with_keys, progress=progress)
     write(f"{files} files in {root}; recon4 verify {root} compares them with their seals")
+    if not with_keys:
+        write(
+            "keys are not in it: approvals count there once their keys are added (recon4 keys add)"
+        )

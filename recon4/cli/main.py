@@ -17,12 +17,14 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 import recon4
+from app.cli.keys import keys
 from app.cli.serve import server
 from app.cli.users import users
 from recon4.cli.backup import backups
 from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.evaluation import evaluation
+from recon4.cli.exports import exports
 from recon4.cli.live import live
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
@@ -42,6 +44,7 @@ app = typer.Typer(
 )
 
 app.add_typer(users, name="users")
+app.add_typer(keys, name="keys")
 app.add_typer(server)
 app.add_typer(live)
 app.add_typer(simulation)
@@ -49,6 +52,7 @@ app.add_typer(slices)
 app.add_typer(backups)
 app.add_typer(calibration)
 app.add_typer(evaluation)
+app.add_typer(exports)
 
 _INTERRUPTED = 130
 """What shells report for a program that Ctrl-C ended."""
@@ -161,47 +165,6 @@ def compile_command() -> None:
 
 
 @app.command()
-def export(
-    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
-    file: Annotated[
-        Path,
-        typer.Argument(
-            help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses; "
-            ".3dtk = folder of scans with poses for 3DTK."
-        ),
-    ],
-    *,
-    crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
-    raw: Annotated[
-        bool, typer.Option("--raw", help="Points where they were measured, not on surfaces.")
-    ] = False,
-    strays: Annotated[
-        bool,
-        typer.Option("--strays", help="Also stray returns, as classes 7 and 18 (noise); .laz."),
-    ] = False,
-) -> None:
-    """Write the map of a project, in any CRS when it is georeferenced, or its poses."""
-    confine_command(write=[file.parent])
-    from recon4.exports_3dtk import export_3dtk
-    from recon4.results import MapExport, export_map, export_poses
-    from recon4.terminal import watcher
-
-    if file.suffix.lower() == ".txt":
-        if crs:
-            raise typer.BadParameter("--crs is for maps; poses are written in the map's frame")
-        write(f"{export_poses(project, file)} poses in {file}")
-        return
-    with watcher() as progress:
-        if file.suffix.lower() == ".3dtk":
-            write(f"{export_3dtk(project, file, progress=progress)} points in {file}")
-            return
-        made = export_map(
-            project, file, MapExport(crs=crs, raw=raw, strays=strays), progress=progress
-        )
-    write(f"{made.text} in {file}")
-
-
-@app.command()
 def settings(
     preset: PresetOption = "indoor",
     assignments: SetOption = None,
@@ -252,10 +215,13 @@ def verify(
             write(f"note: {what}")
         for what in found.damaged:
             write(f"damaged: {what}")
+        for what in found.untrusted:
+            write(f"not trusted: {what}")
         for what in found.approvals:
             write(what)
-        write(f"{found.checked} checked, {len(found.damaged)} damaged")
-    if found.damaged:
+        untrusted = f", {len(found.untrusted)} not trusted" if found.untrusted else ""
+        write(f"{found.checked} checked, {len(found.damaged)} damaged{untrusted}")
+    if found.damaged or found.untrusted:
         raise typer.Exit(1)
 
 

@@ -50,17 +50,22 @@ def cut_map(  # noqa: PLR0913 - options of a command
     color: Annotated[
         str, typer.Option(help="height, intensity, normalized, time or sensor.")
     ] = "height",
+    draft: Annotated[
+        bool, typer.Option("--draft", help="Without approval, whether or not there is one.")
+    ] = False,
 ) -> None:
     """Cut a map and write the slice, at full resolution. It carries the map's approval."""
     confine_command(write=[file.parent])
     from recon4.mapping.tiles import TileSet
+    from recon4.review.approval_state import latest_state
     from recon4.review.approved import approval_of
     from recon4.slices.frames import frame_of
     from recon4.store.project import read_artifacts
 
     planes = _slice_plane(z, line, plane, thickness_m=thickness).repeated(count, spacing_m=spacing)
     artifacts = read_artifacts(project)
-    approval = approval_of(project, {stage: folder.name for stage, folder in artifacts.items()})
+    keys = {stage: folder.name for stage, folder in artifacts.items()}
+    approval = None if draft else approval_of(project, keys)
     if approval:
         approval.evidence.check_frame(artifacts)
     frame = frame_of(artifacts)
@@ -69,7 +74,8 @@ def cut_map(  # noqa: PLR0913 - options of a command
     )
     look = SliceLook(color, project.name, approval.stamp if approval else None)
     points = _write(tiles, planes, file, frame=frame, look=look)
-    sys.stdout.write(f"{points} points in {file}\n")
+    state = latest_state(project, draft=draft)
+    sys.stdout.write(f"{points} points in {file}\n{state.text}\n")
 
 
 @slices.command("doubles")

@@ -19,7 +19,7 @@ import msgspec
 
 from recon4.errors import StoreError
 from recon4.model.usability import MapVerdict, Usability, verdict_in
-from recon4.review.approved import VERSIONS, Approval, approval_of
+from recon4.review.approved import VERSIONS, Approval, approval_of, versions_without_row
 from recon4.review.decisions import ApprovalFacts, Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalRow, append, broken, head, read_rows
 from recon4.review.signature import sign
@@ -289,8 +289,10 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
 def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path) -> Approval:
     """Write ``versions/<n>/``; it is valid once its row is in the journal."""
     folder = root / VERSIONS / str(version)
-    if folder.exists():  # of an approval that was interrupted before it was valid
-        folder.rename(folder.with_name(f"unfinished-{version}-{secrets.token_hex(3)}"))
+    for name in versions_without_row(root, asked.rows):  # of approvals that never were valid
+        (root / VERSIONS / name).rename(
+            root / VERSIONS / f"unfinished-{name}-{secrets.token_hex(3)}"
+        )
     time = datetime.now(UTC).isoformat(timespec="seconds")
     statement = _statement(root, asked, version=version, time=time)
     stamp = Stamp(
@@ -310,7 +312,16 @@ def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path)
         signature = sign({"hash": stamp.hash, "issued": issued}, key_file)
         record = {"statement": statement, "hash": stamp.hash, "issued": issued}
         write_json(made / "approval.json", record | {"signature": signature})
-    return Approval(version, stamp.hash, folder, stamp, asked.keys, statement["manifests"], issued)
+    return Approval(
+        version=version,
+        hash=stamp.hash,
+        folder=folder,
+        stamp=stamp,
+        artifacts=asked.keys,
+        manifests=statement["manifests"],
+        issued=issued,
+        decisions=statement["journal"]["decisions"],
+    )
 
 
 def _statement(

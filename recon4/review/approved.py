@@ -1,4 +1,4 @@
-"""Finds valid approvals: compared with the journal and their signature."""
+"""Finds valid approvals: compared with the journal, their signature and the trusted keys."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from recon4.review.evidence import Evidence
 from recon4.review.journal import JournalRow, broken, read_rows
 from recon4.review.signature import fingerprint, has_valid_signature
 from recon4.review.stamp import Stamp
-from recon4.review.state import read_summary
+from recon4.review.state import artifact_keys, read_summary
+from recon4.review.trusted_keys import UnknownSigner, trusted_for
 from recon4.store.checked import Altered, check_file
 from recon4.store.hashing import FileDigest, hash_json
 
@@ -22,7 +23,7 @@ VERSIONS = "versions"
 
 @dataclass(frozen=True, slots=True)
 class Approval:
-    """A valid approval: journal row, statement and signature agree."""
+    """A valid approval: journal row, statement and signature agree, and the signer is trusted."""
 
     version: int
     hash: str
@@ -36,6 +37,8 @@ class Approval:
     """Stage -> SHA-256 of the manifest of its artifact; empty before statement format 2."""
     issued: Mapping[str, str]
     """File name -> SHA-256, as signed."""
+    decisions: str
+    """`Decided.key` of the decisions in the map."""
 
     @property
     def evidence(self) -> Evidence:
@@ -71,15 +74,21 @@ class Approval:
             raise Altered(f"{self.evidence.refusal}: {error}") from error
 
 
+class NotInJournal(Altered):
+    """A project has an approval that is in no row of its journal."""
+
+
 def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
     """The newest approval of results made of these artifacts; None if there is none.
 
     Raises:
-        Altered: If its file or the journal was changed.
+        Altered: If its file or the journal was changed, its signer is not trusted here
+            (`UnknownSigner`), or an approval lacks its row in the journal (`NotInJournal`).
         StoreError: If a file cannot be read.
     """
     wanted = hash_json(dict(keys))
     rows = read_rows(root)
+    _refuse_without_row(root, rows, keys)
     for row in reversed(rows):
         if row.kind == DecisionKind.APPROVE and _facts(row).artifacts == wanted:
             return _counted(root, rows, row)
@@ -90,10 +99,11 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
     """The newest approval of an earlier map, by the key of its artifact.
 
     Raises:
-        Altered: If the file of an approval or the journal was changed.
+        Altered: As `approval_of`.
         StoreError: If a file cannot be read.
     """
     rows = read_rows(root)
+    _refuse_without_row(root, rows, {})
     for row in reversed(rows):
         if row.kind == DecisionKind.APPROVE:
             approval = _counted(root, rows, row)
@@ -102,9 +112,39 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
     return None
 
 
+def versions_without_row(root: Path, rows: Sequence[JournalRow]) -> list[str]:
+    """Folders below ``versions/`` that no row of the journal names, except those set aside."""
+    counted = {str(_facts(row).version) for row in rows if row.kind == DecisionKind.APPROVE}
+    folder = root / VERSIONS
+    names = sorted(path.name for path in folder.iterdir()) if folder.is_dir() else []
+    return [
+        name for name in names if name not in counted and not name.startswith(("unfinished-", "."))
+    ]
+
+
+def _refuse_without_row(root: Path, rows: Sequence[JournalRow], keys: Mapping[str, str]) -> None:
+    """Refuse a project with an approval that its journal does not have.
+
+    Its row was removed, or an older journal was put there, or it was interrupted before its row.
+    """
+    if surplus := versions_without_row(root, rows):
+        raise NotInJournal(
+            f"versions/{surplus[-1]} is in no row of the journal: the row was removed, the journal "
+            "is an older one, or the approval was interrupted; approve the map again"
+        )
+    summary = read_summary(root) or {}
+    named = (summary.get("approval") or {}).get("hash")
+    approved = {_facts(row).approval for row in rows if row.kind == DecisionKind.APPROVE}
+    if named and named not in approved and artifact_keys(summary) == dict(keys):
+        raise NotInJournal(
+            "summary.json names an approval that is in no row of the journal: put the journal "
+            "back, or approve the map again"
+        )
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LatestApproval:
-    """The newest approval of a project."""
+    """The newest approval of a project, as its journal has it."""
 
     version: int
     hash: str
@@ -140,7 +180,9 @@ def latest_approval(root: Path, rows: Sequence[JournalRow]) -> LatestApproval | 
 
 
 def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
-    """The approval named by a row of the journal, and the fingerprint of its key.
+    """The approval named by a row of the journal, and the public key that signed it.
+
+    Whether that key is trusted is for the caller to check (`TrustedKeys.signer`).
 
     Raises:
         Altered: If ``approval.json`` is missing or damaged, is not the one of the row, was signed
@@ -154,8 +196,16 @@ def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
         stamp = _stamp(facts.version, statement, facts.approval)
         artifacts, manifests = dict(statement["artifacts"]), dict(statement.get("manifests", {}))
         signed_head = statement["journal"]["head"]
+        signed = (statement["version"], hash_json(artifacts))
         approval = Approval(
-            stamp.version, stamp.hash, folder, stamp, artifacts, manifests, dict(issued)
+            version=stamp.version,
+            hash=stamp.hash,
+            folder=folder,
+            stamp=stamp,
+            artifacts=artifacts,
+            manifests=manifests,
+            issued=dict(issued),
+            decisions=str(statement["journal"]["decisions"]),
         )
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise Altered(f"versions/{folder.name}/approval.json cannot be read: {error!r}") from error
@@ -167,7 +217,9 @@ def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:
         raise Altered(f"it names the key {signature.get('key')}, its signature is by {key}")
     if signed_head != row.prev_hash:
         raise Altered("it was signed over another journal")
-    return approval, key
+    if signed != (facts.version, facts.artifacts) or stamp.who != row.who:
+        raise Altered("version, artifacts or signer in the journal are not those that were signed")
+    return approval, str(signature["public_key"])
 
 
 def _counted(root: Path, rows: Sequence[JournalRow], row: JournalRow) -> Approval:
@@ -175,9 +227,13 @@ def _counted(root: Path, rows: Sequence[JournalRow], row: JournalRow) -> Approva
     if wrong := broken(rows):
         raise Altered(f"the journal was altered: {wrong[0]}")
     try:
-        return read_approval(root / VERSIONS / version, row)[0]
+        approval, public_key = read_approval(root / VERSIONS / version, row)
+        trusted_for(root).signer(public_key)
+    except UnknownSigner as error:
+        raise UnknownSigner(f"version {version} is not counted: {error}", error.key) from error
     except Altered as error:
         raise Altered(f"the approval of version {version} is not valid: {error}") from error
+    return approval
 
 
 def _facts(row: JournalRow) -> ApprovalFacts:

@@ -10,9 +10,10 @@ from pathlib import Path
 from recon4.model.usability import Usability
 from recon4.names import visible
 from recon4.progress import Progress, track
-from recon4.review.approved import VERSIONS, read_approval
+from recon4.review.approved import VERSIONS, Approval, read_approval, versions_without_row
 from recon4.review.decisions import DecisionKind
-from recon4.review.journal import JournalRow, broken, read_rows
+from recon4.review.journal import broken, read_rows
+from recon4.review.trusted_keys import TrustedKey, UnknownSigner, trusted_for
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
 
@@ -27,6 +28,8 @@ class ReviewAudit:
     """Valid approvals, one line each."""
     damaged: tuple[str, ...]
     """Problems, one line each; empty = none."""
+    untrusted: tuple[str, ...]
+    """Approvals whose signature is intact and whose signer is not trusted here, one line each."""
 
 
 def audit_review(root: Path, progress: Progress) -> ReviewAudit:
@@ -35,21 +38,42 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
     Raises:
         StoreError: If the journal cannot be read.
     """
-    rows = read_rows(root)
+    rows, trusted = read_rows(root), trusted_for(root)
     damaged = [f"journal: {what}" for what in broken(rows)]
-    approvals, counted = [], set()
+    approvals: list[str] = []
+    untrusted: list[str] = []
     approving = [row for row in rows if row.kind == DecisionKind.APPROVE]
     for row in track(approving, progress, what="approvals", unit="versions"):
         facts = json.loads(row.body)["facts"]
         version = int(facts["version"])
-        counted.add(str(version))
-        wrong, key = _check(root / VERSIONS / str(version), row)
+        folder = root / VERSIONS / str(version)
+        try:
+            approval, public_key = read_approval(folder, row)
+        except Altered as error:
+            damaged.append(f"version {version}: {error}")
+            continue
+        wrong = _files(folder, dict(approval.issued))
         damaged += [f"version {version}: {what}" for what in wrong]
+        try:
+            key = trusted.signer(public_key)
+        except UnknownSigner as error:
+            untrusted.append(f"version {version} by {visible(approval.stamp.who)}: {error}")
+            continue
         if not wrong:
-            signed = f"version {version}, approved by {row.who}, {row.time}, key {key}"
-            approvals.append(signed + _in_spite_of(facts.get("verdict", ""), row.why))
-    damaged += _surplus(root / VERSIONS, counted)
-    return ReviewAudit(len(rows), tuple(approvals), tuple(damaged))
+            approvals.append(_approved(approval, key))
+    damaged += [
+        f"versions/{name} is in no row of the journal: the row was removed, the journal is an "
+        "older one, or the approval was interrupted"
+        for name in versions_without_row(root, rows)
+    ]
+    return ReviewAudit(len(rows), tuple(approvals), tuple(damaged), tuple(untrusted))
+
+
+def _approved(approval: Approval, key: TrustedKey) -> str:
+    stamp = approval.stamp
+    signed = f"version {stamp.version}, approved by {visible(stamp.who)}, {stamp.time}"
+    by = f", key {key.fingerprint} ({visible(key.name)})"
+    return signed + by + _in_spite_of(stamp.verdict, stamp.why)
 
 
 def _in_spite_of(verdict: str, why: str) -> str:
@@ -61,30 +85,9 @@ def _in_spite_of(verdict: str, why: str) -> str:
     )
 
 
-def _check(folder: Path, row: JournalRow) -> tuple[list[str], str]:
-    """Problems of a version, and the fingerprint of its key."""
-    try:
-        approval, key = read_approval(folder, row)
-    except Altered as error:
-        return [str(error)], ""
-    return _files(folder, dict(approval.issued)), key
-
-
 def _files(folder: Path, issued: dict[str, object]) -> list[str]:
     there = {path.name for path in folder.iterdir()} - {"approval.json"}
     wrong = [f"{name} is missing" for name in sorted(issued.keys() - there)]
     wrong += [f"{name} does not belong here" for name in sorted(there - issued.keys())]
     both: Sequence[str] = sorted(there & issued.keys())
     return wrong + [f"{n} has other bytes" for n in both if hash_file(folder / n) != issued[n]]
-
-
-def _surplus(folder: Path, counted: set[str]) -> list[str]:
-    """Versions without a row in the journal, except interrupted approvals."""
-    if not folder.is_dir():
-        return []
-    names = sorted(path.name for path in folder.iterdir())
-    return [
-        f"versions/{name} is in no row of the journal"
-        for name in names
-        if name not in counted and not name.startswith(("unfinished-", "."))
-    ]

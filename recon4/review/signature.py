@@ -19,7 +19,7 @@ from cryptography.hazmat.primitives.serialization import (
 )
 
 from recon4.errors import StoreError
-from recon4.store.atomic import atomic_file
+from recon4.store.atomic import atomic_file, make_folders
 
 ALGORITHM = "Ed25519"
 
@@ -37,8 +37,9 @@ def sign(value: object, key_file: Path) -> dict[str, str]:
     Raises:
         StoreError: If the key cannot be read or created.
     """
-    private = _private_key(key_file)
-    public = private.public_key().public_bytes(Encoding.Raw, PublicFormat.Raw)
+    ensure_key(key_file)
+    private = _load(key_file)
+    public = _public_half(private)
     return {
         "algorithm": ALGORITHM,
         "public_key": public.hex(),
@@ -50,7 +51,7 @@ def sign(value: object, key_file: Path) -> dict[str, str]:
 def has_valid_signature(value: object, signature: Mapping[str, str]) -> bool:
     """Verify the signature of a value with the public key inside the signature.
 
-    Whether that key is to be trusted is for the caller to decide.
+    Whether that key counts is for `recon4.review.trusted_keys` to say.
     """
     try:
         public = Ed25519PublicKey.from_public_bytes(bytes.fromhex(signature["public_key"]))
@@ -71,14 +72,26 @@ def canonical(value: object) -> bytes:
     return text.encode()
 
 
+def public_key_of(path: Path) -> str:
+    """The public half of a private key, hexadecimal.
+
+    Raises:
+        StoreError: If the key cannot be read.
+    """
+    return _public_half(_load(path)).hex()
+
+
 def ensure_key(path: Path) -> None:
     """Create the private key if missing, so that signing needs no write access to its folder."""
     if not path.exists():
         _make(path)
 
 
-def _private_key(path: Path) -> Ed25519PrivateKey:
-    ensure_key(path)
+def _public_half(key: Ed25519PrivateKey) -> bytes:
+    return key.public_key().public_bytes(Encoding.Raw, PublicFormat.Raw)
+
+
+def _load(path: Path) -> Ed25519PrivateKey:
     try:
         key = load_pem_private_key(path.read_bytes(), password=None)
     except (OSError, ValueError) as error:
@@ -92,6 +105,7 @@ def _make(path: Path) -> None:
     pem = Ed25519PrivateKey.generate().private_bytes(
         Encoding.PEM, PrivateFormat.PKCS8, NoEncryption()
     )
+    make_folders(path.parent, 0o700)
     with atomic_file(path) as temporary:
         descriptor = os.open(temporary, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(descriptor, "wb") as file:

@@ -52,10 +52,9 @@ def simulate_gnss(
     model: GnssModel,
     *,
     origin: WorldOrigin,
-    epoch_ns: int,
     rng: np.random.Generator,
 ) -> GnssSamples:
-    """Antenna positions and attitudes at 10 Hz over the whole walk."""
+    """Antenna positions and attitudes at 10 Hz over the whole walk; times since its start."""
     period_ns = 1_000_000_000 // GNSS_RATE_HZ
     t_ns = np.arange(int(walk.seconds * GNSS_RATE_HZ) + 1, dtype=np.int64) * period_ns
     T_map_body = walk.poses(1e-9 * t_ns)
@@ -67,7 +66,7 @@ def simulate_gnss(
     error[outlier] += rng.standard_normal((int(outlier.sum()), 3))
     lat_rad, lon_rad, height_m = geodetic(p_map + error, origin)
     return GnssSamples(
-        epoch_ns + t_ns - round(1e9 * rig.gnss_time_offset_s),
+        t_ns - round(1e9 * rig.gnss_time_offset_s),
         lat_rad,
         lon_rad,
         height_m,

@@ -126,14 +126,10 @@ def gnss_samples(setup: SimulationSetup) -> GnssSamples | None:
     """What the GNSS receiver measures on the walk; None = indoors."""
     if not setup.world.outdoors:
         return None
-    return simulate_gnss(
-        setup.walk,
-        setup.rig,
-        setup.models.gnss,
-        origin=setup.world.origin,
-        epoch_ns=setup.epoch_ns,
-        rng=setup.rng(5),
+    samples = simulate_gnss(
+        setup.walk, setup.rig, setup.models.gnss, origin=setup.world.origin, rng=setup.rng(5)
     )
+    return replace(samples, t_ns=setup.epoch_ns + samples.t_ns)
 
 
 def _addressed(rig: Rig) -> Rig:

@@ -38,13 +38,13 @@ def approved(tmp_path_factory):
     """A project as it was approved; copied by every test."""
     root = tmp_path_factory.mktemp("integrity")
     build_project(root / "office", points=120_000)
-    approve_project(root / "office", root / "signing.key", who="anna")
+    approve_project(root / "office", root / ".recon4" / "signing.key", who="anna")
     return root / "office"
 
 
 @pytest.fixture
 def office(approved, tmp_path):
-    shutil.copytree(approved, tmp_path / "root" / "office", copy_function=shutil.copy2)
+    shutil.copytree(approved.parent, tmp_path / "root", copy_function=shutil.copy2)
     return tmp_path / "root" / "office"
 
 
@@ -212,7 +212,7 @@ def test_an_approval_without_hashes_of_manifests_is_compared_with_the_whole_file
     """As recon4 signed before: the manifest itself is all there is to compare with."""
     old = tmp_path / "old"
     shutil.copytree(approved, old)
-    sign_as_before(old, tmp_path / "signing.key")
+    sign_as_before(old, tmp_path / ".recon4" / "signing.key")
     manifest = read_artifacts(old)["map"] / "manifest.json"
     record = json.loads(manifest.read_text())
     for digest in record["files"].values():
@@ -235,6 +235,9 @@ def sign_as_before(root, key_file):
     path.chmod(0o644)
     record = {"statement": statement, "hash": sha256, "issued": issued, "signature": signature}
     write_json(path, record)
+    summary = json.loads((root / "summary.json").read_text())
+    summary["approval"]["hash"] = sha256
+    write_json(root / "summary.json", summary)
     (root / "decisions.sqlite").unlink()
     (root / "seals.json").unlink()
     facts = ApprovalFacts(version=1, approval=sha256, artifacts=hash_json(statement["artifacts"]))

@@ -12,6 +12,8 @@ import pytest
 from recon4.cli.main import main
 from tests.service.running import server_thread
 
+SIGNER = "0a5bf0639cc2939158dcc2f82c27995a755021f45d521d59a423cd32bae1ff50"
+"""Public key of the server that signed it."""
 ARCHIVE = Path(__file__).parents[1] / "data" / "project-format1.tar.xz"
 
 
@@ -20,6 +22,8 @@ def root(tmp_path_factory):
     folder = tmp_path_factory.mktemp("earlier")
     with tarfile.open(ARCHIVE) as archive:
         archive.extractall(folder, filter="data")
+    (folder / ".recon4").mkdir()
+    main(["keys", "add", "Server before", SIGNER, "--root", str(folder)])
     return folder
 
 

@@ -86,7 +86,7 @@ def unusable(root):
 
 @pytest.fixture
 def key(tmp_path):
-    return tmp_path / "signing.key"
+    return tmp_path / ".recon4" / "signing.key"
 
 
 def reject(j=7, who="Eva"):

@@ -1,0 +1,70 @@
+"""The command ``recon4 export``: the map of a project, or its poses, as files."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon4.cli.confinement import confine_command
+from recon4.terminal import write
+
+exports = typer.Typer()
+
+DraftOption = Annotated[
+    bool, typer.Option("--draft", help="Write it without approval, whether or not there is one.")
+]
+
+
+@exports.command()
+def export(
+    project: Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses; "
+            ".3dtk = folder of scans with poses for 3DTK."
+        ),
+    ],
+    *,
+    crs: Annotated[str, typer.Option(help="As EPSG:5514+8357; default: the map's.")] = "",
+    raw: Annotated[
+        bool, typer.Option("--raw", help="Points where they were measured, not on surfaces.")
+    ] = False,
+    strays: Annotated[
+        bool,
+        typer.Option("--strays", help="Also stray returns, as classes 7 and 18 (noise); .laz."),
+    ] = False,
+    draft: DraftOption = False,
+) -> None:
+    """Write the map of a project, in any CRS when it is georeferenced, or its poses.
+
+    Says whether the map is approved. An approval that cannot be trusted is refused.
+    """
+    confine_command(write=[file.parent])
+    from recon4.exports_3dtk import export_3dtk
+    from recon4.results import MapExport, export_map, export_poses
+    from recon4.terminal import watcher
+
+    if file.suffix.lower() == ".txt":
+        if crs:
+            raise typer.BadParameter("--crs is for maps; poses are written in the map's frame")
+        write(f"{export_poses(project, file, draft=draft)} poses in {file}")
+        _write_approval(project, draft=draft)
+        return
+    with watcher() as progress:
+        if file.suffix.lower() == ".3dtk":
+            points = export_3dtk(project, file, progress=progress, draft=draft)
+            write(f"{points} points in {file}")
+            _write_approval(project, draft=draft)
+            return
+        wanted = MapExport(crs=crs, raw=raw, strays=strays, draft=draft)
+        made = export_map(project, file, wanted, progress=progress)
+    write(f"{made.text} in {file}\n{made.approval.text}")
+
+
+def _write_approval(project: Path, *, draft: bool) -> None:
+    from recon4.review.approval_state import latest_state
+
+    write(latest_state(project, draft=draft).text)

@@ -1,0 +1,138 @@
+"""State of the approval of results: what stands beside every file that is offered.
+
+Pages, API and commands show the same line, which is made here and nowhere else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+from recon4.errors import StoreError
+from recon4.names import visible
+from recon4.review.approved import Approval, NotInJournal, approval_of
+from recon4.review.decisions import DecisionKind, fold
+from recon4.review.journal import JournalRow, read_rows
+from recon4.review.stamp import Stamp
+from recon4.review.trusted_keys import UnknownSigner
+from recon4.store.project import read_artifacts
+
+MAX_NAME = 60
+"""A longer name of a signer is cut [characters]."""
+
+
+class ApprovalKind(StrEnum):
+    """Whether results are approved."""
+
+    DRAFT = "draft"
+    """Nobody approved them, nor any earlier results."""
+    APPROVED = "approved"
+    """They are the newest approved version."""
+    EARLIER = "earlier"
+    """They are an approved version, and a newer one exists."""
+    CHANGED = "changed"
+    """There is an approved version, and results or decisions are newer than it."""
+    UNKNOWN_SIGNER = "unknown signer"
+    """The signature is intact, and its key is not trusted here."""
+    NOT_VALID = "not valid"
+    """An approval or its results were altered, or its row in the journal is missing."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ApprovalState:
+    """The approval of the results of a project."""
+
+    kind: ApprovalKind
+    text: str
+    """One line, shown wherever a file of the results is offered."""
+    detail: str = ""
+    """Why it does not count, and what to do; empty if there is no more to say."""
+    version: int | None = None
+    who: str = ""
+    time: str = ""
+    """UTC, ISO 8601."""
+    hash: str = ""
+    """SHA-256 of the signed statement."""
+
+
+NOT_APPROVED = ApprovalState(kind=ApprovalKind.DRAFT, text="Draft: not approved")
+WRITTEN_AS_DRAFT = ApprovalState(kind=ApprovalKind.DRAFT, text="Draft: written without approval")
+"""Of a file whose writer asked for that."""
+
+
+def approval_state(root: Path, keys: Mapping[str, str]) -> ApprovalState:
+    """State of the approval of results made of these artifacts.
+
+    Signatures, journal and trusted keys are checked. The bytes of the results are compared when
+    they are used (`Approval.check_issued_file`, `Approval.evidence`).
+
+    Args:
+        root: The project folder.
+        keys: Stage -> key of its artifact.
+    """
+    try:
+        return _state(read_rows(root), approval_of(root, keys))
+    except UnknownSigner as error:
+        text = f"Signed by unknown key {error.key}: not counted as approved"
+        return ApprovalState(kind=ApprovalKind.UNKNOWN_SIGNER, text=text, detail=str(error))
+    except NotInJournal as error:
+        return not_valid("Not approved: an approval is missing in the journal", error)
+    except StoreError as error:
+        return not_valid("Not approved: the approval is not valid", error)
+
+
+def latest_state(project: Path, *, draft: bool = False) -> ApprovalState:
+    """State of the artifacts of the latest run; `WRITTEN_AS_DRAFT` for a draft.
+
+    Raises:
+        StoreError: If the folder is not a project or its ledger is damaged.
+    """
+    if draft:
+        return WRITTEN_AS_DRAFT
+    artifacts = read_artifacts(project)
+    return approval_state(project, {stage: folder.name for stage, folder in artifacts.items()})
+
+
+def not_valid(text: str, error: StoreError) -> ApprovalState:
+    """The state of an approval that was altered."""
+    return ApprovalState(
+        kind=ApprovalKind.NOT_VALID, text=text, detail=visible(str(error), most=800)
+    )
+
+
+def altered(state: ApprovalState, why: str) -> ApprovalState:
+    """The state when bytes turned out to differ from those that were approved."""
+    text = f"Altered since the approval of version {state.version}"
+    return replace(state, kind=ApprovalKind.NOT_VALID, text=text, detail=why)
+
+
+def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalState:
+    approving = [row for row in rows if row.kind == DecisionKind.APPROVE]
+    if not approving:
+        return NOT_APPROVED
+    newest = len(approving)
+    if approval is None:
+        text = f"Draft: changed since version {newest}"
+        return ApprovalState(kind=ApprovalKind.CHANGED, text=text, version=newest)
+    stamp = approval.stamp
+    state = ApprovalState(
+        kind=ApprovalKind.APPROVED,
+        text=_signed(stamp),
+        version=stamp.version,
+        who=visible(stamp.who, most=MAX_NAME),
+        time=stamp.time,
+        hash=stamp.hash,
+    )
+    if stamp.version < newest:
+        text = f"{state.text}; version {newest} is newer"
+        return replace(state, kind=ApprovalKind.EARLIER, text=text)
+    if approval.decisions != fold(row.decision() for row in rows).key:
+        text = f"{state.text}; changed since: later decisions are not in this map"
+        return replace(state, kind=ApprovalKind.CHANGED, text=text)
+    return state
+
+
+def _signed(stamp: Stamp) -> str:
+    return f"Approved v{stamp.version} · {visible(stamp.who, most=MAX_NAME)} · {stamp.time[:10]}"
