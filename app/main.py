@@ -70,6 +70,7 @@ from app.rigs.calibrations import Calibrations
 from app.rigs.store import RigStore
 from app.rigs.uses import RigUses
 from app.settings import ServerSettings
+from app.slices import reference_routes
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
 from app.uploads import routes as upload_routes
@@ -131,7 +132,7 @@ def _routes() -> list[BaseRoute]:
     router = APIRouter()
     for part in (login_routes, admin_routes, pairing_routes, project_routes, job_routes):
         router.include_router(part.router)
-    for part in (choices, server_routes, metrics_routes):
+    for part in (choices, server_routes, metrics_routes, reference_routes):
         router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)

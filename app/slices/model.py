@@ -9,6 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from app.names import Name
 from recon4.mapping.tiles import Surface
+from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.limits import MOST_M, ControlLimits
@@ -168,15 +169,6 @@ class CompareRequest(Strict):
     source: str = ""
 
 
-class AddReference(Strict):
-    """Request to import a file on this computer as a reference."""
-
-    path: str = Field(min_length=1, max_length=4096)
-    name: Name = Field(default="", max_length=100)
-    frame: Literal["map", "crs"] = "map"
-    """Frame of its coordinates: the map frame or the CRS of the map."""
-
-
 class AlignRequest(Strict):
     """Request to align a reference with the map."""
 
@@ -272,6 +264,9 @@ class ListedReference:
     kind: Literal["mesh", "cloud", "damaged"]
     points: int = 0
     triangles: int = 0
+    columns: tuple[Meaning, ...] = ()
+    unit: Unit | Literal[""] = ""
+    notes: tuple[str, ...] = ()
     problem: str = ""
     """Why it cannot be used; empty if it can."""
 

@@ -23,13 +23,11 @@ from app.projects.routes import REPORT_POLICY
 from app.slices import control_work, readers, work
 from app.slices.exports import ExportRequest
 from app.slices.model import (
-    AddReference,
     AlignRequest,
     CompareRequest,
     ControlFile,
     ControlState,
     ExportContext,
-    ListedReference,
     PickRequest,
     PickView,
     SliceExportRequest,
@@ -50,8 +48,8 @@ from recon4.slices.residuals import ControlReport
 
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
-SURFACES, REFERENCE = "surfaces.json", "reference"
-"""File names that child processes write in their working folder."""
+SURFACES = "surfaces.json"
+"""Name of the file that a child process writes in its working folder."""
 
 router = APIRouter(
     prefix="/api/projects/{project_id}/slices",
@@ -169,36 +167,6 @@ async def compare(
     return await caller.wait(
         server.slices.run_background(terms, work.comparison, artifacts["map"], reference, ask)
     )
-
-
-@router.post("/references", status_code=201, dependencies=PROCESS, summary="Add a reference")
-async def add_reference(
-    project_id: str, add: AddReference, server: Server, *, caller: CalledBy
-) -> ListedReference:
-    """A cloud or mesh on this computer (PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL)."""
-    path = await run_in_threadpool(server.projects.importable, add.path)
-    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    out = await run_in_threadpool(server.slices.new_reference, project_id)
-    in_crs = artifacts if add.frame == "crs" else None
-    folders = tuple(Path(folder) for folder in in_crs.values()) if in_crs else ()
-    terms = Terms(
-        person=caller.name,
-        access=FileAccess(read=(path, *folders)),
-        outputs={REFERENCE: out},
-        large=True,
-    )
-    facts = await caller.wait(
-        server.slices.write_reference(
-            ReferenceFolder(project_id, out),
-            terms,
-            work.add_reference,
-            str(path),
-            REFERENCE,
-            name=add.name,
-            artifacts=in_crs,
-        )
-    )
-    return ListedReference.of(out.name, facts)
 
 
 @router.delete(

@@ -36,7 +36,7 @@ from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
-from recon4.slices.imports import import_reference, set_alignment
+from recon4.slices.imports import set_alignment
 from recon4.slices.pick import measured_directions, nearest_surface, pick
 from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import (
@@ -223,14 +223,6 @@ def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     return to_csv(
         compare(tiles, [spec.slice_plane() for spec in ask.planes] or usual_planes(tiles), against)
     )
-
-
-def add_reference(path: str, out: str, *, name: str, artifacts: Artifacts | None) -> ReferenceFacts:
-    """Import a file of unknown origin; ``artifacts`` if it is in the map's CRS."""
-    frame = map_frame(artifacts) if artifacts else None
-    if frame is not None and frame.to_crs is None:
-        raise ConfigError("the map is local: a reference in a CRS cannot be aligned with it")
-    return import_reference(Path(path), Path(out), name=name, frame=frame)
 
 
 def align_reference(

@@ -56,6 +56,10 @@ class MapFrame:
         return p_map
 
 
+LOCAL = MapFrame("", "", None)
+"""Of a map that is not georeferenced."""
+
+
 def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
     """Derivative of the CRS coordinates by the map coordinates at a point.
 
@@ -88,4 +92,4 @@ def frame_of(artifacts: dict[str, Path]) -> MapFrame:
     if own is not None:
         shift = np.array(own.origin_m)
         return MapFrame("its CRS", own.wkt, lambda p: np.asarray(p, dtype=np.float64) + shift)
-    return MapFrame("", "", None)
+    return LOCAL

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -11,15 +12,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, UnknownFormat
+from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.names import visible
-from recon4.recording.formats.reference_clouds import read_points
-from recon4.slices.frames import MapFrame
+from recon4.recording.formats.cloud_crs import StatedCrs
+from recon4.recording.formats.reference_clouds import open_cloud
+from recon4.recording.tables.column_names import UNITS_M
+from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, NEAR_M, ColumnChoice
+from recon4.slices.frames import LOCAL, MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
+from recon4.slices.placement import FilePlacement, FrameAsked, check_extent, place_file
 from recon4.slices.reference import ReferenceFacts, read_facts
 from recon4.store.atomic import atomic_folder, write_json
 
@@ -31,8 +37,42 @@ MAX_TILES = 100_000
 """Limit of temporary tile files: points scattered over the Earth are no survey."""
 
 
+@dataclass(frozen=True, slots=True)
+class ReadAs:
+    """What a person says of a reference file."""
+
+    frame: FrameAsked = "auto"
+    choice: ColumnChoice = AS_THE_TABLE_SAYS
+    """Columns of a text; the unit of any file."""
+
+
+AS_THE_FILE_SAYS = ReadAs()
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MapPlace:
+    """The map that a reference is for."""
+
+    frame: MapFrame = LOCAL
+    bounds_m: tuple[Array, Array] | None = None
+    """Lowest and highest coordinates [m], (3,) each; None = not known."""
+
+    @property
+    def in_crs(self) -> Array | None:
+        """Easting and northing of its origin [m], (2,); None = it is local."""
+        return self.frame.to_crs(np.zeros((1, 3)))[0, :2] if self.frame.to_crs else None
+
+
+UNKNOWN_PLACE = MapPlace()
+
+
 def import_reference(
-    path: Path, out: Path, *, name: str = "", frame: MapFrame | None = None
+    path: Path,
+    out: Path,
+    *,
+    name: str = "",
+    read_as: ReadAs = AS_THE_FILE_SAYS,
+    place: MapPlace = UNKNOWN_PLACE,
 ) -> ReferenceFacts:
     """Import a cloud or mesh as a reference; atomic.
 
@@ -40,30 +80,50 @@ def import_reference(
         path: PLY, PCD, LAS, LAZ, E57, XYZ, CSV, OBJ, STL.
         out: New folder.
         name: Display name; empty = the file's name.
-        frame: Set if the file's coordinates are in the map's CRS; None = map frame.
+        read_as: What a person says of its columns, unit and frame.
+        place: The map.
 
     Returns:
         ``reference.json``.
 
     Raises:
+        ConfigError: With a question, if columns, unit or frame are not certain.
         CorruptFile, UnknownFormat, RecordingError: If the file cannot be used.
+        GeoreferenceError: If its CRS cannot be transformed to that of the map.
     """
     if not path.is_file():
         raise UnknownFormat(f"{path.name}: expected one file, got a folder or nothing")
     with atomic_folder(out) as folder:
         mesh = is_mesh(path)
-        count = (_mesh if mesh else _cloud)(path, folder, frame)
+        found = (_mesh if mesh else _cloud)(path, folder, read_as, place=place)
+        remarks = check_extent(found.bounds_m, place.bounds_m, certain=found.unit_stated)
         facts = ReferenceFacts(
             name=name or visible(path.name),
             file=visible(path.name),
-            frame="crs" if frame else "map",
+            frame=found.placement.frame,
             T_map_reference=np.eye(4).tolist(),
             kind="mesh" if mesh else "cloud",
-            points=0 if mesh else count,
-            triangles=count if mesh else 0,
+            points=0 if mesh else found.count,
+            triangles=found.count if mesh else 0,
+            columns=read_as.choice.columns,
+            unit=read_as.choice.unit or "",
+            notes=tuple(filter(None, (found.columns, *found.placement.notes, *remarks))),
         )
         write_json(folder / "reference.json", asdict(facts))
     return facts
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Imported:
+    """What was written of a file."""
+
+    count: int
+    """Points or triangles."""
+    bounds_m: tuple[Array, Array]
+    """In the map, before any alignment."""
+    placement: FilePlacement
+    unit_stated: bool
+    columns: str = ""
 
 
 def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> ReferenceFacts:
@@ -94,17 +154,37 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
     return TileSet.open(out)
 
 
-def _mesh(path: Path, out: Path, frame: MapFrame | None) -> int:
+def _mesh(path: Path, out: Path, read_as: ReadAs, *, place: MapPlace) -> _Imported:
     mesh = load_mesh(path)
-    vertices = frame.from_crs(mesh.vertices_m) if frame else mesh.vertices_m
-    np.savez(out / "mesh.npz", vertices_m=vertices, triangles=mesh.triangles)
-    return len(mesh.triangles)
+    unit, stated = read_as.choice.unit, StatedCrs()
+    frame = _frame_of(mesh.vertices_m, stated, read_as, place=place)
+    placement = place_file(stated, place.frame, asked=frame, unit=unit)
+    moved = TriangleMesh(placement.to_map(mesh.vertices_m), mesh.triangles)
+    np.savez(out / "mesh.npz", vertices_m=moved.vertices_m, triangles=mesh.triangles)
+    return _Imported(len(mesh.triangles), moved.bounds(), placement, unit is not None)
 
 
-def _cloud(path: Path, out: Path, frame: MapFrame | None) -> int:
-    chunks = read_points(path)
-    tiles = write_tiles((frame.from_crs(c) for c in chunks) if frame else chunks, out)
-    return len(tiles)
+def _cloud(path: Path, out: Path, read_as: ReadAs, *, place: MapPlace) -> _Imported:
+    source = open_cloud(path, read_as.choice, place=place.in_crs)
+    stated, chunks = source.stated, source.chunks
+    unit = None if source.columns else read_as.choice.unit  # a text is in meters already
+    first = next(chunks)
+    frame = _frame_of(first, stated, read_as, place=place)
+    placement = place_file(stated, place.frame, asked=frame, unit=unit)
+    tiles = write_tiles(map(placement.to_map, chain([first], chunks)), out)
+    certain = read_as.choice.unit is not None or stated.unit_m is not None or stated.geographic
+    low, high = tiles.bounds_m
+    return _Imported(len(tiles), (low, high), placement, certain, source.columns)
+
+
+def _frame_of(points: Array, stated: StatedCrs, read_as: ReadAs, *, place: MapPlace) -> FrameAsked:
+    """The frame of a file that states none: that of the map's CRS if it lies there."""
+    there = place.in_crs
+    if read_as.frame != "auto" or stated.crs is not None or there is None or not len(points):
+        return read_as.frame
+    size = UNITS_M[read_as.choice.unit or "m"]
+    middle = np.median(points[:, :2], axis=0) * (size if stated.unit_m is None else stated.unit_m)
+    return "crs" if np.all(np.abs(middle - there) < NEAR_M) else "auto"
 
 
 def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int], Path]:

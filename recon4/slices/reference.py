@@ -16,6 +16,7 @@ from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.names import visible
+from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.slice_plane import SlicePlane
 from recon4.store.arrays import load_arrays
@@ -26,6 +27,7 @@ FAR_M = 0.5
 """Search radius of distances [m]; larger ones are returned as infinite."""
 MAX_FACTS_BYTES = 1 << 20
 """Size of ``reference.json``."""
+_LONGEST_NOTE = 400
 _MARGIN_M = 2.0
 """Points of a request are measured in cubes of this size, each with its own search tree [m]."""
 
@@ -48,6 +50,12 @@ class ReferenceFacts:
     """Of a cloud."""
     triangles: int = 0
     """Of a mesh."""
+    columns: tuple[Meaning, ...] = ()
+    """Meaning of the columns of a text, if a person chose it."""
+    unit: Unit | Literal[""] = ""
+    """Unit of the file, if a person chose it."""
+    notes: tuple[str, ...] = ()
+    """How its columns, units and CRS were read, as sentences."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -163,7 +171,8 @@ def read_facts(folder: Path) -> ReferenceFacts:
         facts = msgspec.convert(record, ReferenceFacts)
     except msgspec.ValidationError as error:
         raise StoreError(f"{folder.name}/reference.json: {error}") from error
-    return replace(facts, name=visible(facts.name))
+    notes = tuple(visible(note, most=_LONGEST_NOTE) for note in facts.notes)
+    return replace(facts, name=visible(facts.name), notes=notes)
 
 
 def _mesh(path: Path) -> TriangleMesh:

@@ -173,6 +173,7 @@ def test_findings_are_those_of_the_map_that_is_shown(server, page):
     page.get_by_text("Compare with a reference").click()
     page.get_by_label("Path of the reference").fill(str(server.root / "wall.xyz"))
     page.get_by_role("button", name="Add reference").click()
+    page.get_by_role("button", name="Use these columns").click()
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
     with page.expect_request("**/compare") as asked:
         page.get_by_role("button", name="Compare", exact=True).click()
@@ -198,6 +199,7 @@ def test_a_reference_is_compared_and_shown(server, page, screenshot):
     page.get_by_text("Compare with a reference").click()
     page.get_by_label("Path of the reference").fill(str(path))
     page.get_by_role("button", name="Add reference").click()
+    page.get_by_role("button", name="Use these columns").click()
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
     page.get_by_label("Slices to compare").select_option("this")
     page.get_by_role("button", name="Compare", exact=True).click()
@@ -220,6 +222,7 @@ def test_a_reference_is_uploaded_and_shown(server, page):
     with page.expect_file_chooser() as chooser:
         page.get_by_role("button", name="Upload file…").click()
     chooser.value.set_files({"name": "sent.xyz", "mimeType": "text/plain", "buffer": rows.encode()})
+    page.get_by_role("button", name="Use these columns").click()
 
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
     expect(page.locator(".reference-row")).to_contain_text(re.compile(r"6\s000 points"))

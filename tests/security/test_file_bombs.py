@@ -127,7 +127,7 @@ SPARSE_FILES = {
         "triangles",
     ),
     "stl-ascii": ("a.stl", "solid a\n", read_mesh, "triangles"),
-    "xyz": ("a.xyz", "1 2 3\n", read_points, "line 2: expected at most 65536 bytes"),
+    "xyz": ("a.xyz", "1 2 3\n", read_points, "line 2: expected text, got a NUL byte"),
     "csv-imu": ("imu.csv", ",".join(IMU_HEADER) + "\n1", read_imu_csv, "at most 1073741824 bytes"),
     "csv-imu-line": (
         "imu.csv",

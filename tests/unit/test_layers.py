@@ -110,7 +110,8 @@ ONLY_HERE = {
     "serial": {"recon4/live/recorder/serial_port.py"},
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/geometry/raycast.py"},
-    "laspy": {"recon4/export/laz.py", "recon4/recording/formats/reference_clouds.py"},
+    "laspy": {"recon4/export/laz.py"}
+    | {f"recon4/recording/formats/{name}.py" for name in ("reference_clouds", "cloud_crs")},
     "ctypes": {"recon4/sandbox"},
     "viser": {
         "app/viewer/client/show.py",

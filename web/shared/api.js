@@ -298,6 +298,11 @@ export const addReference = (project_id, reference) =>
     path: { project_id },
     body: reference,
   });
+export const previewReference = (project_id, file) =>
+  request("POST /api/projects/{project_id}/slices/references/preview", {
+    path: { project_id },
+    body: file,
+  });
 export const removeReference = (project_id, reference_id) =>
   request("DELETE /api/projects/{project_id}/slices/references/{reference_id}", {
     path: { project_id, reference_id },

@@ -9,8 +9,10 @@ export interface Account {
 
 export interface AddReference {
   path: string;
+  frame?: "auto" | "map" | "crs";
+  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
   name?: string;
-  frame?: "map" | "crs";
 }
 
 export interface AgreementView {
@@ -435,6 +437,9 @@ export interface ListedReference {
   kind: "mesh" | "cloud" | "damaged";
   points: number;
   triangles: number;
+  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  unit: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | "";
+  notes: Array<string>;
   problem: string;
 }
 
@@ -702,6 +707,20 @@ export interface ReferenceFacts {
   kind: "mesh" | "cloud";
   points: number;
   triangles: number;
+  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  unit: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | "";
+  notes: Array<string>;
+}
+
+export interface ReferenceFile {
+  path: string;
+  frame?: "auto" | "map" | "crs";
+  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
+}
+
+export interface ReferencePreview {
+  table: TablePreview | null;
 }
 
 export interface Rename {
@@ -1016,6 +1035,17 @@ export interface SurfacePoint {
   p_map: [number, number, number];
   surface: [number, number, number] | null;
   normal: [number, number, number] | null;
+}
+
+export interface TablePreview {
+  header: Array<string>;
+  rows: Array<Array<string>>;
+  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  unit: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in";
+  question: string;
+  description: string;
+  delimiter: string;
+  decimal: string;
 }
 
 export interface Token {
@@ -1452,6 +1482,11 @@ export interface Operations {
     path: { project_id: string };
     body: AddReference;
     response: ListedReference;
+  };
+  "POST /api/projects/{project_id}/slices/references/preview": {
+    path: { project_id: string };
+    body: ReferenceFile;
+    response: ReferencePreview;
   };
   "POST /api/projects/{project_id}/slices/references/{reference_id}/align": {
     path: { project_id: string; reference_id: string };

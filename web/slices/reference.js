@@ -1,7 +1,6 @@
 // References: add, align, remove; the table of slices against one (V Table 3.2).
 
 import {
-  addReference,
   alignReference,
   browse,
   compareCsvUrl,
@@ -12,6 +11,7 @@ import { attempt, make } from "../shared/dom.js";
 import { bytes, count } from "../shared/format.js";
 import { Sending, sorted } from "../projects/resumable_upload.js";
 import { ofInput } from "./picking.js";
+import { referenceReader } from "./reading.js";
 import { planeOf, moved } from "./state.js";
 
 const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
@@ -27,12 +27,7 @@ export function referencePanel({ id, change, state, reload }) {
     spellcheck: false,
   });
   const folder = make("div", { className: "folder", hidden: true });
-  const frame = make(
-    "select",
-    { ariaLabel: "Coordinates of the reference" },
-    make("option", { value: "map" }, "In the map's frame"),
-    make("option", { value: "crs" }, "In the map's CRS"),
-  );
+  const reader = referenceReader({ id, message, added });
   const which = make(
     "select",
     { ariaLabel: "Slices to compare" },
@@ -98,11 +93,12 @@ export function referencePanel({ id, change, state, reload }) {
     }
   }
 
-  async function add() {
-    const added = await addReference(id, { path: path.value, frame: frame.value });
+  const add = () => reader.read(path.value);
+
+  async function added(reference) {
     path.value = "";
     await reload();
-    change({ ref: added.id, color: "distance", lo: null, hi: null }, { keep: true });
+    change({ ref: reference.id, color: "distance", lo: null, hi: null }, { keep: true });
   }
 
   async function openFolder(at) {
@@ -229,6 +225,7 @@ export function referencePanel({ id, change, state, reload }) {
           { className: "reference-row" },
           make("strong", {}, one.name),
           make("span", { className: "quiet" }, `${size}, alignment: ${one.alignment}`),
+          one.notes?.length ? make("small", { className: "quiet" }, one.notes.join(" ")) : null,
           make(
             "span",
             { className: "buttons" },
@@ -255,11 +252,12 @@ export function referencePanel({ id, change, state, reload }) {
       file,
       path,
       make_("Browse…", () => openFolder("")),
-      frame,
+      ...reader.fields,
       make_("Add reference", add),
     ),
     sendingNow,
     folder,
+    reader.element,
     make(
       "p",
       { className: "quiet" },

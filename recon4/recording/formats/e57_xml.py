@@ -45,6 +45,28 @@ def check_e57_xml(path: Path) -> None:
         raise CorruptFile(f"{path.name}: the XML section is not sound XML: {error}") from None
 
 
+def e57_coordinate_metadata(path: Path) -> str:
+    """The coordinate reference system that an E57 file states as text; empty = none.
+
+    Raises:
+        CorruptFile: As `check_e57_xml`.
+    """
+    check_e57_xml(path)
+    found: list[str] = []
+    inside: list[str] = []
+    parser = expat.ParserCreate(namespace_separator=" ")
+
+    def text(data: str) -> None:
+        if len(inside) == 2 and inside[-1].endswith("coordinateMetadata"):
+            found.append(data)
+
+    parser.StartElementHandler = lambda name, attributes: inside.append(name)
+    parser.EndElementHandler = lambda name: inside.pop()
+    parser.CharacterDataHandler = text
+    parser.Parse(_xml_section(path), True)
+    return "".join(found).strip()
+
+
 class _Refused(Exception):
     """What is wrong with the XML section."""
 

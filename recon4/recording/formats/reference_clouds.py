@@ -6,51 +6,104 @@ Files of unknown origin: call these in a child process. Sizes are checked before
 
 from __future__ import annotations
 
-import io
 import os
-import re
-import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 
-from recon4.bounded import open_regular, text_blocks
+from recon4.bounded import open_regular
 from recon4.errors import CorruptFile, Recon4Error, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
+from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
 from recon4.recording.formats.cloud_files import cloud_chunks, cloud_fields, cloud_rows
 from recon4.recording.formats.e57_xml import check_e57_xml
 from recon4.recording.formats.las_check import check_las
+from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
+from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
 
 CHUNK = 1_000_000
 MAX_POINTS = 400_000_000
 MAX_BYTES = 20 << 30
-_TEXT_BLOCK_BYTES = 16 << 20
-TEXT_SUFFIXES = {".xyz", ".csv", ".txt", ".asc", ".pts"}
 
 
-def read_points(path: Path) -> Iterator[Array]:
-    """Points of a reference cloud in its own coordinates, float64 (N, 3) at a time.
+@dataclass(frozen=True, slots=True, eq=False)
+class CloudSource:
+    """A reference cloud that is being read."""
+
+    chunks: Iterator[Array]
+    """Points in the coordinates and the unit of the file, float64 (N, 3) at a time; of a text they
+    are in meters. Geographic ones are longitude and latitude in degrees, and height."""
+    stated: StatedCrs
+    """CRS and units of these coordinates, as far as the file states them."""
+    columns: str
+    """How the columns of a text were read; empty = the file is no text."""
+
+
+def open_cloud(
+    path: Path, choice: ColumnChoice = AS_THE_TABLE_SAYS, *, place: Array | None = None
+) -> CloudSource:
+    """Open a reference cloud.
+
+    Args:
+        path: The file.
+        choice: What a person says of the columns of a text.
+        place: Easting and northing of the map [m], (2,), if the file may be in its CRS.
 
     Raises:
+        ConfigError: With a question, if the columns of a text are not certain.
         CorruptFile: If the bytes do not match the format, or coordinates are not finite.
         UnknownFormat: If no reader knows it.
         RecordingError: If it cannot be opened or is too large.
     """
     head = _head(path)
-    if head[:4] == b"LASF":
-        chunks = _las(path)
-    elif head[:8] == b"ASTM-E57":
-        chunks = _e57(path)
-    elif head[:4] in (b"ply\n", b"ply\r") or b"\nDATA " in head:
+    columns, stated = "", StatedCrs()
+    kind = _kind(head, path)
+    if kind == "las":
+        chunks, stated = _las(path), stated_crs(path)
+    elif kind == "e57":
+        chunks, stated = _e57(path), stated_crs(path)
+    elif kind == "table":
         chunks = _table(path)
-    elif path.suffix.lower() in TEXT_SUFFIXES:
-        chunks = _text(path)
+    elif kind == "text":
+        text = TextCloud.open(path, choice, place=place)
+        chunks, columns = text.chunks(), text.columns.description
+        stated = geographic_crs() if text.columns.geographic else StatedCrs()
     else:
         raise UnknownFormat(f"{path.name}: expected a PLY, PCD, LAS, LAZ, E57, XYZ or CSV cloud")
-    return _checked(chunks, path.name)
+    return CloudSource(_checked(chunks, path.name), stated, columns)
+
+
+def read_points(path: Path, choice: ColumnChoice = AS_THE_TABLE_SAYS) -> Iterator[Array]:
+    """Points of a reference cloud in its own coordinates, float64 (N, 3) at a time.
+
+    Raises:
+        ConfigError, CorruptFile, UnknownFormat, RecordingError: As `open_cloud`.
+    """
+    return open_cloud(path, choice).chunks
+
+
+def is_text(path: Path) -> bool:
+    """Whether a file is a cloud as text, whose columns have to be known.
+
+    Raises:
+        RecordingError: If it cannot be opened.
+    """
+    return _kind(_head(path), path) == "text"
+
+
+def _kind(head: bytes, path: Path) -> Literal["las", "e57", "table", "text", ""]:
+    """Kind of a cloud by its first bytes, of a text by its ending."""
+    if head[:4] == b"LASF":
+        return "las"
+    if head[:8] == b"ASTM-E57":
+        return "e57"
+    if head[:4] in (b"ply\n", b"ply\r") or b"\nDATA " in head:
+        return "table"
+    return "text" if path.suffix.lower() in TEXT_SUFFIXES else ""
 
 
 def _head(path: Path) -> bytes:
@@ -153,82 +206,3 @@ def _e57(path: Path) -> Iterator[Array]:
         raise
     except (E57Exception, RuntimeError, ValueError, KeyError, AttributeError, OSError) as error:
         raise CorruptFile(f"{path.name}: not a sound E57 file: {error}") from error
-
-
-def _text(path: Path) -> Iterator[Array]:
-    """Lines of numbers, the first three columns; one head line, ``;`` and decimal comma allowed."""
-    layout, line, got = None, 1, 0
-    for text in text_blocks(path, block_bytes=_TEXT_BLOCK_BYTES, max_bytes=MAX_BYTES):
-        if layout is None:
-            layout = _TextLayout.of(text)
-            if layout.has_head:
-                _, _, text = text.partition("\n")
-                line += 1
-        rows = _rows(text, layout, path.name, line=line)
-        yield rows
-        got += len(rows)
-        line += text.count("\n")
-    if layout is not None and layout.promised not in (None, got):
-        raise CorruptFile(f"{path.name}: cut: {layout.promised} points promised, got {got}")
-
-
-@dataclass(frozen=True, slots=True)
-class _TextLayout:
-    """How the lines of a text cloud are written."""
-
-    delimiter: str | None
-    """None = blanks."""
-    comma: bool
-    """Decimal commas."""
-    has_head: bool
-    promised: int | None
-    """PTS files begin with their count of points."""
-
-    @staticmethod
-    def of(text: str) -> _TextLayout:
-        """Detect the format from the first lines."""
-        first, _, rest = text.partition("\n")
-        second = rest.partition("\n")[0] or first
-        delimiter = next((d for d in (";", "\t", ",") if d in second), None)
-        comma = delimiter in (";", "\t", None) and "," in second
-        count = first.strip()
-        promised = int(count) if re.fullmatch("[0-9]{1,12}", count) else None
-        return _TextLayout(delimiter, comma, not _is_row(first, delimiter, comma=comma), promised)
-
-
-def _is_row(text: str, delimiter: str | None, *, comma: bool) -> bool:
-    try:
-        values = (text.replace(",", ".") if comma else text).split(delimiter)[:3]
-        return len([float(value) for value in values]) == 3
-    except ValueError:
-        return False
-
-
-def _rows(text: str, layout: _TextLayout, name: str, *, line: int) -> Array:
-    if layout.comma:
-        text = text.replace(",", ".")
-    if not text.strip():
-        return np.empty((0, 3))
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # lines of comments only
-            return np.loadtxt(
-                io.StringIO(text),
-                np.float64,
-                delimiter=layout.delimiter,
-                usecols=(0, 1, 2),
-                ndmin=2,
-            ).reshape(-1, 3)
-    except (ValueError, IndexError) as error:
-        raise _wrong_row(text, layout, name, line=line) from error
-
-
-def _wrong_row(text: str, layout: _TextLayout, name: str, *, line: int) -> CorruptFile:
-    """The error with the first line that is not a point."""
-    for number, row in enumerate(text.split("\n"), start=line):
-        row = row.partition("#")[0].strip()
-        if row and not _is_row(row, layout.delimiter, comma=False):
-            return CorruptFile(
-                f"{name}: line {number}: expected x, y, z as numbers, got {row[:80]!r}"
-            )
-    return CorruptFile(f"{name}: behind line {line}: expected x, y, z as numbers")

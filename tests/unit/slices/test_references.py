@@ -92,7 +92,7 @@ def test_a_cut_or_damaged_file_is_refused_or_whole_never_half(tmp_path, name):
         path.write_bytes(bad)
         try:
             count = sum(len(chunk) for chunk in read_points(path))
-        except RecordingError:
+        except (RecordingError, ConfigError):  # names of columns may be damaged: a question
             continue
         else:
             # text cut behind a whole line is a shorter list; nothing else may lose points

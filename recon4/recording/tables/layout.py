@@ -1,0 +1,178 @@
+"""How the lines of a table of coordinates are written: separator, decimal sign, names, rows."""
+
+from __future__ import annotations
+
+import csv
+import re
+from dataclasses import dataclass
+
+from recon4.errors import CorruptFile
+
+_SAMPLE = 60
+"""Lines from which the layout is detected."""
+_COMMENTS = ("#", "//", "%", "!")
+NUMBER = re.compile(
+    r"[-+]?(?:[0-9]+[.]?[0-9]*|[.][0-9]+)(?:[eE][-+]?[0-9]+)?|[-+]?(?:nan|inf)", re.I
+)
+_COUNT = re.compile(r"[0-9]{1,12}")
+_COMMA_NUMBER = re.compile(r"[-+]?[0-9]+,[0-9]+(?:[eE][-+]?[0-9]+)?")
+_QUOTED_COMMA = re.compile(r'"([-+]?[0-9]+),([0-9]+)"')
+_GROUPED = re.compile(r"[-+]?[0-9]{1,3}(?:[.' ,][0-9]{3})+(?:[.,][0-9]+)?")
+"""Digits in groups of three, as 1.234,5 or 1'234.5: nobody can tell a group from a decimal."""
+_FEWEST = 3
+
+
+@dataclass(frozen=True, slots=True)
+class TableLayout:
+    """How a table is written, as its first lines show."""
+
+    delimiter: str
+    """Between cells; empty = blanks."""
+    decimal: str
+    """``.`` or ``,``."""
+    head_lines: int
+    """Lines before the first row of numbers."""
+    names: tuple[str, ...]
+    """Names of the columns; empty = the file has none."""
+    stray_head: str
+    """A line above the numbers with text that does not name each column; empty = there is none."""
+    promised: int | None
+    """Count of points above the first of them, as PTS files have it."""
+    rows: tuple[tuple[str, ...], ...]
+    """The first rows, as text; decimal commas are points."""
+
+    @property
+    def width(self) -> int:
+        """Cells of the first row, without empty ones at its end."""
+        return len(_without_end(self.rows[0]))
+
+    @staticmethod
+    def of(text: str, name: str) -> TableLayout:
+        """Detect the layout from the first lines.
+
+        Raises:
+            CorruptFile: If no line has three numbers.
+        """
+        lines = text.split("\n")
+        delimiter = _delimiter([line for line in lines[:_SAMPLE] if _content(line)])
+        decimal = _decimal(lines[:_SAMPLE], delimiter)
+        for first, line in enumerate(lines):
+            if _content(line) and _is_data(split_row(line, delimiter, decimal)):
+                break
+        else:
+            seen = next((line for line in lines if _content(line)), "")
+            raise CorruptFile(
+                f"{name}: expected rows with three numbers or more, got {seen.strip()[:80]!r}"
+            )
+        rows = [split_row(line, delimiter, decimal) for line in lines[first:] if _content(line)]
+        head = lines[:first]
+        width = len(_without_end(rows[0]))
+        names = _names(head, delimiter, width)
+        return TableLayout(
+            delimiter=delimiter,
+            decimal=decimal,
+            head_lines=first,
+            names=names,
+            stray_head="" if names else _stray(head),
+            promised=_promised(head),
+            rows=tuple(tuple(row) for row in rows[:_SAMPLE]),
+        )
+
+
+def split_row(line: str, delimiter: str, decimal: str) -> list[str]:
+    """Cells of a line; decimal commas become points.
+
+    Raises:
+        csv.Error: If quotes do not match.
+    """
+    text = line.replace("\t", " ").strip() if not delimiter else line.strip("\r\n")
+    reader = csv.reader([text], delimiter=delimiter or " ", skipinitialspace=True)
+    cells = [cell.strip() for cell in next(reader, [])]
+    if decimal == ",":
+        cells = [c.replace(",", ".") if _COMMA_NUMBER.fullmatch(c) else c for c in cells]
+    return cells
+
+
+def with_points(text: str, delimiter: str) -> str:
+    """A block whose decimal commas are points."""
+    if delimiter == ",":
+        return _QUOTED_COMMA.sub(r"\1.\2", text)
+    return text.replace(",", ".")
+
+
+def is_number(cell: str) -> bool:
+    """Whether a cell is a number with a decimal point."""
+    return NUMBER.fullmatch(cell) is not None
+
+
+def wrong_number(cell: str) -> str:
+    """What is wrong with a cell that is expected to be a number."""
+    if _GROUPED.fullmatch(cell):
+        return f"expected numbers without thousands separators, got {cell[:40]!r}"
+    return f"expected a number, got {cell[:40]!r}"
+
+
+def _content(line: str) -> bool:
+    """Whether a line is neither blank nor a comment nor the rule of a printed table."""
+    text = line.strip()
+    return bool(text) and not text.startswith(_COMMENTS) and bool(text.strip("|-:=+ "))
+
+
+def _delimiter(lines: list[str]) -> str:
+    body = lines[2:] if len(lines) > 3 else lines[-1:]
+    for sign in ";\t|":
+        if body and min(line.count(sign) for line in body) >= _FEWEST - 1:
+            return sign
+    by_blanks = [line.split() for line in body]
+    if by_blanks and all(sum(map(_loosely, cells)) >= _FEWEST for cells in by_blanks):
+        return ""
+    return "," if body and min(line.count(",") for line in body) >= _FEWEST - 1 else ""
+
+
+def _loosely(cell: str) -> bool:
+    """Whether a cell is a number with a decimal point or comma."""
+    return is_number(cell) or _COMMA_NUMBER.fullmatch(cell) is not None
+
+
+def _decimal(lines: list[str], delimiter: str) -> str:
+    for line in filter(_content, lines):
+        if any(_COMMA_NUMBER.fullmatch(cell) for cell in split_row(line, delimiter, ".")):
+            return ","
+    return "."
+
+
+def _is_data(cells: list[str]) -> bool:
+    return sum(map(is_number, cells)) >= _FEWEST
+
+
+def _names(head: list[str], delimiter: str, width: int) -> tuple[str, ...]:
+    """The last line above the numbers that has a name for each column."""
+    for line in reversed(head):
+        text = line.strip().lstrip("#/%! ")
+        if not text or _COUNT.fullmatch(text):
+            continue
+        for sign in dict.fromkeys((delimiter, ",", "", "\t", ";")):
+            cells = [cell.strip('"') for cell in split_row(text, sign, ".")]
+            named = _without_end(cells)
+            if len(cells) >= width >= len(named) and not any(map(is_number, named)):
+                return tuple(cells[:width])
+    return ()
+
+
+def _stray(head: list[str]) -> str:
+    return next((line.strip() for line in reversed(head) if _is_text(line)), "")
+
+
+def _is_text(line: str) -> bool:
+    return _content(line) and not _COUNT.fullmatch(line.strip()) and line.strip()[:4] != "sep="
+
+
+def _promised(head: list[str]) -> int | None:
+    counts = [line.strip() for line in head if _COUNT.fullmatch(line.strip())]
+    return int(counts[-1]) if counts else None
+
+
+def _without_end(cells: list[str] | tuple[str, ...]) -> list[str]:
+    """Without the empty cells at the end."""
+    count = next((k for k in range(len(cells), 0, -1) if cells[k - 1]), 0)
+    return list(cells[:count])

@@ -1,0 +1,286 @@
+"""Where the coordinates of a reference file belong: CRS, units and heights against the map's.
+
+Nothing is converted silently: each step is a note that page, sheet and command show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from recon4.errors import ConfigError, GeoreferenceError
+from recon4.geometry.se3 import Array
+from recon4.recording.formats.cloud_crs import (
+    StatedCrs,
+    horizontal_part,
+    horizontal_unit_m,
+    vertical_part,
+)
+from recon4.recording.tables.column_names import UNIT_NAMES, UNITS_M, Unit
+from recon4.slices.frames import MapFrame
+
+FrameAsked = Literal["auto", "map", "crs"]
+"""Frame of a file's coordinates: as the file says (else the map's frame), map frame, map's CRS."""
+_EARTH_M = (6.2e6, 6.6e6)
+"""Distance of the surface of the Earth from its center [m]."""
+_ACCURATE_M = 0.05
+_TIMES = 30.0
+"""A reference that exceeds the map this many times in length, width and height is in another unit:
+a whole town around one building is as flat as a few of its storeys."""
+_SMALL_M = 0.1
+_BESIDE_M = 2.0
+_Convert = Callable[[Array], Array]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FilePlacement:
+    """How coordinates of a file become coordinates of the map."""
+
+    to_map: _Convert
+    """Coordinates of the file (N, 3) -> points of the map [m], (N, 3)."""
+    frame: Literal["map", "crs"]
+    notes: tuple[str, ...]
+    """What was found and what was converted, as sentences."""
+
+
+def place_file(
+    stated: StatedCrs, own: MapFrame, *, asked: FrameAsked = "auto", unit: Unit | None = None
+) -> FilePlacement:
+    """How to place the coordinates of a file in the map.
+
+    Args:
+        stated: What the file says.
+        own: Of the map.
+        asked: What the person says of the frame of the file.
+        unit: What the person says of its unit; None = as the file says, else meters.
+
+    Raises:
+        ConfigError: If the coordinates cannot be used with this map, with the reason.
+    """
+    if asked == "crs" and own.to_crs is None:
+        raise ConfigError("the map is local: a reference in a CRS cannot be aligned with it")
+    units, notes = _units_of(stated, unit)
+    if asked == "map" or own.to_crs is None:
+        return _in_map_frame(stated, own, units, notes=notes)
+    if stated.crs is not None:
+        return _from_stated(stated, own, units, notes=notes)
+    if asked == "auto":
+        return _in_map_frame(stated, own, units, notes=notes)
+    notes.append(f"No CRS is known of it: its coordinates are taken as those of {own.crs}.")
+    return FilePlacement(lambda p: own.from_crs(p * units), "crs", tuple(notes))
+
+
+def _units_of(stated: StatedCrs, unit: Unit | None) -> tuple[Array, list[str]]:
+    """Meters of one unit along x, y, z, and notes."""
+    notes: list[str] = []
+    if stated.problem:
+        notes.append(f"It states {stated.problem}: not used.")
+    if unit is not None:
+        notes.append(f"Read in {UNIT_NAMES[unit]}, as chosen.")
+        return np.full(3, UNITS_M[unit]), notes
+    across = stated.unit_m or 1.0
+    up = stated.height_unit_m or (1.0 if stated.geographic else across)
+    if stated.unit_m not in (None, 1.0):
+        notes.append(f"Coordinates in {_unit_name(across)}, converted to meters.")
+    if stated.height_unit_m is None and across != 1.0:
+        notes.append(f"The unit of its heights is not stated: taken as {_unit_name(up)}.")
+    elif up != across and not (stated.geographic and up == 1.0):
+        notes.append(f"Heights in {_unit_name(up)}, converted to meters.")
+    return np.array([across, across, up]), notes
+
+
+def _unit_name(unit_m: float) -> str:
+    for unit, size in UNITS_M.items():
+        if abs(size - unit_m) < 1e-9:
+            return UNIT_NAMES[unit]
+    return f"units of {unit_m:.9g} m"
+
+
+def _in_map_frame(
+    stated: StatedCrs, own: MapFrame, units: Array, *, notes: list[str]
+) -> FilePlacement:
+    """The coordinates as they are, in meters."""
+    if stated.geographic or _is_geocentric(stated):
+        kind = "degrees" if stated.geographic else "earth-centered coordinates"
+        reason = "the map is local" if own.to_crs is None else "the map's frame was chosen"
+        raise ConfigError(
+            f"its coordinates are {kind} ({stated.name}), and {reason}: "
+            "expected meters of a map projection; convert the file, or choose its own CRS"
+        )
+    if stated.crs is not None:
+        why = "the map is local" if own.to_crs is None else "the map's frame was chosen"
+        notes.append(f"It is in {stated.name}; {why}, so that its coordinates are used unchanged.")
+    return FilePlacement(lambda p: p * units, "map", tuple(notes))
+
+
+def _is_geocentric(stated: StatedCrs) -> bool:
+    return stated.crs is not None and bool(stated.crs.is_geocentric)
+
+
+def _from_stated(
+    stated: StatedCrs, own: MapFrame, units: Array, *, notes: list[str]
+) -> FilePlacement:
+    """From the file's CRS to that of the map."""
+    from pyproj import CRS
+
+    target = CRS.from_user_input(own.wkt or own.crs)
+    source, target_2d = stated.crs, horizontal_part(target)
+    same = not _is_geocentric(stated) and horizontal_part(source).equals(
+        target_2d, ignore_axis_order=True
+    )
+    height_note = _heights(source, target)
+    to_crs = _scaled(units) if same else _transform(stated, target, own, units=units, notes=notes)
+    if same:
+        notes.append(f"In {stated.name}, the CRS of the map.")
+    else:
+        notes.append(f"Transformed from {stated.name} to {own.crs}.")
+    if height_note:
+        notes.append(height_note)
+
+    def to_map(p: Array) -> Array:
+        if _is_geocentric(stated):
+            _check_geocentric(p, stated)
+        return own.from_crs(to_crs(p))
+
+    return FilePlacement(to_map, "crs", tuple(notes))
+
+
+def _scaled(units: Array) -> _Convert:
+    return lambda p: p * units
+
+
+def _check_geocentric(p: Array, stated: StatedCrs) -> None:
+    low, high = _EARTH_M
+    distance = np.linalg.norm(p, axis=1)
+    if len(p) and not (low < distance.min() and distance.max() < high):
+        raise ConfigError(
+            f"it states earth-centered coordinates ({stated.name}), but they are "
+            f"{distance.min() / 1000:.0f} km from the center of the Earth: choose the map's frame "
+            "or the map's CRS"
+        )
+
+
+def _heights(source: Any, target: Any) -> str:
+    """What happens to the heights; empty = nothing that has to be said."""
+    if source.is_geocentric:
+        return ""
+    of_file, of_map = vertical_part(source), vertical_part(target)
+    map_name = of_map.name if of_map is not None else "above the ellipsoid"
+    if of_file is None and len(source.axis_info) == 2:
+        return f"It states no datum of its heights: taken as those of the map ({map_name})."
+    if of_file is None and of_map is None:
+        return ""
+    if of_file is not None and of_map is not None and of_file.equals(of_map):
+        return ""
+    file_name = of_file.name if of_file is not None else "above the ellipsoid"
+    return (
+        f"Its heights are {file_name}, those of the map {map_name}: not converted, "
+        "they may differ by tens of meters."
+    )
+
+
+def _transform(
+    stated: StatedCrs, target: Any, own: MapFrame, *, units: Array, notes: list[str]
+) -> _Convert:
+    """Horizontal transformation; heights keep their datum.
+
+    Raises:
+        ConfigError: If PROJ knows no transformation.
+    """
+    geocentric = _is_geocentric(stated)
+    source = stated.crs if geocentric else horizontal_part(stated.crs)
+    goal = target.to_3d() if geocentric else horizontal_part(target)
+    transformer = _transformer(source, goal, own, name=stated.name)
+    accuracy = float(transformer.accuracy)
+    if accuracy > _ACCURATE_M:
+        notes.append(
+            f"The transformation is accurate to {accuracy:g} m ({transformer.description})."
+        )
+    sizes = units.copy()
+    if stated.geographic:
+        sizes[:2] = 1.0
+    elif not geocentric:
+        sizes[:2] /= horizontal_unit_m(stated.crs)
+
+    def convert(p: Array) -> Array:
+        x, y, z = (p * sizes).T
+        found = transformer.transform(x, y, z) if geocentric else (*transformer.transform(x, y), z)
+        return np.stack(found, axis=-1)
+
+    return convert
+
+
+def _transformer(source: Any, goal: Any, own: MapFrame, *, name: str) -> Any:
+    import warnings
+
+    from pyproj import Transformer
+    from pyproj.aoi import AreaOfInterest
+    from pyproj.exceptions import ProjError
+    from pyproj.transformer import TransformerGroup
+
+    assert own.to_crs is not None
+    east, north, _ = own.to_crs(np.zeros((1, 3)))[0]
+    try:
+        to_degrees = Transformer.from_crs(horizontal_part(goal), "EPSG:4326", always_xy=True)
+        lon, lat = to_degrees.transform(east, north)
+        here: Any = AreaOfInterest(lon - 0.01, lat - 0.01, lon + 0.01, lat + 0.01)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", UserWarning)  # a missing grid is looked at below
+            group = TransformerGroup(
+                source, goal, always_xy=True, area_of_interest=here, allow_ballpark=False
+            )
+    except ProjError as error:
+        raise GeoreferenceError(f"{name} cannot be transformed to {own.crs}: {error}") from error
+    if not group.transformers:
+        raise GeoreferenceError(
+            f"{name} cannot be transformed to {own.crs}: PROJ knows no operation for this place, "
+            "or its grid is not installed"
+        )
+    return group.transformers[0]
+
+
+def check_extent(
+    found: tuple[Array, Array], of_map: tuple[Array, Array] | None, *, certain: bool
+) -> tuple[str, ...]:
+    """Compare the extent of a reference with that of the map.
+
+    Args:
+        found: Lowest and highest coordinates of the reference in the map [m], (3,) each.
+        of_map: Those of the map; None = not known.
+        certain: Whether its unit is stated or chosen.
+
+    Returns:
+        Sentences about what does not fit.
+
+    Raises:
+        ConfigError: If its unit is not certain and it is as large as if it were in another one.
+    """
+    if of_map is None or not np.isfinite(np.array([*found, *of_map])).all():
+        return ()
+    size, own = np.sort(found[1] - found[0]), np.sort(of_map[1] - of_map[0])
+    if not certain and size[2] > 0.0:
+        _ask_unit(size, own)
+    gap = np.maximum(found[0] - of_map[1], of_map[0] - found[1]).max()
+    if gap > _BESIDE_M:
+        return (f"It lies {_far(gap)} beside the map: align it, or choose another frame.",)
+    return ()
+
+
+def _ask_unit(size: Array, own: Array) -> None:
+    """Ask if a reference exceeds the map in every direction by more than a larger place would."""
+    if np.all(size > _TIMES * np.maximum(own, _SMALL_M)):
+        here, there = (
+            " × ".join(f"{v:.0f}" if v > 100.0 else f"{v:.1f}" for v in sizes[::-1])
+            for sizes in (own, size)
+        )
+        raise ConfigError(
+            f"read in meters it measures {there} m, the map {here} m. It states no unit: "
+            "say which one it has (millimeters? meters?)"
+        )
+
+
+def _far(meters: float) -> str:
+    return f"{meters / 1000.0:.0f} km" if meters > 10_000.0 else f"{meters:.0f} m"
