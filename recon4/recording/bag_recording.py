@@ -11,12 +11,22 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
-from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig
-from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
-from recon4.model.trajectory import Times, Trajectory
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.bag_messages import (
+    SampleBatch,
+    cloud_table,
+    fix_row,
+    imu_row,
+    join_fixes,
+    join_imu,
+    join_poses,
+    pose_row,
+    stamp_ns,
+)
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.formats.bags import (
     CLOUD,
@@ -28,32 +38,20 @@ from recon4.recording.formats.bags import (
     BagMessage,
     BagTopic,
 )
-from recon4.recording.formats.cloud_files import Table
-from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
-from recon4.recording.samples.measured import declared_absent
 from recon4.recording.velodyne.data_packets import PacketDecoder
 from recon4.recording.velodyne.models import likely_model
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory
 
-_BATCH = 500
-"""Number of IMU samples delivered at a time."""
 _PERIOD_NS = 100_000_000
 _PROBED_MESSAGES = 50
 """Messages of a topic that are decoded to detect its content."""
 _NAMES_LISTED = 20
-_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
-_FIX_QUALITY = {
-    **{-2: GnssQuality.SINGLE, 0: GnssQuality.SINGLE},
-    **{1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED},
-}
-"""Of each ``NavSatStatus``; -2 is a driver that does not tell."""
-_NOTHING = (np.nan,) * 3
 
 
 class BagRecording:
@@ -241,128 +239,3 @@ class _Clouds:
 
     def flush(self) -> Shots:
         return self._decoder.nothing()
-
-
-def cloud_table(cloud: Any) -> Table:
-    """Fields of a ``PointCloud2`` by lower-case name.
-
-    Raises:
-        CorruptFile: If the data are shorter than the layout.
-    """
-    order = ">" if cloud.is_bigendian else "<"
-    known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
-    step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)
-    row_step = int(cloud.row_step) or step * width
-    data: NDArray[np.uint8] = np.asarray(cloud.data, np.uint8)
-    if step <= 0 or row_step < step * width or len(data) < row_step * height:
-        raise CorruptFile(
-            f"a cloud of {width} x {height} points of {step} bytes in rows of {row_step} "
-            f"does not fit into {len(data)} bytes"
-        )
-    if width * height > MAX_CLOUD_POINTS:
-        raise CorruptFile(
-            f"a cloud of {width} x {height} points: expected at most {MAX_CLOUD_POINTS}"
-        )
-    require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
-    dtype = _point_dtype(known, step, order)
-    rows = data[: row_step * height].reshape(height, row_step)[:, : step * width]
-    points = np.ascontiguousarray(rows).reshape(-1).view(dtype)
-    return {
-        field.name.lower(): points[field.name].astype(points[field.name].dtype.newbyteorder("="))
-        for field in known
-    }
-
-
-def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.void]:
-    try:
-        return np.dtype(
-            {
-                "names": [f.name for f in fields],
-                "formats": [order + _FIELD_TYPES[f.datatype] for f in fields],
-                "offsets": [int(f.offset) for f in fields],
-                "itemsize": step,
-            }
-        )
-    except ValueError as error:
-        raise CorruptFile(f"the fields of a cloud do not fit into {step} bytes: {error}") from error
-
-
-# -- samples
-
-
-class SampleBatch:
-    """Collects rows of one topic and delivers them in batches."""
-
-    def __init__(self, row: Any, join: Any, report: ImportReport) -> None:
-        self._row, self._join, self._report = row, join, report
-        self._rows: list[tuple[float, ...]] = []
-        self._t_ns: list[int] = []
-
-    def push(self, message: BagMessage, content: Any) -> Iterator[Any]:
-        t_ns = stamp_ns(content.header.stamp)
-        self._t_ns.append(t_ns if t_ns > 0 else message.t_ns)
-        self._rows.append(self._row(content))
-        if len(self._rows) >= _BATCH:
-            yield from self.flush()
-
-    def flush(self) -> Iterator[Any]:
-        rows, t_ns = self._rows, self._t_ns
-        self._rows, self._t_ns = [], []
-        if rows:
-            yield self._join(np.array(t_ns, np.int64), np.array(rows, np.float64))
-
-
-def stamp_ns(stamp: Any) -> int:
-    """Nanoseconds of a stamp of ROS 1 or 2."""
-    return int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
-
-
-def imu_row(message: Any) -> tuple[float, ...]:
-    """Six numbers of a ``sensor_msgs/Imu``; NaN = declared as not measured."""
-    w, a = message.angular_velocity, message.linear_acceleration
-    turns, forces = (w.x, w.y, w.z), (a.x, a.y, a.z)
-    turns = _NOTHING if declared_absent(message.angular_velocity_covariance) else turns
-    forces = _NOTHING if declared_absent(message.linear_acceleration_covariance) else forces
-    return *turns, *forces
-
-
-def join_imu(t_ns: Times, rows: NDArray[np.float64]) -> ImuSamples:
-    """Samples of rows of `imu_row`."""
-    return ImuSamples(t_ns, rows[:, :3], rows[:, 3:])
-
-
-def fix_row(message: Any) -> tuple[float, ...]:
-    """Seven numbers of a ``sensor_msgs/NavSatFix``."""
-    variance = np.asarray(message.position_covariance, np.float64)[[0, 4, 8]]
-    known = message.position_covariance_type > 0
-    sd = np.sqrt(np.where(variance >= 0, variance, np.nan)) if known else np.full(3, np.nan)
-    quality = _FIX_QUALITY.get(int(message.status.status), GnssQuality.INVALID)
-    return message.latitude, message.longitude, message.altitude, *sd.tolist(), float(quality)
-
-
-def join_fixes(t_ns: Times, rows: NDArray[np.float64]) -> GnssSamples:
-    """Samples of rows of `fix_row`."""
-    return GnssSamples(
-        t_ns,
-        np.deg2rad(rows[:, 0]),
-        np.deg2rad(rows[:, 1]),
-        rows[:, 2],
-        rows[:, 3:6],
-        rows[:, 6].astype(np.uint8),
-        np.full((len(rows), 3), np.nan),
-    )
-
-
-def pose_row(message: Any) -> tuple[float, ...]:
-    """Position and quaternion of a ``nav_msgs/Odometry``."""
-    p, q = message.pose.pose.position, message.pose.pose.orientation
-    return p.x, p.y, p.z, q.x, q.y, q.z, q.w
-
-
-def join_poses(t_ns: Times, rows: NDArray[np.float64]) -> Trajectory:
-    """Poses of rows of `pose_row`; invalid ones and those out of order are left out."""
-    length = np.linalg.norm(rows[:, 3:], axis=1)
-    good = np.all(np.isfinite(rows), axis=1) & (np.abs(length - 1.0) < 0.01)
-    t_ns, rows = t_ns[good], rows[good]
-    later = np.diff(np.maximum.accumulate(t_ns), prepend=np.int64(-1)) > 0
-    return Trajectory(t_ns[later], SE3.from_quat(rows[later, 3:], rows[later, :3]))

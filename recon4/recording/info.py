@@ -17,7 +17,8 @@ from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.assembly.rotation import rotation_rate
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_recording import cloud_table, lidar_streams
+from recon4.recording.bag_messages import cloud_table
+from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings

@@ -14,12 +14,8 @@ from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, Ranges
 from recon4.model.trajectory import Times, Trajectory
-from recon4.recording.bag_recording import (
-    SampleBatch,
-    join_poses,
-    most_messages,
-    pose_row,
-)
+from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row
+from recon4.recording.bag_recording import most_messages
 from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize

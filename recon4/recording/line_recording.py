@@ -16,14 +16,8 @@ from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_recording import (
-    SampleBatch,
-    cloud_table,
-    imu_row,
-    join_imu,
-    most_messages,
-    stamp_ns,
-)
+from recon4.recording.bag_messages import SampleBatch, cloud_table, imu_row, join_imu, stamp_ns
+from recon4.recording.bag_recording import most_messages
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import CLOUD, IMU, Bag, BagMessage, BagTopic
 from recon4.recording.head_angles import HeadAngles

@@ -12,7 +12,8 @@ from typing import Any
 
 from recon4.errors import UnknownFormat
 from recon4.model.rig import LASER2D_PORT, Rig
-from recon4.recording.bag_recording import imu_row, most_messages, stamp_ns
+from recon4.recording.bag_messages import imu_row, stamp_ns
+from recon4.recording.bag_recording import most_messages
 from recon4.recording.formats.bags import IMU, Bag
 from recon4.recording.kinds import BAGS, RecordingKind, bag_paths, recognize
 from recon4.recording.laser2d import is_laser2d, read_laser2d
