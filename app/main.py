@@ -73,6 +73,7 @@ from app.settings import ServerSettings
 from app.slices import reference_routes
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
+from app.storage import routes as storage_routes
 from app.uploads import routes as upload_routes
 from app.uploads.store import UploadStore
 from app.viewer import page, proxy
@@ -136,7 +137,7 @@ def _routes() -> list[BaseRoute]:
         router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
-    for part in (review_routes, slice_routes, rig_routes):
+    for part in (review_routes, slice_routes, rig_routes, storage_routes):
         router.include_router(part.router)
         router.include_router(part.page)
     for one in (live_routes.router, live_routes.page):

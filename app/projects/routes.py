@@ -45,9 +45,10 @@ class Rename(BaseModel):
 
 
 class Restored(BaseModel):
-    """A restored project."""
+    """A restored project or recording."""
 
     project: str
+    """Name of its folder."""
 
 
 @router.get("/projects", summary="Projects")
@@ -82,27 +83,27 @@ def delete_project(project_id: str, server: Server, request: Request) -> Deleted
     return deleted
 
 
-@router.get("/trash", dependencies=PROCESS, summary="Deleted projects")
+@router.get("/trash", dependencies=PROCESS, summary="Trash")
 def list_trash(server: Server) -> list[Deleted]:
-    """List deleted projects that can be restored."""
+    """List deleted projects and recordings that can be restored."""
     return server.trash.all()
 
 
-@router.post("/trash/{deleted_id}/restore", dependencies=PROCESS, summary="Restore a project")
+@router.post("/trash/{deleted_id}/restore", dependencies=PROCESS, summary="Restore from the trash")
 def restore_project(deleted_id: str, server: Server, request: Request) -> Restored:
-    """Restore a deleted project under its old name."""
+    """Restore a deleted project or recording under its old name."""
     project = server.trash.restore(deleted_id)
-    audit(request, "restore project", project)
+    audit(request, "restore", project)
     return Restored(project=project)
 
 
 @router.delete(
-    "/trash/{deleted_id}", status_code=204, dependencies=PROCESS, summary="Remove a deleted project"
+    "/trash/{deleted_id}", status_code=204, dependencies=PROCESS, summary="Remove from the trash"
 )
 def remove_project(deleted_id: str, server: Server, request: Request) -> None:
-    """Remove a deleted project permanently."""
+    """Remove a deleted project or recording permanently."""
     server.trash.remove(deleted_id)
-    audit(request, "remove project", deleted_id)
+    audit(request, "remove", deleted_id)
 
 
 @router.get(

@@ -1,7 +1,8 @@
-"""Deleting in two steps: a project is moved to the trash, and removed after some time.
+"""Deleting in two steps: a folder is moved to the trash, and removed after some time.
 
-ROOT/.recon4/trash/<project>@<timestamp>/   the project, as it was
-ROOT/.recon4/trash/.going-…                 being removed permanently
+ROOT/.recon4/trash/<project>@<timestamp>/                a project, as it was
+ROOT/.recon4/trash/recordings/<recording>@<timestamp>/   an uploaded recording
+ROOT/.recon4/trash/…/.going-…                            being removed permanently
 """
 
 from __future__ import annotations
@@ -13,21 +14,25 @@ import shutil
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import Literal
 
 from app.errors import Conflict, NotFound
 from recon4.store.atomic import make_folders
 
 NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<timestamp>\d{8}T\d{12})")
+RECORDINGS = "recordings"
 TIMESTAMP = "%Y%m%dT%H%M%S%f"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Deleted:
-    """A project in the trash."""
+    """A project or recording in the trash."""
 
     id: str
     """Identifier to restore it."""
+    kind: Literal["project", "recording"]
     project: str
+    """Name of its folder."""
     deleted: str
     """UTC, ISO 8601."""
     goes: str
@@ -35,47 +40,68 @@ class Deleted:
 
 
 class Trash:
-    """Recently deleted projects."""
+    """Recently deleted projects, and uploaded recordings."""
 
     def __init__(self, root: Path, folder: Path, *, kept_s: float) -> None:
-        self._root = root.resolve()
+        """Name the folders.
+
+        Args:
+            root: The folder of the projects; recordings are in `RECORDINGS` below it.
+            folder: Where deleted projects are kept; recordings in `RECORDINGS` below it.
+            kept_s: How long [s].
+        """
+        root = root.resolve()
         self._folder = folder
+        self._homes = {folder: root, folder / RECORDINGS: root / RECORDINGS}
+        """Folder of the trash -> where its entries were."""
         self._kept_s = kept_s
 
-    def put(self, project: Path) -> Deleted:
-        """Move a project to the trash; its name becomes free."""
-        make_folders(self._folder)
-        target = self._folder / f"{project.name}@{datetime.now(UTC).strftime(TIMESTAMP)}"
-        project.rename(target)
-        _fsync(self._folder)
-        _fsync(self._root)
+    def put(self, deleted: Path) -> Deleted:
+        """Move a project or recording to the trash; its name becomes free."""
+        folder = next(kept for kept, home in self._homes.items() if home == deleted.parent)
+        make_folders(folder)
+        target = folder / f"{deleted.name}@{datetime.now(UTC).strftime(TIMESTAMP)}"
+        deleted.rename(target)
+        _fsync(folder)
+        _fsync(self._homes[folder])
         return self._deleted(target)
 
     def all(self) -> list[Deleted]:
-        """Projects in the trash, the newest first."""
+        """What is in the trash, the newest first."""
         found = [path for path in self._entries() if _is_deleted(path)]
         return sorted(map(self._deleted, found), key=lambda one: one.deleted, reverse=True)
 
+    def folder(self, deleted_id: str) -> Path:
+        """Where a deleted project or recording is kept.
+
+        Raises:
+            NotFound: If it was removed.
+        """
+        return self._find(deleted_id)
+
     def restore(self, deleted_id: str) -> str:
-        """Restore a project.
+        """Restore a project or recording.
 
         Returns:
             Its name.
 
         Raises:
             NotFound: If it was removed.
-            Conflict: If another project has that name now.
+            Conflict: If another one has that name now.
         """
         path = self._find(deleted_id)
-        project = self._deleted(path).project
-        if (self._root / project).exists():
-            raise Conflict(f"another project {project} exists now; delete or rename it first")
-        path.rename(self._root / project)
-        _fsync(self._root)
-        return project
+        found, home = self._deleted(path), self._homes[path.parent]
+        if (home / found.project).exists():
+            raise Conflict(
+                f"another {found.kind} {found.project} exists now; delete or rename it first"
+            )
+        make_folders(home)
+        path.rename(home / found.project)
+        _fsync(home)
+        return found.project
 
     def remove(self, deleted_id: str) -> None:
-        """Remove a deleted project permanently.
+        """Remove a deleted project or recording permanently.
 
         Raises:
             NotFound: If it was removed already.
@@ -83,10 +109,10 @@ class Trash:
         self._remove(self._find(deleted_id))
 
     def sweep(self, now_s: float) -> list[str]:
-        """Remove expired projects, and finish removals that an earlier server began.
+        """Remove what has expired, and finish removals that an earlier server began.
 
         Returns:
-            The names of the projects.
+            The names of the folders.
         """
         for path in self._entries():
             if path.name.startswith(".going-"):
@@ -103,17 +129,19 @@ class Trash:
         shutil.rmtree(going, ignore_errors=True)
 
     def _find(self, deleted_id: str) -> Path:
-        if not _is_deleted(self._folder / deleted_id) or not (self._folder / deleted_id).is_dir():
-            raise NotFound("this project was removed permanently")
-        return self._folder / deleted_id
+        for folder in self._homes:
+            if _is_deleted(folder / deleted_id) and (folder / deleted_id).is_dir():
+                return folder / deleted_id
+        raise NotFound("it was removed permanently")
 
     def _entries(self) -> list[Path]:
-        return list(self._folder.iterdir()) if self._folder.exists() else []
+        return [path for folder in self._homes if folder.exists() for path in folder.iterdir()]
 
     def _deleted(self, path: Path) -> Deleted:
         at_s = _deleted_s(path)
         return Deleted(
             id=path.name,
+            kind="project" if path.parent == self._folder else "recording",
             project=path.name.split("@")[0],
             deleted=_iso(at_s),
             goes=_iso(at_s + self._kept_s),

@@ -101,6 +101,8 @@ class UploadView(BaseModel):
     finished: bool
     recording: str
     """Path for a job; empty until the upload is complete."""
+    folder: str
+    """Name of the recording on the server, to delete it."""
 
 
 class FileView(BaseModel):
@@ -328,5 +330,6 @@ def _view(server: ServerParts, upload: Upload) -> UploadView:
         created=upload.created,
         expires=expires.isoformat(timespec="seconds"),
         finished=upload.finished,
+        folder=upload.folder,
         recording=str(upload.recording(server.uploads.recordings)) if upload.finished else "",
     )

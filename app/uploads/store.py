@@ -38,6 +38,8 @@ log = logging.getLogger(__name__)
 _PLAIN = {"str": str, "int": int, "bool": bool}
 _NOT_STORED = ("announced", "changed_s")
 UPLOAD_ID = re.compile(r"[0-9a-f]{12}")
+UPLOADED = re.compile(r"[A-Za-z0-9][A-Za-z0-9._+-]{0,60}-[0-9a-f]{12}")
+"""Name of a folder that an upload became."""
 
 
 class UploadStore:
@@ -182,6 +184,12 @@ class UploadStore:
                 folder.rename(gone)
                 fsync(self._folder)
                 shutil.rmtree(gone, ignore_errors=True)
+
+    def forget(self, folder: str) -> None:
+        """Remove the announcement of a recording that was deleted: sent again, it is a new one."""
+        for upload in self.all():
+            if upload.finished and upload.folder == folder:
+                self.remove(upload)
 
     def expires(self, upload: Upload) -> float:
         """When an upload is removed unless more data arrive [s since 1970]."""

@@ -2,6 +2,7 @@
 
 import os
 import random
+import re
 import shutil
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from playwright.sync_api import expect
 
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
+from tests.project_builder import build_project
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 
 pytestmark = pytest.mark.e2e
@@ -126,6 +128,43 @@ def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path):
     folder = Path(page.get_by_label("Or a recording on the server").input_value())
     assert sorted(p.name for p in (folder / "clouds").iterdir())[-1] == "000011.bin"
     assert (folder / "clouds" / "000011.bin").stat().st_size == 176
+
+
+def test_what_takes_space_is_listed_and_a_recording_deleted_and_restored(
+    server, page, capture, screenshot
+):
+    build_project(server.root / "office")
+    page.goto(server.url)
+    chooser(page).set_input_files(capture)
+    expect(page.locator("upload-box")).to_contain_text("On the server")
+    page.goto(f"{server.url}/storage")
+    row = page.get_by_role("row").filter(has_text="Recording, uploaded")
+    expect(row).to_contain_text("ranni-pochuzka")
+    expect(page.locator("#disk")).to_contain_text("are free")
+    screenshot(page, "storage")
+    fits(page)
+
+    row.get_by_role("button").click()
+    expect(page.get_by_role("dialog")).to_contain_text("It can be restored for a week")
+    page.get_by_role("button", name="Delete", exact=True).click()
+    expect(page.get_by_role("row").filter(has_text="Deleted")).to_contain_text("until")
+    page.get_by_role("button", name=re.compile("Restore ranni")).click()
+    expect(row).to_be_visible()
+    assert len(list((server.root / "recordings").iterdir())) == 1
+
+
+@looks("desktop light")
+def test_an_upload_can_be_removed_after_it_has_arrived(server, page, capture):
+    page.goto(server.url)
+    chooser(page).set_input_files(capture)
+    expect(page.locator("recording-look")).to_contain_text("VLP-16")
+
+    page.locator("upload-box").get_by_role("button", name="Remove").click()
+
+    expect(page.get_by_label("Or a recording on the server")).to_have_value("")
+    expect(page.locator("recording-look")).to_be_hidden()
+    assert list((server.root / "recordings").iterdir()) == []
+    assert server.get("/api/uploads").json() == []
 
 
 @looks("desktop light", "phone dark")

@@ -105,14 +105,14 @@ async function showTrash() {
     await showTrash();
     reloadSoon();
   };
-  const row = ({ id, project, goes }) =>
+  const row = ({ id, kind, project, goes }) =>
     make(
       "li",
       {},
       make(
         "div",
         {},
-        make("strong", {}, project),
+        make("strong", {}, kind === "recording" ? `Recording ${project}` : project),
         make("small", {}, ` is deleted permanently on ${when(goes)}`),
       ),
       make(

@@ -66,6 +66,7 @@ export class NewJob extends HTMLElement {
           : [
               make("upload-box", {
                 onrecording: (event) => this.#choose(event.detail, { isNamed: true }),
+                onremoved: () => this.#choose(""),
                 onchosen: (event) => this.#suggest({ project: titleOf(event.detail) }),
               }),
             ]),

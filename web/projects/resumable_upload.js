@@ -3,6 +3,7 @@
 import {
   beginUpload,
   createFile,
+  deleteRecording,
   listUploadFiles,
   listUploads,
   readOffset,
@@ -103,8 +104,12 @@ export class Sending extends EventTarget {
   }
 
   async remove() {
-    this.pause();
-    if (this.#upload) await removeUpload(this.#upload.id);
+    if (this.#upload?.finished || this.state === "done") {
+      await deleteRecording(this.#upload.folder);
+    } else {
+      this.pause();
+      if (this.#upload) await removeUpload(this.#upload.id);
+    }
     this.#tell("removed", "");
   }
 

@@ -117,6 +117,7 @@ export class UploadBox extends HTMLElement {
     if (["paused", "done", "removed"].includes(state)) this.#listOpen();
     if (state === "done")
       this.dispatchEvent(new CustomEvent("recording", { detail: sending.recording }));
+    if (state === "removed") this.dispatchEvent(new CustomEvent("removed"));
   }
 
   #figures({ state, sent, total, rate, eta }) {
@@ -137,7 +138,7 @@ export class UploadBox extends HTMLElement {
     this.#buttons.replaceChildren(
       ...(["sending", "trying"].includes(state) ? [pause] : []),
       ...(["paused", "failed"].includes(state) ? [resume] : []),
-      ...(["paused", "failed", "trying"].includes(state) ? [remove] : []),
+      ...(["paused", "failed", "trying", "done"].includes(state) ? [remove] : []),
     );
   }
 

@@ -63,6 +63,9 @@ export const restoreProject = (deleted_id) =>
   request("POST /api/trash/{deleted_id}/restore", { path: { deleted_id } });
 export const removeProject = (deleted_id) =>
   request("DELETE /api/trash/{deleted_id}", { path: { deleted_id } });
+export const readStorage = () => request("GET /api/storage");
+export const deleteRecording = (name) =>
+  request("DELETE /api/recordings/{name}", { path: { name } });
 export const readServer = () => request("GET /api/server");
 export const readOpenApi = async () => (await fetch("/openapi.json")).json();
 

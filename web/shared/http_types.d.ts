@@ -242,6 +242,7 @@ export interface DecidedEdge {
 
 export interface Deleted {
   id: string;
+  kind: "project" | "recording";
   project: string;
   deleted: string;
   goes: string;
@@ -1027,6 +1028,22 @@ export interface Step {
   why?: string;
 }
 
+export interface StorageView {
+  disk_bytes: number;
+  free_bytes: number;
+  items: Array<StoredItem>;
+  server_bytes: number;
+}
+
+export interface StoredItem {
+  kind: "project" | "recording" | "upload" | "deleted";
+  id: string;
+  name: string;
+  bytes: number;
+  used_by: Array<string>;
+  expires: string;
+}
+
 export interface SupersededEffect {
   superseded: true;
 }
@@ -1079,6 +1096,7 @@ export interface UploadView {
   expires: string;
   finished: boolean;
   recording: string;
+  folder: string;
 }
 
 export type Usability = "good" | "check" | "do not use";
@@ -1102,6 +1120,10 @@ export interface Operations {
   "DELETE /api/projects/{project_id}/slices/references/{reference_id}": {
     path: { project_id: string; reference_id: string };
     response: string;
+  };
+  "DELETE /api/recordings/{name}": {
+    path: { name: string };
+    response: Deleted;
   };
   "DELETE /api/sessions/{session_id}": {
     path: { session_id: string };
@@ -1309,6 +1331,9 @@ export interface Operations {
   "GET /api/settings": {
     query?: { of?: string };
     response: Array<GroupView>;
+  };
+  "GET /api/storage": {
+    response: StorageView;
   };
   "GET /api/trash": {
     response: Array<Deleted>;

@@ -43,7 +43,7 @@ export class PageHead extends HTMLElement {
     this.#account.replaceChildren(
       ...(live ? [link(liveUrl, "Live")] : []),
       link("/rigs", "Rigs"),
-      ...(may.includes("process") ? [link("/api", "API")] : []),
+      ...(may.includes("process") ? [link("/storage", "Storage"), link("/api", "API")] : []),
       ...(may.includes("administer") ? [link("/people", "People")] : []),
       ...(login
         ? [

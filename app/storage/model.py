@@ -1,0 +1,35 @@
+"""What takes space on the disk of the projects."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+StoredKind = Literal["project", "recording", "upload", "deleted"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredItem:
+    """A project, an uploaded recording, an unfinished upload, or something in the trash."""
+
+    kind: StoredKind
+    id: str
+    """What a request to remove it names."""
+    name: str
+    """Display name."""
+    bytes: int
+    used_by: tuple[str, ...] = ()
+    """Of a recording: projects that were made from it."""
+    expires: str = ""
+    """When it is removed, UTC, ISO 8601; empty = it stays."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StorageView:
+    """What takes space, the largest first."""
+
+    disk_bytes: int
+    free_bytes: int
+    items: tuple[StoredItem, ...]
+    server_bytes: int
+    """State of the server: queue, logs, backups, caches."""
