@@ -139,6 +139,10 @@ _MESSAGES = {
     ),
     "robot_descriptions_refused": _stated("not read", noun="descriptions of a robot (URDF)"),
     "clouds": _read("clouds"),
+    "clouds_wrong_times": _lost(
+        "clouds",
+        "the times of their points make no sense, they are taken from the azimuth or the stamp",
+    ),
     "stamps_missing": _repaired("clouds", "without a stamp, the time of recording is used"),
     "stamps_wrong": _repaired("clouds", "a stamp of another time, the time of recording is used"),
     "remarks_more": _usual("", "left out here", noun="different remarks"),

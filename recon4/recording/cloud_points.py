@@ -10,11 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import CorruptFile, UnknownFormat
+from recon4.errors import UnknownFormat
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.cloud_files import Table
+from recon4.recording.point_times import PointClock
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.models import MODELS
 
@@ -27,13 +28,6 @@ _MANY_POINTS = 100
 """Fewer points may have one intensity or ring."""
 _ONE_BEAM_RAD = np.deg2rad(5.0)
 """A tilted beam spreads over less elevation."""
-_ABSOLUTE = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
-"""From this value on a time is absolute; nanoseconds of one unit."""
-_FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
-"""Largest span -> unit of a fractional time [ns]."""
-_OTHER_CLOCK_NS = 10_000_000_000
-_TURN_S = (0.01, 0.6)
-"""Duration of a revolution, from and to [s]; determines the unit of integer times."""
 
 
 def find_field(names: Any, aliases: tuple[str, ...]) -> str:
@@ -65,7 +59,8 @@ class CloudDecoder:
         """
         self._row, self._report = sensor_row, report
         self._name, self._model = sensor.name, sensor.model
-        self._points_lead, self._deskewed = points_lead, deskewed
+        self._clock = PointClock(sensor.name, report, points_lead=points_lead)
+        self._deskewed = deskewed
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False
         """Whether the points of the last cloud had absolute times."""
@@ -87,7 +82,11 @@ class CloudDecoder:
         self._report.count("points_invalid", len(xyz) - len(valid))
         table = {key: column[valid] for key, column in table.items()}
         xyz = xyz[valid]
-        times = self._times(table, xyz, t_ns, period_ns=period_ns)
+        self._report.count("clouds")
+        times, sound = self._times(table, xyz, t_ns, period_ns=period_ns)
+        if not sound.all():
+            table = {key: column[sound] for key, column in table.items()}
+            xyz, times = xyz[sound], times[sound]
         order = np.argsort(times, kind="stable")
         self._report.count("points", len(xyz))
         return Shots(
@@ -116,9 +115,12 @@ class CloudDecoder:
         if count >= _MANY_POINTS and _is_constant(values):
             text = f"{key} is {values[0]:g} in all points of a cloud: it was not measured"
             self._report.derive(f"{self._name}: {text}")
+        elif values.dtype.kind == "f":
+            self._report.count("intensity_wrong", int(np.count_nonzero(~np.isfinite(values))))
         if values.dtype.kind == "f":
-            finite = np.nan_to_num(values, nan=0.0, posinf=65535.0, neginf=0.0)
-            if len(finite) and finite.max() <= 1.0 and np.any(finite % 1.0):
+            finite = np.nan_to_num(values, nan=0.0, posinf=0.0, neginf=0.0)
+            # Not the largest: single damaged values do not change the scale of the others.
+            if len(finite) and np.percentile(finite, 99) <= 1.0 and np.any(finite % 1.0):
                 self._report.derive(f"{self._name}: intensity 0..1 is stored times 255")
                 finite = finite * 255.0
             values = np.rint(finite)
@@ -137,12 +139,31 @@ class CloudDecoder:
             return self._rings_from_elevation(elevation, "no ring field")
         if _is_flat(table[key], elevation):
             return self._rings_from_elevation(elevation, f"{key} is {table[key][0]:g} everywhere")
-        rings = np.clip(table[key], 0, 255).astype(np.uint8)
+        rings = self._sound_rings(table[key], elevation)
+        if rings is None:
+            return self._rings_from_elevation(elevation, f"{key} is mostly outside 0..255")
         if self._ring_of is None and len(rings):
             self._ring_of = _upwards(rings, elevation)
             if np.any(self._ring_of[: int(rings.max()) + 1] != np.arange(int(rings.max()) + 1)):
                 self._report.derive(f"{self._name}: {key} renumbered, 0 = lowest elevation")
         return rings if self._ring_of is None else self._ring_of[rings]
+
+    def _sound_rings(
+        self, values: NDArray[Any], elevation: NDArray[np.floating]
+    ) -> NDArray[np.uint8] | None:
+        """Rings, single damaged ones from the elevation of the others; None if most are damaged."""
+        with np.errstate(invalid="ignore"):
+            sound = (values >= 0) & (values <= 255)
+        damaged = len(values) - int(np.count_nonzero(sound))
+        if damaged > len(values) // 2:
+            return None
+        self._report.count("rings_wrong", damaged)
+        rings = np.where(sound, values, 0).astype(np.uint8)
+        if damaged:
+            order = np.flatnonzero(sound)[np.argsort(elevation[sound])]
+            place = np.searchsorted(elevation[order], elevation[~sound])
+            rings[~sound] = rings[order[np.minimum(place, len(order) - 1)]]
+        return rings
 
     def _rings_from_elevation(self, elevation: NDArray[np.floating], why: str) -> NDArray[np.uint8]:
         beams = _beams(self._model, elevation)
@@ -156,68 +177,40 @@ class CloudDecoder:
 
     # -- time
 
-    def _times(self, table: Table, xyz: NDArray[np.float32], t_ns: int, *, period_ns: int) -> Times:
+    def _times(
+        self, table: Table, xyz: NDArray[np.float32], t_ns: int, *, period_ns: int
+    ) -> tuple[Times, NDArray[np.bool_]]:
+        """Times of the points [ns], and which of them are sound, (N,) each."""
         azimuth = np.arctan2(xyz[:, 1], xyz[:, 0])
-        key = find_field(table, TIME_FIELDS)
-        self.absolute = False
+        key, full_turn = find_field(table, TIME_FIELDS), _covers_turn(azimuth)
+        self.absolute, everyone = False, np.ones(len(xyz), np.bool_)
         if self._deskewed:
-            return np.full(len(xyz), t_ns, np.int64)
+            return np.full(len(xyz), t_ns, np.int64), everyone
         if key and len(xyz):
-            times = self._given_times(table[key], azimuth, t_ns)
-            if times is not None:
-                return times
-            self._report.warn(f"{self._name}: the times in field {key!r} make no sense, not used")
-        if not _covers_turn(azimuth):
+            found = self._clock.times(
+                key, table[key], t_ns=t_ns, period_ns=period_ns, full_turn=full_turn
+            )
+            if found is not None:
+                self.absolute = found.absolute
+                return found.t_ns, found.kept
+        elif not full_turn:
             self._report.warn(
                 f"{self._name}: no time per point, all points at the stamp; without a warning with "
                 "the setting ingest.deskewed"
             )
-            return np.full(len(xyz), t_ns, np.int64)
+        if not full_turn:
+            return np.full(len(xyz), t_ns, np.int64), everyone
         turn, how = _turn_from_order(azimuth)
-        self._report.warn(
-            f"{self._name}: no time per point, time from azimuth, {how}; clouds without the motion "
-            "of the sensor inside need the setting ingest.deskewed"
-        )
-        return t_ns + np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
-
-    def _given_times(
-        self, values: NDArray[Any], azimuth: NDArray[np.floating], t_ns: int
-    ) -> Times | None:
-        """Absolute times [ns] of a time field; None if the field is unusable."""
-        if values.dtype.kind not in "fiu":
-            raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
-        numbers = values.astype(np.float64)
-        if not np.all(np.isfinite(numbers)):
-            return None
-        low, high = float(numbers.min()), float(numbers.max())
-        if high == low and len(numbers) > 1 and _covers_turn(azimuth):
-            return None
-        unit = next((unit for least, unit in _ABSOLUTE if low >= least), 0.0)
-        absolute = bool(unit) and not (values.dtype.itemsize < 8 and unit != 1.0)
-        if not absolute:
-            unit = _relative_unit(values.dtype, high - low, _covers_turn(azimuth))
-        # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
-        if (high - low) * unit < 1e9 * _TURN_S[0] and _covers_turn(azimuth):
-            return None
-        if absolute:
-            return self._absolute_times(values, unit, t_ns)
-        if not unit or max(abs(low), abs(high)) * unit > 10e9:
-            return None
-        return t_ns + np.rint(numbers * unit).astype(np.int64)
-
-    def _absolute_times(self, values: NDArray[Any], unit: float, t_ns: int) -> Times:
-        whole = values.astype(np.int64)
-        part = np.rint((values - whole) * unit) if values.dtype.kind == "f" else 0
-        times = np.asarray(whole * int(unit) + part, dtype=np.int64)
-        if self._points_lead:
-            self._report.derive(f"{self._name}: times are those of the points")
-        elif abs(int(times[0]) - t_ns) > _OTHER_CLOCK_NS:
-            self._report.derive(
-                f"{self._name}: the points' clock is not the stamps' clock; stamp = first point"
+        text = f"{self._name}: no time per point, time from azimuth, {how}"
+        if key:
+            self._report.derive(text)
+        else:
+            self._report.warn(
+                f"{text}; clouds without the motion of the sensor inside need the setting "
+                "ingest.deskewed"
             )
-            return times - times.min() + t_ns
-        self.absolute = True
-        return times
+        since_ns = np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
+        return t_ns + since_ns, everyone
 
 
 def model_of_points(table: Table) -> str:
@@ -291,16 +284,6 @@ def _covers_turn(azimuth: NDArray[np.floating]) -> bool:
     """Whether the points are spread over more than half of a revolution."""
     cells = np.unique(((azimuth + np.pi) * (36 / (2 * np.pi))).astype(np.int64))
     return len(cells) > 18
-
-
-def _relative_unit(dtype: np.dtype[Any], span: float, full_turn: bool) -> float:
-    """Unit of a relative time [ns]; 0 = no unit is plausible."""
-    if dtype.kind == "f":
-        return next((unit for most, unit in _FLOAT_UNITS if span <= most), 0.0)
-    if not full_turn:
-        return 1.0
-    fits = [u for u in (1.0, 1e3, 1e6) if _TURN_S[0] <= span * u * 1e-9 <= _TURN_S[1]]
-    return fits[0] if fits else 0.0
 
 
 def _turn_from_order(azimuth: NDArray[np.floating]) -> tuple[NDArray[np.float64], str]:

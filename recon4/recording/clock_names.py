@@ -1,0 +1,35 @@
+"""Names of constant offsets between clocks: leap seconds, hours, time since power-on."""
+
+from __future__ import annotations
+
+_KNOWN_S = {18.0: "GPS time against UTC", 37.0: "TAI against UTC", 19.0: "TAI against GPS time"}
+"""Since 2017."""
+_WITHIN_S = 0.4
+_HOUR_S = 3600.0
+_DATES_S = 1e8
+
+
+def known_offset_s(offset_s: float) -> float:
+    """The exact offset that a measured one is; without a known one, the measured [s]."""
+    sign = 1.0 if offset_s > 0 else -1.0
+    if abs(offset_s) < _DATES_S:
+        for known in (*_KNOWN_S, round(abs(offset_s) / _HOUR_S) * _HOUR_S):
+            if known and abs(abs(offset_s) - known) < _WITHIN_S:
+                return sign * known
+    return offset_s
+
+
+def offset_name(offset_s: float) -> str:
+    """What an offset between two clocks looks like; empty = nothing known."""
+    exact = abs(known_offset_s(offset_s))
+    if exact in _KNOWN_S:
+        return _KNOWN_S[exact]
+    if exact and exact < _DATES_S and exact % _HOUR_S == 0.0:
+        return "whole hours, as of a time zone"
+    return "one of them counts from power-on" if abs(offset_s) > _DATES_S else ""
+
+
+def described(offset_s: float) -> str:
+    """An offset in words, such as ``+18.012 s (GPS time against UTC)``."""
+    name = offset_name(offset_s)
+    return f"{offset_s:+.3f} s{f' ({name})' if name else ''}"

@@ -1,0 +1,321 @@
+"""Times of points from a field of a cloud: its unit, its clock, and single damaged values."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import CorruptFile
+from recon4.geometry.se3 import Array
+from recon4.model.trajectory import Times
+from recon4.recording.clock_names import described
+from recon4.recording.report import ImportReport
+
+Values = NDArray[Any]
+
+_UNITS_NS = (1.0, 1e3, 1e6, 1e9)
+_DATES = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
+"""From this value on a time is a date; nanoseconds of one unit."""
+_FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
+"""Largest span -> unit of a fractional time [ns]."""
+_TURN_S = (0.01, 0.6)
+"""Duration of a revolution, from and to [s]; determines the unit of integer times."""
+_PART_NS = 1e8
+"""A cloud that is part of a revolution may be timed from the start of the revolution [ns]."""
+_HOUR_NS = 3_600_000_000_000
+_COUNTER = 1 << 32
+_SHORTEST_CYCLE_NS = 60_000_000_000
+_BULK = 6.0
+"""Times within this multiple of the distance of 60 % of them from the middle one are the bulk: all
+of an even revolution, without up to two fifths that are damaged."""
+_LARGEST_NS = 2.0**62
+_MOST_DAMAGED = 0.2
+"""With a larger ratio of damaged times the field is not used."""
+_REVOLUTIONS = 2.0
+"""Times farther from the others are damaged."""
+_STEPS = 50.0
+"""A revolution is resolved in at least this many steps, or the times are too coarse."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PointTimes:
+    """Times of the points of one cloud."""
+
+    t_ns: Times
+    """Absolute [ns], (N,); of no meaning where not `kept`."""
+    kept: NDArray[np.bool_]
+    """Points with a sound time, (N,)."""
+    absolute: bool
+    """Whether they are times of a clock and not relative to the stamp."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Numbers:
+    """Values of the field around the one in their middle."""
+
+    middle: int | float
+    around: NDArray[Any]
+    """Values minus the middle one, int64 or float64, (N,)."""
+    finite: NDArray[np.bool_]
+    span: float
+    """Of the bulk of them."""
+    is_fraction: bool
+    wide: bool
+    """Whether the type holds dates in any unit."""
+    resolution: float
+    """Step from one number to the next, in units of the field."""
+    wraps: bool
+    """Whether a counter or an hour begins again within the cloud."""
+    cycle: int
+    """Values of the type; 0 = as good as infinite."""
+
+
+Cycles = tuple[int, ...]
+"""Lengths of cycles [ns]; 0 = none."""
+
+
+class _UnusableTimes(Exception):
+    """The times of a cloud are unusable; the text says why."""
+
+
+class PointClock:
+    """Reads the time field of the clouds of one sensor."""
+
+    def __init__(self, name: str, report: ImportReport, *, points_lead: bool) -> None:
+        """Prepare.
+
+        Args:
+            name: Of the sensor.
+            report: Receives the counts ``clouds_wrong_times``, ``points_wrong_time``.
+            points_lead: Dates of points count, however far they are from the stamps.
+        """
+        self._name, self._report, self._points_lead = name, report, points_lead
+        self._noted = False
+
+    def times(
+        self, key: str, values: Values, *, t_ns: int, period_ns: int, full_turn: bool
+    ) -> PointTimes | None:
+        """Times of the points of a cloud; None (counted, with the reason) if there are none.
+
+        They are relative to the stamp, or in the stamp's own clock, or that within the hour, or in
+        a clock of their own: then the first point is of the stamp.
+
+        Args:
+            key: Name of the field.
+            values: Of all points, (N,), N > 0.
+            t_ns: Stamp of the cloud [ns].
+            period_ns: Time from cloud to cloud [ns].
+            full_turn: Whether the points are spread over more than half of a revolution.
+
+        Raises:
+            CorruptFile: If the field is not numeric.
+        """
+        if values.dtype.kind not in "fiu":
+            raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
+        try:
+            numbers = _numbers(values)
+            unit = _unit(numbers, t_ns, period_ns, full_turn=full_turn)
+            revolution_ns = _revolution_ns(numbers, unit, period_ns, full_turn=full_turn)
+            return self._placed(numbers, unit, t_ns, revolution_ns=revolution_ns)
+        except _UnusableTimes as reason:
+            self._report.count("clouds_wrong_times")
+            self._report.details.setdefault(
+                "clouds_wrong_times", f"{self._name}, {key!r}: {reason}"
+            )
+            return None
+
+    def _placed(
+        self, numbers: _Numbers, unit: float, t_ns: int, *, revolution_ns: float
+    ) -> PointTimes:
+        near = numbers.finite & (np.abs(numbers.around) * unit <= _REVOLUTIONS * revolution_ns)
+        damaged = len(near) - int(near.sum())
+        if abs(numbers.middle) * unit > _LARGEST_NS:
+            raise _UnusableTimes(f"{numbers.middle:g} is no time in any unit")
+        if damaged > _MOST_DAMAGED * len(near):
+            raise _UnusableTimes(
+                f"{damaged} of {len(near)} points of a cloud are more than two revolutions from "
+                "the others"
+            )
+        if numbers.resolution * unit > revolution_ns / _STEPS:
+            raise _UnusableTimes(
+                f"steps of {numbers.resolution * unit * 1e-6:.3g} ms are too coarse"
+            )
+        self._report.count("points_wrong_time", damaged)
+        around_ns = _scaled(np.where(near, numbers.around, 0), unit)
+        middle_ns = int(_scaled(np.array([numbers.middle]), unit)[0])
+        at_ns = self._middle_ns(
+            middle_ns,
+            middle_ns + int(around_ns.min()),
+            t_ns,
+            cycles_ns=_cycles_ns(numbers, unit),
+            revolution_ns=revolution_ns,
+        )
+        # Within one revolution of the stamp both readings are the same.
+        absolute = abs(middle_ns) > revolution_ns and at_ns == middle_ns
+        return PointTimes(at_ns + around_ns, near, absolute)
+
+    def _middle_ns(
+        self, middle_ns: int, first_ns: int, t_ns: int, *, cycles_ns: Cycles, revolution_ns: float
+    ) -> int:
+        """Absolute time of the value in the middle [ns].
+
+        Args:
+            middle_ns: The value.
+            first_ns: That of the first point.
+            t_ns: Stamp of the cloud.
+            cycles_ns: After which the times may begin again; without any 0 they are never relative.
+            revolution_ns: Largest offset of a relative time.
+        """
+        near_ns = _REVOLUTIONS * revolution_ns
+        if self._points_lead and _is_date(middle_ns):
+            self._report.derive(f"{self._name}: times are those of the points")
+            return middle_ns
+        if abs(middle_ns - t_ns) <= near_ns < t_ns:
+            return middle_ns
+        if abs(middle_ns) <= revolution_ns and 0 in cycles_ns:
+            return t_ns + middle_ns
+        for cycle_ns in filter(None, cycles_ns):
+            at_ns = middle_ns + round((t_ns - middle_ns) / cycle_ns) * cycle_ns
+            if abs(at_ns - t_ns) <= near_ns:
+                self._report.derive(
+                    f"{self._name}: times of points begin again every {cycle_ns * 1e-9:.6g} s: "
+                    "continued by the stamps"
+                )
+                return at_ns
+        self._note_offset((first_ns - t_ns) * 1e-9)
+        return t_ns + middle_ns - first_ns
+
+    def _note_offset(self, ahead_s: float) -> None:
+        if not self._noted:
+            self._noted = True
+            self._report.derive(
+                f"{self._name}: the points' clock is not the stamps' clock, it is ahead by "
+                f"{described(ahead_s)}; stamp = first point"
+            )
+
+
+def _numbers(values: Values) -> _Numbers:
+    """The values around their median.
+
+    Raises:
+        _UnusableTimes: If too few of them are numbers.
+    """
+    finite = np.isfinite(values)
+    missing = len(values) - int(finite.sum())
+    if missing > _MOST_DAMAGED * len(values):
+        raise _UnusableTimes(f"{missing} of {len(values)} points of a cloud have no number")
+    rows = np.flatnonzero(finite)
+    half = len(rows) // 2
+    middle = values[rows[np.argpartition(values[rows], half)[half]]]
+    around, wraps, is_fraction = *_around(values, middle, finite), values.dtype.kind == "f"
+    size = np.abs(around[finite])
+    bulk = around[finite][size <= _BULK * np.percentile(size, 60.0)]
+    is_counter = values.dtype.kind == "u" and values.dtype.itemsize == 4
+    middle = float(middle) if is_fraction else int(middle.astype(np.int64))
+    wraps |= is_counter and not 0 <= middle + bulk.min() <= middle + bulk.max() < _COUNTER
+    return _Numbers(
+        middle=middle,
+        around=around,
+        finite=finite,
+        span=float(np.ptp(bulk)),
+        is_fraction=is_fraction,
+        wide=values.dtype.itemsize >= 8,
+        resolution=float(np.spacing(abs(values.dtype.type(middle)))) if is_fraction else 1.0,
+        wraps=bool(wraps),
+        cycle=_COUNTER if is_counter else 0,
+    )
+
+
+def _around(values: Values, middle: Any, finite: NDArray[np.bool_]) -> tuple[NDArray[Any], bool]:
+    """Values minus the middle one, (N,), and whether an hour begins among them.
+
+    Counters of 32 bits that wrap, and hours that begin, are continued.
+    """
+    if values.dtype.kind == "u" and values.dtype.itemsize == 4:
+        return (values - middle).view(np.int32).astype(np.int64), False
+    if values.dtype.kind in "iu":
+        around: NDArray[Any] = values.astype(np.int64) - middle.astype(np.int64)
+    else:
+        around = np.where(finite, values, middle).astype(np.float64) - float(middle)
+    largest, least = float(values[finite].max()), float(values[finite].min())
+    for unit in _UNITS_NS:
+        hour = _HOUR_NS / unit
+        if 0.999 * hour < largest < hour and 0.0 <= least < 0.001 * hour:
+            turns = np.sign(around) * (np.abs(around) > hour / 2)
+            return np.asarray(around - (turns * hour).astype(around.dtype)), True
+    return around, False
+
+
+def _cycles_ns(numbers: _Numbers, unit: float) -> Cycles:
+    """After which the times may begin again; 0 = they may be relative to the stamp."""
+    counter_ns = int(numbers.cycle * unit)
+    # A cycle of a few seconds would fit any stamp.
+    longer = (counter_ns,) if counter_ns > _SHORTEST_CYCLE_NS else ()
+    return (*(() if numbers.wraps else (0,)), *longer, _HOUR_NS)
+
+
+def _unit(numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool) -> float:
+    """Nanoseconds of one unit.
+
+    Raises:
+        _UnusableTimes: If none is plausible.
+    """
+    if full_turn and numbers.span == 0.0:
+        raise _UnusableTimes(f"all points of a revolution have the time {numbers.middle:g}")
+    unit = _unit_of_clock(numbers, t_ns, period_ns) or _unit_of_dates(numbers)
+    unit = unit or _unit_of_span(numbers, full_turn=full_turn)
+    if not unit:
+        raise _UnusableTimes(
+            f"from first to last point {numbers.span:g}, no revolution in any unit"
+        )
+    # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
+    if full_turn and numbers.span * unit < 1e9 * _TURN_S[0]:
+        raise _UnusableTimes(
+            f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
+        )
+    return unit
+
+
+def _unit_of_clock(numbers: _Numbers, t_ns: int, period_ns: int) -> float:
+    """The unit in which the values are times of the stamp's own clock; 0 = none."""
+    near_ns = _REVOLUTIONS * max(period_ns, _PART_NS)
+    for unit in _UNITS_NS:
+        fits = abs(numbers.middle * unit - t_ns) <= near_ns < t_ns
+        if fits and numbers.span * unit <= near_ns:
+            return unit
+    return 0.0
+
+
+def _unit_of_dates(numbers: _Numbers) -> float:
+    unit = next((unit for least, unit in _DATES if numbers.middle >= least), 0.0)
+    return unit if numbers.wide or unit == 1.0 else 0.0
+
+
+def _unit_of_span(numbers: _Numbers, *, full_turn: bool) -> float:
+    if numbers.is_fraction:
+        return next((unit for most, unit in _FLOAT_UNITS if numbers.span <= most), 0.0)
+    if not full_turn:
+        return 1.0
+    seconds = ((unit, numbers.span * unit * 1e-9) for unit in _UNITS_NS[:3])
+    return next((unit for unit, s in seconds if _TURN_S[0] <= s <= _TURN_S[1]), 0.0)
+
+
+def _revolution_ns(numbers: _Numbers, unit: float, period_ns: int, *, full_turn: bool) -> float:
+    least_ns = 0.0 if full_turn else _PART_NS
+    return max(float(period_ns), numbers.span * unit, least_ns)
+
+
+def _is_date(t_ns: int) -> bool:
+    return t_ns >= _DATES[0][0]
+
+
+def _scaled(numbers: NDArray[Any], unit: float) -> Times:
+    """Numbers in nanoseconds; integers exactly."""
+    if numbers.dtype.kind in "iu":
+        return numbers.astype(np.int64) * int(unit)
+    whole = np.floor(numbers)
+    part: Array = np.rint((numbers - whole) * unit)
+    return whole.astype(np.int64) * int(unit) + part.astype(np.int64)

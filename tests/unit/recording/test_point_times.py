@@ -1,0 +1,172 @@
+"""Times of points: in which clock they are, and what single damaged ones do."""
+
+import numpy as np
+import pytest
+
+from recon4.model.import_counts import WARNED_RATIO
+from recon4.recording.clock_names import described, known_offset_s
+from tests.builders import T0_NS
+from tests.unit.recording.test_cloud_points import REL_NS, decode, with_field
+
+HOUR_NS = 3_600_000_000_000
+BOOT_NS = 5_321_200_000_000
+ROWS = [5, 700, 2000]
+
+
+def damaged(values, wrong):
+    out = values.copy()
+    out[ROWS] = wrong
+    return out
+
+
+@pytest.mark.parametrize(
+    ("name", "values", "wrong"),
+    [
+        ("t", REL_NS.astype(np.uint32), 3_604_361_924),
+        ("time", (REL_NS * 1e-9).astype(np.float32), np.nan),
+        ("time", (REL_NS * 1e-9).astype(np.float32), np.inf),
+        ("time", (REL_NS * 1e-9).astype(np.float64), -1e30),
+        ("timestamp", (REL_NS + T0_NS).astype(np.uint64), 0),
+        ("timestamp", (REL_NS + T0_NS).astype(np.uint64), 2**64 - 1),
+        ("timestamp", (REL_NS + T0_NS) * 1e-9, 4e9),
+        ("time_stamp", (REL_NS // 1000).astype(np.int32), -2_000_000_000),
+    ],
+)
+def test_single_damaged_times_are_dropped_and_the_others_used(name, values, wrong):
+    shots, report = decode(with_field(name, damaged(values, wrong)))
+
+    kept = np.delete(REL_NS, ROWS)
+    np.testing.assert_allclose(shots.t_ns - T0_NS, kept, atol=1500)
+    assert report.counts["points_wrong_time"] == 3
+    assert report.counts["clouds_wrong_times"] == 0
+    assert not report.warnings
+
+
+def test_many_damaged_times_are_a_field_that_is_not_used_with_numbers():
+    values = REL_NS.astype(np.uint32)
+    values[::3] = 3_604_361_924
+
+    shots, report = decode(with_field("t", values))
+
+    assert len(shots) == len(REL_NS)
+    number = len(REL_NS[::3])
+    assert any(f"{number} of {len(REL_NS)} points of a cloud" in text for text in report.lost())
+    report.warn_of_losses()
+    assert any("1 of 1 clouds: the times" in text for text in report.warnings)
+    assert number / len(REL_NS) > WARNED_RATIO
+
+
+@pytest.mark.parametrize(
+    "values",
+    [
+        (REL_NS + BOOT_NS) * 1e-9,
+        (REL_NS + BOOT_NS) * 1e-6,
+        REL_NS + BOOT_NS,
+        ((REL_NS + BOOT_NS) // 1000).astype(np.int64),
+    ],
+    ids=["s", "ms", "ns", "us"],
+)
+def test_times_since_power_on_are_those_of_stamps_since_power_on(values):
+    shots, report = decode(with_field("timestamp", values), t_ns=BOOT_NS)
+
+    np.testing.assert_allclose(shots.t_ns - BOOT_NS, REL_NS, atol=3000)
+    assert not report.lost() and not report.warnings
+    assert not any("clock" in text for text in report.derived)
+
+
+@pytest.mark.parametrize(
+    ("offset_s", "name"),
+    [(18.0, "GPS time against UTC"), (37.0, "TAI against UTC"), (-1.6e9, "power-on")],
+)
+def test_a_constant_offset_of_the_clocks_is_said_with_its_number(offset_s, name):
+    ahead_ns = round(offset_s * 1e9)
+
+    shots, report = decode(with_field("t", REL_NS + T0_NS + ahead_ns))
+
+    np.testing.assert_array_equal(shots.t_ns - T0_NS, REL_NS)
+    found = next(text for text in report.derived if "not the stamps' clock" in text)
+    assert f"ahead by {offset_s:+.3f} s" in found and name in found
+    assert not report.lost()
+
+
+def test_times_since_power_on_with_stamps_in_utc_start_at_the_stamp():
+    shots, report = decode(with_field("timestamp", (REL_NS + BOOT_NS) * 1e-9))
+
+    np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=2000)
+    assert any("not the stamps' clock" in text for text in report.derived)
+
+
+@pytest.mark.parametrize("start_ns", [1_234_500_000_000, HOUR_NS - 40_000_000])
+def test_times_within_the_hour_take_the_hour_of_the_stamp(start_ns):
+    stamp_ns = T0_NS // HOUR_NS * HOUR_NS + start_ns
+    values = ((REL_NS + start_ns) % HOUR_NS) * 1e-9
+
+    shots, report = decode(with_field("time", values), t_ns=stamp_ns)
+
+    np.testing.assert_allclose(shots.t_ns - stamp_ns, REL_NS, atol=2000)
+    assert any("begin again every 3600 s" in text for text in report.derived)
+    assert not report.lost()
+
+
+def test_a_counter_of_32_bits_that_wrapped_before_is_continued_by_the_stamps():
+    values = ((REL_NS + BOOT_NS) // 1000 % (1 << 32)).astype(np.uint32)
+
+    shots, report = decode(with_field("t", values), t_ns=BOOT_NS)
+
+    np.testing.assert_allclose(shots.t_ns - BOOT_NS, REL_NS, atol=2000)
+    assert any("begin again every 4294.97 s" in text for text in report.derived)
+
+
+@pytest.mark.parametrize("unit", [1, 1000])
+def test_a_counter_of_32_bits_may_wrap_inside_a_cloud(unit):
+    wrap = 1 << 32
+    values = ((REL_NS // unit + wrap - 30_000_000 // unit) % wrap).astype(np.uint32)
+
+    shots, report = decode(with_field("t", values))
+
+    np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS, atol=2000)
+    assert report.counts["points_wrong_time"] == 0 and not report.lost()
+
+
+def test_times_before_the_stamp_stay_before_it():
+    shots, _ = decode(with_field("time", (REL_NS - REL_NS[-1]) * 1e-9))
+
+    np.testing.assert_allclose(shots.t_ns - T0_NS, REL_NS - REL_NS[-1], atol=1500)
+
+
+def test_dates_in_32_bit_floats_are_too_coarse_and_said():
+    values = ((REL_NS + T0_NS) * 1e-9).astype(np.float32)
+
+    _, report = decode(with_field("time", values))
+
+    assert report.counts["clouds_wrong_times"] == 1
+
+
+def test_single_damaged_intensities_do_not_change_the_scale_of_the_others():
+    table = with_field("t", REL_NS.astype(np.uint32))
+    table["intensity"] = np.linspace(0.0, 1.0, len(REL_NS)).astype(np.float32)
+    table["intensity"][ROWS] = [np.nan, np.inf, 1e30]
+
+    shots, report = decode(table)
+
+    assert np.median(shots.intensity) == pytest.approx(127, abs=2)
+    assert report.counts["intensity_wrong"] == 2 and report.counts["intensity_clipped"] == 1
+
+
+@pytest.mark.parametrize("wrong", [np.nan, -5.0, 4000.0])
+def test_single_damaged_rings_are_those_of_their_elevation(wrong):
+    table = with_field("t", REL_NS.astype(np.uint32))
+    true = table["ring"].copy()
+    table["ring"] = damaged(true.astype(np.float32), wrong)
+
+    shots, report = decode(table)
+
+    np.testing.assert_array_equal(shots.ring, true)
+    assert report.counts["rings_wrong"] == 3
+
+
+def test_offsets_have_names():
+    assert known_offset_s(-17.99) == -18.0
+    assert described(-18.012) == "-18.012 s (GPS time against UTC)"
+    assert described(7200.1).endswith("(whole hours, as of a time zone)")
+    assert described(3.25) == "+3.250 s"
