@@ -11,11 +11,10 @@ SHOTS = 21
 
 def line_scans(count, *, range_m=4.0):
     """Scans of equal ranges, 100 a second."""
-    return LaserScans(
-        t_ns=START_NS + LINE_NS * np.arange(count, dtype=np.int64),
-        range_m=np.full((count, SHOTS), range_m, np.float32),
-        angle_min_rad=-0.5,
-        angle_step_rad=0.05,
+    return LaserScans.of_rows(
+        START_NS + LINE_NS * np.arange(count, dtype=np.int64),
+        np.full((count, SHOTS), range_m, np.float32),
+        angles=(-0.5, 0.05),
         range_max_m=100.0,
         time_step_s=4e-4,
     )
@@ -25,10 +24,10 @@ def line_columns(scans, head_rad):
     """Columns of a profiler; ``head_rad`` gives the angle of the head at times."""
     t_ns, angles_deg = _shots(scans)
     return {
-        "t_ns": t_ns.ravel(),
-        "head_deg": np.repeat(np.rad2deg(head_rad(scans.t_ns)), t_ns.shape[1]),
-        "shot_deg": angles_deg.ravel(),
-        "range_m": scans.range_m.ravel(),
+        "t_ns": t_ns,
+        "head_deg": np.repeat(np.rad2deg(head_rad(scans.t_ns)), scans.beams),
+        "shot_deg": angles_deg,
+        "range_m": scans.range_m,
         "intensity": np.full(t_ns.size, 7, np.uint8),
     }
 
@@ -37,12 +36,12 @@ def laser_columns(scans):
     """Columns of a 2-D laser."""
     t_ns, angles_deg = _shots(scans)
     columns = {
-        "t_ns": t_ns.ravel(),
-        "beam_deg": angles_deg.ravel(),
-        "range_m": scans.range_m.ravel(),
+        "t_ns": t_ns,
+        "beam_deg": angles_deg,
+        "range_m": scans.range_m,
     }
     if scans.odometry is not None:
-        x_m, y_m, yaw_rad = np.repeat(scans.odometry, t_ns.shape[1], axis=0).T
+        x_m, y_m, yaw_rad = np.repeat(scans.odometry, scans.beams, axis=0).T
         columns |= {"x_m": x_m, "y_m": y_m, "yaw_deg": np.rad2deg(yaw_rad)}
     return columns
 
@@ -64,6 +63,7 @@ def _cell(value):
 
 
 def _shots(scans):
-    beams = np.arange(scans.range_m.shape[1])
-    t_ns = scans.t_ns[:, None] + np.rint(1e9 * scans.time_step_s * beams).astype(np.int64)
-    return t_ns, np.tile(np.rad2deg(scans.angles_rad), (len(scans), 1))
+    scan = np.repeat(np.arange(len(scans)), scans.beams)
+    beam = np.arange(len(scan)) - scans.start[scan]
+    t_ns = scans.t_ns[scan] + np.rint(1e9 * scans.time_step_s[scan] * beam).astype(np.int64)
+    return t_ns, np.rad2deg(scans.angle_min_rad[scan] + beam * scans.angle_step_rad[scan])

@@ -9,7 +9,8 @@ import numpy as np
 
 from recon4.geometry.se2 import between, compose
 from recon4.geometry.se3 import Array
-from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_scans import LaserScans, joined_scans
+from tests.laser_rows import rows_of, with_rows
 
 START_NS = 1_000_000_000_000
 BEAMS, FIRST_RAD, STEP_RAD = 271, -np.deg2rad(135.0), np.deg2rad(1.0)
@@ -115,15 +116,52 @@ def scanned(
     angles = FIRST_RAD + STEP_RAD * np.arange(BEAMS)
     ranges = np.stack([cast(walls, pose, angles, RANGE_MAX_M) for pose in truth])
     ranges += noise_m * rng.standard_normal(ranges.shape)
-    scans = LaserScans(
-        t_ns=START_NS + np.round(np.arange(len(truth)) * 1e9 / rate_hz).astype(np.int64),
-        range_m=ranges.astype(np.float32),
-        angle_min_rad=FIRST_RAD,
-        angle_step_rad=STEP_RAD,
+    scans = LaserScans.of_rows(
+        START_NS + np.round(np.arange(len(truth)) * 1e9 / rate_hz).astype(np.int64),
+        ranges.astype(np.float32),
+        angles=(FIRST_RAD, STEP_RAD),
         range_max_m=RANGE_MAX_M,
-        odometry=drifting(truth, rng) if odometry else None,
     )
-    return PlanarWalk(scans, truth)
+    return PlanarWalk(replace(scans, odometry=drifting(truth, rng) if odometry else None), truth)
+
+
+Layout = tuple[float, float, int]
+"""First angle and step [rad] and number of beams of a scan."""
+
+
+def full_turns(count: int) -> list[Layout]:
+    """Full turns of 260 to 266 beams, drawn at random, as of a cheap laser."""
+    beams = np.random.default_rng(4).integers(260, 267, count).tolist()
+    return [(-np.pi, 2.0 * np.pi / n, n) for n in beams]
+
+
+def interlaced(count: int) -> list[Layout]:
+    """Half turns of 1° whose first angles go through the quarters of a degree."""
+    return [(np.deg2rad(-90.0 + 0.25 * (k % 4)), np.deg2rad(1.0), 180) for k in range(count)]
+
+
+def clockwise_and_back(count: int) -> list[Layout]:
+    """Turns of 270° from left to right and from right to left."""
+    sides = [1.0 - 2.0 * (k % 2) for k in range(count)]
+    return [(np.deg2rad(135.0) * side, -np.deg2rad(1.0) * side, 271) for side in sides]
+
+
+def scanned_in(walls: Array, truth: Array, layouts: list[Layout]) -> PlanarWalk:
+    """Measure a walk with the angles of each scan; there is no odometry."""
+    rng = np.random.default_rng(1)
+    parts = [
+        LaserScans.of_rows(
+            START_NS + np.array([k * 100_000_000], np.int64),
+            (
+                cast(walls, truth[k], first + step * np.arange(beams), RANGE_MAX_M)
+                + 0.01 * rng.standard_normal(beams)
+            )[None].astype(np.float32),
+            angles=(first, step),
+            range_max_m=RANGE_MAX_M,
+        )
+        for k, (first, step, beams) in enumerate(layouts)
+    ]
+    return PlanarWalk(joined_scans(parts), truth)
 
 
 def drifting(truth: Array, rng: np.random.Generator) -> Array:
@@ -145,7 +183,7 @@ def without(scans: LaserScans, first_s: float, last_s: float) -> LaserScans:
 
 def mirrored(scans: LaserScans) -> LaserScans:
     """The scans with their beams in the opposite order."""
-    return replace(scans, range_m=np.ascontiguousarray(scans.range_m[:, ::-1]))
+    return with_rows(scans, rows_of(scans)[:, ::-1])
 
 
 def write_carmen(path: Path, scans: LaserScans) -> None:
@@ -156,11 +194,11 @@ def write_carmen(path: Path, scans: LaserScans) -> None:
 def carmen_lines(scans: LaserScans) -> list[str]:
     """The scans as ``ROBOTLASER1`` messages."""
     odometry = np.zeros((len(scans), 3)) if scans.odometry is None else scans.odometry
-    field = scans.angle_step_rad * (scans.range_m.shape[1] - 1)
-    head = f"0 {scans.angle_min_rad:.9f} {field:.9f} {scans.angle_step_rad:.9f}"
-    head += f" {scans.range_max_m} 0.01 0 {scans.range_m.shape[1]}"
     lines = ["# a log of a simulated walk", "PARAM robot_frontlaser_offset 0.0 nohost 0"]
-    for t_ns, ranges, pose in zip(scans.t_ns.tolist(), scans.range_m, odometry, strict=True):
+    for k, (t_ns, pose) in enumerate(zip(scans.t_ns.tolist(), odometry, strict=True)):
+        first, step, ranges = scans.angle_min_rad[k], scans.angle_step_rad[k], scans.ranges(k)
+        head = f"0 {first:.9f} {step * (len(ranges) - 1):.9f} {step:.9f}"
+        head += f" {scans.range_max_m} 0.01 0 {len(ranges)}"
         filled = np.where(np.isfinite(ranges), ranges, scans.range_max_m)
         values = " ".join(f"{value:.3f}" for value in filled)
         place = " ".join(f"{value:.6f}" for value in pose)

@@ -35,15 +35,15 @@ class RobotBag(Bag):
 
     def laser(self, topic, t_ns, scans, k):
         """Write scan ``k`` of a 2-D laser."""
-        step, beams = scans.angle_step_rad, scans.range_m.shape[1]
-        ranges = np.where(np.isnan(scans.range_m[k]), np.float32(np.inf), scans.range_m[k])
+        first, step = float(scans.angle_min_rad[k]), float(scans.angle_step_rad[k])
+        ranges = np.where(np.isnan(scans.ranges(k)), np.float32(np.inf), scans.ranges(k))
         message = self.make(
             "sensor_msgs/msg/LaserScan",
             header=self.header(t_ns),
-            angle_min=float(scans.angle_min_rad),
-            angle_max=float(scans.angle_min_rad + step * (beams - 1)),
-            angle_increment=float(step),
-            time_increment=float(scans.time_step_s),
+            angle_min=first,
+            angle_max=first + step * (len(ranges) - 1),
+            angle_increment=step,
+            time_increment=float(scans.time_step_s[k]),
             scan_time=0.0,
             range_min=0.1,
             range_max=float(scans.range_max_m),

@@ -10,9 +10,9 @@ _LEAST = 20
 """Scans of the last seconds from which parts of them are reported."""
 _PART = 0.02
 _BAD_SCANS = (
-    ("scans_duplicate", "arrived twice: the copies are left out"),
+    ("scans_repeated", "arrived twice: the copies are left out"),
+    ("scans_duplicate", "have the time of another one: left out"),
     ("scans_out_of_order", "arrived out of order: left out"),
-    ("scans_of_another_layout", "have other angles than the first ones: left out"),
 )
 _UNOBSERVED = {
     "along": "Nothing holds the map along this corridor: look at a corner or an open door",

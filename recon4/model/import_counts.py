@@ -189,13 +189,25 @@ _SCANS = {
     ),
     "scans_unsorted": _repaired("scans", "earlier than the one before, sorted"),
     "scans_duplicate": _lost("scans", "the time of another, left out", apart=True),
-    "scans_of_another_layout": _lost("scans", "another layout, left out", apart=True),
+    "scans_repeated": _usual(
+        "", "repeated in other messages, the copies are left out", noun="scans"
+    ),
+    "scans_of_another_message": _lost(
+        "scans", "in messages of another kind, left out", apart=True, stated=True
+    ),
+    "scans_without_angles": _lost("scans", "without angles of their beams, left out", apart=True),
     "scans_of_the_rear_laser": _usual("", "of the rear laser, not used", noun="scans"),
     "scans_without_returns": _usual("scans", "without any return"),
+    "scans_of_another_last_angle": _repaired(
+        "scans", "a last angle that contradicts the step between beams, which counts"
+    ),
+    "scans_of_wrong_beam_times": _repaired(
+        "scans", "times of beams below 0 or above 10 s, not undistorted"
+    ),
     "scans_mirrored": _repaired("scans", "beams in the other direction, turned round"),
     "scans_converted": _repaired("scans", "ranges in millimeters, converted"),
     "beams": _read("beams"),
-    "beams_off_grid": _lost("beams", "between the places of the layout, left out"),
+    "beams_off_grid": _lost("beams", "between the places of a scan, left out"),
     "ranges_not_numbers": _stated("negative or no numbers, left out", noun="ranges"),
     "lines": _read("line scans"),
     "lines_converted": _repaired("lines", "ranges in another unit, converted"),

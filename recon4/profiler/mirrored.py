@@ -53,18 +53,25 @@ def upright(scans: LaserScans) -> LaserScans:
 
 def _rotation(scans: LaserScans, i: int, j: int) -> float:
     """Rotation of the laser from scan ``i`` to scan ``j`` by their ranges alone [rad]."""
-    a, b = (
-        np.nan_to_num(scans.range_m[k].astype(np.float64), nan=_FAR_M).clip(max=_FAR_M)
-        for k in (i, j)
-    )
-    step = abs(scans.angle_step_rad)
+    angles = scans.angles_rad(i)
+    a, b = (_ranges_at(scans, k, angles) for k in (i, j))
+    step = abs(float(scans.angle_step_rad[i]))
     most = min(int(_SEARCH_RAD / step), len(a) // 3)
     shifts = range(-most, most + 1, max(1, int(np.deg2rad(0.5) / step)))
     inner = slice(most, len(a) - most)
     # Turned left by s beams, scan j at beam m shows what scan i shows at beam m + s.
     cost = [np.median(np.abs(b[inner] - np.roll(a, -s)[inner])) for s in shifts]
     best = shifts[int(np.argmin(cost))]
-    return float(best * step * np.sign(scans.angle_step_rad))
+    return float(best * step * np.sign(scans.angle_step_rad[i]))
+
+
+def _ranges_at(scans: LaserScans, k: int, angles: Array) -> Array:
+    """Ranges of the beams of scan ``k`` that are nearest to some directions [m]; none is far."""
+    ranges = scans.ranges(k)
+    beam = np.rint((angles - scans.angle_min_rad[k]) / scans.angle_step_rad[k]).astype(np.int64)
+    seen = (beam >= 0) & (beam < len(ranges))
+    found = np.where(seen, ranges[np.clip(beam, 0, len(ranges) - 1)], np.nan)
+    return np.nan_to_num(found.astype(np.float64), nan=_FAR_M).clip(max=_FAR_M)
 
 
 def _heading(R: Array) -> Array:

@@ -84,10 +84,11 @@ def map_in_plane(
 
 def _blur_s(scans: LaserScans, settings: Settings) -> float:
     """Half the duration of a scan whose beams are not undistorted [s]: which one is not known."""
-    if scans.time_step_s == 0.0:
+    scan_s = float(np.median(scans.duration_s))
+    if scan_s == 0.0:
         return 0.5e-9 * float(np.median(np.diff(scans.t_ns)))
     is_distorted = settings.slam2d.method == "hector"
-    return 0.5 * scans.time_step_s * scans.range_m.shape[1] * is_distorted
+    return 0.5 * scan_s * is_distorted
 
 
 def _tracked(found: Slam2dResult, T_body_laser: SE3) -> PlanarPoses:

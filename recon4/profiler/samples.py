@@ -74,14 +74,15 @@ def laser_points(
     first, last = np.searchsorted(scans.t_ns, span_ns)
     if sensor is None or last <= first:
         return TimedPoints(np.zeros(0, np.int64), np.empty((0, 3)))
-    ranges = scans.range_m[first:last, ::every].astype(np.float64)
-    seen = np.isfinite(ranges)
-    beam = every * np.broadcast_to(np.arange(ranges.shape[1]), ranges.shape)[seen]
-    angle = scans.angle_min_rad + scans.angle_step_rad * beam
+    part = scans[slice(int(first), int(last))]
+    scan = np.repeat(np.arange(len(part)), part.beams)
+    beam = np.arange(len(part.range_m)) - part.start[scan]
+    used = (beam % every == 0) & np.isfinite(part.range_m)
+    scan, beam, ranges = scan[used], beam[used], part.range_m[used].astype(np.float64)
+    angle = part.angle_min_rad[scan] + part.angle_step_rad[scan] * beam
     xyz = np.zeros((len(angle), 3))
-    xyz[:, 0], xyz[:, 1] = ranges[seen] * np.cos(angle), ranges[seen] * np.sin(angle)
-    start_ns = np.broadcast_to(scans.t_ns[first:last, None], ranges.shape)[seen]
-    t_ns = start_ns + np.rint(1e9 * scans.time_step_s * beam).astype(np.int64)
+    xyz[:, 0], xyz[:, 1] = ranges * np.cos(angle), ranges * np.sin(angle)
+    t_ns = part.t_ns[scan] + np.rint(1e9 * part.time_step_s[scan] * beam).astype(np.int64)
     return TimedPoints(t_ns, rig.sensors[sensor].T_body_sensor @ xyz)
 
 

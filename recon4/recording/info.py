@@ -177,12 +177,11 @@ def _describe_laser2d(info: RecordingInfo, path: Path) -> RecordingInfo:
     report = ImportReport()
     scans = read_laser2d([path], report)
     first, last = int(scans.t_ns[0]), int(scans.t_ns[-1])
-    field_deg = abs(np.rad2deg(scans.angle_step_rad)) * (scans.range_m.shape[1] - 1)
     returns = float(np.isfinite(scans.range_m).mean())
     sensor = SensorInfo(
         label=path.name,
         model="2-D laser",
-        content=f"scans of {scans.range_m.shape[1]} beams over {field_deg:.0f}°",
+        content=f"scans of {scans.describe_layout()}",
         count=len(scans),
         rate_hz=(len(scans) - 1) * 1e9 / (last - first) if last > first else float("nan"),
         remarks=(f"ranges up to {scans.range_max_m:.2f} m, {returns:.0%} of the beams return",),

@@ -15,7 +15,8 @@ from recon4.recording.formats.cloud_files import is_cloud_file, is_mesh
 from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
-from recon4.recording.line_tables import LASER_COLUMNS, LINE_COLUMNS, is_line_table, table_in
+from recon4.recording.laser_tables import LASER_COLUMNS
+from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.sources import Sources
 

@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
-from recon4.model.laser_scans import LaserScans, Ranges
-from recon4.model.trajectory import Times, Trajectory
+from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
+from recon4.model.trajectory import Trajectory
 from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row
 from recon4.recording.bag_recording import most_messages
 from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize
+from recon4.recording.laser_tables import is_laser_table, read_laser_table
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
-from recon4.recording.line_tables import is_laser_table, read_laser_table
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
@@ -84,31 +84,38 @@ def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
 
 
 def _of_carmen(log: CarmenScans, name: str, report: ImportReport) -> LaserScans:
-    rows = _usable_rows(log.t_ns, name, report)
+    rows = _usable_rows(log, name, report)
     range_max_m, ranges = _without_largest(log, report)
     odometry = _odometry(log, report)
     report.count("scans", len(rows))
+    beams = np.diff(log.start)[rows]
+    start = np.concatenate([[0], np.cumsum(beams)])
+    sorted_ranges = np.repeat(log.start[rows] - start[:-1], beams) + np.arange(start[-1])
     return LaserScans(
         t_ns=log.t_ns[rows],
-        range_m=ranges[rows],
-        angle_min_rad=log.angle_min_rad,
-        angle_step_rad=log.angle_step_rad,
+        range_m=ranges[sorted_ranges],
+        start=start,
+        angle_min_rad=log.angle_min_rad[rows],
+        angle_step_rad=log.angle_step_rad[rows],
+        time_step_s=np.zeros(len(rows)),
         range_max_m=range_max_m,
         odometry=None if odometry is None else odometry[rows],
     )
 
 
-def _usable_rows(t_ns: Times, name: str, report: ImportReport) -> Rows:
+def _usable_rows(log: CarmenScans, name: str, report: ImportReport) -> Rows:
     """Rows in order of time, each time once."""
+    t_ns = log.t_ns
     order = np.argsort(t_ns, kind="stable")
     shuffled = int((np.diff(t_ns) < 0).sum())
     if shuffled:
         report.count("scans_unsorted", shuffled)
         report.warn(f"{name}: {shuffled} scans are earlier than the one before: sorted by time")
     later = np.diff(t_ns[order], prepend=t_ns[order[0]] - 1) > 0
-    if not later.all():
-        report.count("scans_duplicate", int((~later).sum()))
-        report.warn(f"{name}: {int((~later).sum())} scans with the time of another are left out")
+    again = np.flatnonzero(~later)
+    copies = sum(np.array_equal(log.ranges(order[k]), log.ranges(order[k - 1])) for k in again)
+    report.count("scans_repeated", copies)
+    report.count("scans_duplicate", len(again) - copies)
     return order[later]
 
 
@@ -125,9 +132,9 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
     largest = float(np.nanmax(ranges))
     # SICK lasers report several error codes within a percent of the largest range.
     at_largest = ranges >= 0.99 * largest
-    if log.range_max_m > 0.0:
-        at_largest = ranges >= log.range_max_m
-        largest = log.range_max_m
+    if log.range_max_m.all():
+        at_largest = ranges >= np.repeat(log.range_max_m, np.diff(log.start))
+        largest = float(log.range_max_m.max())
     elif largest >= _SHORTEST_REACH_M and int(at_largest.sum()) >= _REPEATED:
         report.derive(f"ranges of {0.99 * largest:.2f} m and more, the largest: no return")
     else:
@@ -183,11 +190,7 @@ def _of_bags(paths: Sequence[Path], report: ImportReport) -> LaserScans:
     out_of_order = report.counts["scans_out_of_order"]
     if out_of_order:
         report.warn(f"{topic}: {out_of_order} scans earlier than the one before are left out")
-    scans = replace(
-        parts[0],
-        t_ns=np.concatenate([part.t_ns for part in parts]),
-        range_m=np.concatenate([part.range_m for part in parts]),
-    )
+    scans = joined_scans(parts)
     return replace(scans, odometry=_at_scans(scans, walks, report))
 
 

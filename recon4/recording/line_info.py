@@ -139,11 +139,10 @@ def _profiler(name: str, seen: _Seen, part: float) -> SensorInfo:
 def _laser2d(path: Path, report: ImportReport) -> SensorInfo:
     scans = read_laser2d([path], report)
     seconds = 1e-9 * float(scans.t_ns[-1] - scans.t_ns[0])
-    field_deg = abs(np.rad2deg(scans.angle_step_rad)) * (scans.range_m.shape[1] - 1)
     return SensorInfo(
         label=path.name,
         model="2-D laser",
-        content=f"scans of {scans.range_m.shape[1]} beams over {field_deg:.0f}°",
+        content=f"scans of {scans.describe_layout()}",
         count=len(scans),
         rate_hz=(len(scans) - 1) / seconds if seconds > 0 else float("nan"),
     )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3
-from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
@@ -312,16 +312,10 @@ def read_scan_captures(files: Sequence[Path], report: ImportReport) -> LaserScan
     parts = [item for item in capture.read() if isinstance(item, LaserScans)]
     if not parts:
         raise EmptyRecording(f"{files[0].name}: no scan of the 2-D laser can be read")
-    known = [part.odometry for part in parts if part.odometry is not None]
-    if len(known) < len(parts):
+    scans = joined_scans(parts)
+    if scans.odometry is None:
         report.derive("no odometry: motion is predicted from the scans before")
-    return replace(
-        parts[0],
-        t_ns=np.concatenate([part.t_ns for part in parts]),
-        range_m=np.concatenate([part.range_m for part in parts]),
-        range_max_m=max(part.range_max_m for part in parts),
-        odometry=np.concatenate(known) if len(known) == len(parts) else None,
-    )
+    return scans
 
 
 def _payload(datagrams: Datagrams, row: int) -> bytes:

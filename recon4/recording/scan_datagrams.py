@@ -150,10 +150,10 @@ def encode_scan(
 def encode_scans_row(scans: LaserScans, k: int) -> bytes:
     """Scan ``k`` as a datagram."""
     message = ScanMessage(
-        ranges=scans.range_m[k],
-        angle_min=scans.angle_min_rad,
-        angle_increment=scans.angle_step_rad,
-        time_increment=scans.time_step_s,
+        ranges=scans.ranges(k).tolist(),
+        angle_min=float(scans.angle_min_rad[k]),
+        angle_increment=float(scans.angle_step_rad[k]),
+        time_increment=float(scans.time_step_s[k]),
         range_max=scans.range_max_m,
     )
     odometry = None if scans.odometry is None else scans.odometry[k]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,8 @@ _MAX_BEAMS = 100_000
 _MAX_LINE_S = 10.0
 """A line or scan of longer duration has wrong times."""
 _LONGEST_M = 1e4
+_ANGLE_MAX_STEPS = 1.5
+"""Some drivers state the end of the last beam's place as the last angle, not its middle."""
 _MAX_ANGLE_RAD = 100.0
 """Angles of more than some turns are wrong [rad]; degrees are rejected with them."""
 
@@ -33,9 +36,9 @@ def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport) -> Sho
         report: Receives what was derived.
 
     Raises:
-        CorruptFile: If its angles or times are no numbers, or it has too many shots.
+        CorruptFile: If its angles are no numbers, or it has no or too many shots.
     """
-    ranges, step_rad, step_s = _checked(scan)
+    ranges, step_rad, step_s = _checked(scan, report)
     if step_s == 0.0:
         report.derive("line scans without times of their shots: all shots at the stamp")
     seen = _returns(scan, ranges)
@@ -54,8 +57,21 @@ def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport) -> Sho
     return Shots(row, times, xyz.astype(np.float32), intensity, none, none)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class _Collected:
+    """One scan; the fields are those of `LaserScans`."""
+
+    t_ns: int
+    ranges: NDArray[np.float32]
+    angles: tuple[float, float]
+    """First angle and step [rad]."""
+    range_max_m: float
+    time_step_s: float
+    odometry: Sequence[float] | None
+
+
 class ScanCollector:
-    """Collects the scans of a 2-D laser; those of another layout are counted and left out."""
+    """Collects the scans of a 2-D laser, each with the beams and angles it states."""
 
     def __init__(self, offset_ns: int, report: ImportReport, *, exact_angles: bool = False) -> None:
         """Prepare.
@@ -68,15 +84,9 @@ class ScanCollector:
         """
         self._offset_ns, self._report = offset_ns, report
         self._exact = exact_angles
-        self._layout: tuple[int, float, float] | None = None
-        self._angles = (0.0, 0.0)
-        """First angle and step [rad]."""
-        self._rest = (0.0, 0.0)
-        """Largest range [m] and time between two beams [s]."""
-        self._ranges: list[NDArray[np.float32]] = []
-        self._t_ns: list[int] = []
-        self._odometry: list[Sequence[float] | None] = []
+        self._scans: list[_Collected] = []
         self._last_ns = -1
+        self._last_ranges = np.zeros(0, np.float32)
 
     def push(self, message: BagMessage, scan: Any) -> Iterator[LaserScans]:
         """Add a message; returns scans in batches."""
@@ -97,53 +107,56 @@ class ScanCollector:
         """
         t_ns += self._offset_ns
         try:
-            ranges, step_rad, step_s = _checked(scan)
+            ranges, step_rad, step_s = _checked(scan, self._report)
         except CorruptFile as error:
-            self._report.count("messages_corrupt")
-            self._report.warn(f"{where}: left out: {error}")
+            self._report.count("scans_damaged")
+            if self._report.counts["scans_damaged"] == 1:
+                self._report.warn(f"{where}: left out: {error}")
             return
         if t_ns <= self._last_ns:
-            again = t_ns == self._last_ns
-            self._report.count("scans_duplicate" if again else "scans_out_of_order")
+            self._report.count(self._reason(t_ns, ranges))
             return
-        layout = (len(ranges), *usual_angles(scan))
-        if self._layout is None:
-            self._layout = layout
-            self._angles = (float(scan.angle_min), step_rad) if self._exact else layout[1:]
-            self._rest = (float(scan.range_max), step_s)
-        elif layout != self._layout:
-            self._report.count("scans_of_another_layout")
-            self._report.warn(
-                f"{where}: scans of another layout are left out: expected beams, first "
-                f"angle and step {self._layout}, got {layout}"
-            )
-            return
-        self._last_ns = t_ns
-        self._t_ns.append(t_ns)
-        self._odometry.append(odometry)
+        self._last_ns, self._last_ranges = t_ns, ranges
         seen = _returns(scan, ranges)
+        angles = (float(scan.angle_min), step_rad) if self._exact else usual_angles(scan)
+        self._scans.append(
+            _Collected(
+                t_ns=t_ns,
+                ranges=np.where(seen, ranges, np.float32(np.nan)),
+                angles=angles,
+                range_max_m=float(scan.range_max),
+                time_step_s=step_s,
+                odometry=odometry,
+            )
+        )
         self._report.count("scans_without_returns", int(not seen.any()))
-        self._ranges.append(np.where(seen, ranges, np.float32(np.nan)))
         self._report.count("scans")
-        if len(self._t_ns) >= _SCANS_AT_ONCE:
+        if len(self._scans) >= _SCANS_AT_ONCE:
             yield from self.flush()
+
+    def _reason(self, t_ns: int, ranges: NDArray[np.float32]) -> str:
+        """Why a scan that is not later than the last one is left out."""
+        if t_ns < self._last_ns:
+            return "scans_out_of_order"
+        repeated = np.array_equal(ranges, self._last_ranges, equal_nan=True)
+        return "scans_repeated" if repeated else "scans_duplicate"
 
     def flush(self) -> Iterator[LaserScans]:
         """The remaining scans."""
-        if self._layout is None or not self._t_ns:
+        scans, self._scans = self._scans, []
+        if not scans:
             return
-        t_ns, ranges = np.array(self._t_ns, np.int64), np.stack(self._ranges)
-        known = [pose for pose in self._odometry if pose is not None]
-        odometry = np.array(known, np.float64) if len(known) == len(t_ns) else None
-        self._t_ns, self._ranges, self._odometry = [], [], []
+        known = [scan.odometry for scan in scans if scan.odometry is not None]
+        angles = np.array([scan.angles for scan in scans], np.float64)
         yield LaserScans(
-            t_ns=t_ns,
-            range_m=ranges,
-            angle_min_rad=self._angles[0],
-            angle_step_rad=self._angles[1],
-            range_max_m=self._rest[0],
-            time_step_s=self._rest[1],
-            odometry=odometry,
+            t_ns=np.array([scan.t_ns for scan in scans], np.int64),
+            range_m=np.concatenate([scan.ranges for scan in scans]),
+            start=np.cumsum([0] + [len(scan.ranges) for scan in scans]),
+            angle_min_rad=angles[:, 0],
+            angle_step_rad=angles[:, 1],
+            time_step_s=np.array([scan.time_step_s for scan in scans], np.float64),
+            range_max_m=max(scan.range_max_m for scan in scans),
+            odometry=np.array(known, np.float64) if len(known) == len(scans) else None,
         )
 
 
@@ -152,29 +165,30 @@ def usual_angles(scan: Any) -> tuple[float, float]:
     return round(float(scan.angle_min), 6), round(float(scan.angle_increment), 9)
 
 
-def _checked(scan: Any) -> tuple[NDArray[np.float32], float, float]:
-    """Ranges, angle between two shots [rad] and time between them [s]."""
+def _checked(scan: Any, report: ImportReport) -> tuple[NDArray[np.float32], float, float]:
+    """Ranges, angle between two shots [rad] and time between them [s]; 0 = not known."""
     ranges = np.asarray(scan.ranges, np.float32)
-    numbers = [scan.angle_min, scan.angle_increment, scan.time_increment, scan.scan_time]
-    if not np.all(np.isfinite(numbers)) or not len(ranges) or scan.angle_increment == 0.0:
+    if not 0 < len(ranges) <= _MAX_BEAMS:
+        raise CorruptFile(f"a scan: expected 1 to {_MAX_BEAMS} ranges, got {len(ranges)}")
+    first, step = float(scan.angle_min), float(scan.angle_increment)
+    if not np.all(np.isfinite([first, step])) or step == 0.0:
         raise CorruptFile(
-            f"a scan: expected ranges, and angles and times that are numbers, got {len(ranges)} "
-            f"ranges and {[float(n) for n in numbers]}"
+            f"a scan: expected a first angle and a step between beams, got {first} and {step} rad"
         )
-    if len(ranges) > _MAX_BEAMS:
-        raise CorruptFile(f"a scan: expected at most {_MAX_BEAMS} shots, got {len(ranges)}")
-    widest = max(abs(float(scan.angle_min)), abs(float(scan.angle_increment)) * len(ranges))
+    widest = max(abs(first), abs(step) * len(ranges))
     if widest > _MAX_ANGLE_RAD:
         raise CorruptFile(
             f"a scan: expected angles within {_MAX_ANGLE_RAD:g} rad, got {widest:.3g} rad"
         )
+    # Messages of datagrams have no last angle.
+    last = float(getattr(scan, "angle_max", np.nan))
+    if abs(last - first - step * (len(ranges) - 1)) > _ANGLE_MAX_STEPS * abs(step):
+        report.count("scans_of_another_last_angle")
     step_s = float(scan.time_increment)
     if not 0.0 <= step_s * len(ranges) <= _MAX_LINE_S:
-        raise CorruptFile(
-            f"a scan: expected 0 to {_MAX_LINE_S:g} s from first to last shot, got "
-            f"{step_s * len(ranges):.3g} s"
-        )
-    return ranges, float(scan.angle_increment), step_s
+        report.count("scans_of_wrong_beam_times")
+        step_s = 0.0
+    return ranges, step, step_s
 
 
 def _returns(scan: Any, ranges: NDArray[np.float32]) -> NDArray[np.bool_]:

@@ -90,11 +90,13 @@ class BackpackRecorder:
             self._bag.head(sensor.head_topic or "/profiler/head", t_ns, head)
         self._bag.scans(
             sensor.topic,
-            LaserScans(
-                t_ns=t_ns[kept],
-                range_m=lines.range_m[kept] * np.float32(unit),
-                angle_min_rad=model.lowest_rad,
-                angle_step_rad=(model.highest_rad - model.lowest_rad) / (model.shots - 1),
+            LaserScans.of_rows(
+                t_ns[kept],
+                lines.range_m[kept] * np.float32(unit),
+                angles=(
+                    model.lowest_rad,
+                    (model.highest_rad - model.lowest_rad) / (model.shots - 1),
+                ),
                 range_max_m=model.errors.max_range_m * unit,
                 time_step_s=setup.profiler.shot_s,
             ),

@@ -46,21 +46,21 @@ class LineBag:
     ) -> None:
         """Append scans as ``sensor_msgs/LaserScan``; no return is infinity (REP 117)."""
         message = self._store.types[_SCAN]
-        step, beams = scans.angle_step_rad, scans.range_m.shape[1]
         none = np.zeros(0, np.float32)
         for k, t in enumerate(scans.t_ns):
-            ranges = np.where(np.isnan(scans.range_m[k]), np.float32(np.inf), scans.range_m[k])
+            ranges = np.where(np.isnan(scans.ranges(k)), np.float32(np.inf), scans.ranges(k))
+            first, step = float(scans.angle_min_rad[k]), float(scans.angle_step_rad[k])
             self._write(
                 topic,
                 _SCAN,
                 int(t),
                 message=message(
                     header=self._header(int(t), topic.split("/")[1]),
-                    angle_min=float(scans.angle_min_rad),
-                    angle_max=float(scans.angle_min_rad + step * (beams - 1)),
-                    angle_increment=float(step),
-                    time_increment=float(scans.time_step_s),
-                    scan_time=float(scans.time_step_s * beams),
+                    angle_min=first,
+                    angle_max=first + step * (len(ranges) - 1),
+                    angle_increment=step,
+                    time_increment=float(scans.time_step_s[k]),
+                    scan_time=float(scans.duration_s[k]),
                     range_min=0.1,
                     range_max=float(scans.range_max_m),
                     ranges=ranges.astype(np.float32),

@@ -178,11 +178,10 @@ class SimulatedLaser2d:
             BeamShots(t_s.ravel(), direction, self.sensor.T_body_sensor),
             walk=walk, surroundings=surroundings, model=model.errors, rng=rng,
         )  # fmt: skip
-        return LaserScans(
-            t_ns=t_ns,
-            range_m=returns.range_m.reshape(t_s.shape),
-            angle_min_rad=model.angle_min_rad,
-            angle_step_rad=model.angle_step_rad,
+        return LaserScans.of_rows(
+            t_ns,
+            returns.range_m.reshape(t_s.shape),
+            angles=(model.angle_min_rad, model.angle_step_rad),
             range_max_m=model.errors.max_range_m,
             time_step_s=self.beam_s,
         )

@@ -62,7 +62,7 @@ class MotionPredictor:
         self._odometry = scans.odometry if settings.use_odometry else None
         self._settings = settings
         self._yaw: Array | None = None
-        self._turn_rate: Array | None = None
+        self._turn_rate: Array = np.full(len(scans), np.nan)
         if attitude is not None:
             R = attitude.at(scans.t_ns, slack_ns=1_000_000_000).R
             self._yaw = np.unwrap(np.arctan2(R[:, 1, 0], R[:, 0, 0]))
@@ -84,7 +84,7 @@ class MotionPredictor:
         its turn of the last quarter of a second is another one.
         """
         found = self._past_velocity(k, poses)
-        if self._turn_rate is not None:
+        if np.isfinite(self._turn_rate[k]):
             found[2] = self._turn_rate[k]
         return found
 
@@ -130,14 +130,12 @@ class MotionPredictor:
         return Predicted(motion, sd_m, sd_rad, drift_m=drift_m, drift_rad=drift_rad)
 
 
-def _turn_rate(scans: LaserScans, attitude: Trajectory, yaw: Array) -> Array | None:
-    """Turn rate while each scan is measured [rad/s], (N,); None = its beams have no times."""
-    span_ns = round(1e9 * scans.time_step_s * scans.range_m.shape[1])
-    if not span_ns:
-        return None
-    R = attitude.at(scans.t_ns + span_ns, slack_ns=1_000_000_000 + span_ns).R
+def _turn_rate(scans: LaserScans, attitude: Trajectory, yaw: Array) -> Array:
+    """Turn rate while each scan is measured [rad/s], (N,); NaN = its beams have no times."""
+    span_ns = np.rint(1e9 * scans.duration_s).astype(np.int64)
+    R = attitude.at(scans.t_ns + span_ns, slack_ns=1_000_000_000 + int(span_ns.max())).R
     turned = wrap(np.arctan2(R[:, 1, 0], R[:, 0, 0]) - yaw)
-    return np.asarray(turned * 1e9 / span_ns, dtype=np.float64)
+    return np.where(span_ns > 0, turned * 1e9 / np.maximum(span_ns, 1), np.nan)
 
 
 class VarianceGrowth:

@@ -43,14 +43,14 @@ def scan_points(
         motion: Pose of the laser one second later: x [m], y [m], yaw [rad]; undistorts scans
             whose beams have times. None = it stands still.
     """
-    ranges = scans.range_m[k].astype(np.float64)
+    ranges = scans.ranges(k).astype(np.float64)
     used = (ranges >= settings.min_range_m) & (ranges <= settings.max_range_m)
-    ranges, angles = ranges[used], scans.angles_rad[used]
+    ranges, angles = ranges[used], scans.angles_rad(k)[used]
     points = ranges[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    if motion is not None and scans.time_step_s > 0.0:
+    if motion is not None and scans.time_step_s[k] > 0.0:
         beams = np.flatnonzero(used)
-        points = transform(beams[:, None] * scans.time_step_s * motion, points)
-    weights = np.clip(ranges * abs(scans.angle_step_rad) / _SPACING_M, 0.1, 1.0)
+        points = transform(beams[:, None] * scans.time_step_s[k] * motion, points)
+    weights = np.clip(ranges * abs(scans.angle_step_rad[k]) / _SPACING_M, 0.1, 1.0)
     if R_level_laser is None:
         return ScanPoints(points, weights)
     level = points @ R_level_laser[:, :2].T

@@ -153,6 +153,6 @@ def make_grid(
 def _extent(scans: LaserScans, poses: Array, settings: Settings) -> tuple[Array, Array]:
     """Corners of a rectangle that holds all returns [m]."""
     ranges = np.where(scans.range_m <= settings.slam2d.max_range_m, scans.range_m, 0.0)
-    farthest = np.nan_to_num(ranges).max(axis=1)[:, None]
+    farthest = np.maximum.reduceat(ranges, scans.start[:-1])[:, None]
     low, high = poses[:, :2] - farthest, poses[:, :2] + farthest
     return low.min(axis=0), high.max(axis=0)

@@ -76,7 +76,7 @@ def import_scans(recordings: Sequence[Path], out: Path, *, progress: Progress) -
     )
     return Scan2dFigures(
         scans=len(scans),
-        beams=scans.range_m.shape[1],
+        beams=int(np.median(scans.beams)),
         odometry=scans.odometry is not None,
         outcome=report.outcome,
         warnings=tuple(report.warnings),

@@ -1,27 +1,30 @@
 """Line scans and scans of a 2-D laser beside the multiframes of a recording.
 
 lines.npz              fields of `LineScans`
-laser2d_range_m.npy    (N, M) float32, streamed out, memory-mapped in
+laser2d_range_m.npy    ranges of all scans, (R,) float32, streamed out, memory-mapped in
 laser2d.npz            the other fields of `LaserScans`
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import BinaryIO
+from typing import Any, BinaryIO
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
-from recon4.store.arrays import load_arrays, load_record, save_record
+from recon4.store.arrays import load_arrays, load_record, save_arrays, save_record
 from recon4.store.frames import storing
 
 LINES, SCANS, RANGES = "lines.npz", "laser2d.npz", "laser2d_range_m.npy"
 _HEADER_BYTES = 128
-_SCALARS = ("angle_min_rad", "angle_step_rad", "range_max_m", "time_step_s")
+_PER_SCAN = ("t_ns", "angle_min_rad", "angle_step_rad", "time_step_s")
+_FIELDS = (*_PER_SCAN, "start", "range_max_m")
 
 
 class LineStoreWriter:
@@ -31,9 +34,9 @@ class LineStoreWriter:
         """Nothing is created until something is appended."""
         self._folder = folder
         self._lines: list[LineScans] = []
-        self._t_ns: list[np.ndarray[tuple[int], np.dtype[np.int64]]] = []
-        self._odometry: list[Array] = []
-        self._first: LaserScans | None = None
+        self._parts: dict[str, list[Array]] = {name: [] for name in (*_PER_SCAN, "beams")}
+        self._odometry: list[Array | None] = []
+        self._range_max_m = 0.0
         self._file: BinaryIO | None = None
 
     def append_lines(self, lines: LineScans) -> None:
@@ -41,36 +44,44 @@ class LineStoreWriter:
         self._lines.append(lines)
 
     def append_scans(self, scans: LaserScans) -> None:
-        """Append scans of the layout of the first ones.
+        """Append scans of the 2-D laser.
 
         Raises:
             StoreError: If they cannot be written (`NoSpace` when the disk is full).
         """
         with storing(self._folder):
             if self._file is None:
-                self._first = scans[:0]
                 self._file = (self._folder / RANGES).open("wb")
-                self._file.write(_header(0, scans.range_m.shape[1]))
+                self._file.write(_header(0))
             self._file.write(np.ascontiguousarray(scans.range_m, "<f4").data)
-        self._t_ns.append(scans.t_ns)
-        if scans.odometry is not None:
-            self._odometry.append(scans.odometry)
+        for name, parts in self._parts.items():
+            parts.append(getattr(scans, name))
+        self._odometry.append(scans.odometry)
+        self._range_max_m = max(self._range_max_m, scans.range_max_m)
 
     def close(self) -> tuple[int, int]:
         """Write the rest; returns the numbers of line scans and 2-D scans."""
         with storing(self._folder):
             if self._lines:
                 save_record(self._folder / LINES, joined_lines(self._lines))
-            if self._file is not None and self._first is not None:
-                t_ns = np.concatenate(self._t_ns)
-                self._file.seek(0)
-                self._file.write(_header(len(t_ns), self._first.range_m.shape[1]))
-                self._file.close()
-                values = {name: getattr(self._first, name) for name in _SCALARS}
-                if self._odometry:
-                    values["odometry"] = np.concatenate(self._odometry)
-                np.savez(self._folder / SCANS, t_ns=t_ns, **values)
-        return sum(len(part) for part in self._lines), sum(len(part) for part in self._t_ns)
+            if self._file is not None:
+                self._close_scans(self._file)
+        lines = sum(len(part) for part in self._lines)
+        return lines, sum(len(part) for part in self._parts["t_ns"])
+
+    def _close_scans(self, file: BinaryIO) -> None:
+        arrays: dict[str, NDArray[Any]] = {
+            name: np.concatenate(self._parts[name]) for name in _PER_SCAN
+        }
+        arrays["start"] = np.concatenate([[0], *self._parts["beams"]]).cumsum()
+        arrays["range_max_m"] = np.array(self._range_max_m)
+        known = [poses for poses in self._odometry if poses is not None]
+        if len(known) == len(self._odometry):
+            arrays["odometry"] = np.concatenate(known)
+        file.seek(0)
+        file.write(_header(int(arrays["start"][-1])))
+        file.close()
+        save_arrays(self._folder / SCANS, arrays)
 
 
 def joined_lines(parts: list[LineScans]) -> LineScans:
@@ -103,37 +114,58 @@ def load_laser_scans(folder: Path) -> LaserScans | None:
     if not (folder / SCANS).exists():
         return None
     arrays = load_arrays(folder / SCANS)
-    missing = {"t_ns", *_SCALARS} - arrays.keys()
-    if missing:
-        raise StoreError(f"{folder.name}/{SCANS}: expected arrays {sorted(missing)}, got none")
-    t_ns = arrays["t_ns"].astype(np.int64)
     try:
         ranges = np.load(folder / RANGES, mmap_mode="c").view(np.ndarray)
     except (OSError, ValueError, EOFError) as error:
         raise StoreError(f"{folder.name}/{RANGES} cannot be read: {error}") from error
-    if ranges.ndim != 2 or len(ranges) != len(t_ns) or ranges.dtype != np.float32:
-        raise StoreError(
-            f"{folder.name}/{RANGES}: expected {len(t_ns)} rows of float32, got {ranges.shape} of "
-            f"{ranges.dtype}"
-        )
-    if np.any(np.diff(t_ns) <= 0):
-        raise StoreError(f"{folder.name}/{SCANS}: expected increasing times")
-    odometry = arrays.get("odometry")
-    if odometry is not None and odometry.shape != (len(t_ns), 3):
-        raise StoreError(f"{folder.name}/{SCANS}: expected {len(t_ns)} poses, got {odometry.shape}")
+    if ranges.ndim == 2:
+        ranges = _of_earlier_version(arrays, ranges)
+    missing = set(_FIELDS) - arrays.keys()
+    if missing:
+        raise StoreError(f"{folder.name}/{SCANS}: expected arrays {sorted(missing)}, got none")
+    _check_scans(folder.name, arrays, ranges)
     return LaserScans(
-        t_ns=t_ns,
         range_m=ranges,
-        angle_min_rad=float(arrays["angle_min_rad"]),
-        angle_step_rad=float(arrays["angle_step_rad"]),
         range_max_m=float(arrays["range_max_m"]),
-        time_step_s=float(arrays["time_step_s"]),
-        odometry=odometry,
+        odometry=arrays.get("odometry"),
+        **{name: arrays[name] for name in ("start", *_PER_SCAN)},
     )
 
 
-def _header(rows: int, width: int) -> bytes:
+def _of_earlier_version(arrays: dict[str, NDArray[Any]], ranges: NDArray[Any]) -> NDArray[Any]:
+    """Ranges of a store whose scans all have the same angles, one row a scan."""
+    count, beams = ranges.shape
+    arrays["start"] = beams * np.arange(count + 1, dtype=np.int64)
+    for name in set(_PER_SCAN[1:]) & arrays.keys():
+        arrays[name] = np.full(count, arrays[name], np.float64)
+    return ranges.reshape(-1)
+
+
+def _check_scans(folder: str, arrays: Mapping[str, NDArray[Any]], ranges: NDArray[Any]) -> None:
+    """Raise `StoreError` if the arrays do not fit each other."""
+    count, start = arrays["t_ns"].size, arrays["start"]
+    shapes = {name: arrays[name].shape for name in _FIELDS}
+    if shapes != dict.fromkeys(_PER_SCAN, (count,)) | {"start": (count + 1,), "range_max_m": ()}:
+        raise StoreError(f"{folder}/{SCANS}: expected {count} values each, got {shapes}")
+    kinds = {name: arrays[name].dtype.kind for name in _FIELDS}
+    if kinds != dict.fromkeys(_FIELDS, "f") | {"t_ns": "i", "start": "i"}:
+        raise StoreError(f"{folder}/{SCANS}: expected numbers, got {kinds}")
+    if start[0] != 0 or np.any(np.diff(start) <= 0):
+        raise StoreError(f"{folder}/{SCANS}: expected increasing starts of {count} scans")
+    if ranges.shape != (int(start[-1]),) or ranges.dtype != np.float32:
+        raise StoreError(
+            f"{folder}/{RANGES}: expected {start[-1]} ranges as float32, got {ranges.shape} of "
+            f"{ranges.dtype}"
+        )
+    if np.any(np.diff(arrays["t_ns"]) <= 0):
+        raise StoreError(f"{folder}/{SCANS}: expected increasing times")
+    odometry = arrays.get("odometry")
+    if odometry is not None and odometry.shape != (count, 3):
+        raise StoreError(f"{folder}/{SCANS}: expected {count} poses, got {odometry.shape}")
+
+
+def _header(count: int) -> bytes:
     """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
-    text = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({rows}, {width}), }}"
+    text = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({count},), }}"
     body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
     return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.live.mapper.live_attitude import LiveAttitude
-from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.settings.slam2d import Slam2dSettings
@@ -83,16 +83,7 @@ class ScanTracker:
             return scan
         first = int(np.searchsorted(before.t_ns, before.t_ns[-1] - _KEPT_NS)) - 1
         first = max(min(first, len(before) - _LEAST), len(before) - _MOST, 0)
-        before = before[slice(first, len(before))]
-        odometry = None
-        if before.odometry is not None and scan.odometry is not None:
-            odometry = np.concatenate([before.odometry, scan.odometry])
-        return replace(
-            scan,
-            t_ns=np.concatenate([before.t_ns, scan.t_ns]),
-            range_m=np.concatenate([before.range_m, scan.range_m]),
-            odometry=odometry,
-        )
+        return joined_scans([before[slice(first, len(before))], scan])
 
     def _attitude(self, scans: LaserScans, attitude: LiveAttitude) -> Trajectory | None:
         """``R_world_laser`` at these scans; None = the IMU does not cover them."""
@@ -128,4 +119,4 @@ class ScanTracker:
 
 def end_of(scans: LaserScans) -> int:
     """Time of the last beam of the last scan [ns]."""
-    return int(scans.t_ns[-1]) + round(1e9 * scans.time_step_s * scans.range_m.shape[1])
+    return int(scans.t_ns[-1]) + round(1e9 * float(scans.duration_s[-1]))

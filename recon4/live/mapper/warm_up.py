@@ -29,11 +29,10 @@ def _warm_up_scans(rig: Rig, settings: Settings) -> None:
     for k in range(4):
         t_ns = (20 + 10 * k) * 100_000_000  # late enough for a summary
         scan_map.extend_imu(_still(t_ns, rig))
-        scan = LaserScans(
-            t_ns=np.array([t_ns + 20_000_000], np.int64),
-            range_m=ranges[None].astype(np.float32),
-            angle_min_rad=-np.pi,
-            angle_step_rad=float(angles[1] - angles[0]),
+        scan = LaserScans.of_rows(
+            np.array([t_ns + 20_000_000], np.int64),
+            ranges[None].astype(np.float32),
+            angles=(-np.pi, float(angles[1] - angles[0])),
             range_max_m=30.0,
         )
         scan_map.push(scan)

@@ -44,29 +44,35 @@ _TAIL = 9
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CarmenScans:
-    """Scans of one layout as they are in the log, in the order of its lines."""
+    """Scans of one laser as they are in the log, in the order of its lines."""
 
     message: str
     t_ns: NDArray[np.int64]
     """Times of measurement [ns], (N,); not sorted."""
     range_m: NDArray[np.float32]
-    """Ranges as written, (N, M)."""
+    """Ranges of all scans as written, one after the other, (R,)."""
+    start: NDArray[np.int64]
+    """Row of the first range of each scan, and the number of ranges, (N + 1,)."""
     laser: Array | None
     """Poses of the laser: x [m], y [m], yaw [rad], (N, 3); None = the message has none."""
     robot: Array | None
     """Poses of the robot, (N, 3)."""
-    angle_min_rad: float
-    angle_step_rad: float
-    range_max_m: float
-    """Stated largest range [m]; 0 = not stated."""
+    angle_min_rad: Array
+    """Direction of the first beam of each scan [rad], (N,)."""
+    angle_step_rad: Array
+    """Angle between two beams of each scan [rad], (N,)."""
+    range_max_m: Array
+    """Stated largest range of each scan [m], (N,); 0 = not stated."""
+
+    def ranges(self, k: int) -> NDArray[np.float32]:
+        """Ranges of scan ``k`` as written, (M,)."""
+        return self.range_m[self.start[k] : self.start[k + 1]]
 
 
 @dataclass(frozen=True, slots=True)
-class _Layout:
-    """What scans must have in common."""
+class _StatedBeams:
+    """What a message says of its beams."""
 
-    message: bytes
-    beams: int
     start_rad: float
     step_rad: float
     max_m: float
@@ -76,8 +82,9 @@ class _Layout:
 class _Line:
     """One scan."""
 
-    layout: _Layout
+    message: bytes
     t_ns: int
+    beams: _StatedBeams
     ranges: NDArray[np.float32]
     laser: tuple[float, ...]
     robot: tuple[float, ...]
@@ -116,20 +123,12 @@ def read_carmen(path: Path, report: ImportReport) -> CarmenScans:
             f"{path.name}: no scan of a laser; expected lines that begin with "
             f"{', '.join(name.decode() for name in MESSAGES)}"
         )
-    lines = _of_one_laser(lines, report)
-    layout, most = Counter(line.layout for line in lines).most_common(1)[0]
-    if most < len(lines):
-        report.count("scans_of_another_layout", len(lines) - most)
-        report.warn(
-            f"{path.name}: {len(lines) - most} scans of another message or layout are left out; "
-            f"read: {most} scans {layout.message.decode()} of {layout.beams} beams"
-        )
-    return _collected([line for line in lines if line.layout == layout], layout)
+    return _collected(_of_one_message(_of_one_laser(lines, report), path.name, report))
 
 
 def _of_one_laser(lines: list[_Line], report: ImportReport) -> list[_Line]:
     """The scans of the front laser; without one those of the rear laser."""
-    front = [line for line in lines if line.layout.message in FRONT]
+    front = [line for line in lines if line.message in FRONT]
     if not front:
         return lines
     if len(front) < len(lines):
@@ -137,17 +136,41 @@ def _of_one_laser(lines: list[_Line], report: ImportReport) -> list[_Line]:
     return front
 
 
-def _collected(lines: list[_Line], layout: _Layout) -> CarmenScans:
+def _of_one_message(lines: list[_Line], name: str, report: ImportReport) -> list[_Line]:
+    """The scans of the most frequent message; loggers write one scan as several messages."""
+    message, most = Counter(line.message for line in lines).most_common(1)[0]
+    used = [line for line in lines if line.message == message]
+    others = np.array([line.t_ns for line in lines if line.message != message], np.int64)
+    if most == len(lines):
+        return used
+    t_ns = np.sort(np.array([line.t_ns for line in used], np.int64))
+    period_ns = np.median(np.diff(t_ns)) if most > 1 else 0
+    after = np.searchsorted(t_ns, others)
+    nearest = [t_ns[np.clip(row, 0, most - 1)] for row in (after - 1, after)]
+    apart_ns = np.abs(np.array(nearest) - others).min(axis=0)
+    repeated = int(np.count_nonzero(apart_ns <= period_ns))
+    report.count("scans_repeated", repeated)
+    report.count("scans_of_another_message", len(others) - repeated)
+    if repeated < len(others):
+        report.warn(
+            f"{name}: {len(others) - repeated} of {len(lines)} scans are left out: those of the "
+            f"message {message.decode()} are read, {most}, and these are of another one"
+        )
+    return used
+
+
+def _collected(lines: list[_Line]) -> CarmenScans:
     has_poses = bool(lines[0].laser)
     return CarmenScans(
-        message=layout.message.decode(),
+        message=lines[0].message.decode(),
         t_ns=np.array([line.t_ns for line in lines], np.int64),
-        range_m=np.stack([line.ranges for line in lines]),
+        range_m=np.concatenate([line.ranges for line in lines]),
+        start=np.cumsum([0] + [len(line.ranges) for line in lines]),
         laser=np.array([line.laser for line in lines]) if has_poses else None,
         robot=np.array([line.robot for line in lines]) if has_poses else None,
-        angle_min_rad=layout.start_rad,
-        angle_step_rad=layout.step_rad,
-        range_max_m=layout.max_m,
+        angle_min_rad=np.array([line.beams.start_rad for line in lines]),
+        angle_step_rad=np.array([line.beams.step_rad for line in lines]),
+        range_max_m=np.array([line.beams.max_m for line in lines]),
     )
 
 
@@ -177,8 +200,8 @@ def _flaser(name: bytes, text: bytes) -> _Line:
     # 180 beams of 1 degree begin at -90 and end at 89; 181 end at 90.
     steps = beams if beams % 2 == 0 and fov_deg == 180.0 else beams - 1
     step = float(np.deg2rad(fov_deg / max(steps, 1)))
-    layout = _Layout(name, beams, float(-np.deg2rad(fov_deg) / 2.0), step, 0.0)
-    return _Line(layout, _time_ns(words[7 + beams]), ranges, poses[:3], poses[3:])
+    angles = _StatedBeams(float(-np.deg2rad(fov_deg) / 2.0), step, 0.0)
+    return _Line(name, _time_ns(words[7 + beams]), angles, ranges, poses[:3], poses[3:])
 
 
 def _laser1(name: bytes, text: bytes) -> _Line:
@@ -189,11 +212,11 @@ def _laser1(name: bytes, text: bytes) -> _Line:
     if len(ranges) != beams:
         raise ValueError(f"expected {beams} ranges, got {len(ranges)}")
     behind = words[9 + beams + int(words[8 + beams]) :]
-    if step <= 0.0:
-        raise ValueError(f"expected an angle between beams above 0, got {step}")
+    if step == 0.0:
+        raise ValueError("expected an angle between beams, got 0")
     poses = _poses(behind[:6]) if name.startswith(b"ROBOTLASER") else ()
-    layout = _Layout(name, beams, start, step, max_m)
-    return _Line(layout, _time_ns(behind[-3]), ranges, poses[:3], poses[3:])
+    angles = _StatedBeams(start, step, max_m)
+    return _Line(name, _time_ns(behind[-3]), angles, ranges, poses[:3], poses[3:])
 
 
 def _count(word: bytes) -> int:

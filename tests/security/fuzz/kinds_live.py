@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import tempfile
+from dataclasses import replace
 from functools import cache, reduce
 from operator import xor
 from pathlib import Path
@@ -180,15 +181,14 @@ def _datagram(path: Path) -> Reading:
 def _scan_seeds() -> tuple[bytes, ...]:
     rng = np.random.default_rng(1)
     ranges = rng.uniform(0.5, 9.0, 40).astype(np.float32)
-    scans = LaserScans(
-        t_ns=np.array([T0_NS], np.int64),
-        range_m=ranges[None],
-        angle_min_rad=-1.0,
-        angle_step_rad=0.05,
+    scans = LaserScans.of_rows(
+        np.array([T0_NS], np.int64),
+        ranges[None],
+        angles=(-1.0, 0.05),
         range_max_m=20.0,
         time_step_s=1e-4,
-        odometry=np.array([[1.0, 2.0, 0.3]]),
     )
+    scans = replace(scans, odometry=np.array([[1.0, 2.0, 0.3]]))
     return encode_scans_row(scans, 0), encode_head(1.25, T0_NS)
 
 

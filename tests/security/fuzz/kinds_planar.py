@@ -22,8 +22,9 @@ from recon4.model.rig import load_rig
 from recon4.recording.formats.three_dtk import read_pose, read_scan
 from recon4.recording.info import describe
 from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.laser_tables import read_laser_table
 from recon4.recording.line_recording import LineRecording
-from recon4.recording.line_tables import LineTableRecording, LineTables, read_laser_table
+from recon4.recording.line_tables import LineTableRecording, LineTables
 from recon4.recording.report import ImportReport
 from recon4.simulation.line_bag import open_line_bag
 from tests.builders import storage_file
@@ -38,11 +39,10 @@ _LINE_NS = 10_000_000
 def _scans(count: int, beams: int) -> LaserScans:
     t_ns = _T0_NS + _LINE_NS * np.arange(count, dtype=np.int64)
     ranges = np.linspace(1.0, 8.0, count * beams, dtype=np.float32).reshape(count, beams)
-    return LaserScans(
-        t_ns=t_ns,
-        range_m=ranges,
-        angle_min_rad=-0.5,
-        angle_step_rad=0.05,
+    return LaserScans.of_rows(
+        t_ns,
+        ranges,
+        angles=(-0.5, 0.05),
         range_max_m=30.0,
         time_step_s=4e-4,
     )

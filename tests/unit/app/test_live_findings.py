@@ -293,9 +293,8 @@ def test_a_direction_that_is_not_observed_is_said_in_words(unobserved, text):
 @pytest.mark.parametrize(
     ("recent", "text"),
     [
-        ({"scans": 200, "scans_duplicate": 50}, "20 % of the scans arrived twice: the copies are"),
+        ({"scans": 200, "scans_repeated": 50}, "20 % of the scans arrived twice: the copies are"),
         ({"scans": 100, "scans_out_of_order": 100}, "50 % of the scans arrived out of order"),
-        ({"scans": 50, "scans_of_another_layout": 50}, "50 % of the scans have other angles"),
         ({"scans": 200, "scans_damaged": 30}, "30 datagrams with scans cannot be read"),
         ({"scans_damaged": 30}, "Nothing of what the 2-D laser sends can be read: 30 datagrams"),
         ({"scans": 100, "scans_without_returns": 100}, "The 2-D laser sees nothing: is it covered"),
@@ -313,6 +312,6 @@ def test_what_is_wrong_with_scans_is_said(recent, text):
 
 
 def test_single_bad_scans_are_not_worth_a_warning():
-    recent = {"scans": 250, "scans_duplicate": 1, "scans_without_returns": 3, "scans_damaged": 1}
+    recent = {"scans": 250, "scans_repeated": 1, "scans_without_returns": 3, "scans_damaged": 1}
 
     assert found_in(status(SCANS, LINES, IMU), rig=BACKPACK, notes=notes(recent=recent)) == []

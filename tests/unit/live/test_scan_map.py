@@ -16,13 +16,17 @@ from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slam2d.odometry import run_odometry_2d
+from tests.laser_rows import rows_of, with_rows, with_times
 from tests.planar_walks import (
     along,
     blank_corridor,
+    full_turns,
     furnished_room,
+    interlaced,
     ring_corridor,
     ring_walk,
     scanned,
+    scanned_in,
     without,
 )
 
@@ -65,7 +69,7 @@ def ring():
 @pytest.mark.parametrize("odometry", [True, False])
 def test_the_poses_are_those_of_the_finished_recording(room, odometry):
     scans = room.scans if odometry else replace(room.scans, odometry=None)
-    scans = replace(scans, time_step_s=1e-4)
+    scans = with_times(scans, 1e-4)
     steps = run_odometry_2d(scans, attitude=None, settings=Settings().slam2d, progress=Silent())
     tracker, attitude = ScanTracker(LASER.sensors[0], Settings().slam2d), LiveAttitude(LASER)
 
@@ -179,11 +183,24 @@ def test_a_laser_that_was_silent_goes_on_in_the_same_map(room):
     assert np.hypot(off[-1, 0], off[-1, 1]) < 0.1
 
 
+@pytest.mark.parametrize("layout", [full_turns, interlaced])
+def test_scans_whose_angles_change_are_mapped_live_as_when_finished(layout):
+    truth = along(np.array([[-2.5, 0.5], [0.5, 0.2]]), speed_m_s=0.4)
+    scans = with_times(scanned_in(furnished_room(), truth, layout(len(truth))).scans, 1e-4)
+    steps = run_odometry_2d(scans, attitude=None, settings=Settings().slam2d, progress=Silent())
+    tracker, attitude = ScanTracker(LASER.sensors[0], Settings().slam2d), LiveAttitude(LASER)
+
+    found = [tracker.push(scan, attitude) for scan in rows(scans)]
+
+    np.testing.assert_array_equal([step.pose for step in found], steps.pose)
+    assert not steps.lost.any()
+
+
 def test_a_blind_laser_is_lost_and_adds_nothing(room):
     half = len(room.scans) // 2
-    ranges = room.scans.range_m.copy()
+    ranges = rows_of(room.scans).copy()
     ranges[half:] = np.nan
-    scans = replace(room.scans, range_m=ranges, odometry=None)
+    scans = replace(with_rows(room.scans, ranges), odometry=None)
 
     live, poses, _ = mapped(scans)
 

@@ -93,11 +93,10 @@ def room_scan(k):
     """A 2-D laser in the middle of a room of 10 m."""
     angles = np.linspace(-np.pi, np.pi, 361)
     ranges = 5.0 / np.maximum(np.abs(np.cos(angles)), np.abs(np.sin(angles)))
-    return LaserScans(
-        t_ns=np.array([START_NS + k * TENTH_NS], np.int64),
-        range_m=ranges[None].astype(np.float32),
-        angle_min_rad=-np.pi,
-        angle_step_rad=float(angles[1] - angles[0]),
+    return LaserScans.of_rows(
+        np.array([START_NS + k * TENTH_NS], np.int64),
+        ranges[None].astype(np.float32),
+        angles=(-np.pi, float(angles[1] - angles[0])),
         range_max_m=30.0,
     )
 

@@ -1,13 +1,11 @@
 """A 2-D laser mounted upside down is found by the gyroscope; one mounted well is left alone."""
 
-from dataclasses import replace
-
-import numpy as np
 import pytest
 
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.mirrored import is_mirrored, upright
 from recon4.store.line_store import load_laser_scans
+from tests.laser_rows import rows_of, with_rows
 
 
 @pytest.fixture(scope="module")
@@ -25,7 +23,7 @@ def test_a_laser_that_turns_with_the_gyroscope_is_upright(scans, attitude):
 
 
 def test_ranges_in_reverse_order_are_found(scans, attitude):
-    reverse = replace(scans, range_m=np.ascontiguousarray(scans.range_m[:, ::-1]))
+    reverse = with_rows(scans, rows_of(scans)[:, ::-1])
 
     assert is_mirrored(reverse, attitude)
     assert not is_mirrored(upright(reverse), attitude)
@@ -36,6 +34,6 @@ def test_angles_of_the_wrong_sign_are_found(scans, attitude):
 
 
 def test_a_laser_that_hardly_turns_is_left_alone(scans, attitude):
-    still = replace(scans[:20], range_m=scans.range_m[:20, ::-1])
+    still = with_rows(scans[:20], rows_of(scans)[:20, ::-1])
 
     assert not is_mirrored(still, attitude)

@@ -14,6 +14,7 @@ from recon4.recording.info import describe
 from recon4.recording.kinds import RecordingKind, recognize
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.report import ImportReport
+from tests.laser_rows import angles_of, rows_of
 from tests.planar_walks import carmen_lines, furnished_room, scanned, write_carmen
 
 HEAD = "PARAM robot_frontlaser_offset 0.0 nohost 0\n"
@@ -45,7 +46,7 @@ def test_a_log_is_read_as_it_was_written(tmp_path, walk):
     assert recognize(tmp_path / "walk.log") is RecordingKind.CARMEN
     np.testing.assert_array_equal(scans.t_ns, walk.scans.t_ns)
     np.testing.assert_allclose(scans.range_m, walk.scans.range_m, atol=6e-4)
-    np.testing.assert_allclose(scans.angles_rad, walk.scans.angles_rad, atol=1e-6)
+    np.testing.assert_allclose(angles_of(scans), angles_of(walk.scans), atol=1e-6)
     np.testing.assert_allclose(scans.odometry, walk.scans.odometry, atol=1e-6)
     assert report.outcome == "complete"
     assert report.warnings == []
@@ -119,7 +120,7 @@ def test_a_flaser_of_180_beams_begins_at_minus_90_degrees(tmp_path):
 def test_lasers_of_other_layouts_are_known_by_their_beams(tmp_path, beams, field_deg):
     scans, _ = read(tmp_path / "log", flaser([2.0] * beams, 5) + flaser([3.0] * beams, 6))
 
-    angles = np.rad2deg(scans.angles_rad[[0, -1]])
+    angles = np.rad2deg(angles_of(scans)[[0, -1]])
     np.testing.assert_allclose(angles, [-field_deg / 2, field_deg / 2], atol=1e-6)
 
 
@@ -130,10 +131,10 @@ def test_scans_out_of_order_and_duplicates_are_repaired_and_counted(tmp_path):
     scans, report = read(tmp_path / "log", text)
 
     assert (scans.t_ns // 10**9).tolist() == [1, 2, 3, 4, 5]
-    assert scans.range_m[:, 0].tolist() == [1.0, 2.0, 5.0, 4.0, 6.0]
+    assert rows_of(scans)[:, 0].tolist() == [1.0, 2.0, 5.0, 4.0, 6.0]
     assert report.counts["scans_duplicate"] == 1
     assert report.counts["scans_unsorted"] == 1
-    assert len(report.warnings) == 2
+    assert len(report.warnings) == 1
 
 
 def test_damaged_lines_are_left_out_and_the_first_is_named(tmp_path):
@@ -153,8 +154,8 @@ def test_the_repeated_largest_range_is_no_return(tmp_path):
 
     scans, report = read(tmp_path / "log", text)
 
-    assert np.isnan(scans.range_m[:, 2:]).all()
-    assert np.isfinite(scans.range_m[:, :2]).all()
+    assert np.isnan(rows_of(scans)[:, 2:]).all()
+    assert np.isfinite(rows_of(scans)[:, :2]).all()
     assert "no return" in report.derived[0]
 
 
@@ -163,7 +164,7 @@ def test_numbers_that_are_no_ranges_are_counted(tmp_path):
 
     scans, report = read(tmp_path / "log", text)
 
-    assert np.isnan(scans.range_m[0, 1:4]).all()
+    assert np.isnan(scans.ranges(0)[1:4]).all()
     assert report.counts["ranges_not_numbers"] == 2
 
 
@@ -211,13 +212,42 @@ def test_odometry_that_never_changes_is_not_used(tmp_path):
     assert "never changes" in " ".join(report.derived)
 
 
-def test_the_rarer_layout_is_left_out(tmp_path):
-    text = "".join(flaser([2.0] * 4, float(k)) for k in range(5)) + flaser([2.0] * 7, 9.0)
+def test_each_scan_of_a_log_has_its_own_beams(tmp_path):
+    text = "".join(flaser([2.0 + k] * (4 + k % 2), float(5 - k)) for k in range(5))
 
     scans, report = read(tmp_path / "log", text)
 
-    assert len(scans) == 5
-    assert report.counts["scans_of_another_layout"] == 1
+    assert scans.beams.tolist() == [4, 5, 4, 5, 4]
+    assert scans.ranges(1).tolist() == [5.0] * 5
+    np.testing.assert_allclose(scans.angles_rad(1), np.linspace(-np.pi / 2, np.pi / 2, 5))
+    assert report.counts["scans"] == 5
+
+
+def raw_laser(start_rad, ranges, time):
+    values = " ".join(str(r) for r in ranges)
+    return f"RAWLASER1 0 {start_rad} 3.0 1.0 80.0 0.01 0 {len(ranges)} {values} 0 {time} r {time}\n"
+
+
+def test_a_laser_that_interlaces_its_scans_keeps_the_first_angle_of_each(tmp_path):
+    starts = [-1.5, -1.25, -1.0, -0.75] * 3
+    text = "".join(raw_laser(start, [2.0, 3.0], 1.0 + k) for k, start in enumerate(starts))
+
+    scans, report = read(tmp_path / "log", text)
+
+    assert scans.angle_min_rad.tolist() == starts
+    assert report.counts["scans"] == 12
+
+
+def test_messages_that_repeat_a_scan_are_no_loss_and_others_are_counted(tmp_path):
+    lines = [flaser([2.0 + k, 3.0], 0.2 * k) for k in range(10)]
+    repeated = [raw_laser(-1.5, [2.0 + k, 3.0], 0.2 * k + 0.01) for k in range(8)]
+    later = [raw_laser(-1.5, [2.0 + k, 3.0], 20.0 + k) for k in range(1)]
+
+    scans, report = read(tmp_path / "log", "".join(lines + repeated + later))
+
+    assert len(scans) == 10
+    assert report.counts["scans_repeated"] == 8
+    assert report.counts["scans_of_another_message"] == 1
 
 
 def test_rawlaser_has_no_odometry(tmp_path):
@@ -226,8 +256,8 @@ def test_rawlaser_has_no_odometry(tmp_path):
     scans, report = read(tmp_path / "log", line.format(1.0) + line.format(2.0))
 
     assert scans.odometry is None
-    assert scans.angle_min_rad == -1.5
-    np.testing.assert_array_equal(scans.range_m[0], [1.0, 2.0, 3.0, np.nan])
+    assert scans.angle_min_rad.tolist() == [-1.5, -1.5]
+    np.testing.assert_array_equal(scans.ranges(0), [1.0, 2.0, 3.0, np.nan])
     assert "no odometry" in " ".join(report.derived)
 
 
@@ -275,7 +305,7 @@ def rear_log(scans, *, turned):
     lines = []
     for k, robot in enumerate(scans.odometry):
         laser = robot + np.array([0.0, 0.0, np.pi * turned])
-        ranges = np.nan_to_num(scans.range_m[k], nan=scans.range_max_m)
+        ranges = np.nan_to_num(scans.ranges(k), nan=scans.range_max_m)
         lines.append("R" + flaser(ranges, scans.t_ns[k] / 1e9, laser, robot)[1:])
     return "".join(lines)
 
@@ -285,7 +315,7 @@ def test_a_log_of_the_rear_laser_alone_is_read_and_looks_backward(tmp_path, walk
     scans, report = read(tmp_path / "rear.log", rear_log(walk.scans, turned=turned))
 
     assert recognize(tmp_path / "rear.log") is RecordingKind.CARMEN
-    assert scans.range_m.shape == walk.scans.range_m.shape
+    assert scans.beams.tolist() == walk.scans.beams.tolist()
     turn = scans.odometry[:, 2] - walk.scans.odometry[:, 2]
     np.testing.assert_allclose(turn, np.pi, atol=1e-6)
     assert any("looks backward" in note for note in report.derived) is not turned
@@ -296,5 +326,5 @@ def test_the_front_laser_goes_before_the_rear_one(tmp_path, walk):
 
     scans, report = read(tmp_path / "both.log", rear + flaser([2.0, 3.0, 4.0], 1e6))
 
-    assert scans.range_m.shape == (1, 3)
+    assert scans.beams.tolist() == [3]
     assert report.counts["scans_of_the_rear_laser"] == 30

@@ -16,6 +16,7 @@ from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
+from tests.laser_rows import rows_of, with_times
 
 START_NS = 1_700_000_000_000_000_000
 LINE_NS = 10_000_000
@@ -24,11 +25,10 @@ SHOTS = 21
 
 def line_scans(count, *, range_m=4.0, first=0):
     t_ns = START_NS + LINE_NS * np.arange(first, first + count, dtype=np.int64)
-    return LaserScans(
-        t_ns=t_ns,
-        range_m=np.full((count, SHOTS), range_m, np.float32),
-        angle_min_rad=-0.5,
-        angle_step_rad=0.05,
+    return LaserScans.of_rows(
+        t_ns,
+        np.full((count, SHOTS), range_m, np.float32),
+        angles=(-0.5, 0.05),
         range_max_m=100.0,
         time_step_s=4e-4,
     )
@@ -40,7 +40,7 @@ def write(folder, *, lines=None, head_deg_s=50.0, scans=None, head=True):
         if head:
             t_ns = START_NS + LINE_NS * np.arange(310, dtype=np.int64)
             bag.head("/profiler/head", t_ns, np.deg2rad(head_deg_s) * 1e-9 * (t_ns - START_NS))
-        bag.scans("/profiler/line", lines, np.full(lines.range_m.shape, 7, np.uint8))
+        bag.scans("/profiler/line", lines, np.full((len(lines), SHOTS), 7, np.uint8))
         if scans is not None:
             bag.scans("/laser2d/scan", scans)
 
@@ -98,8 +98,8 @@ def test_a_head_that_is_stuck_is_named(tmp_path):
 
 
 def test_scans_of_the_2d_laser_are_stored(tmp_path):
-    scans = replace(line_scans(250, range_m=3.0), time_step_s=1e-5)
-    scans.range_m[7, 3] = np.nan
+    scans = with_times(line_scans(250, range_m=3.0), 1e-5)
+    scans.ranges(7)[3] = np.nan
     write(tmp_path / "bag", scans=scans)
 
     read(tmp_path / "bag", tmp_path / "out")
@@ -109,7 +109,8 @@ def test_scans_of_the_2d_laser_are_stored(tmp_path):
     assert np.array_equal(found.t_ns, scans.t_ns)
     assert np.array_equal(found.range_m, scans.range_m, equal_nan=True)
     assert found.time_step_s == pytest.approx(1e-5)
-    assert (found.angle_min_rad, found.angle_step_rad) == pytest.approx((-0.5, 0.05))
+    assert found.angle_min_rad == pytest.approx(-0.5)
+    assert found.angle_step_rad == pytest.approx(0.05)
 
 
 def test_a_missing_2d_laser_is_a_warning(tmp_path):
@@ -149,7 +150,7 @@ def test_lines_that_are_lost_are_counted_and_said(tmp_path):
 
 def test_lines_without_any_return_are_not_lost(tmp_path):
     lines = line_scans(300)
-    lines.range_m[100:140] = np.nan
+    rows_of(lines)[100:140] = np.nan
     write(tmp_path / "bag", lines=lines)
 
     store = read(tmp_path / "bag", tmp_path / "out")

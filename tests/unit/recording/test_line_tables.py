@@ -22,7 +22,8 @@ from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
-from tests.line_tables import laser_columns, line_columns, line_scans, write_csv, write_npz
+from tests.laser_rows import rows_of
+from tests.line_tables import SHOTS, laser_columns, line_columns, line_scans, write_csv, write_npz
 
 START_NS = 1_700_000_000_000_000_000
 WRITERS = {"csv": write_csv, "npz": write_npz}
@@ -48,7 +49,7 @@ def read(paths, out, rig="wuerzburg"):
 
 
 def with_holes(scans):
-    scans.range_m[7, 3:9] = np.nan
+    scans.ranges(7)[3:9] = np.nan
     return scans
 
 
@@ -58,7 +59,7 @@ def test_tables_give_the_multiframes_of_a_bag(tmp_path, kind):
     write_walk(tmp_path / "walk", kind, lines=lines, scans=scans)
     with open_line_bag(tmp_path / "bag") as bag:
         bag.head("/profiler/head", lines.t_ns, head_rad(lines.t_ns))
-        bag.scans("/profiler/line", lines, np.full(lines.range_m.shape, 7, np.uint8))
+        bag.scans("/profiler/line", lines, np.full((len(lines), SHOTS), 7, np.uint8))
         bag.scans("/laser2d/scan", scans)
 
     table, recorded = (
@@ -132,8 +133,8 @@ def test_beams_without_a_row_have_no_return(tmp_path):
 
     found = read_laser2d([tmp_path / "scans.csv"], ImportReport())
 
-    assert found.range_m.shape == (60, 21)
-    assert np.flatnonzero(np.isnan(found.range_m).all(axis=0)).tolist() == [4]
+    assert found.beams.tolist() == [21] * 60
+    assert np.flatnonzero(np.isnan(rows_of(found)).all(axis=0)).tolist() == [4]
 
 
 def test_a_beam_that_swings_back_and_forth_has_a_line_each_way():

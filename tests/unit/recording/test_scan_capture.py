@@ -29,6 +29,7 @@ from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
+from tests.laser_rows import angles_of, rows_of, with_rows
 from tests.planar_walks import furnished_room, scanned, write_carmen
 from tests.scan_captures import DELAY_NS, captured, scan_datagrams, write_capture
 
@@ -62,24 +63,23 @@ def test_a_capture_of_a_log_is_read_as_the_log(tmp_path, scans):
     np.testing.assert_array_equal(found.t_ns, of_log.t_ns)
     np.testing.assert_array_equal(found.range_m, of_log.range_m)
     np.testing.assert_array_equal(found.odometry, of_log.odometry)
-    np.testing.assert_array_equal(found.angles_rad, of_log.angles_rad)
+    np.testing.assert_array_equal(angles_of(found), angles_of(of_log))
     assert "60 scans of 271 beams" in "\n".join(describe(tmp_path / "walk.pcap").lines())
 
 
 def line_bag(folder):
     t_ns = START_NS + 10_000_000 * np.arange(400, dtype=np.int64)
-    lines = LaserScans(
-        t_ns=t_ns,
-        range_m=np.random.default_rng(2).uniform(2.0, 9.0, (400, 51)).astype(np.float32),
-        angle_min_rad=-0.5,
-        angle_step_rad=0.02,
+    lines = LaserScans.of_rows(
+        t_ns,
+        np.random.default_rng(2).uniform(2.0, 9.0, (400, 51)).astype(np.float32),
+        angles=(-0.5, 0.02),
         range_max_m=100.0,
         time_step_s=1e-4,
     )
-    scans = replace(lines[slice(0, 400, 10)], range_m=lines.range_m[::10, ::-1].copy())
+    scans = with_rows(lines[slice(0, 400, 10)], rows_of(lines)[::10, ::-1])
     with open_line_bag(folder) as bag:
         bag.head("/profiler/head", t_ns, 0.9 * 1e-9 * (t_ns - START_NS))
-        bag.scans("/profiler/line", lines, np.full(lines.range_m.shape, 7, np.uint8))
+        bag.scans("/profiler/line", lines, np.full((400, 51), 7, np.uint8))
         bag.scans("/laser2d/scan", scans)
     return folder
 
@@ -110,7 +110,7 @@ def test_the_lines_of_a_capture_are_those_of_the_bag(tmp_path):
         np.testing.assert_array_equal(of_bag[row].intensity, of_capture[row].intensity)
     np.testing.assert_array_equal(lines[0].head_rad, lines[1].head_rad)
     np.testing.assert_array_equal(lasers[0].range_m, lasers[1].range_m)
-    np.testing.assert_array_equal(lasers[0].angles_rad, lasers[1].angles_rad)
+    np.testing.assert_array_equal(angles_of(lasers[0]), angles_of(lasers[1]))
 
 
 def test_a_capture_without_a_rig_takes_the_shipped_one(tmp_path):
@@ -132,7 +132,7 @@ def test_scans_that_are_shuffled_or_doubled_are_counted(tmp_path, scans):
 
     assert len(t_ns) == len(scans) - 1
     assert report.counts["scans_out_of_order"] == 1
-    assert report.counts["scans_duplicate"] == 1
+    assert report.counts["scans_repeated"] == 1
     assert "earlier than the one before" in " ".join(report.warnings)
 
 
@@ -223,7 +223,7 @@ def test_angles_that_are_no_radians_are_left_out(tmp_path, scans, angles):
     t_ns, report, _ = read(tmp_path / "walk.pcap")
 
     assert len(t_ns) == len(scans)
-    assert report.counts["messages_corrupt"] == 1
+    assert report.counts["scans_damaged"] == 1
 
 
 def test_numbers_that_python_writes_and_json_does_not_have_are_no_returns():

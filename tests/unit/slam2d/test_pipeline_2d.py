@@ -28,6 +28,7 @@ from recon4.slam2d.map_files import read_map
 from recon4.store.hashing import hash_file
 from recon4.verify import verify
 from tests.g2o_reader import read_g2o
+from tests.laser_rows import rows_of, with_rows
 from tests.planar_walks import (
     along,
     blank_corridor,
@@ -156,7 +157,7 @@ def test_mirrored_scans_are_repaired_and_said(tmp_path, room):
 
 
 def test_a_log_without_a_usable_scan_is_refused(tmp_path, room):
-    far = replace(room.scans[:10], range_m=np.full_like(room.scans.range_m[:10], 35.0))
+    far = with_rows(room.scans[:10], np.full_like(rows_of(room.scans[:10]), 35.0))
 
     with pytest.raises(EmptyRecording, match="none of the 10 scans has enough returns between"):
         run(tmp_path, replace(far, range_max_m=80.0))

@@ -13,17 +13,22 @@ from recon4.settings import preset
 from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.observability import observed
 from recon4.slam2d.slam import slam2d
+from tests.laser_rows import angles_of, rows_of, with_rows, with_times
 from tests.planar_walks import (
     PlanarWalk,
     along,
     blank_corridor,
     cast,
+    clockwise_and_back,
+    full_turns,
     furnished_room,
+    interlaced,
     mirrored,
     rectangle,
     ring_corridor,
     ring_walk,
     scanned,
+    scanned_in,
     without,
 )
 
@@ -112,9 +117,9 @@ def test_open_space_is_lost_and_uncertain():
 
 
 def test_scans_without_any_return_do_not_stop_it(ring):
-    ranges = ring.scans.range_m[:120].copy()
+    ranges = rows_of(ring.scans)[:120].copy()
     ranges[50:60] = np.nan
-    walk = PlanarWalk(replace(ring.scans[:120], range_m=ranges), ring.truth[:120])
+    walk = PlanarWalk(with_rows(ring.scans[:120], ranges), ring.truth[:120])
 
     result = slam2d(walk.scans)
 
@@ -122,6 +127,21 @@ def test_scans_without_any_return_do_not_stop_it(ring):
     assert result.steps.lost[50:60].all()
     assert not result.steps.lost[60:].any()
     assert distance.max() < 0.06
+
+
+@pytest.mark.parametrize("layout", [full_turns, interlaced, clockwise_and_back])
+@pytest.mark.parametrize("method", ["indoor", "hector"])
+def test_scans_whose_angles_change_are_all_used(layout, method):
+    corners = np.array([[-3.0, 0.0], [0.0, -1.0], [3.0, -2.0]])
+    truth = along(corners, turn_s=4.0, speed_m_s=0.4)
+    walk = scanned_in(furnished_room(), truth, layout(len(truth)))
+
+    result = slam2d(walk.scans, settings=preset(method))
+
+    distance, turn = walk.errors(result.poses)
+    assert not result.steps.lost.any()
+    assert distance.max() < 0.03
+    assert np.rad2deg(turn.max()) < 1.0
 
 
 def test_scans_in_the_wrong_order_are_mirrored_if_odometry_shows_it(ring):
@@ -140,15 +160,15 @@ def test_roll_and_pitch_level_the_scans():
         for roll, (x, y, yaw) in zip(sway, truth, strict=True)
     )
     walk = scanned(furnished_room(), truth, odometry=False)
-    angles = walk.scans.angles_rad
+    angles = angles_of(walk.scans)
     beams = np.stack([np.cos(angles), np.sin(angles), np.zeros(len(angles))], axis=1)
-    ranges = np.empty_like(walk.scans.range_m)
+    ranges = np.empty_like(rows_of(walk.scans))
     for k, R in enumerate(T_world_laser.R):
         level = beams @ R.T
         flat = np.hypot(level[:, 0], level[:, 1])
         azimuth = np.arctan2(level[:, 1], level[:, 0]) - truth[k, 2]
         ranges[k] = cast(furnished_room(), truth[k], azimuth, 30.0) / flat
-    tilted = PlanarWalk(replace(walk.scans, range_m=ranges), truth)
+    tilted = PlanarWalk(with_rows(walk.scans, ranges), truth)
     attitude = Trajectory(tilted.scans.t_ns, SE3(T_world_laser.R, np.zeros((len(truth), 3))))
 
     leveled = slam2d(tilted.scans, attitude=attitude)
@@ -164,21 +184,21 @@ def test_a_scan_that_takes_time_is_undistorted():
     walking = along(np.array([[-3.0, 0.0], [0.0, -2.0], [3.0, -1.0]]), speed_m_s=1.5, rate_hz=5.0)
     truth = np.concatenate([np.repeat(walking[:1], 6, axis=0), walking])
     walk = scanned(furnished_room(), truth, odometry=False, rate_hz=5.0)
-    step_s = 0.18 / walk.scans.range_m.shape[1]
+    step_s = 0.18 / int(walk.scans.beams[0])
     velocity = np.gradient(truth, 0.2, axis=0)
-    angles = walk.scans.angles_rad
-    ranges = np.empty_like(walk.scans.range_m)
+    angles = angles_of(walk.scans)
+    ranges = np.empty_like(rows_of(walk.scans))
     for k in range(len(truth)):
         for m in range(len(angles)):
             pose = truth[k] + velocity[k] * m * step_s
             ranges[k, m] = cast(furnished_room(), pose, angles[m : m + 1], 30.0)[0]
-    scans = replace(walk.scans, range_m=ranges)
+    scans = with_rows(walk.scans, ranges)
 
-    with_times = slam2d(replace(scans, time_step_s=step_s))
-    without_times = slam2d(scans)
+    timed = slam2d(with_times(scans, step_s))
+    untimed = slam2d(scans)
 
-    corrected, _ = PlanarWalk(scans, truth).errors(with_times.poses)
-    distorted, _ = PlanarWalk(scans, truth).errors(without_times.poses)
+    corrected, _ = PlanarWalk(scans, truth).errors(timed.poses)
+    distorted, _ = PlanarWalk(scans, truth).errors(untimed.poses)
     assert corrected.mean() < 0.5 * distorted.mean()
 
 
