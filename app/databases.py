@@ -13,7 +13,9 @@ from recon4.store.sqlite_files import BUSY_S, make_durable
 
 def open_engine(path: Path) -> sa.Engine:
     """An engine for a file; a commit survives a power cut."""
-    engine = sa.create_engine(f"sqlite:///{path}", connect_args={"timeout": BUSY_S})
+    # not made from text: a percent sign or a question mark in a path would change its meaning
+    url = sa.URL.create("sqlite", database=str(path))
+    engine = sa.create_engine(url, connect_args={"timeout": BUSY_S})
     sa.event.listen(engine, "connect", lambda connection, _: make_durable(connection))
     return engine
 
@@ -21,6 +23,7 @@ def open_engine(path: Path) -> sa.Engine:
 def migrate(connection: sa.Connection, package: Path) -> None:
     """Migrate the schema to the newest migration in ``package/migrations``."""
     config = Config()
-    config.set_main_option("script_location", str(package / "migrations"))
+    folder = str(package / "migrations").replace("%", "%%")  # alembic interpolates its options
+    config.set_main_option("script_location", folder)
     config.attributes["connection"] = connection
     command.upgrade(config, "head")

@@ -9,6 +9,7 @@ from pydantic import BaseModel
 
 from app.access.people import Permission, needs
 from app.deps import Server
+from app.projects.unlisted import unlisted_notices
 from recon4 import __version__
 
 router = APIRouter(prefix="/api", tags=["server"], dependencies=[Depends(needs(Permission.LOOK))])
@@ -35,6 +36,7 @@ def read_server(server: Server) -> ServerView:
     """Version of the server, disk space, and notices for users."""
     disk = shutil.disk_usage(server.settings.root)
     notices = [*filter(None, [server.jobs.notice]), *server.uploads.notices()]
+    notices += unlisted_notices(server.settings.root)
     if disk.free < max(LITTLE_ROOM * disk.total, server.settings.free_disk_reserve_bytes):
         notices.append(
             f"The disk is nearly full: {disk.free / 1e9:.1f} GB of {disk.total / 1e9:.0f} GB are "

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import ConfigError
+from recon4.names import is_unnameable, visible
 from recon4.sandbox import ONE_THREAD as ONE_THREAD
 from recon4.sandbox import allowed_environment
 
@@ -84,6 +85,11 @@ class ServerSettings:
                 raise ConfigError("a certificate goes with --lan, which also turns on the login")
         if (self.tls_certificate is None) != (self.tls_key is None):
             raise ConfigError("give --tls-cert and --tls-key together, or neither")
+        if is_unnameable(self.root):
+            raise ConfigError(
+                f"the path {visible(str(self.root))} is no UTF-8 text, so no request can name it: "
+                "rename the folder"
+            )
         if not self.root.is_dir():
             raise ConfigError(f"no folder {self.root}: give the folder that holds the projects")
         if (self.root / "project.json").exists():

@@ -45,6 +45,11 @@ def visible(text: str, *, most: int = LONGEST_NAME) -> str:
     return "".join(f"<U+{ord(one):04X}>" if _hidden(one) else one for one in short)
 
 
+def is_unnameable(path: object) -> bool:
+    """Whether a path has bytes that are no UTF-8 text; JSON cannot carry it."""
+    return any("\ud800" <= one <= "\udfff" for one in str(path))
+
+
 def _check(text: str, what: str, most: int, *, allowed: str) -> str:
     if len(text) > most:
         raise ConfigError(f"{what} has at most {most} characters, got {len(text)}")

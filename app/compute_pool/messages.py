@@ -19,6 +19,7 @@ from pydantic import BaseModel, TypeAdapter
 from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
+from recon4.names import is_unnameable
 
 LENGTH = struct.Struct("<Q")
 """Header of each message to a child: number of bytes that follow."""
@@ -109,8 +110,9 @@ def encode_error(error: Exception) -> bytes:
     """Encode an error of the library (child's side)."""
     problems = error.problems if isinstance(error, WrongSettings) else {}
     name = f"{type(error).__module__}.{type(error).__qualname__}"
-    message = str(error)[:MAX_MESSAGE]
-    candidates = list(map(str, error.candidates)) if isinstance(error, UnknownFormat) else []
+    message = str(error)[:MAX_MESSAGE].encode(errors="backslashreplace").decode()
+    found = error.candidates if isinstance(error, UnknownFormat) else ()
+    candidates = [str(one) for one in found if not is_unnameable(one)]
     reply = CallError(name=name, message=message, problems=problems, candidates=candidates)
     return reply.model_dump_json().encode()
 

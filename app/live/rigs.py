@@ -12,6 +12,7 @@ from app.rigs.store import RIGS, newest_files
 from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import load_rig, rig_presets
+from recon4.names import is_unnameable
 
 MAX_FILES = 100
 LARGEST_BYTES = 1 << 17
@@ -67,7 +68,7 @@ def _fits(path: Path) -> bool:
         found = path.lstat()
     except OSError:
         return False
-    return S_ISREG(found.st_mode) and found.st_size <= LARGEST_BYTES
+    return S_ISREG(found.st_mode) and found.st_size <= LARGEST_BYTES and not is_unnameable(path)
 
 
 def _choice(path: Path) -> RigChoice | None:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 import stat
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 
 from app.errors import NotFound, Refused
 from app.projects.model import FolderEntry
+from recon4.names import is_unnameable, visible
 
 SYSTEM = tuple(map(Path, ("/boot", "/dev", "/etc", "/proc", "/run", "/sys")))
 """Never recordings, even where a folder of recordings contains them (``/``)."""
+RENAME = "rename it: its name is no UTF-8 text"
 MAX_ENTRIES = 2000
 """A longer folder listing is cut."""
 
@@ -44,6 +47,8 @@ class ImportFolders:
             real = Path(path).resolve()
         except (OSError, ValueError, RuntimeError) as error:
             raise NotFound(f"no such file or folder: {path[:200]!r}") from error
+        if is_unnameable(real):
+            raise Refused(f"{visible(str(real))!r} cannot be used: {RENAME}")
         if not self._within(real):
             folders = ", ".join(str(folder) for folder in self._folders)
             raise Refused(
@@ -85,7 +90,9 @@ class ImportFolders:
             raise NotFound(f"{folder[:200]!r} cannot be listed: {error.strerror}") from error
         shown = [path for path in inside if self.shows(path)]
         shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
-        return [_entry(path, path.name) for path in shown[:MAX_ENTRIES]]
+        unnameable = sorted(path for path in inside if is_unnameable(path))
+        found = [_entry(path, path.name) for path in shown]
+        return [*found, *map(_unnameable_entry, unnameable)][:MAX_ENTRIES]
 
     def _within(self, real: Path) -> bool:
         return any(real.is_relative_to(folder) for folder in self._folders)
@@ -117,3 +124,9 @@ def _entry(path: Path, name: str) -> FolderEntry:
     return FolderEntry(
         name=name, path=str(path), folder=folder, bytes=0 if folder else path.stat().st_size
     )
+
+
+def _unnameable_entry(path: Path) -> FolderEntry:
+    """Listed, so that nobody misses it; to open it is refused with the same words."""
+    name = f"{visible(path.name)} ({RENAME})"
+    return FolderEntry(name=name, path=visible(str(path), most=sys.maxsize), folder=False, bytes=0)

@@ -6,6 +6,8 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon4.names import is_unnameable
+
 MAX_BESIDE = 50
 """In folders with more files, no IMU or GNSS file is searched for."""
 
@@ -58,7 +60,7 @@ def files_beside(path: Path) -> tuple[Path, ...]:
     folder = path if path.is_dir() else path.parent
     with os.scandir(folder) as entries:
         files = sorted(Path(one.path) for one in entries if one.is_file(follow_symlinks=False))
-    files = [file for file in files if file != path]
+    files = [file for file in files if file != path and not is_unnameable(file)]
     if len(files) > MAX_BESIDE:
         return tuple(file for file in files if file.name.startswith(path.stem))[:MAX_BESIDE]
     return tuple(files)

@@ -157,7 +157,7 @@ class Ledger:
         with self._errors():
             row = self._db.execute(
                 "SELECT sha256 FROM hashes WHERE path = ? AND size = ? AND mtime_ns = ?",
-                (str(path.resolve()), status.st_size, status.st_mtime_ns),
+                (_text_of(path), status.st_size, status.st_mtime_ns),
             ).fetchone()
         return row[0] if row else None
 
@@ -167,7 +167,7 @@ class Ledger:
         with self._errors():
             self._db.execute(
                 "INSERT OR REPLACE INTO hashes VALUES (?,?,?,?)",
-                (str(path.resolve()), status.st_size, status.st_mtime_ns, sha256),
+                (_text_of(path), status.st_size, status.st_mtime_ns, sha256),
             )
 
     # -- closing
@@ -189,6 +189,11 @@ class Ledger:
 
 
 _SELECT = f"SELECT {', '.join(f.name for f in fields(FinishedStage))} FROM stages"
+
+
+def _text_of(path: Path) -> str:
+    """Absolute path, with bytes that are no UTF-8 escaped: a column holds text only."""
+    return str(path.resolve()).encode(errors="backslashreplace").decode()
 
 
 def _read_only(path: Path) -> sqlite3.Connection:

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import NoSpace, StoreError
+from recon4.names import visible
 from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
@@ -199,7 +200,7 @@ def _make_folder(root: Path) -> None:
         if not is_project(root):
             _refuse_foreign(root)
             created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
-            name = root.resolve().name
+            name = visible(root.resolve().name)
             write_json(root / "project.json", {"format": FORMAT, "name": name, "created": created})
         read_description(root)
         make_folders(root / "artifacts")
