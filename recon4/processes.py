@@ -8,6 +8,7 @@ it fires when the parent's *thread* that started the child ends, not when the pr
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import fcntl
 import multiprocessing
@@ -16,6 +17,7 @@ import select
 import signal
 import sys
 import threading
+import time
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -25,6 +27,8 @@ _F_SETSIG = 10
 """Linux; the module `fcntl` lacks it."""
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 _UNKNOWN = ""
+_LOOKS_EVERY_S = 1.0
+"""Interval at which `first_line` measures the time of the child [s]."""
 
 
 def die_with_parent(lifeline: int | None = None) -> None:
@@ -109,3 +113,35 @@ def process_identity(pid: int) -> str:
         return _UNKNOWN
     state, start_ticks = fields[0], fields[19]
     return _UNKNOWN if state in "ZX" else f"{pid}-{start_ticks}-{boot}"
+
+
+async def first_line(process: asyncio.subprocess.Process, *, within_s: float) -> bytes:
+    """Read the first line of a child's output.
+
+    Args:
+        process: The child, with a pipe as output.
+        within_s: How long the child may take [s]; time in which it was ready to run but other
+            programs had the processors does not count.
+
+    Returns:
+        The line; empty if the child ended without one, or took too long.
+    """
+    assert process.stdout is not None
+    began_s = time.monotonic()
+    line = asyncio.ensure_future(process.stdout.readline())
+    try:
+        while time.monotonic() - began_s - waited_for_processor_s(process.pid) < within_s:
+            done, _ = await asyncio.wait({line}, timeout=min(_LOOKS_EVERY_S, within_s))
+            if done:
+                return line.result()
+        return b""
+    finally:
+        line.cancel()
+
+
+def waited_for_processor_s(pid: int) -> float:
+    """Time the first thread of a process was ready to run but did not [s]; 0 if unknown."""
+    try:
+        return int(Path(f"/proc/{pid}/schedstat").read_text("ascii").split()[1]) / 1e9
+    except (OSError, ValueError, IndexError):
+        return 0.0

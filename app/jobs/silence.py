@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from pathlib import Path
 
 from app.jobs.run_progress import AFTER
 from app.jobs.status import JobStatus
+from recon4.processes import waited_for_processor_s
 from recon4.store.stage import SAVING
 
 COMPUTING_FACTOR = 10.0
@@ -46,11 +46,3 @@ class SilenceClock:
         if beat_ns != self._beat_ns:
             self._beat_ns, self._since_s = beat_ns, now_s
         return now_s - self._since_s
-
-
-def waited_for_processor_s(pid: int) -> float:
-    """Time the first thread of a process was ready to run but did not [s]; 0 if unknown."""
-    try:
-        return int(Path(f"/proc/{pid}/schedstat").read_text("ascii").split()[1]) / 1e9
-    except (OSError, ValueError, IndexError):
-        return 0.0

@@ -126,6 +126,7 @@ class Capture:
         while done is None and self._mapper_starts < _MAPPER_STARTS:
             try:
                 async with linked(self.session.socket("mapper")) as link:
+                    self.problem = self._ended_because  # a failed start before is over
                     done = await self._receive_mapper(link)
             except OSError:  # no mapper runs: it died, or none was started yet
                 self._mapper_starts += 1

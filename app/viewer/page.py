@@ -38,10 +38,26 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   document.getElementById('cover').remove();
   if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
+// While it opens, the cover counts the seconds and shows why the viewer does not start.
+addEventListener('DOMContentLoaded', () => {
+  const began = performance.now();
+  const timer = setInterval(async () => {
+    const words = document.getElementById('cover-words');
+    if (!words) return clearInterval(timer);
+    const seconds = Math.round((performance.now() - began) / 1000);
+    const problem = await fetch('state').then((response) => response.json())
+      .then((state) => state.problem, () => 'the server does not answer');
+    words.textContent = problem ? `${problem}. Trying again…` : `Opening the map… ${seconds} s`;
+    words.classList.toggle('error', problem !== '');
+  }, 3000);
+});
 </script>
 <style>
-#cover { position: fixed; inset: 0; z-index: 10000; display: grid; place-items: center;
+#cover { position: fixed; inset: 0; z-index: 10000; display: grid; place-content: center;
+  justify-items: center; gap: 12px; padding: 12px; box-sizing: border-box; text-align: center;
   font: 15px/1.5 system-ui, sans-serif; color: #9aa8b5; background: #101418; }
+#cover img { max-width: 100%; max-height: 70vh; background: #eef2f5; border-radius: 8px; }
+#cover .error { color: #ff8a80; }
 #frame-caption { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;
   font: 12px/1.5 system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
   pointer-events: none; border-bottom-right-radius: 6px; }
@@ -61,7 +77,13 @@ def viewer_page(project_id: str, request: Request, server: Server) -> Response:
     if request.scope["query_string"]:
         return RedirectResponse(path, status_code=307)
     policy = {"Content-Security-Policy": policy_for(request.headers["host"])}
-    return HTMLResponse(with_shims(client(), frame_caption(project)), headers=policy)
+    return HTMLResponse(with_shims(client(), project), headers=policy)
+
+
+@router.get("/projects/{project_id}/viewer/state", include_in_schema=False)
+def viewer_state(project_id: str, server: Server) -> dict[str, str]:
+    """Why the viewer does not start, as ``problem``; empty = it runs or starts."""
+    return {"problem": server.viewers.problem(server.projects.folder(project_id))}
 
 
 @router.get("/projects/{project_id}/viewer", include_in_schema=False)
@@ -86,14 +108,20 @@ def client() -> str:
     return page.read_text("utf-8")
 
 
-def with_shims(page: str, caption: str) -> str:
-    """The page with our fixes, and with a caption about units and frame."""
+def with_shims(page: str, project: ProjectView) -> str:
+    """The page with our fixes, a caption about units and frame, and a cover until it is ready.
+
+    The cover shows the thumbnail of a finished map.
+    """
     head, body = page.find("<head>"), page.rfind("</body>")
     assert 0 <= head < body
     head += len("<head>")
+    # The id is made of letters, digits, dots and dashes: `app.projects.store.PROJECT_ID`.
+    address = f"../../../api/projects/{project.id}/thumbnail"
+    image = f'<img src="{address}" alt="">' if project.has_map else ""
     badge = (
-        '<div id="cover">Opening the map…</div>'
-        f'<div id="frame-caption">{html.escape(caption)}</div>'
+        f'<div id="cover">{image}<span id="cover-words" role="status">Opening the map…</span></div>'
+        f'<div id="frame-caption">{html.escape(frame_caption(project))}</div>'
     )
     return page[:head] + drawing() + SHIMS + page[head:body] + badge + page[body:]
 

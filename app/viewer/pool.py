@@ -7,7 +7,6 @@ no web page and no other user of this computer.
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import hashlib
 import os
 import secrets
@@ -18,11 +17,11 @@ from app.errors import ViewerFailed
 from app.network.streams import Streams
 from app.settings import worker_environment
 from app.viewer.scratch import scratch_of, viewer_environment
-from recon4.processes import ChildRegister
+from recon4.processes import ChildRegister, first_line
 from recon4.runtime_folder import private_folder, runtime_folder
 
 STARTS_WITHIN_S = 60.0
-"""A viewer that does not listen after this long has failed [s]."""
+"""A viewer that does not listen after this much time of its own has failed [s]."""
 ENDS_WITHIN_S = 5.0
 """A viewer requested to end is killed after this long [s]."""
 READY = b"ready\n"
@@ -55,6 +54,8 @@ class ViewerPool:
         self._logs, self._jobs = state / "viewers", state / "jobs"
         self._running: dict[Path, Running] = {}
         self._starting: dict[Path, asyncio.Lock] = {}
+        self._problems: dict[Path, str] = {}
+        """Why the last start of a viewer failed; none once it runs."""
 
     async def socket(self, project: Path) -> Path:
         """Unix socket of the project's viewer, started if there is none or it died.
@@ -69,6 +70,10 @@ class ViewerPool:
             if running is None or running[0].returncode is not None:
                 self._running[project] = await self._start(project)
             return self._running[project][1]
+
+    def problem(self, project: Path) -> str:
+        """Why the project's viewer does not run; empty = it does, or starts."""
+        return self._problems.get(project, "")
 
     async def give_up(self, project: Path, socket: Path) -> None:
         """End the viewer that does not respond on this socket; `socket` starts another."""
@@ -97,16 +102,16 @@ class ViewerPool:
                 env=worker_environment() | caches,
             )
         self._children.add(process.pid)
-        assert process.stdout is not None
-        with contextlib.suppress(TimeoutError):
-            async with asyncio.timeout(STARTS_WITHIN_S):
-                if await process.stdout.readline() == READY:
-                    return process, socket
+        if await first_line(process, within_s=STARTS_WITHIN_S) == READY:
+            self._problems.pop(project, None)
+            return process, socket
         await self._end(process, socket)
-        raise ViewerFailed(
+        problem = (
             f"the viewer of {project.name} does not start; its log is in "
             f"{self._logs / project.name}.txt"
         )
+        self._problems[project] = problem
+        raise ViewerFailed(problem)
 
     async def _end(self, process: asyncio.subprocess.Process, socket: Path) -> None:
         """Request a viewer to end; kill it if it does not."""

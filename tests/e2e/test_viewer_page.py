@@ -165,3 +165,20 @@ def test_a_key_shows_fitted_surfaces_then_points_as_measured_then_stray_returns(
             page.keyboard.press("r")
 
         expect(page.get_by_text(re.compile("On fitted surfaces"))).to_be_attached()
+
+
+@looks("desktop light")
+def test_a_viewer_that_does_not_start_says_so_over_the_thumbnail_and_is_tried_again(
+    finished, page, monkeypatch, screenshot
+):
+    build_project(finished.root / "hall", points=POINTS)
+    with monkeypatch.context() as patch:
+        patch.setattr("app.viewer.pool.STARTS_WITHIN_S", 0.0)
+        page.goto(f"{finished.url}/projects/hall/viewer/")
+        cover = page.locator("#cover")
+        expect(cover).to_contain_text("the viewer of hall does not start")
+        assert cover.locator("img").evaluate("image => image.naturalWidth") > 0
+        screenshot(page, "viewer-cover")
+
+    expect(cover).to_have_count(0, timeout=60_000)
+    expect(page.get_by_text("60 000 of 60 000 points")).to_be_attached()

@@ -14,11 +14,13 @@ from recon4.errors import ConfigError
 from recon4.live.confinement import mapper_environment
 from recon4.live.protocol import Message, ProtocolError, Request, decode_message, encode
 from recon4.live.session import CaptureSession
+from recon4.processes import first_line
 from recon4.sandbox import ONE_THREAD, allowed_environment
 
 log = logging.getLogger(__name__)
 
 STARTS_WITHIN_S = 60.0
+"""A process that is not ready after this much time of its own has failed [s]."""
 
 _LONGEST_LINE = 32 << 20
 """A whole preview of 400 k points is 4 MB."""
@@ -103,11 +105,8 @@ async def started(
             start_new_session=True,  # Ctrl-C must not reach it
             env=env,
         )
-    assert process.stdout is not None
-    with suppress(TimeoutError):
-        async with asyncio.timeout(STARTS_WITHIN_S):
-            if await process.stdout.readline() == b"ready\n":
-                return process
+    if await first_line(process, within_s=STARTS_WITHIN_S) == b"ready\n":
+        return process
     with suppress(ProcessLookupError):
         process.kill()
     await process.wait()

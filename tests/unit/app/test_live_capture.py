@@ -38,6 +38,35 @@ def test_a_server_reconnects_to_its_mapper_and_starts_no_second_one(tmp_path):
     assert not (session.folder / "mapper.txt").exists()
 
 
+def test_a_mapper_that_started_after_all_is_no_problem_any_more(tmp_path):
+    session = CaptureSession(project=tmp_path / "walk")
+    session.folder.mkdir(parents=True)
+    session.outcome.write_text('{"why": "stopped"}')
+    seen = asyncio.Event()
+
+    async def serve(reader, writer):
+        writer.write(encode(POSE))
+        await seen.wait()
+        writer.write(encode(DONE))
+        writer.close()
+
+    async def run():
+        capture = Capture(session)
+        capture.problem = "the mapper did not start"
+        async with await asyncio.start_unix_server(serve, session.socket("mapper")):
+            await capture.follow()
+            while capture.stream.version == 0:
+                await capture.stream.news(0, timeout_s=0.1)
+            while_mapping = capture.problem
+            seen.set()
+            while not capture.over:
+                await capture.stream.news(capture.stream.version, timeout_s=0.1)
+            await capture.leave()
+        return while_mapping
+
+    assert asyncio.run(run()) == ""
+
+
 def test_a_capture_whose_recorder_never_ran_is_not_taken_up(tmp_path):
     begun, never = (
         CaptureSession(project=tmp_path / "begun"),

@@ -1,7 +1,8 @@
-"""When a worker counts as hung: time it waited for a processor is not silence."""
+"""When a child counts as hung: time it waited for a processor is not its own."""
 
 from __future__ import annotations
 
+import asyncio
 import os
 import subprocess
 import sys
@@ -9,7 +10,8 @@ import time
 
 import pytest
 
-from app.jobs.silence import SilenceClock, waited_for_processor_s
+from app.jobs.silence import SilenceClock
+from recon4.processes import first_line, waited_for_processor_s
 from tests.service.running import wait_for
 
 SPIN = "import os; os.sched_setaffinity(0, {int(__import__('sys').argv[1])})\nwhile True: pass"
@@ -48,3 +50,34 @@ def test_a_sleeping_worker_is_silent_until_its_heart_beats():
 
 def test_a_process_that_is_gone_has_not_waited():
     assert waited_for_processor_s(2**22 + 1) == 0.0
+
+
+async def line_of(code: str, *, within_s: float) -> bytes:
+    process = await asyncio.create_subprocess_exec(
+        sys.executable, "-c", code, stdout=asyncio.subprocess.PIPE
+    )
+    try:
+        return await first_line(process, within_s=within_s)
+    finally:
+        process.kill()
+        await process.wait()
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux measures it")
+@pytest.mark.usefixtures("starved")
+def test_a_child_that_waits_for_a_processor_has_time_to_start():
+    processor = min(os.sched_getaffinity(0))
+    work = (
+        f"import os, time; os.sched_setaffinity(0, {{{processor}}}); os.nice(5)\n"
+        "while time.process_time() < 0.5: pass\nprint('ready', flush=True); time.sleep(60)"
+    )
+
+    assert asyncio.run(line_of(work, within_s=1.2)) == b"ready\n"
+
+
+def test_a_child_that_says_nothing_has_failed_after_its_own_time():
+    assert asyncio.run(line_of("import time; time.sleep(60)", within_s=0.5)) == b""
+
+
+def test_a_child_that_ends_without_a_line_has_failed_at_once():
+    assert asyncio.run(line_of("pass", within_s=60.0)) == b""
