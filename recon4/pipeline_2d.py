@@ -84,7 +84,8 @@ def process_2d(
         ]
         project.describe(preset=preset, rig="", inputs=inputs)
         runner = StageRunner(project, settings, progress)
-        run_stages_2d(runner, recordings, read_decided(out))
+        mount = stages_2d.mount_input(sources.rig)
+        run_stages_2d(runner, recordings, mount=mount, decided=read_decided(out))
         about = About(ProjectDescription.read(out), settings)
         return publish_2d(out, runner.runs, about, progress=progress)
 
@@ -111,10 +112,12 @@ def remake_2d(out: Path, *, progress: Progress) -> Summary2d:
         return publish_2d(out, runner.runs, about, progress=progress)
 
 
-def run_stages_2d(runner: StageRunner, recordings: Input, decided: Decided) -> None:
+def run_stages_2d(
+    runner: StageRunner, recordings: Input, *, mount: Input | None, decided: Decided
+) -> None:
     """Every stage in order; each is skipped when its artifact is there."""
     run = runner.run
-    scans = run(stages_2d.SCANS_2D, recordings=recordings)
+    scans = run(stages_2d.SCANS_2D, recordings=recordings, mount=mount)
     odometry = run(stages_2d.ODOMETRY_2D, scans=scans)
     searched = run(stages_2d.GRAPH_2D, scans=scans, odometry=odometry)
     graph = run(stages.VERIFICATION, graph=searched)
@@ -130,7 +133,7 @@ def run_from_review_2d(runner: StageRunner, made: Planar, decided: Decided) -> N
 def _check_sources(sources: Sources) -> None:
     rig = sources.rig
     if rig is not None and all(sensor.kind == "laser2d" for sensor in rig.sensors):
-        rig = None  # as of a live capture: it names the port of the laser
+        rig = None  # it says how the laser is mounted, and its port in a live capture
     given = {"a rig": rig, "IMU samples": sources.imu, "GNSS samples": sources.gnss}
     unused = [name for name, value in given.items() if value is not None]
     if unused:

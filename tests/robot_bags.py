@@ -33,21 +33,19 @@ class RobotBag(Bag):
         """Write the description of a robot."""
         self.write(topic, "std_msgs/msg/String", t_ns, self.make("std_msgs/msg/String", data=urdf))
 
-    def laser(self, topic, t_ns, scans, k):
-        """Write scan ``k`` of a 2-D laser."""
-        first, step = float(scans.angle_min_rad[k]), float(scans.angle_step_rad[k])
-        ranges = np.where(np.isnan(scans.ranges(k)), np.float32(np.inf), scans.ranges(k))
+    def laser(self, topic, t_ns, ranges, *, angles):
+        """Write a scan of a 2-D laser with a beam at each angle [rad]; NaN = no return."""
         message = self.make(
             "sensor_msgs/msg/LaserScan",
             header=self.header(t_ns),
-            angle_min=first,
-            angle_max=first + step * (len(ranges) - 1),
-            angle_increment=step,
-            time_increment=float(scans.time_step_s[k]),
+            angle_min=float(angles[0]),
+            angle_max=float(angles[-1]),
+            angle_increment=float(angles[1] - angles[0]),
+            time_increment=0.0,
             scan_time=0.0,
             range_min=0.1,
-            range_max=float(scans.range_max_m),
-            ranges=ranges.astype(np.float32),
+            range_max=30.0,
+            ranges=np.where(np.isnan(ranges), np.inf, ranges).astype(np.float32),
             intensities=np.zeros(0, np.float32),
         )
         self.write(topic, "sensor_msgs/msg/LaserScan", int(t_ns), message)

@@ -126,5 +126,6 @@ def finish_scans(session: CaptureSession, settings: Settings) -> int:
         }
         project.describe(preset=session.preset, rig="", inputs=[about])
         runner = StageRunner(project, settings, progress)
-        runner.run(stages_2d.SCANS_2D, recordings=recordings)
+        mount = stages_2d.mount_input(load_rig(session.rig))
+        runner.run(stages_2d.SCANS_2D, recordings=recordings, mount=mount)
         return figures_of(runner.runs, stages_2d.SCANS_2D).scans

@@ -338,6 +338,10 @@ class Scan2dFigures(Figures, frozen=True, kw_only=True):
     outcome: str = "complete"
     """``complete``, or how far it could be read."""
     warnings: tuple[str, ...] = ()
+    tilt_deg: float = 0.0
+    """Angle between the plane of the laser and the level one, by rig file or tf [°]."""
+    doubts: tuple[str, ...] = ()
+    """Warnings about the mount of the laser."""
 
 
 class Odometry2dFigures(Figures, frozen=True, kw_only=True):

@@ -18,6 +18,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.events import RoundRefined
 from recon4.model.figures import RefineRound
 from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_upright import turned_round
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.imu_chain import (
@@ -28,7 +29,7 @@ from recon4.profiler.imu_chain import (
     linearize,
     make_drive,
 )
-from recon4.profiler.mirrored import is_mirrored, upright
+from recon4.profiler.mirrored import is_mirrored
 from recon4.profiler.planar_hold import PlanarHold, observed_motion
 from recon4.profiler.published_refine import PublishedRefiner
 from recon4.profiler.samples import joined, laser_points, line_points
@@ -300,4 +301,4 @@ def _turned_over(
         return scans
     T_map_laser = trajectory.T_a_b @ frames.rig.sensors[row].T_body_sensor
     leveled = Trajectory(trajectory.t_ns, T_map_laser)
-    return upright(scans) if is_mirrored(scans, leveled) else scans
+    return turned_round(scans) if is_mirrored(scans, leveled) else scans

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from recon4.geometry.se3 import Array
@@ -44,11 +42,6 @@ def is_mirrored(scans: LaserScans, attitude: Trajectory) -> bool:
     seen = np.array([_rotation(scans, int(first[k]), int(second[k])) for k in fast])
     against = np.sign(seen) == -np.sign(turn[fast])
     return bool(np.mean(against & (seen != 0.0)) > _MOST)
-
-
-def upright(scans: LaserScans) -> LaserScans:
-    """The scans with their angles in the other direction."""
-    return replace(scans, angle_min_rad=-scans.angle_min_rad, angle_step_rad=-scans.angle_step_rad)
 
 
 def _rotation(scans: LaserScans, i: int, j: int) -> float:

@@ -8,12 +8,13 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_upright import turned_round
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.clock_audit import ClockLag, clock_lag
 from recon4.profiler.fusion import PlanarPoses, attitude
 from recon4.profiler.imu_chain import Drive
-from recon4.profiler.mirrored import is_mirrored, upright
+from recon4.profiler.mirrored import is_mirrored
 from recon4.progress import Progress
 from recon4.settings import Settings
 from recon4.slam2d.slam import Slam2dResult, slam2d
@@ -71,7 +72,7 @@ def map_in_plane(
     used, leveled = scans[slice(int(first), int(last))], Trajectory(R_map_body.t_ns, T_map_laser)
     mirrored = drive.has_imu and is_mirrored(used, leveled)
     found = slam2d(
-        upright(used) if mirrored else used,
+        turned_round(used) if mirrored else used,
         attitude=leveled,
         settings=settings,
         progress=progress,

@@ -34,7 +34,8 @@ from recon4.recording.kinds import (
     located,
     recognize,
 )
-from recon4.recording.laser2d import is_laser2d, read_laser2d
+from recon4.recording.laser2d import is_laser2d, read_laser_recording
+from recon4.recording.laser_mount import mounted_scans
 from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
 from recon4.recording.open import Recording, frames_model, open_recording
@@ -175,7 +176,7 @@ def _topic_line(topic: BagTopic, seconds: float) -> str:
 
 def _describe_laser2d(info: RecordingInfo, path: Path) -> RecordingInfo:
     report = ImportReport()
-    scans = read_laser2d([path], report)
+    scans = mounted_scans(read_laser_recording([path], report), None, report=report).scans
     first, last = int(scans.t_ns[0]), int(scans.t_ns[-1])
     returns = float(np.isfinite(scans.range_m).mean())
     sensor = SensorInfo(

@@ -19,6 +19,7 @@ from recon4.recording.bag_recording import most_messages
 from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize
+from recon4.recording.laser_mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.laser_tables import is_laser_table, read_laser_table
 from recon4.recording.line_recording import LASER_SCAN, profiler_rig
 from recon4.recording.range_units import in_meters
@@ -57,7 +58,12 @@ def is_laser2d(path: Path) -> bool:
 
 
 def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
-    """Read the scans of a recording; repairs are counted.
+    """Read the scans of a recording as the laser measured them, see `read_laser_recording`."""
+    return read_laser_recording(paths, report).scans
+
+
+def read_laser_recording(paths: Sequence[Path], report: ImportReport) -> LaserRecording:
+    """Read the scans of a recording, and how the laser is mounted; repairs are counted.
 
     Args:
         paths: A CARMEN log, or bags or capture files that belong together.
@@ -69,15 +75,17 @@ def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
     if paths[0].is_file() and is_carmen(paths[0]):
         if len(paths) > 1:
             raise UnknownFormat(f"one CARMEN log expected, got {len(paths)} files")
-        return in_meters(_of_carmen(read_carmen(paths[0], report), paths[0].name, report), report)
+        scans = _of_carmen(read_carmen(paths[0], report), paths[0].name, report)
+        return LaserRecording(in_meters(scans, report))
     if paths[0].is_file() and is_laser_table(paths[0]):
         if len(paths) > 1:
             raise UnknownFormat(f"one table of a 2-D laser expected, got {len(paths)} files")
-        return in_meters(read_laser_table(paths[0], report), report)
+        return LaserRecording(in_meters(read_laser_table(paths[0], report), report))
     if recognize(paths[0]) is RecordingKind.PCAP:
         files = [file for path in paths for file in pcap_files(path)]
-        return in_meters(read_scan_captures(files, report), report)
-    return in_meters(_of_bags(paths, report), report)
+        return LaserRecording(in_meters(read_scan_captures(files, report), report))
+    scans, mount = _of_bags(paths, report)
+    return LaserRecording(in_meters(scans, report), mount, of_robot=True)
 
 
 # -- CARMEN
@@ -165,7 +173,7 @@ def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
 # -- bags
 
 
-def _of_bags(paths: Sequence[Path], report: ImportReport) -> LaserScans:
+def _of_bags(paths: Sequence[Path], report: ImportReport) -> tuple[LaserScans, LaserMount | None]:
     files = [file for path in paths for file in bag_paths(path)]
     collector = ScanCollector(0, report)
     poses = SampleBatch(pose_row, join_poses, report)
@@ -174,6 +182,7 @@ def _of_bags(paths: Sequence[Path], report: ImportReport) -> LaserScans:
     with Bag(files, report) as bag:
         topic = most_messages(bag.topics, LASER_SCAN, report)
         odometry = most_messages(bag.topics, ODOMETRY, report)
+        mount = mount_of_bag(bag, topic, odometry, report=report)
         for message in bag.messages({topic, odometry} - {""}):
             report.count("messages")
             content = bag.decode(message)
@@ -191,7 +200,7 @@ def _of_bags(paths: Sequence[Path], report: ImportReport) -> LaserScans:
     if out_of_order:
         report.warn(f"{topic}: {out_of_order} scans earlier than the one before are left out")
     scans = joined_scans(parts)
-    return replace(scans, odometry=_at_scans(scans, walks, report))
+    return replace(scans, odometry=_at_scans(scans, walks, report)), mount
 
 
 def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportReport) -> Array | None:
@@ -210,7 +219,6 @@ def _at_scans(scans: LaserScans, walks: Sequence[Trajectory], report: ImportRepo
     if scans.t_ns[0] < t_ns[0] - slack_ns or scans.t_ns[-1] > t_ns[-1] + slack_ns:
         report.warn("the odometry does not cover all scans: it is not used")
         return None
-    report.derive("the mounting of the laser is unknown: the odometry is taken as the laser's")
     since = (scans.t_ns - t_ns[0]) / 1e9
     known = (t_ns - t_ns[0]) / 1e9
     yaw = np.interp(since, known, np.unwrap(pose[:, 2]))

@@ -98,7 +98,7 @@ def compare_mounts(
         if is_placeholder(by_bag):
             report.derive(f"{text}: a placeholder?")
             continue
-        report.warn(
+        report.doubt(
             f"{text}: they differ by {np.rad2deg(angle_rad):.1f}° and {100 * distance_m:.1f} cm. "
             f"The rig {rig.name!r} is used"
         )

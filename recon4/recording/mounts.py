@@ -95,11 +95,11 @@ def _warn_disputed(mounts: Mounts, report: ImportReport) -> None:
     on_path = {name for one in between for name in (one.parent, one.child)}
     for one in between:
         if one.disputed:
-            report.warn(f"{one.source} contradicts itself; the last transform is used: {one.text}")
+            report.doubt(f"{one.source} contradicts itself; the last transform is used: {one.text}")
     for one in graph.contradictions():
         report.count("transforms_contradictory")
         if one.child in on_path:
-            report.warn(f"transforms of the bag contradict each other; not used: {one.text}")
+            report.doubt(f"transforms of the bag contradict each other; not used: {one.text}")
 
 
 # -- a rig
@@ -179,7 +179,7 @@ def stated_mount(
         )
         return None
     if _is_far(T_a_b):
-        report.warn(
+        report.doubt(
             f"mount of the {what}: the bag says {a} -> {b} {mount_text(T_a_b)}: too far, not used"
         )
         return None

@@ -25,6 +25,8 @@ class ImportReport:
     """What the recording lacks and was derived."""
     warnings: list[str] = field(default_factory=list)
     """Warnings: repairs, gaps, missing sensors, forced models."""
+    doubts: list[str] = field(default_factory=list)
+    """Warnings about the mounts of the sensors: every verdict names them."""
     ahead_ns: dict[str, int] = field(default_factory=dict)
     """Sensor -> its times minus those of the recorder's clock [ns], as last seen: GPS may drive
     the sensors, and the recorder's clock be wrong."""
@@ -45,6 +47,11 @@ class ImportReport:
     def warn(self, text: str) -> None:
         """Add a warning once."""
         self._remember(self.warnings, text)
+
+    def doubt(self, text: str) -> None:
+        """Add a doubt about a mount once; it is a warning too."""
+        self.warn(text)
+        self._remember(self.doubts, text)
 
     def warn_of_losses(self) -> None:
         """Add a warning for each large loss that no reader warned of; call once, at the end."""

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
 from recon4.geometry.se2 import wrap
 from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_upright import turned_round
 from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.odometry import Odometry2d
 
@@ -30,10 +29,7 @@ def with_true_order(scans: LaserScans) -> tuple[LaserScans, str]:
     votes = [_vote(scans[rows]) for rows in _turns(scans)]
     if not votes or sum(votes) >= 0:
         return scans, ""
-    mirrored = replace(
-        scans, angle_min_rad=-scans.angle_min_rad, angle_step_rad=-scans.angle_step_rad
-    )
-    return mirrored, (
+    return turned_round(scans), (
         "the scans turn against the odometry: their beams are stored in the wrong order, "
         "they are mirrored"
     )

@@ -9,14 +9,15 @@ import numpy as np
 
 from recon4.errors import EmptyRecording
 from recon4.geometry.se2 import to_se3, transform
-from recon4.geometry.se3 import Array
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import Warned
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.progress import Progress
-from recon4.recording.laser2d import read_laser2d
+from recon4.recording.laser2d import read_laser_recording
+from recon4.recording.laser_mount import MountedScans, mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
 from recon4.settings import Settings
 from recon4.settings.slam2d import Slam2dSettings
@@ -39,12 +40,15 @@ _CHECKED_SCANS = 1000
 """Scans that are compared with the finished map."""
 
 
-def import_scans(recordings: Sequence[Path], out: Path, *, progress: Progress) -> Scan2dFigures:
-    """Read a recording of a 2-D laser into a folder.
+def import_scans(
+    recordings: Sequence[Path], out: Path, *, T_body_laser: SE3 | None = None, progress: Progress
+) -> Scan2dFigures:
+    """Read a recording of a 2-D laser into a folder; the scans as seen from above.
 
     Args:
         recordings: A CARMEN log, or bags.
         out: Receives the scans and ``report.json``.
+        T_body_laser: Mount of the laser by a rig file; None = as the recording states.
         progress: Receives the warnings.
 
     Raises:
@@ -52,10 +56,9 @@ def import_scans(recordings: Sequence[Path], out: Path, *, progress: Progress) -
     """
     report = ImportReport()
     progress.start("Reading", len(recordings), "files")
-    scans, mirrored = with_true_order(read_laser2d(recordings, report))
-    if mirrored:
-        report.count("scans_mirrored", len(scans))
-        report.warn(mirrored)
+    by_rig = mount_of_rig(T_body_laser) if T_body_laser is not None else None
+    mounted = mounted_scans(read_laser_recording(recordings, report), by_rig, report=report)
+    scans = _in_true_order(mounted, report)
     _report_gaps(scans, report)
     report.warn_of_losses()
     progress.advance(len(recordings))
@@ -80,7 +83,22 @@ def import_scans(recordings: Sequence[Path], out: Path, *, progress: Progress) -
         odometry=scans.odometry is not None,
         outcome=report.outcome,
         warnings=tuple(report.warnings),
+        tilt_deg=round(mounted.tilt_deg, 2),
+        doubts=tuple(report.doubts),
     )
+
+
+def _in_true_order(mounted: MountedScans, report: ImportReport) -> LaserScans:
+    """The scans, turned round if the odometry turns the other way, whatever their mount is."""
+    scans, mirrored = with_true_order(mounted.scans)
+    if not mirrored:
+        return scans
+    report.count("scans_mirrored", len(scans))
+    if mounted.mount is None:
+        report.warn(mirrored)
+    else:
+        report.doubt(f"{mirrored}; this contradicts what is stated: {mounted.mount.source}")
+    return scans
 
 
 def _report_gaps(scans: LaserScans, report: ImportReport) -> None:

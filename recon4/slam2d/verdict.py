@@ -29,6 +29,8 @@ _SILENT_S = 1.0
 _CROSSING_CHECK, _CROSSING_BAD = 0.1, 0.2
 _SEARCHED_RATIO = 0.005
 _UNCERTAIN_M = 0.5
+_STEEP_DEG = 30.0
+"""A laser tilted by more does not see the walls of a plan [°]."""
 _LONG_WALK_M = 60.0
 """A longer path without any loop closure is not confirmed by anything [m]."""
 
@@ -52,7 +54,8 @@ class Facts2d:
 def judge(facts: Facts2d) -> MapVerdict:
     """The worst finding decides."""
     unobserved = unobserved_stretches(facts.steps, facts.poses)
-    findings = [*_tracking(facts), *_observability(facts, unobserved), *_consistency(facts)]
+    findings = [*_mounting(facts.scans), *_tracking(facts)]
+    findings += [*_observability(facts, unobserved), *_consistency(facts)]
     order = {Usability.DO_NOT_USE: 0, Usability.CHECK: 1, Usability.GOOD: 2}
     findings.sort(key=lambda finding: order[finding[0]])
     usability = findings[0][0] if findings else Usability.GOOD
@@ -95,6 +98,12 @@ def longest_loss_s(steps: Steps2d) -> float:
 
 def _place(pose: Array) -> tuple[float, ...]:
     return (round(float(pose[0]), 2), round(float(pose[1]), 2), 0.0)
+
+
+def _mounting(scans: Scan2dFigures) -> Iterator[Finding2d]:
+    steep = scans.tilt_deg > _STEEP_DEG
+    for text in scans.doubts:
+        yield Usability.DO_NOT_USE if steep else Usability.CHECK, text
 
 
 def _tracking(facts: Facts2d) -> Iterator[Finding2d]:

@@ -55,7 +55,7 @@ MAY_IMPORT = {
     | {f"recon4.pose_graph.{name}" for name in ("files", "solve", "verification")},
     "recon4/slam2d/stage.py": STAGE
     | {"recon4.slam2d", "recon4.pose_graph.files"}
-    | {"recon4.recording.laser2d", "recon4.recording.report"},
+    | {"recon4.recording.laser2d", "recon4.recording.laser_mount", "recon4.recording.report"},
     "recon4/calibration": STAGE
     | {"recon4.calibration", "recon4.registration", "recon4.semi_rigid.knots"}
     | {"recon4.mapping.place", "recon4.georeference.antenna_calibration"},

@@ -22,6 +22,7 @@ from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import CELL_M, Coverage
 from recon4.live.protocol import Gaps, Loop, MapperMessage, Path, Points, Pose
 from recon4.model.laser_scans import LaserScans
+from recon4.model.laser_upright import is_upside_down, seen_from_above, turned_round
 from recon4.model.multiframe import Multiframe
 from recon4.model.plain import finite_or_none
 from recon4.model.rig import Rig
@@ -56,7 +57,8 @@ class ScanMap:
         """
         row = rig.row_of("laser2d")
         assert row is not None
-        self._rig, self._laser = rig, rig.sensors[row]
+        self._rig, self._laser = rig, seen_from_above(rig.sensors[row])
+        self._is_upside_down = is_upside_down(rig.sensors[row].T_body_sensor)
         self._tracker = ScanTracker(self._laser, settings.slam2d)
         self._attitude = LiveAttitude(rig)
         self._coverage, self._preview = Coverage(), PreviewCloud()
@@ -93,6 +95,8 @@ class ScanMap:
             ``plan``, ``gaps`` and ``loop``.
         """
         self._scans += 1
+        if self._is_upside_down:
+            scan = turned_round(scan)
         step = self._tracker.push(scan, self._attitude)
         self._recent.add(step.t_ns)
         self._follow(step)

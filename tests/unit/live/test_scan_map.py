@@ -23,6 +23,7 @@ from tests.planar_walks import (
     full_turns,
     furnished_room,
     interlaced,
+    mirrored,
     ring_corridor,
     ring_walk,
     scanned,
@@ -152,6 +153,24 @@ def test_the_plan_is_drawn_again_at_most_every_ten_seconds(room, monkeypatch):
 
     assert len(drawn) >= 2
     assert np.diff(drawn).min() >= REDRAW_EVERY_NS
+
+
+@pytest.mark.parametrize("with_imu", [False, True])
+def test_a_laser_upside_down_gives_the_poses_of_an_upright_one(room, with_imu):
+    hanging = parse_rig(
+        '[[sensor]]\nname = "laser2d"\nkind = "laser2d"\nrpy_deg = [180.0, 0.0, 0.0]',
+        where="test",
+    )
+    scans = replace(room.scans, odometry=None)
+    start_ns = int(scans.t_ns[0])
+    imu = (lambda k: still(k, start_ns=start_ns)) if with_imu else None
+
+    _, upright, _ = mapped(scans, imu=imu)
+    _, poses, _ = mapped(mirrored(scans), hanging, imu=imu)
+
+    off = between(planar(upright), planar(poses))
+    assert np.abs(off).max() < 0.01
+    assert all(pose.imu == with_imu for pose in poses[1:])
 
 
 def test_a_corridor_without_doors_is_said_to_hold_nothing_along_it():

@@ -2,8 +2,9 @@
 
 import pytest
 
+from recon4.model.laser_upright import turned_round
 from recon4.model.trajectory import Trajectory
-from recon4.profiler.mirrored import is_mirrored, upright
+from recon4.profiler.mirrored import is_mirrored
 from recon4.store.line_store import load_laser_scans
 from tests.laser_rows import rows_of, with_rows
 
@@ -26,11 +27,11 @@ def test_ranges_in_reverse_order_are_found(scans, attitude):
     reverse = with_rows(scans, rows_of(scans)[:, ::-1])
 
     assert is_mirrored(reverse, attitude)
-    assert not is_mirrored(upright(reverse), attitude)
+    assert not is_mirrored(turned_round(reverse), attitude)
 
 
 def test_angles_of_the_wrong_sign_are_found(scans, attitude):
-    assert is_mirrored(upright(scans), attitude)
+    assert is_mirrored(turned_round(scans), attitude)
 
 
 def test_a_laser_that_hardly_turns_is_left_alone(scans, attitude):
