@@ -15,6 +15,7 @@ from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se2 import from_se3
 from recon4.model.figures import Map2dFigures
+from recon4.model.import_notes import import_notes
 from recon4.model.pose_graph import EdgeKind
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict
@@ -156,6 +157,7 @@ def _facts(runs: Mapping[str, StageRun[Any]], trajectory: Trajectory, length_m: 
     folder = {name: run.artifact.folder for name, run in runs.items()}
     return Facts2d(
         scans=figures_of(runs, stages_2d.SCANS_2D),
+        imported=import_notes(_import_report(folder)),
         odometry=figures_of(runs, stages_2d.ODOMETRY_2D),
         map=figures_of(runs, stages_2d.MAP_2D),
         steps=load_record(folder["odometry_2d"] / "steps.npz", Steps2d),
@@ -163,6 +165,11 @@ def _facts(runs: Mapping[str, StageRun[Any]], trajectory: Trajectory, length_m: 
         graph=load_graph(_final_graph(folder)),
         path_length_m=length_m,
     )
+
+
+def _import_report(folder: Mapping[str, Path]) -> Mapping[str, object]:
+    path = folder["scans_2d"] / "report.json"
+    return read_json_object(path, _MAX_REPORT_BYTES, failure=StoreError)
 
 
 def _writers(root: Path, made: _Made, about: About) -> list[Callable[[], None]]:
@@ -203,11 +210,7 @@ def _page(made: _Made, about: About) -> Page2d:
         odometry=load_trajectory(folder["odometry_2d"] / "trajectory.npz"),
         sd_m=sd_m,
         graph=facts.graph,
-        imported=imported_rows(
-            read_json_object(
-                folder["scans_2d"] / "report.json", _MAX_REPORT_BYTES, failure=StoreError
-            )
-        ),
+        imported=imported_rows(_import_report(folder)),
         stages=timings(made.runs),
         versions=versions(),
     )

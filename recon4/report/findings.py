@@ -13,6 +13,7 @@ from recon4.evaluation.table import number, percentage
 from recon4.model.import_notes import import_notes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Times, Trajectory
+from recon4.model.unused import unused_parts
 from recon4.model.usability import UNOBSERVED_SECONDS
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
 from recon4.report.artifacts import Results, path_length_m
@@ -366,6 +367,9 @@ def _imported(results: Results) -> list[Finding]:
     if len(warnings) > _MAX_WARNINGS:
         text = f"{len(warnings) - _MAX_WARNINGS} more warnings under Import."
         out.append(Finding(Level.WARNING, text))
+    for part in unused_parts(notes.counts):
+        if part.is_severe or part.is_scattered:
+            out.append(Finding(Level.BAD if part.is_severe else Level.WARNING, part.text))
     return out
 
 

@@ -9,7 +9,9 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
+from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph
+from recon4.model.unused import unused_parts
 from recon4.model.usability import (
     UNOBSERVED_SECONDS,
     WEAK_SD_M,
@@ -42,6 +44,8 @@ class Facts2d:
     """What the verdict is made of."""
 
     scans: Scan2dFigures
+    imported: ImportNotes
+    """Of the stage ``scans_2d``."""
     odometry: Odometry2dFigures
     map: Map2dFigures
     steps: Steps2d
@@ -54,12 +58,19 @@ class Facts2d:
 def judge(facts: Facts2d) -> MapVerdict:
     """The worst finding decides."""
     unobserved = unobserved_stretches(facts.steps, facts.poses)
-    findings = [*_mounting(facts.scans), *_tracking(facts)]
+    findings = [*_imported(facts.imported), *_mounting(facts.scans), *_tracking(facts)]
     findings += [*_observability(facts, unobserved), *_consistency(facts)]
     order = {Usability.DO_NOT_USE: 0, Usability.CHECK: 1, Usability.GOOD: 2}
     findings.sort(key=lambda finding: order[finding[0]])
     usability = findings[0][0] if findings else Usability.GOOD
     return MapVerdict(usability, tuple(text for _, text in findings), unobserved)
+
+
+def _imported(notes: ImportNotes) -> Iterator[Finding2d]:
+    if notes.outcome != "complete":
+        yield Usability.CHECK, f"The recording was read as: {notes.outcome}."
+    for part in unused_parts(notes.counts):
+        yield (Usability.DO_NOT_USE if part.is_severe else Usability.CHECK), part.text
 
 
 def unobserved_stretches(steps: Steps2d, poses: Array) -> tuple[Unobserved, ...]:

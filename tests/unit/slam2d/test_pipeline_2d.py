@@ -149,6 +149,30 @@ def test_a_silent_laser_without_odometry_is_part_of_the_verdict(tmp_path):
     assert "is unknown" in " ".join(summary.verdict.reasons)
 
 
+def test_scans_that_are_not_used_stand_in_the_verdict(tmp_path, room):
+    with open_line_bag(tmp_path / "some") as bag:
+        bag.scans("/scan", replace(room.scans, angle_step_rad=broken_steps(room.scans, every=10)))
+    with open_line_bag(tmp_path / "most") as bag:
+        bag.scans("/scan", replace(room.scans, angle_step_rad=broken_steps(room.scans, every=1)))
+
+    some, most = (
+        process(Sources((tmp_path / name,)), tmp_path / f"map-{name}") for name in ("some", "most")
+    )
+
+    count = len(room.scans)
+    assert some.verdict.usability is Usability.CHECK
+    assert some.verdict.reasons[0].startswith(f"{(count + 9) // 10} of {count} scans of the 2-D")
+    assert most.verdict.usability is Usability.DO_NOT_USE
+    assert "cannot be decoded" in most.verdict.reasons[0]
+
+
+def broken_steps(scans, *, every):
+    """Steps between beams of which every n-th is 0, which no scan can have; never the last 40."""
+    broken = np.arange(len(scans)) % every == 0
+    broken[-40:] &= every > 1
+    return np.where(broken, 0.0, scans.angle_step_rad)
+
+
 def test_mirrored_scans_are_repaired_and_said(tmp_path, room):
     summary = run(tmp_path, mirrored(room.scans))
 

@@ -1,0 +1,68 @@
+"""How much of a recording is not used, over all reasons: one rule for every kind of recording."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from recon4.model.import_counts import COUNT_WORDINGS, WARNED_RATIO, Loss, losses, wording
+
+_SEVERE_RATIO = 0.5
+_SAMPLES = {"imu_kept", "gnss_kept", "gnss_samples", "sample_datagrams", "positions"}
+"""Counts of what only supports a map: the stages that use it judge what is missing."""
+
+
+@dataclass(frozen=True, slots=True)
+class UnusedPart:
+    """Data of one kind of which at least `WARNED_RATIO` is not used."""
+
+    name: str
+    """Count of the data of this kind."""
+    number: int
+    """How many are not used."""
+    total: int
+    reasons: tuple[Loss, ...]
+    """Largest first."""
+
+    @property
+    def is_severe(self) -> bool:
+        """Whether most of what the map is made of is missing: the map must not be used."""
+        return self.name not in _SAMPLES and self.number > _SEVERE_RATIO * self.total
+
+    @property
+    def is_scattered(self) -> bool:
+        """Whether each reason by itself is too rare for a warning."""
+        return not any(loss.ratio >= WARNED_RATIO for loss in self.reasons)
+
+    @property
+    def text(self) -> str:
+        """One sentence: how many of how many, and why."""
+        because = "; ".join(f"{loss.number}: {wording(loss.name)[0].text}" for loss in self.reasons)
+        return (
+            f"{self.number} of {self.total} {COUNT_WORDINGS[self.name].text} are not used "
+            f"({100.0 * self.number / self.total:.0f} %): {because}."
+        )
+
+
+def unused_parts(counts: Mapping[str, int]) -> list[UnusedPart]:
+    """Parts of a recording of which more than `WARNED_RATIO` is not used, the largest ratio first.
+
+    What is usual (points nearer than the limit, beams without a return) and what was repaired is
+    no loss.
+
+    Args:
+        counts: Of an import.
+    """
+    groups: dict[str, list[Loss]] = {}
+    for loss in losses(counts):
+        if of := wording(loss.name)[0].of:
+            groups.setdefault(of, []).append(loss)
+    parts = [_part(name, tuple(reasons), counts) for name, reasons in groups.items()]
+    large = [part for part in parts if part.number >= WARNED_RATIO * part.total]
+    return sorted(large, key=lambda part: -part.number / part.total)
+
+
+def _part(name: str, reasons: tuple[Loss, ...], counts: Mapping[str, int]) -> UnusedPart:
+    number = sum(loss.number for loss in reasons)
+    apart = sum(loss.number for loss in reasons if wording(loss.name)[0].apart)
+    return UnusedPart(name, number, max(counts.get(name, 0) + apart, number), reasons)

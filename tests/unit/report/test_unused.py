@@ -1,0 +1,51 @@
+"""How much of a recording is not used, over all reasons, and what the verdict says of it."""
+
+import pytest
+
+from recon4.model.unused import unused_parts
+from recon4.report.artifacts import Results
+from recon4.report.facts import ReportFacts
+from recon4.report.findings import Level, find
+from recon4.settings import preset
+
+
+def levels(counts):
+    """Levels of the findings about data that is not used."""
+    results = Results(steps={}, imported={"counts": counts})
+    facts = ReportFacts(title="test", created="", preset="indoor", settings=preset("indoor"))
+    return [found.level for found in find(facts, results, None) if "not used" in found.text]
+
+
+def test_all_reasons_count_together_and_are_named():
+    counts = {"scans": 91, "scans_damaged": 500, "scans_out_of_order": 12, "beams": 9}
+
+    (part,) = unused_parts(counts)
+
+    assert (part.number, part.total) == (512, 603)
+    assert part.text == (
+        "512 of 603 scans of the 2-D laser are not used (85 %): 500: cannot be decoded, left out; "
+        "12: earlier than the one before, left out."
+    )
+
+
+@pytest.mark.parametrize(
+    ("counts", "expected"),
+    [
+        ({"packets": 1000, "packets_missing": 5000}, [Level.BAD]),
+        ({"points": 1000, "points_wrong_time": 5000}, [Level.BAD]),
+        ({"lines": 1000, "lines_missing": 5000}, [Level.BAD]),
+        # Nobody warned of reasons that are rare one by one.
+        ({"packets": 1000, "packets_late": 9, "packets_wrong_flag": 9}, [Level.WARNING]),
+        # The reader warned of a single large reason already.
+        ({"packets": 1000, "packets_late": 200}, []),
+        ({"packets": 1000, "packets_late": 9}, []),
+        # IMU and GNSS are judged by the stages that use them.
+        ({"imu_kept": 10, "imu_nan": 1000}, []),
+        ({"gnss_kept": 10, "gnss_wrong_time": 1000}, []),
+        # Usual or repaired: nothing is missing.
+        ({"points": 10, "points_far": 5000, "points_near": 5000, "points_no_return": 900}, []),
+        ({"packets": 10, "packets_duplicate": 10, "scans": 5, "scans_repeated": 5}, []),
+    ],
+)
+def test_the_verdict_says_what_is_not_used(counts, expected):
+    assert levels(counts) == expected
