@@ -180,6 +180,7 @@ _SAMPLES = {
     "samples_damaged": _lost("sample_datagrams", "damaged samples, dropped"),
     "samples_out_of_order": _lost("sample_datagrams", "earlier than the one before, dropped"),
     "poses": _read("poses for comparison"),
+    "poses_wrong_time": _lost("poses", "a stamp of another time, dropped", apart=True),
 }
 _SCANS = {
     "scans": _read("scans of the 2-D laser"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -12,14 +13,16 @@ from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.recording.formats.bags import BagMessage
+from recon4.recording.formats.bags import Bag, BagMessage
 from recon4.recording.formats.cloud_files import Table
 from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured import declared_absent
+from recon4.recording.stamps import StampClock
 
 _BATCH = 500
 """Number of IMU samples delivered at a time."""
+_STAMPS_PROBED = 9
 _FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _FIX_QUALITY = {
     **{-2: GnssQuality.SINGLE, 0: GnssQuality.SINGLE},
@@ -79,14 +82,39 @@ def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.vo
 class SampleBatch:
     """Collects rows of one topic and delivers them in batches."""
 
-    def __init__(self, row: Any, join: Any, report: ImportReport) -> None:
+    def __init__(
+        self,
+        row: Any,
+        join: Any,
+        report: ImportReport,
+        *,
+        kind: str = "poses",
+        stamps: StampClock | None = None,
+    ) -> None:
+        """Prepare.
+
+        Args:
+            row: Turns a message into numbers.
+            join: Turns times and rows into samples.
+            report: Receives the count of samples with a stamp of another time.
+            kind: Start of the name of that count.
+            stamps: Of the topic.
+        """
         self._row, self._join, self._report = row, join, report
+        self._kind, self._stamps = kind, stamps or StampClock()
         self._rows: list[tuple[float, ...]] = []
         self._t_ns: list[int] = []
 
     def push(self, message: BagMessage, content: Any) -> Iterator[Any]:
         t_ns = stamp_ns(content.header.stamp)
-        self._t_ns.append(t_ns if t_ns > 0 else message.t_ns)
+        if t_ns <= 0 and self._stamps.offset_ns is None:
+            t_ns = message.t_ns
+        elif self._stamps.is_sound(t_ns, message.t_ns):
+            self._report.note_lag(self._kind.upper(), message.t_ns - t_ns)
+        else:
+            self._report.count(f"{self._kind}_wrong_time")
+            return
+        self._t_ns.append(t_ns)
         self._rows.append(self._row(content))
         if len(self._rows) >= _BATCH:
             yield from self.flush()
@@ -96,6 +124,15 @@ class SampleBatch:
         self._rows, self._t_ns = [], []
         if rows:
             yield self._join(np.array(t_ns, np.int64), np.array(rows, np.float64))
+
+
+def stamp_clock(bag: Bag, topic: str) -> StampClock:
+    """The clock of the stamps of a topic, from its first messages; without one, a new clock."""
+    if not topic:
+        return StampClock()
+    messages = islice(bag.messages([topic]), _STAMPS_PROBED)
+    found = ((message, bag.decode(message)) for message in messages)
+    return StampClock([(stamp_ns(m.header.stamp), at.t_ns) for at, m in found if m is not None])
 
 
 def stamp_ns(stamp: Any) -> int:

@@ -25,8 +25,10 @@ from recon4.recording.bag_messages import (
     join_imu,
     join_poses,
     pose_row,
+    stamp_clock,
     stamp_ns,
 )
+from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.formats.bags import (
     CLOUD,
@@ -42,6 +44,7 @@ from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
+from recon4.recording.stamps import StampClock
 from recon4.recording.velodyne.data_packets import PacketDecoder
 from recon4.recording.velodyne.models import likely_model
 from recon4.settings import IngestSettings
@@ -97,9 +100,10 @@ class BagRecording:
 
     def _read(self, bag: Bag) -> Iterator[Item]:
         lidars = self._lidars(bag)
+        imu, fix = (stamp_clock(bag, topic) for topic in (self.imu_topic, self.fix_topic))
         samples = {
-            self.imu_topic: SampleBatch(imu_row, join_imu, self._report),
-            self.fix_topic: SampleBatch(fix_row, join_fixes, self._report),
+            self.imu_topic: SampleBatch(imu_row, join_imu, self._report, kind="imu", stamps=imu),
+            self.fix_topic: SampleBatch(fix_row, join_fixes, self._report, kind="gnss", stamps=fix),
             self.odometry_topic: SampleBatch(pose_row, join_poses, self._report),
         }
         wanted = {*lidars, *samples} - {""}
@@ -111,6 +115,7 @@ class BagRecording:
             if message.topic in lidars:
                 shots = lidars[message.topic].push(message, content)
                 if shots is not None and len(shots):
+                    self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
                     yield shots
             else:
                 yield from samples[message.topic].push(message, content)
@@ -137,7 +142,11 @@ class BagRecording:
                 )
                 period = _period_ns(topic, bag.seconds)
                 found[sensor.topic] = _Clouds(
-                    clouds, sensor.time_offset_s, period, report=self._report
+                    clouds,
+                    sensor.time_offset_s,
+                    period,
+                    stamps=stamp_clock(bag, topic.name),
+                    report=self._report,
                 )
         return found
 
@@ -217,17 +226,23 @@ class _Clouds:
     """Decodes messages of points."""
 
     def __init__(
-        self, decoder: CloudDecoder, offset_s: float, period_ns: int, *, report: ImportReport
+        self,
+        decoder: CloudDecoder,
+        offset_s: float,
+        period_ns: int,
+        *,
+        stamps: StampClock,
+        report: ImportReport,
     ) -> None:
         self._decoder, self._period_ns, self._report = decoder, period_ns, report
+        self._stamps = stamps
         self._offset_ns = round(offset_s * 1e9)
 
     def push(self, message: BagMessage, cloud: Any) -> Shots | None:
         t_ns = stamp_ns(cloud.header.stamp)
-        if t_ns <= 0:
-            t_ns = message.t_ns
-            self._report.count("stamps_missing")
-            self._report.derive("clouds without a stamp: the time of recording is used")
+        if not self._stamps.is_sound(t_ns, message.t_ns):
+            self._report.count("stamps_missing" if t_ns <= 0 else "stamps_wrong")
+            t_ns = self._stamps.expected_ns(message.t_ns)
         try:
             table = cloud_table(cloud)
             shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)

@@ -20,6 +20,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import cloud_table
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
+from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
@@ -269,6 +270,8 @@ def _with_head(
         recording = open_recording([path], None, settings=settings, report=report)
         rig = recording.rig
         rates, has_imu, has_gnss = _read_head(recording, whole=info.bytes <= WHOLE_BYTES)
+        is_same_clock(IMU_CLOCK, rig.imu_time_offset_s, report)
+        is_same_clock(GNSS_CLOCK, rig.gnss_time_offset_s, report)
     except ConfigError as error:
         missing.append(f"rig: {error}")
     except RecordingError as error:

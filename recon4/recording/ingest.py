@@ -22,6 +22,8 @@ from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock
+from recon4.recording.clock_names import described, known_offset_s, offset_name
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.kinds import RecordingKind, recognize
@@ -246,6 +248,8 @@ def _imu(
     if given.imu and found.imu:
         report.derive("IMU samples are those of the CSV file, not the recording's")
     offset_s = rig.imu_time_offset_s
+    if not given.imu and not is_same_clock(IMU_CLOCK, offset_s, report):
+        return None
     clean = clean_imu(samples, offset_s=offset_s, jumps_ns=written.jumps_ns, report=report)
     return _covering(clean, written.span, bool(given.imu), report=report)
 
@@ -260,7 +264,10 @@ def _gnss(
     if from_file and recorded:
         compare_heights(from_file, recorded, report)
         report.derive("GNSS samples are those of the CSV file, not the recording's")
-    clean = clean_gnss(samples, offset_s=rig.gnss_time_offset_s, report=report)
+    offset_s = rig.gnss_time_offset_s
+    if not from_file and not is_same_clock(GNSS_CLOCK, offset_s, report):
+        return None
+    clean = clean_gnss(samples, offset_s=offset_s, report=report)
     return _covering(clean, written.span, bool(given.gnss), report=report)
 
 
@@ -280,16 +287,24 @@ def _covering(
     if last < span[0] - margin_ns or first > span[1] + margin_ns:
         text = (
             f"{what} samples cover {first / 1e9:.3f} … {last / 1e9:.3f} s, the points "
-            f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same?"
+            f"{span[0] / 1e9:.3f} … {span[1] / 1e9:.3f} s: are the clocks the same? If both begin "
+            f"together, they differ by {described((first - span[0]) / 1e9)}: give "
+            f"[{what.lower()}] time_offset_s = {(span[0] - first) / 1e9:.3f} in the rig file"
         )
         if asked_for:
             raise ConfigError(text)
-        report.warn(f"{text} They are not used")
+        report.warn(f"{text}. They are not used")
         return None
     late_s, early_s = (first - span[0]) / 1e9, (span[1] - last) / 1e9
-    if what == "IMU" and max(late_s, early_s) > 1.0:
+    known = offset_name(late_s) if abs(late_s + early_s) < 1.0 else ""
+    if known or (what == "IMU" and max(late_s, early_s) > 1.0):
+        remedy = (
+            f", as if their clock were ahead ({known}): then give [{what.lower()}] time_offset_s "
+            f"= {-known_offset_s(late_s):.3f} in the rig file"
+        )
         report.warn(
-            f"IMU samples begin {late_s:+.1f} s after and end {early_s:+.1f} s before the points"
+            f"{what} samples begin {late_s:+.1f} s after and end {early_s:+.1f} s before the points"
+            f"{remedy if known else ''}"
         )
     return samples
 

@@ -16,8 +16,16 @@ from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_messages import SampleBatch, cloud_table, imu_row, join_imu, stamp_ns
+from recon4.recording.bag_messages import (
+    SampleBatch,
+    cloud_table,
+    imu_row,
+    join_imu,
+    stamp_clock,
+    stamp_ns,
+)
 from recon4.recording.bag_recording import most_messages
+from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import CLOUD, IMU, Bag, BagMessage, BagTopic
 from recon4.recording.head_angles import HeadAngles
@@ -110,7 +118,8 @@ class LineRecording:
         sensor = self.rig.sensors[self._row]
         head = HeadAngles(sensor.name, sensor.head_rate_rad_s, self._report)
         lines = LineAssembly(self._row, self.rig, head, report=self._report)
-        imu = SampleBatch(imu_row, join_imu, self._report)
+        stamps = stamp_clock(bag, self.imu_topic)
+        imu = SampleBatch(imu_row, join_imu, self._report, kind="imu", stamps=stamps)
         scans = ScanCollector(self._offset_ns(self._laser_row), self._report)
         unit = LaserUnit(self._report)
         wanted = {self._lines, self._head, self._scans, self.imu_topic} - {""}
@@ -203,6 +212,8 @@ class LineAssembly:
         if shots is None:
             self._report.count("lines_empty")
             return
+        if len(shots):
+            self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
         yield from self.push_shots(shots)
 
     def push_shots(self, shots: Shots) -> Iterator[LineItem]:

@@ -10,6 +10,8 @@ from recon4.model.import_counts import count_text, losses, repairs
 MAX_TEXTS = 200
 """Number of different remarks kept; further ones are counted."""
 MAX_TEXT_CHARACTERS = 1000
+MAX_LAGS = 4000
+"""Messages from which the clocks of sensors are compared."""
 
 
 @dataclass(slots=True)
@@ -32,6 +34,8 @@ class ImportReport:
     the sensors, and the recorder's clock be wrong."""
     utc_ahead_ns: int = 0
     """UTC minus the recorder's clock [ns] if GPS drives a sensor, else 0."""
+    lags_ns: dict[str, list[int]] = field(default_factory=dict)
+    """Kind of sensor -> time of recording minus stamp of its first messages [ns]."""
     outcome: str = "complete"
     """``complete``, ``lossy`` (salvaged) or ``nothing``."""
 
@@ -39,6 +43,12 @@ class ImportReport:
         """Add to a counter; zero adds nothing."""
         if number:
             self.counts[name] += int(number)
+
+    def note_lag(self, what: str, lag_ns: int) -> None:
+        """Remember how long after its stamp a message was recorded [ns]."""
+        lags = self.lags_ns.setdefault(what, [])
+        if len(lags) < MAX_LAGS:
+            lags.append(lag_ns)
 
     def derive(self, text: str) -> None:
         """Add a derived value once."""

@@ -16,6 +16,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
 from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
@@ -224,6 +225,7 @@ class _StampedMessages:
                 )
         t_ns += self._shift_ns
         self._last = t_ns, arrival_ns
+        self._report.note_lag(LIDAR, arrival_ns - t_ns)
         if abs(t_ns - arrival_ns) > _OTHER_CLOCK_NS:
             self._report.ahead_ns[self._sensor.name] = t_ns - arrival_ns
         else:

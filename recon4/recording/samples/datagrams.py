@@ -93,6 +93,8 @@ class SampleDecoder:
             columns = {name: np.array([x]) for name, x in zip(names[1:], values, strict=True)}
             values[2] = float(height_above_ellipsoid(columns, self.report)[0])
             values = values[: len(GNSS_HEADER) - 1]
+        if "t_ns" in record:
+            self.report.note_lag(kind.upper(), arrival_ns - t_ns)
         yield kind, t_ns, values
 
     def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:

@@ -13,6 +13,7 @@ from recon4.errors import EmptyRecording
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.pcap import Datagrams, OpenFile, open_plain, read_pcap
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -157,6 +158,9 @@ class VelodynePcap:
             if len(rows):
                 decoder = channel.positions if size == POSITION_SIZE else channel.data
                 yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, size))
+        if len(whole) and channel.sensor.name in self._report.ahead_ns:
+            ahead_ns = self._report.ahead_ns[channel.sensor.name] - self._report.utc_ahead_ns
+            self._report.note_lag(LIDAR, -ahead_ns)
 
     def _decode_samples(self, datagrams: Datagrams) -> Iterator[PositionSamples]:
         """Samples of an IMU or a GNSS receiver on separate ports."""

@@ -1,0 +1,54 @@
+"""Compares the clocks of IMU, GNSS and LiDARs by when their messages were recorded.
+
+A bag and a capture hold two times of a message: its stamp, and when it was recorded. Where the
+stamps of two sensors lag behind by different amounts, their clocks differ.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.recording.clock_names import described, known_offset_s
+from recon4.recording.report import ImportReport
+
+LIDAR, IMU_CLOCK, GNSS_CLOCK = "LiDAR", "IMU", "GNSS"
+_OTHER_S = 1.0
+"""Clocks that differ by less are not told from messages that travel for longer [s]."""
+_STEADY_S = 0.5
+"""Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
+_LEAST = 3
+
+
+def clock_offset_s(what: str, report: ImportReport) -> float:
+    """How far the stamps of IMU or GNSS are ahead of the LiDARs' [s]; NaN = not known."""
+    lags_s = [np.array(report.lags_ns.get(name, ())) * 1e-9 for name in (LIDAR, what)]
+    if any(len(lag) < _LEAST or _spread(lag) > _STEADY_S for lag in lags_s):
+        return float("nan")
+    return float(np.median(lags_s[0]) - np.median(lags_s[1]))
+
+
+def is_same_clock(what: str, rig_offset_s: float, report: ImportReport) -> bool:
+    """Whether samples are on the clock of the LiDARs; if not, a warning says the remedy.
+
+    Args:
+        what: `IMU_CLOCK` or `GNSS_CLOCK`.
+        rig_offset_s: What the rig file adds to their times [s].
+        report: Has the lags, and receives the warning.
+    """
+    measured_s = clock_offset_s(what, report)
+    ahead_s = measured_s + rig_offset_s
+    if not abs(ahead_s) > _OTHER_S:
+        return True
+    exact_s = known_offset_s(measured_s)
+    about = "" if exact_s != measured_s else "about "
+    report.warn(
+        f"the clock of the {what} is ahead of the LiDAR's by {described(ahead_s)}, by when both "
+        f"were recorded: its samples are not used. Give [{what.lower()}] time_offset_s = "
+        f"{about}{-exact_s:.3f} in the rig file"
+    )
+    return False
+
+
+def _spread(lag_s: np.ndarray) -> float:
+    low, high = np.percentile(lag_s, [10.0, 90.0])
+    return float(high - low)
