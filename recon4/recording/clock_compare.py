@@ -13,7 +13,7 @@ from recon4.recording.report import ImportReport
 
 LIDAR, IMU_CLOCK, GNSS_CLOCK = "LiDAR", "IMU", "GNSS"
 _OTHER_S = 1.0
-"""Clocks that differ by less are not told from messages that travel for longer [s]."""
+"""Clocks that differ by less may be messages that travel for longer [s]."""
 _STEADY_S = 0.5
 """Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
 _LEAST = 3
