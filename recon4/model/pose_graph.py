@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
@@ -162,6 +163,11 @@ class PoseGraph:
     def verdict_counts(self) -> dict[str, int]:
         """Number of edges with each verdict."""
         return {str(v): sum(edge.verdict is v for edge in self.edges) for v in Verdict}
+
+    def loop_verdicts(self) -> Counter[Verdict]:
+        """Number of loop closures, manual ones included, with each verdict."""
+        loops = (EdgeKind.LOOP, EdgeKind.MANUAL)
+        return Counter(edge.verdict for edge in self.edges if edge.kind in loops)
 
     def with_edges(self, edges: tuple[Edge, ...]) -> PoseGraph:
         """The same nodes with other edges."""

@@ -286,15 +286,14 @@ def _plausibility(results: Results) -> list[Finding]:
 def _loops(graph: PoseGraph | None) -> list[Finding]:
     if graph is None:
         return []
-    loops = [e for e in graph.edges if e.kind in {EdgeKind.LOOP, EdgeKind.MANUAL}]
-    accepted = sum(edge.verdict is Verdict.ACCEPTED for edge in loops)
+    verdicts = graph.loop_verdicts()
+    accepted, unverified = verdicts[Verdict.ACCEPTED], verdicts[Verdict.UNVERIFIED]
     out = []
     if accepted:
         out.append(Finding(Level.GOOD, f"{accepted} loop closures accepted."))
     else:
         text = "No loop closure was accepted: the drift of the odometry is not corrected."
         out.append(Finding(Level.WARNING, text))
-    unverified = sum(edge.verdict is Verdict.UNVERIFIED for edge in loops)
     if unverified > accepted:
         text = f"{unverified} loop closures are unverified: they have no alternative path."
         out.append(Finding(Level.WARNING, text))

@@ -10,7 +10,7 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
-from recon4.model.pose_graph import EdgeKind, PoseGraph
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.unused import unused_parts
 from recon4.model.usability import (
     UNOBSERVED_SECONDS,
@@ -180,6 +180,13 @@ def _consistency(facts: Facts2d) -> Iterator[Finding2d]:
             f"{crossing:.0%} of the beams cross walls of the map: places were mapped twice.",
         )
     loops = sum(edge.kind is EdgeKind.LOOP and edge.in_graph for edge in facts.graph.edges)
+    verdicts = facts.graph.loop_verdicts()
+    if verdicts[Verdict.UNVERIFIED] > verdicts[Verdict.ACCEPTED]:
+        yield (
+            Usability.CHECK,
+            f"{verdicts[Verdict.UNVERIFIED]} loop closures are unverified: they have no "
+            f"alternative path; {verdicts[Verdict.ACCEPTED]} are accepted.",
+        )
     if not loops and facts.path_length_m > _LONG_WALK_M:
         yield (
             Usability.CHECK,

@@ -2,11 +2,13 @@
 
 import base64
 import concurrent.futures
+import ipaddress
 import logging
 from urllib.parse import urlsplit
 
 import pytest
 
+from app.access.pairing.routes import is_served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, secure_server
 
@@ -154,6 +156,28 @@ def test_the_qr_code_is_that_link_and_the_certificate_is_shown(server):
     assert link["qr"].startswith("data:image/svg+xml")
     assert "script" not in link["qr"]
     assert len(base64.urlsafe_b64decode(token + "==")) == 16
+
+
+def test_every_link_leads_to_an_address_that_the_server_listens_on(server):
+    with server.signed_in("vera") as laptop:
+        answer = laptop.post("/api/pairing/invitations", json={"role": "viewer"}).json()
+
+    assert [link["host"] for link in answer["links"]] == ["127.0.0.1"]
+
+
+@pytest.mark.parametrize(
+    ("listens_on", "hosts"),
+    [
+        ("0.0.0.0", ["192.0.2.7"]),
+        ("::", ["192.0.2.7", "2001:db8::7"]),
+        ("192.0.2.7", ["192.0.2.7"]),
+        ("127.0.0.1", []),
+    ],
+)
+def test_addresses_of_this_computer_are_offered_only_where_the_server_listens(listens_on, hosts):
+    own = map(ipaddress.ip_address, ("192.0.2.7", "2001:db8::7"))
+
+    assert [str(one) for one in own if is_served(one, listens_on)] == hosts
 
 
 def test_tokens_are_in_no_log_and_no_file(server, caplog):

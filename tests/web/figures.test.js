@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { figures } from "../../web/shared/figures.js";
+import { figures, headline } from "../../web/shared/figures.js";
 
 const NOTE = { date: "2026-11-12", method: "joint", sd_deg: 0.02, sd_mm: 1.1, sd_ms: 0 };
 const RIG = {
@@ -37,4 +37,10 @@ test("an old calibration says so, and one without a date nothing of its age", ()
 
 test("a map of an earlier version says nothing of its rig", () => {
   assert.deepEqual(figures({ points: undefined }), []);
+});
+
+test("a 2-D map has no number of points on its card", () => {
+  assert.deepEqual(headline({ path_length_m: 12, points: 0 }), ["12 m path", "2-D map"]);
+  assert.deepEqual(headline({ path_length_m: 12 }), ["12 m path", "2-D map"]);
+  assert.deepEqual(headline({ path_length_m: 12, points: 9 }), ["12 m path", "9 points"]);
 });

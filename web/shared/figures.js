@@ -40,5 +40,6 @@ export const figures = (summary) =>
 /** The caption below a project's name. */
 export function headline(summary) {
   if (summary.path_length_m == null) return [];
-  return [`${summary.path_length_m.toFixed(0)} m path`, `${count(summary.points)} points`];
+  const path = `${summary.path_length_m.toFixed(0)} m path`;
+  return summary.points ? [path, `${count(summary.points)} points`] : [path, "2-D map"];
 }

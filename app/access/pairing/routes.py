@@ -137,7 +137,7 @@ def invite(new: NewInvitation, request: Request, server: Server, *, who: Who) ->
     _with_login(server)
     token = server.access.pairings.invite(who, new.role)
     audit(request, "invite phone", new.role)
-    links = [_link(host, request, token) for host in _hosts(request)]
+    links = [_link(host, request, token) for host in _hosts(request, server.settings.host)]
     return InvitationView(links=links, seconds=INVITATION_S, role=new.role)
 
 
@@ -203,13 +203,26 @@ def _note_failure(request: Request, server: Server, why: str) -> None:
     log.add("nobody", address(request), action="pair phone", what=why, outcome="failed")
 
 
-def _hosts(request: Request) -> list[str]:
-    """Host names under which a phone reaches this computer, the likeliest first."""
+def _hosts(request: Request, listens_on: str) -> list[str]:
+    """Host names under which a phone reaches this server, the likeliest first.
+
+    Args:
+        request: Its own host name reached the server.
+        listens_on: Address of the server; ``0.0.0.0`` is each IPv4 address, ``::`` each address.
+    """
     asked = request.url.hostname or ""
-    own = sorted(one for one in own_addresses() if not ipaddress.ip_address(one).is_loopback)
+    addresses = map(ipaddress.ip_address, own_addresses())
+    own = sorted(
+        str(one) for one in addresses if not one.is_loopback and is_served(one, listens_on)
+    )
     if asked in LOOPBACK or asked.startswith("127."):
         return own or [asked]
     return [asked, *(one for one in own if one != asked)]
+
+
+def is_served(address: ipaddress.IPv4Address | ipaddress.IPv6Address, listens_on: str) -> bool:
+    """Whether a server that listens on an address is reached at another one of this computer."""
+    return listens_on in ("::", str(address)) or (listens_on == "0.0.0.0" and address.version == 4)
 
 
 def _link(host: str, request: Request, token: str) -> PairingLink:

@@ -1,0 +1,50 @@
+"""The verdict on a 2-D map names what nothing confirms."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
+from recon4.model.import_notes import ImportNotes
+from recon4.model.pose_graph import EdgeKind, Verdict
+from recon4.model.usability import Usability
+from recon4.slam2d.steps import empty_steps
+from recon4.slam2d.verdict import Facts2d, judge
+from tests.project_builder import loop_walk, verified_graph
+
+
+def facts(verdict):
+    """A map without fault whose loop closures all have one verdict."""
+    graph = verified_graph(loop_walk())
+    edges = tuple(
+        replace(edge, verdict=verdict) if edge.kind is EdgeKind.LOOP else edge
+        for edge in graph.edges
+    )
+    steps = empty_steps(graph.t_ns)
+    return Facts2d(
+        scans=Scan2dFigures(scans=len(graph), beams=360, odometry=True),
+        imported=ImportNotes(),
+        odometry=Odometry2dFigures(scans=len(graph), lost=0, keyframes=9, searched=0, resets=0),
+        map=Map2dFigures(
+            cell_m=0.05, size=(10, 10), free_m2=1.0, crossing_ratio=0.0, largest_sd_m=0.01
+        ),
+        steps=replace(steps, weak_sd_m=np.zeros(len(graph))),
+        poses=np.zeros((len(graph), 3)),
+        graph=graph.with_edges(edges),
+        path_length_m=20.0,
+    )
+
+
+@pytest.mark.parametrize(
+    ("verdict", "usability", "words"),
+    [
+        (Verdict.ACCEPTED, Usability.GOOD, ""),
+        (Verdict.UNVERIFIED, Usability.CHECK, "loop closures are unverified"),
+    ],
+)
+def test_loop_closures_that_no_alternative_path_confirms_are_said(verdict, usability, words):
+    found = judge(facts(verdict))
+
+    assert found.usability is usability
+    assert words in " ".join(found.reasons)
