@@ -29,9 +29,12 @@ from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import CLOUD, IMU, Bag, BagMessage, BagTopic
 from recon4.recording.head_angles import HeadAngles
+from recon4.recording.mount_check import compare_mounts
+from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.range_units import LaserUnit, line_factor
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
+from recon4.recording.transform_messages import has_frames
 
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
 JOINTS = "sensor_msgs/msg/JointState"
@@ -92,6 +95,16 @@ class LineRecording:
         found = {row: self._lines} | ({self._laser_row: self._scans} if self._scans else {})
         sensors = [replace(s, topic=found.get(k, s.topic)) for k, s in enumerate(rig.sensors)]
         self.rig = replace(rig, sensors=tuple(sensors))
+        self._check_mounts()
+
+    def _check_mounts(self) -> None:
+        """Compare the rig with the transforms of the bag."""
+        if not has_frames(self.topics):
+            return
+        with Bag(self._paths, ImportReport()) as bag:
+            mounts = read_mounts(bag, [self._scans, self.imu_topic], self._report)
+        samples = SampleTopics(imu=self.imu_topic)
+        compare_mounts(self.rig, samples, mounts, report=self._report)
 
     @property
     def lines_topic(self) -> str:

@@ -30,6 +30,8 @@ MAX_TRANSFORMS = 10_000
 """Pairs of frames; the largest robots have some hundred."""
 MAX_MESSAGES = 20_000
 """Messages of one kind that are read: some minutes of the transforms of a robot that moves."""
+MAX_READ = 200_000
+"""Transforms of one topic that are read, however they are spread over messages."""
 MAX_DESCRIPTIONS = 20
 _LONGEST_M = 100.0
 """A part of a robot is not farther from another one [m]."""
@@ -161,19 +163,22 @@ class _Statements:
         self, name: str, messages: Iterator[Any], *, last: bool
     ) -> dict[_Pair, _Statement]:
         found: dict[_Pair, _Statement] = {}
-        for content in messages:
-            for one in content.transforms:
-                numbers = _numbers(one.transform)
-                pair = self._pair(name, (one.header.frame_id, one.child_frame_id), numbers)
-                if pair is None:
-                    continue
-                if pair in found:
-                    _repeat(found[pair], numbers, last=last)
-                elif len(found) + len(self._stated) < MAX_TRANSFORMS:
-                    found[pair] = _Statement(numbers)
-                else:
-                    self._report.count("transforms_beyond_limit")
-                    self._report.derive(f"{name}: expected at most {MAX_TRANSFORMS} transforms")
+        every = (one for content in messages for one in content.transforms)
+        for number, one in enumerate(every):
+            if number >= MAX_READ:
+                self._report.derive(f"{name}: its first {MAX_READ} transforms are read")
+                break
+            numbers = _numbers(one.transform)
+            pair = self._pair(name, (one.header.frame_id, one.child_frame_id), numbers)
+            if pair is None:
+                continue
+            if pair in found:
+                _repeat(found[pair], numbers, last=last)
+            elif len(found) + len(self._stated) < MAX_TRANSFORMS:
+                found[pair] = _Statement(numbers)
+            else:
+                self._report.count("transforms_beyond_limit")
+                self._report.derive(f"{name}: expected at most {MAX_TRANSFORMS} pairs of frames")
         return found
 
     def _pair(self, name: str, pair: _Pair, numbers: _Numbers) -> _Pair | None:

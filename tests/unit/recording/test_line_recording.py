@@ -8,15 +8,19 @@ import pytest
 from recon4.errors import ConfigError, EmptyRecording, RecordingError, UnknownFormat
 from recon4.model.laser_scans import LaserScans
 from recon4.model.rig import load_rig
+from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.info import describe
 from recon4.recording.ingest import ingest
+from recon4.recording.open import open_recording
+from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
 from tests.laser_rows import rows_of, with_times
+from tests.robot_bags import mount
 
 START_NS = 1_700_000_000_000_000_000
 LINE_NS = 10_000_000
@@ -120,6 +124,45 @@ def test_a_missing_2d_laser_is_a_warning(tmp_path):
 
     assert load_laser_scans(tmp_path / "out") is None
     assert any("laser2d" in text for text in store.report["warnings"])
+
+
+@pytest.mark.parametrize("roll_deg", [0.0, 180.0])
+def test_transforms_that_contradict_the_rig_are_named(tmp_path, roll_deg):
+    """In the rig the laser is 35 cm above the IMU, and as level."""
+    with open_line_bag(tmp_path / "bag") as bag:
+        t_ns = START_NS + LINE_NS * np.arange(310, dtype=np.int64)
+        bag.head("/profiler/head", t_ns, 1e-9 * (t_ns - START_NS))
+        bag.scans("/profiler/line", line_scans(300))
+        bag.scans("/laser2d/scan", line_scans(30))
+        bag.imu(ImuSamples(t_ns, np.zeros((310, 3)), np.tile([0.0, 0.0, 9.81], (310, 1))))
+        write_transform(bag, "imu", "laser2d", mount(-0.05, z=0.35, roll=roll_deg))
+
+    rig, report = open_with_report(tmp_path / "bag")
+
+    assert rig.name == "wuerzburg"
+    assert len(report.warnings) == (roll_deg > 0)
+    if roll_deg:
+        assert "mount of IMU relative to laser2d" in report.warnings[0]
+        assert "180.0°" in report.warnings[0]
+
+
+def write_transform(bag, parent, child, T):
+    types, kind = bag._store.types, "tf2_msgs/msg/TFMessage"
+    x, y, z, w = T.quat_xyzw()
+    stated = types["geometry_msgs/msg/TransformStamped"](
+        header=bag._header(START_NS, parent),
+        child_frame_id=child,
+        transform=types["geometry_msgs/msg/Transform"](
+            translation=types["geometry_msgs/msg/Vector3"](*(float(v) for v in T.t)),
+            rotation=types["geometry_msgs/msg/Quaternion"](x=x, y=y, z=z, w=w),
+        ),
+    )
+    bag._write("/tf_static", kind, START_NS, message=types[kind](transforms=[stated]))
+
+
+def open_with_report(path):
+    report = ImportReport()
+    return open_recording([path], None, settings=IngestSettings(), report=report).rig, report
 
 
 def test_lines_out_of_order_are_counted(tmp_path):

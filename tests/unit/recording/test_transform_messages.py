@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
+from recon4.recording import transform_messages
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.urdf import fixed_joints
 from recon4.recording.report import ImportReport
@@ -185,3 +186,16 @@ def test_cycles_and_more_transforms_than_any_robot_has_end(tmp_path):
     assert frames.connected(["n0", "n50"])
     assert len(frames.contradictions()) == 1
     assert report.counts["transforms_beyond_limit"] == 1003
+
+
+def test_a_flood_of_repeated_transforms_ends(tmp_path, monkeypatch):
+    monkeypatch.setattr(transform_messages, "MAX_READ", 100)
+    path = bag_path(tmp_path, "db3")
+    with RobotBag(path, "db3") as bag:
+        for k in range(60):
+            bag.tf(("base_link", "lidar", mount(0.01 * k)), ("base_link", "imu", mount(1)))
+
+    frames, report = frames_of(path)
+
+    assert_mount(frames.T_a_b("base_link", "lidar"), mount(0.49))
+    assert "its first 100 transforms are read" in report.derived[0]
