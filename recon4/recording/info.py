@@ -23,7 +23,7 @@ from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_ca
 from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
-from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
+from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum
 from recon4.recording.info_records import RecordingInfo, SensorInfo
@@ -166,6 +166,7 @@ def _gaps(name: str, t_ns: Times) -> list[TimeGap]:
 
 def _topic_line(topic: BagTopic, seconds: float) -> str:
     names = {IMU: "IMU", NAVSATFIX: "GNSS positions", ODOMETRY: "poses (kept for comparison)"}
+    names |= dict.fromkeys(TRANSFORMS, "transforms between frames")
     rate = f", {topic.messages / seconds:.1f} a second" if seconds > 0 else ""
     return (
         f"{topic.name}: {names.get(topic.type, f'{topic.type}, not read')}, {topic.messages}{rate}"

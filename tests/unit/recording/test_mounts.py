@@ -170,6 +170,7 @@ def test_several_lidars_are_mounted_as_the_transforms_say(tmp_path):
     text = "\n".join(describe(path).lines())
     assert "mount of the LiDAR /rear/points from /tf_static: base_link -> rear xyz -0.300" in text
     assert "rig:" not in text
+    assert "/tf_static: transforms between frames" in text
 
 
 def test_transforms_win_over_a_preset_chosen_by_names(tmp_path):
