@@ -16,7 +16,13 @@ def _scans(
 ) -> Scan2dFigures:
     from recon4.slam2d.stage import import_scans
 
-    return import_scans(recordings, context.out, T_body_laser=mount, progress=context.progress)
+    return import_scans(
+        recordings,
+        context.out,
+        settings=context.settings.ingest,
+        T_body_laser=mount,
+        progress=context.progress,
+    )
 
 
 def mount_input(rig: Rig | None) -> Input | None:
@@ -49,7 +55,7 @@ def _map(context: StageContext, *, scans: Path, odometry: Path, graph: Path) -> 
     return build_map(artifacts, context.out, settings=context.settings, progress=context.progress)
 
 
-SCANS_2D = Stage("scans_2d", 4, (), _scans, Scan2dFigures)
+SCANS_2D = Stage("scans_2d", 5, ("ingest",), _scans, Scan2dFigures)
 ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d", "hector"), _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 1, ("slam2d", "loops2d"), _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 1, ("slam2d", "grid2d"), _map, Map2dFigures)

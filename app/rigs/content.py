@@ -43,12 +43,14 @@ def content_of(rig: Rig) -> RigContent:
             rpy_deg=rpy_deg(rig.T_body_imu.R),
             time_offset_s=rig.imu_time_offset_s,
             port=rig.imu_port,
+            topic=visible(rig.imu_topic),
         ),
         gnss=GnssContent(
             lever_arm_m=_triple(rig.p_body_antenna),
             time_offset_s=rig.gnss_time_offset_s,
             port=rig.gnss_port,
             serial=visible(rig.gnss_serial),
+            topic=visible(rig.gnss_topic),
         ),
     )
 
@@ -72,6 +74,8 @@ def rig_of(content: RigContent) -> Rig:
         imu_port=content.imu.port,
         gnss_port=content.gnss.port,
         gnss_serial=content.gnss.serial.strip(),
+        imu_topic=content.imu.topic.strip(),
+        gnss_topic=content.gnss.topic.strip(),
     )
 
 

@@ -74,6 +74,8 @@ class ImuContent(RigPart):
     time_offset_s: Number = 0.0
     port: Port
     """UDP port of its datagrams; 0 = none."""
+    topic: Name = Field(default="", max_length=LONGEST_TEXT)
+    """Topic in a bag; empty = chosen by content."""
 
 
 class GnssContent(RigPart):
@@ -86,6 +88,8 @@ class GnssContent(RigPart):
     """UDP port of its datagrams; 0 = none."""
     serial: Name = Field(default="", max_length=LONGEST_TEXT)
     """Serial device and baud rate; empty = none."""
+    topic: Name = Field(default="", max_length=LONGEST_TEXT)
+    """Topic in a bag; empty = chosen by content."""
 
 
 class RigContent(RigPart):

@@ -40,8 +40,8 @@ _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "kind", "head_topic",
     "head_rate_deg_s", "beams",
 }  # fmt: skip
-_IMU_KEYS = _MOUNTING_KEYS
-_GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial"}
+_IMU_KEYS = _MOUNTING_KEYS | {"topic"}
+_GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial", "topic"}
 _SD_KEYS = ("sd_deg", "sd_mm", "sd_ms")
 _OPTIONAL_SD_KEYS = ("sd_beam_deg", "sd_beam_mm", "sd_antenna_mm", "sd_gnss_ms")
 _MAX_HEAD_DEG_S = 3600.0
@@ -125,6 +125,10 @@ class Rig:
     """UDP port of the GNSS receiver's datagrams; 0 = none."""
     gnss_serial: str = ""
     """Serial device of the receiver, for example ``/dev/ttyUSB0:115200``; empty = none."""
+    imu_topic: str = ""
+    """Topic of the IMU in a bag; empty = chosen by content."""
+    gnss_topic: str = ""
+    """Topic of the GNSS receiver in a bag; empty = chosen by content."""
     calibration: RigCalibration | None = None
     """None = not known."""
 
@@ -202,6 +206,8 @@ def parse_rig(text: str, *, where: str) -> Rig:
         imu_port=imu.port(IMU_PORT),
         gnss_port=gnss.port(GNSS_PORT),
         gnss_serial=gnss.text("serial"),
+        imu_topic=imu.text("topic"),
+        gnss_topic=gnss.text("topic"),
         calibration=_calibration(table.get("calibration"), f"{where}: calibration"),
     )
 
@@ -245,10 +251,12 @@ def format_rig(rig: Rig) -> str:
         lines += format_beams(sensor.beams)
     lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
+    lines += [f"topic = {_quoted(rig.imu_topic)}"] if rig.imu_topic else []
     lines += ["", "[gnss]"]
     lines += [f"lever_arm_m = {_floats(rig.p_body_antenna)}"]
     lines += [f"time_offset_s = {rig.gnss_time_offset_s!r}", f"port = {rig.gnss_port}"]
     lines += [f"serial = {_quoted(rig.gnss_serial)}"] if rig.gnss_serial else []
+    lines += [f"topic = {_quoted(rig.gnss_topic)}"] if rig.gnss_topic else []
     lines += [""]
     if rig.calibration:
         c = rig.calibration

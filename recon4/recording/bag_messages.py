@@ -149,6 +149,16 @@ def imu_row(message: Any) -> tuple[float, ...]:
     return *turns, *forces
 
 
+def turns_row(message: Any) -> tuple[float, ...]:
+    """The angular rates alone of a ``sensor_msgs/Imu``."""
+    return *imu_row(message)[:3], *_NOTHING
+
+
+def forces_row(message: Any) -> tuple[float, ...]:
+    """The accelerations alone of a ``sensor_msgs/Imu``."""
+    return *_NOTHING, *imu_row(message)[3:]
+
+
 def join_imu(t_ns: Times, rows: NDArray[np.float64]) -> ImuSamples:
     """Samples of rows of `imu_row`."""
     return ImuSamples(t_ns, rows[:, :3], rows[:, 3:])

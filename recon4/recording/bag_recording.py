@@ -20,9 +20,7 @@ from recon4.recording.bag_messages import (
     SampleBatch,
     cloud_table,
     fix_row,
-    imu_row,
     join_fixes,
-    join_imu,
     join_poses,
     pose_row,
     stamp_clock,
@@ -32,19 +30,28 @@ from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.formats.bags import (
     CLOUD,
-    IMU,
-    NAVSATFIX,
-    ODOMETRY,
     SCAN,
     Bag,
     BagMessage,
     BagTopic,
 )
+from recon4.recording.lidar_choice import is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.stamps import StampClock
+from recon4.recording.topic_choice import (
+    FIX_KIND,
+    ODOMETRY_KIND,
+    Named,
+    choose_imu,
+    choose_topic,
+    imu_batches,
+    named_fixes,
+    named_imu,
+    require_topic,
+)
 from recon4.recording.velodyne.data_packets import PacketDecoder
 from recon4.recording.velodyne.models import likely_model
 from recon4.settings import IngestSettings
@@ -78,10 +85,14 @@ class BagRecording:
         with Bag(paths, report) as bag:
             self.seconds = bag.seconds
             self.topics = bag.topics
-            self.streams = lidar_streams(bag, report)
-            self.imu_topic = most_messages(self.topics, IMU, report)
-            self.fix_topic = most_messages(self.topics, NAVSATFIX, report)
+            self.streams = lidar_streams(bag, rig, settings, report=report)
             lidars = [stream.topic for stream in self.streams]
+            beside = [topic for topic in bag.topics if topic.name in lidars]
+            self.imu = choose_imu(bag, named_imu(rig, settings), report, lidars=beside)
+            self.imu_topic = self.imu.topic
+            self.fix_topic = choose_topic(bag, named_fixes(rig, settings), FIX_KIND, report=report)
+            by_setting = Named(settings.odometry_topic)
+            self.odometry_topic = choose_topic(bag, by_setting, ODOMETRY_KIND, report=report)
             mounts = read_mounts(bag, [*lidars, self.imu_topic, self.fix_topic], report)
         if not self.streams:
             names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[:_NAMES_LISTED])
@@ -89,7 +100,6 @@ class BagRecording:
             raise EmptyRecording(f"{paths[0].name}: no LiDAR data; topics: {names}")
         samples = SampleTopics(self.imu_topic, self.fix_topic)
         self.rig = mounted_rig(rig, self.streams, samples, mounts=mounts, report=report)
-        self.odometry_topic = most_messages(self.topics, ODOMETRY, report)
 
     def read(self) -> Iterator[Item]:
         """Stream the bag once; messages of one topic are in order of time."""
@@ -100,9 +110,9 @@ class BagRecording:
 
     def _read(self, bag: Bag) -> Iterator[Item]:
         lidars = self._lidars(bag)
-        imu, fix = (stamp_clock(bag, topic) for topic in (self.imu_topic, self.fix_topic))
+        fix = stamp_clock(bag, self.fix_topic)
         samples = {
-            self.imu_topic: SampleBatch(imu_row, join_imu, self._report, kind="imu", stamps=imu),
+            **imu_batches(bag, self.imu, self._report),
             self.fix_topic: SampleBatch(fix_row, join_fixes, self._report, kind="gnss", stamps=fix),
             self.odometry_topic: SampleBatch(pose_row, join_poses, self._report),
         }
@@ -151,13 +161,48 @@ class BagRecording:
         return found
 
 
-def lidar_streams(bag: Bag, report: ImportReport) -> list[Stream]:
-    """LiDARs of a bag: raw packets if there are any, else clouds."""
+def lidar_streams(
+    bag: Bag, rig: Rig | None, settings: IngestSettings, *, report: ImportReport
+) -> list[Stream]:
+    """LiDARs of an open bag: raw packets if there are any, else clouds as measured.
+
+    Args:
+        bag: The bag.
+        rig: Topics that it names are read, whatever they hold.
+        settings: Names the only LiDAR to read, if it is chosen.
+        report: Receives which clouds are not read, and why.
+
+    Raises:
+        ConfigError: If the settings name a topic that is not there.
+    """
     scans = [t for t in bag.topics if t.type == SCAN and t.messages]
-    clouds = [t for t in bag.topics if t.type == CLOUD and t.messages]
-    if scans and clouds:
-        report.derive(f"raw packets are read, not {', '.join(t.name for t in clouds)}")
-    return [Stream(t.name, _model(bag, t), topic=t.name) for t in (scans or clouds)]
+    clouds = [t for t in bag.topics if is_cloud(t)]
+    if settings.lidar_topic:
+        there = [t.name for t in (*scans, *clouds)]
+        require_topic(settings.lidar_topic, there, "ingest.lidar_topic")
+        scans = [t for t in scans if t.name == settings.lidar_topic]
+        clouds = [t for t in clouds if t.name == settings.lidar_topic]
+    if scans:
+        if clouds:
+            report.derive(f"raw packets are read, not {', '.join(t.name for t in clouds)}")
+        return [Stream(t.name, _model(bag, t), topic=t.name) for t in scans]
+    by_rig = {sensor.topic for sensor in rig.sensors} if rig is not None else set()
+    found = judged_clouds(bag, clouds, by_rig) if clouds else []
+    used = [one for one in found if not one.why_not]
+    if len(used) < len(found):
+        names = ", ".join(one.topic.name for one in used)
+        others = ", ".join(f"{one.topic.name} ({one.why_not})" for one in found if one.why_not)
+        report.derive(f"LiDAR: {names} is read, not {others}")
+    return [
+        Stream(
+            one.topic.name,
+            _model(bag, one.topic),
+            topic=one.topic.name,
+            frame=one.frame,
+            points=one.points,
+        )
+        for one in used
+    ]
 
 
 def _model(bag: Bag, topic: BagTopic) -> str:
@@ -181,19 +226,6 @@ def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
     stamps_us = payloads[:, 1200:1204].copy().view("<u4")[:, 0].astype(np.int64)
     interval_s = float(np.median(np.diff(stamps_us))) * 1e-6
     return likely_model(int(payloads[0, 1205]), interval_s, int(payloads[0, 1204])) or "generic"
-
-
-def most_messages(topics: Sequence[BagTopic], kind: str, report: ImportReport) -> str:
-    """The topic of a kind with the most messages; empty = none."""
-    found = sorted((t for t in topics if t.type == kind and t.messages), key=_messages)
-    if len(found) > 1:
-        others = ", ".join(t.name for t in found[:-1])
-        report.derive(f"{found[-1].name} is used, not {others}")
-    return found[-1].name if found else ""
-
-
-def _messages(topic: BagTopic) -> int:
-    return topic.messages
 
 
 def _period_ns(topic: BagTopic, seconds: float) -> int:

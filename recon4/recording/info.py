@@ -68,7 +68,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     if kind in planar or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path)):
         if kind is RecordingKind.PCAP:
             info = replace(info, kind=SCAN_CAPTURE)
-        return _describe_laser2d(info, path)
+        return _describe_laser2d(info, path, settings)
     if kind not in RECORDINGS:
         return _describe_samples(info, path, kind)
     report = ImportReport()
@@ -79,7 +79,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
     else:
-        info = _describe_bag(info, path, report)
+        info = _describe_bag(info, path, settings, report=report)
     return _with_head(info, path, settings, report=report)
 
 
@@ -91,9 +91,11 @@ def _size(path: Path) -> int:
 # -- bags
 
 
-def _describe_bag(info: RecordingInfo, path: Path, report: ImportReport) -> RecordingInfo:
+def _describe_bag(
+    info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
+) -> RecordingInfo:
     with Bag(bag_paths(path), report) as bag:
-        streams = lidar_streams(bag, report)
+        streams = lidar_streams(bag, None, settings, report=report)
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
         whole = info.bytes <= WHOLE_BYTES
@@ -176,9 +178,11 @@ def _topic_line(topic: BagTopic, seconds: float) -> str:
 # -- 2-D lasers
 
 
-def _describe_laser2d(info: RecordingInfo, path: Path) -> RecordingInfo:
+def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings) -> RecordingInfo:
     report = ImportReport()
-    scans = mounted_scans(read_laser_recording([path], report), None, report=report).scans
+    scans = mounted_scans(
+        read_laser_recording([path], report, settings=settings), None, report=report
+    ).scans
     first, last = int(scans.t_ns[0]), int(scans.t_ns[-1])
     returns = float(np.isfinite(scans.range_m).mean())
     sensor = SensorInfo(

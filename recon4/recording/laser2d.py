@@ -15,17 +15,18 @@ from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.trajectory import Trajectory
 from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row
-from recon4.recording.bag_recording import most_messages
-from recon4.recording.formats.bags import CLOUD, ODOMETRY, SCAN, Bag
+from recon4.recording.formats.bags import CLOUD, LASER_SCAN, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize
 from recon4.recording.laser_mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.laser_tables import is_laser_table, read_laser_table
-from recon4.recording.line_recording import LASER_SCAN, profiler_rig
+from recon4.recording.line_recording import profiler_rig
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
 from recon4.recording.scan_messages import ScanCollector
+from recon4.recording.topic_choice import LASER_KIND, ODOMETRY_KIND, Named, choose_topic
+from recon4.settings import IngestSettings
 
 Rows = NDArray[np.intp]
 
@@ -57,20 +58,26 @@ def is_laser2d(path: Path) -> bool:
         return LASER_SCAN in kinds and not kinds & {CLOUD, SCAN} and not has_lines
 
 
-def read_laser2d(paths: Sequence[Path], report: ImportReport) -> LaserScans:
+def read_laser2d(
+    paths: Sequence[Path], report: ImportReport, *, settings: IngestSettings | None = None
+) -> LaserScans:
     """Read the scans of a recording as the laser measured them, see `read_laser_recording`."""
-    return read_laser_recording(paths, report).scans
+    return read_laser_recording(paths, report, settings=settings).scans
 
 
-def read_laser_recording(paths: Sequence[Path], report: ImportReport) -> LaserRecording:
+def read_laser_recording(
+    paths: Sequence[Path], report: ImportReport, *, settings: IngestSettings | None = None
+) -> LaserRecording:
     """Read the scans of a recording, and how the laser is mounted; repairs are counted.
 
     Args:
         paths: A CARMEN log, or bags or capture files that belong together.
         report: Receives counts, repairs and warnings.
+        settings: Name the topics of a bag; None = chosen by content.
 
     Raises:
         RecordingError: If it cannot be read or has no scan.
+        ConfigError: If the settings name a topic that is not there.
     """
     if paths[0].is_file() and is_carmen(paths[0]):
         if len(paths) > 1:
@@ -84,7 +91,7 @@ def read_laser_recording(paths: Sequence[Path], report: ImportReport) -> LaserRe
     if recognize(paths[0]) is RecordingKind.PCAP:
         files = [file for path in paths for file in pcap_files(path)]
         return LaserRecording(in_meters(read_scan_captures(files, report), report))
-    scans, mount = _of_bags(paths, report)
+    scans, mount = _of_bags(paths, settings or IngestSettings(), report=report)
     return LaserRecording(in_meters(scans, report), mount, of_robot=True)
 
 
@@ -173,15 +180,18 @@ def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
 # -- bags
 
 
-def _of_bags(paths: Sequence[Path], report: ImportReport) -> tuple[LaserScans, LaserMount | None]:
+def _of_bags(
+    paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
+) -> tuple[LaserScans, LaserMount | None]:
     files = [file for path in paths for file in bag_paths(path)]
     collector = ScanCollector(0, report)
     poses = SampleBatch(pose_row, join_poses, report)
     parts: list[LaserScans] = []
     walks: list[Trajectory] = []
     with Bag(files, report) as bag:
-        topic = most_messages(bag.topics, LASER_SCAN, report)
-        odometry = most_messages(bag.topics, ODOMETRY, report)
+        named = Named(settings.laser_topic), Named(settings.odometry_topic)
+        topic = choose_topic(bag, named[0], LASER_KIND, report=report)
+        odometry = choose_topic(bag, named[1], ODOMETRY_KIND, report=report)
         mount = mount_of_bag(bag, topic, odometry, report=report)
         for message in bag.messages({topic, odometry} - {""}):
             report.count("messages")

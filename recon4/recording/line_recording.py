@@ -16,27 +16,20 @@ from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_messages import (
-    SampleBatch,
-    cloud_table,
-    imu_row,
-    join_imu,
-    stamp_clock,
-    stamp_ns,
-)
-from recon4.recording.bag_recording import most_messages
+from recon4.recording.bag_messages import cloud_table, stamp_ns
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
-from recon4.recording.formats.bags import CLOUD, IMU, Bag, BagMessage, BagTopic
+from recon4.recording.formats.bags import CLOUD, LASER_SCAN, Bag, BagMessage, BagTopic
 from recon4.recording.head_angles import HeadAngles
 from recon4.recording.mount_check import compare_mounts
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.range_units import LaserUnit, line_factor
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
+from recon4.recording.topic_choice import choose_imu, imu_batches, named_imu
 from recon4.recording.transform_messages import has_frames
+from recon4.settings import IngestSettings
 
-LASER_SCAN = "sensor_msgs/msg/LaserScan"
 JOINTS = "sensor_msgs/msg/JointState"
 LineItem = Shots | LineScans | LaserScans | ImuSamples
 WUERZBURG = "wuerzburg"
@@ -69,8 +62,15 @@ class LineRecording:
     The points are in the frame of the profiler, which does not turn with the head.
     """
 
-    def __init__(self, paths: Sequence[Path], rig: Rig, *, report: ImportReport) -> None:
-        """Find the topics.
+    def __init__(
+        self,
+        paths: Sequence[Path],
+        rig: Rig,
+        *,
+        report: ImportReport,
+        settings: IngestSettings | None = None,
+    ) -> None:
+        """Find the topics; the settings name that of the IMU, else rig or content decide.
 
         Raises:
             RecordingError: If the bag cannot be read.
@@ -80,6 +80,8 @@ class LineRecording:
         self._paths, self._report = paths, report
         with Bag(paths, report) as bag:
             self.seconds, self.topics = bag.seconds, bag.topics
+            named = named_imu(rig, settings or IngestSettings())
+            self._imu = choose_imu(bag, named, report)
         row = rig.row_of("profiler")
         assert row is not None
         self._row, self._laser_row = row, rig.row_of("laser2d")
@@ -91,7 +93,6 @@ class LineRecording:
             )
         self._head = self._find_head(rig, row)
         self._scans = self._find_scans(rig)
-        self.imu_topic = most_messages(self.topics, IMU, report)
         found = {row: self._lines} | ({self._laser_row: self._scans} if self._scans else {})
         sensors = [replace(s, topic=found.get(k, s.topic)) for k, s in enumerate(rig.sensors)]
         self.rig = replace(rig, sensors=tuple(sensors))
@@ -105,6 +106,11 @@ class LineRecording:
             mounts = read_mounts(bag, [self._scans, self.imu_topic], self._report)
         samples = SampleTopics(imu=self.imu_topic)
         compare_mounts(self.rig, samples, mounts, report=self._report)
+
+    @property
+    def imu_topic(self) -> str:
+        """Topic of the IMU; empty = there is none."""
+        return self._imu.topic
 
     @property
     def lines_topic(self) -> str:
@@ -131,11 +137,10 @@ class LineRecording:
         sensor = self.rig.sensors[self._row]
         head = HeadAngles(sensor.name, sensor.head_rate_rad_s, self._report)
         lines = LineAssembly(self._row, self.rig, head, report=self._report)
-        stamps = stamp_clock(bag, self.imu_topic)
-        imu = SampleBatch(imu_row, join_imu, self._report, kind="imu", stamps=stamps)
+        imu = imu_batches(bag, self._imu, self._report)
         scans = ScanCollector(self._offset_ns(self._laser_row), self._report)
         unit = LaserUnit(self._report)
-        wanted = {self._lines, self._head, self._scans, self.imu_topic} - {""}
+        wanted = {self._lines, self._head, self._scans, *imu} - {""}
         for message in bag.messages(wanted):
             self._report.count("messages")
             content = bag.decode(message)
@@ -148,10 +153,11 @@ class LineRecording:
             elif message.topic == self._scans:
                 yield from map(unit.in_meters, scans.push(message, content))
             else:
-                yield from imu.push(message, content)
+                yield from imu[message.topic].push(message, content)
         yield from lines.flush()
         yield from map(unit.in_meters, scans.flush())
-        yield from imu.flush()
+        for batch in imu.values():
+            yield from batch.flush()
         head.finish(self.seconds)
 
     def _push_angle(self, head: HeadAngles, message: BagMessage, content: Any) -> None:

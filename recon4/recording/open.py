@@ -108,7 +108,7 @@ def open_recording(
     files = [f for path in paths for f in bag_paths(path)]
     with_profiler = _profiler_rig(files, rig, report)
     if with_profiler is not None:
-        lines = LineRecording(files, with_profiler, report=report)
+        lines = LineRecording(files, with_profiler, report=report, settings=settings)
         return Recording(kind, lines.rig, lines.read, lines.seconds)
     bag = BagRecording(files, rig, settings=settings, report=report)
     return Recording(kind, bag.rig, bag.read, bag.seconds)

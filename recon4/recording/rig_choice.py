@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
@@ -26,6 +27,10 @@ class Stream:
     address: str = ""
     port: int = 0
     topic: str = ""
+    frame: str = ""
+    """Frame of its points in a bag; empty = not known."""
+    points: int = 0
+    """Usual number of points of a cloud; 0 = not known."""
 
 
 def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = "") -> Rig:
@@ -49,11 +54,42 @@ def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = ""
             f"no rig given: {_names(streams)} match the preset {thesis.name}, its mounting is used"
         )
         return thesis
-    raise ConfigError(
-        f"{len(streams)} LiDARs ({_names(streams)}) and no rig: how they are mounted is unknown"
-        f"{f' ({why})' * bool(why)}; "
-        "give a rig file (--rig FILE, or --rig 4recon for the rig of the thesis)"
+    raise ConfigError(_remedy(streams, why))
+
+
+def _remedy(streams: Sequence[Stream], why: str) -> str:
+    """What to do with several LiDARs of unknown mounting: ready to paste."""
+    lines = [
+        f"{len(streams)} LiDARs and no rig: how they are mounted is unknown"
+        f"{f' ({why})' * bool(why)}:"
+    ]
+    lines += [f"  {_described(stream)}" for stream in streams]
+    if streams[0].topic:
+        lines.append(f"Read one of them with: --set ingest.lidar_topic={streams[0].topic}")
+    lines.append(
+        "Or give a rig file (--rig FILE; --rig 4recon is the rig of the thesis) with their mounts "
+        "in the body, x forward, y left, z up; a sensor that is not listed is not read:"
     )
+    lines += ['name = "my rig"', *(line for s in streams for line in _skeleton(s))]
+    return "\n".join(lines)
+
+
+def _described(stream: Stream) -> str:
+    frame = f", frame {stream.frame}" * bool(stream.frame)
+    return f"{stream.label} {stream.model}{frame}" + f", {stream.points} points" * bool(
+        stream.points
+    )
+
+
+def _skeleton(stream: Stream) -> list[str]:
+    """The part of a rig file of a sensor; its mount is to be filled in."""
+    name = stream.topic.strip("/").replace("/", "_") or f"lidar_{stream.port}"
+    lines = ["[[sensor]]", f"name = {json.dumps(name)}", f"model = {json.dumps(stream.model)}"]
+    if stream.topic:
+        lines.append(f"topic = {json.dumps(stream.topic)}")
+    else:
+        lines += [f"address = {json.dumps(stream.address)}", f"port = {stream.port}"]
+    return [*lines, "xyz_m = [0.0, 0.0, 0.0]", "rpy_deg = [0.0, 0.0, 0.0]"]
 
 
 def single_rig(stream: Stream) -> Rig:

@@ -13,15 +13,16 @@ from typing import Any
 from recon4.errors import UnknownFormat
 from recon4.model.rig import LASER2D_PORT, Rig
 from recon4.recording.bag_messages import imu_row, stamp_ns
-from recon4.recording.bag_recording import most_messages
-from recon4.recording.formats.bags import IMU, Bag
+from recon4.recording.formats.bags import LASER_SCAN, Bag
 from recon4.recording.kinds import BAGS, RecordingKind, bag_paths, recognize
 from recon4.recording.laser2d import is_laser2d, read_laser2d
-from recon4.recording.line_recording import LASER_SCAN, LineRecording, profiler_rig
+from recon4.recording.line_recording import LineRecording, profiler_rig
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import IMU_HEADER
 from recon4.recording.scan_datagrams import encode_head, encode_scan, encode_scans_row
 from recon4.recording.scan_messages import usual_angles
+from recon4.recording.topic_choice import choose_imu, named_imu
+from recon4.settings import IngestSettings
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +68,7 @@ def datagrams_of_scans(recording: Path, rig: Rig | None) -> Iterator[ScanDatagra
     scans = _of_laser(recording, rig)
     if not is_bag or rig is None or not rig.imu_port:
         return scans
-    return heapq.merge(scans, _of_imu(recording, rig.imu_port), key=lambda sent: sent.t_ns)
+    return heapq.merge(scans, _of_imu(recording, rig), key=lambda sent: sent.t_ns)
 
 
 def _line_rig(recording: Path, rig: Rig | None) -> Rig | None:
@@ -84,14 +85,16 @@ def _of_laser(recording: Path, rig: Rig | None) -> Iterator[ScanDatagram]:
         yield ScanDatagram(t_ns, port, encode_scans_row(scans, k))
 
 
-def _of_imu(recording: Path, port: int) -> Iterator[ScanDatagram]:
+def _of_imu(recording: Path, rig: Rig) -> Iterator[ScanDatagram]:
     with Bag(bag_paths(recording), ImportReport()) as bag:
-        topic = most_messages(bag.topics, IMU, bag.report)
+        topic = choose_imu(bag, named_imu(rig, IngestSettings()), bag.report).topic
         for message in bag.messages({topic} - {""}):
             content = bag.decode(message)
             if content is not None:
                 t_ns = stamp_ns(content.header.stamp)
-                yield ScanDatagram(message.t_ns, port, _imu_text(t_ns or message.t_ns, content))
+                yield ScanDatagram(
+                    message.t_ns, rig.imu_port, _imu_text(t_ns or message.t_ns, content)
+                )
 
 
 def _of_lines(recording: Path, rig: Rig) -> Iterator[ScanDatagram]:

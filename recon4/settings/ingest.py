@@ -25,6 +25,17 @@ class IngestSettings:
     """The clouds are undistorted already: all points are of the cloud's stamp. For terrestrial
     laser scans, and for clouds that another program has deskewed."""
 
+    lidar_topic: str = ""
+    """Topic of the only LiDAR of a bag that is read. Empty = chosen by content, or by the rig."""
+    imu_topic: str = ""
+    """Topic of the IMU in a bag. Empty = that of the rig file, else chosen by content."""
+    gnss_topic: str = ""
+    """Topic of the positions in a bag. Empty = that of the rig file, else chosen by content."""
+    odometry_topic: str = ""
+    """Topic of the poses in a bag. Empty = chosen by content."""
+    laser_topic: str = ""
+    """Topic of the 2-D laser in a bag of one alone. Empty = chosen by content."""
+
     def __post_init__(self) -> None:
         require(0.0 <= self.rate_hz <= 100.0, "rate_hz must be 0 to 100", self.rate_hz)
         require(

@@ -19,7 +19,7 @@ from recon4.progress import Progress
 from recon4.recording.laser2d import read_laser_recording
 from recon4.recording.laser_mount import MountedScans, mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
-from recon4.settings import Settings
+from recon4.settings import IngestSettings, Settings
 from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
@@ -41,13 +41,19 @@ _CHECKED_SCANS = 1000
 
 
 def import_scans(
-    recordings: Sequence[Path], out: Path, *, T_body_laser: SE3 | None = None, progress: Progress
+    recordings: Sequence[Path],
+    out: Path,
+    *,
+    settings: IngestSettings,
+    T_body_laser: SE3 | None = None,
+    progress: Progress,
 ) -> Scan2dFigures:
     """Read a recording of a 2-D laser into a folder; the scans as seen from above.
 
     Args:
         recordings: A CARMEN log, or bags.
         out: Receives the scans and ``report.json``.
+        settings: Name the topics of a bag.
         T_body_laser: Mount of the laser by a rig file; None = as the recording states.
         progress: Receives the warnings.
 
@@ -57,7 +63,9 @@ def import_scans(
     report = ImportReport()
     progress.start("Reading", len(recordings), "files")
     by_rig = mount_of_rig(T_body_laser) if T_body_laser is not None else None
-    mounted = mounted_scans(read_laser_recording(recordings, report), by_rig, report=report)
+    mounted = mounted_scans(
+        read_laser_recording(recordings, report, settings=settings), by_rig, report=report
+    )
     scans = _in_true_order(mounted, report)
     _report_gaps(scans, report)
     report.warn_of_losses()
@@ -67,16 +75,7 @@ def import_scans(
     writer.close()
     for text in report.warnings:
         progress.event(Warned(text=text))
-    write_json(
-        out / "report.json",
-        {
-            "recordings": [path.name for path in recordings],
-            "outcome": report.outcome,
-            "counts": dict(sorted(report.counts.items())),
-            "derived": report.derived,
-            "warnings": report.warnings,
-        },
-    )
+    _write_report(out / "report.json", recordings, report)
     return Scan2dFigures(
         scans=len(scans),
         beams=int(np.median(scans.beams)),
@@ -85,6 +84,19 @@ def import_scans(
         warnings=tuple(report.warnings),
         tilt_deg=round(mounted.tilt_deg, 2),
         doubts=tuple(report.doubts),
+    )
+
+
+def _write_report(path: Path, recordings: Sequence[Path], report: ImportReport) -> None:
+    write_json(
+        path,
+        {
+            "recordings": [recording.name for recording in recordings],
+            "outcome": report.outcome,
+            "counts": dict(sorted(report.counts.items())),
+            "derived": report.derived,
+            "warnings": report.warnings,
+        },
     )
 
 

@@ -86,7 +86,7 @@ export class RigForm extends HTMLElement {
           "IMU",
           this.#triple(imu, "xyz_m", { label: "Position", of: XYZ, path: "imu", ...CM }),
           this.#triple(imu, "rpy_deg", { label: "Rotation", of: RPY, path: "imu", ...DEGREES }),
-          this.#numbers(imu, "imu"),
+          this.#numbers(imu, "imu", this.#text(imu, "topic", { label: "Topic", path: "imu.topic" })),
         ),
         this.#group(
           "GNSS antenna",
@@ -95,6 +95,7 @@ export class RigForm extends HTMLElement {
             gnss,
             "gnss",
             this.#text(gnss, "serial", { label: "Serial line", path: "gnss.serial" }),
+            this.#text(gnss, "topic", { label: "Topic", path: "gnss.topic" }),
           ),
         ),
         make("label", {}, make("span", {}, "Note: what changed and why"), this.#note),

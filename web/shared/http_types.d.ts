@@ -348,6 +348,7 @@ export interface GnssContent {
   time_offset_s?: number;
   port: number;
   serial?: string;
+  topic?: string;
 }
 
 export interface GroupView {
@@ -361,6 +362,7 @@ export interface ImuContent {
   rpy_deg?: [number, number, number];
   time_offset_s?: number;
   port: number;
+  topic?: string;
 }
 
 export interface Inputs {

@@ -14,6 +14,7 @@ from recon4.recording.laser2d import read_laser_recording
 from recon4.recording.laser_mount import mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
+from recon4.settings import IngestSettings
 from recon4.slam2d.stage import import_scans
 from tests.builders import T0_NS, bag_path
 from tests.planar_walks import cast, furnished_room
@@ -174,7 +175,13 @@ def test_odometry_that_turns_against_the_stated_mount_is_a_contradiction(tmp_pat
     (tmp_path / "out").mkdir()
     wrong = mount(0.2, 0.1, 0.3, roll=180, yaw=30)
 
-    figures = import_scans([path], tmp_path / "out", T_body_laser=wrong, progress=Silent())
+    figures = import_scans(
+        [path],
+        tmp_path / "out",
+        settings=IngestSettings(),
+        T_body_laser=wrong,
+        progress=Silent(),
+    )
 
     assert "this contradicts what is stated: the rig file" in figures.doubts[0]
     assert "turn against the odometry" in figures.doubts[0]

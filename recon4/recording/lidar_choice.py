@@ -1,0 +1,142 @@
+"""Which clouds of a bag are of LiDARs as measured: not maps, filtered copies or depth cameras."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.errors import RecordingError
+from recon4.recording.bag_messages import cloud_table
+from recon4.recording.cloud_points import RING_FIELDS, TIME_FIELDS, find_field
+from recon4.recording.formats.bags import CLOUD, ODOMETRY, Bag, BagTopic
+from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
+from recon4.recording.topic_contents import Contents, read_contents
+
+_WIDEST_CAMERA_RAD = np.deg2rad(65.0)
+"""Half of the widest view of a depth camera."""
+_COLORS = ("rgb", "rgba", "bgr", "r", "red")
+_INTENSITIES = ("intensity", "reflectivity", "signal", "i")
+_FEWER = 0.9
+_SAME_STAMPS = 0.5
+_ROBOT_FRAMES = {*BODY_FRAMES, "body", "base", "vehicle"}
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CloudTopic:
+    """A topic of clouds, and why it is none of a LiDAR as measured."""
+
+    topic: BagTopic
+    frame: str
+    points: int
+    """Usual number of points."""
+    fields: frozenset[str]
+    stamps: frozenset[int]
+    """Of the first messages [ns]."""
+    is_camera: bool = False
+    why_not: str = ""
+    """Empty = it is read."""
+
+    @property
+    def detail(self) -> int:
+        """How much of what a LiDAR measures is there: times and rings of the points."""
+        return sum(bool(find_field(self.fields, names)) for names in (TIME_FIELDS, RING_FIELDS))
+
+
+def judged_clouds(bag: Bag, clouds: Sequence[BagTopic], keep: Collection[str]) -> list[CloudTopic]:
+    """The clouds of an open bag, and which of them are not read and why.
+
+    Args:
+        bag: An open bag.
+        clouds: Its topics of clouds; the only one is read, whatever it is.
+        keep: Topics that a rig file names: they are read.
+    """
+    odometry = [t for t in bag.topics if t.type == ODOMETRY]
+    contents = read_contents(bag, [*clouds, *odometry])
+    fixed = {contents.pop(t.name).frame for t in odometry} - {""}
+    found = [_described(one) for one in contents.values()]
+    reasons = {one.topic.name: _why_not(one, found, fixed) for one in found}
+    reasons |= dict.fromkeys(keep, "")
+    if not any(not reasons[one.topic.name] for one in found):
+        reasons = {}
+    return [
+        CloudTopic(
+            one.topic, one.frame, one.points, one.fields, one.stamps, one.is_camera,
+            reasons.get(one.topic.name, ""),
+        )
+        for one in found
+    ]  # fmt: skip
+
+
+def _described(found: Contents) -> CloudTopic:
+    counts = [int(m.width) * int(m.height) for m in found.messages]
+    names = frozenset(f.name.lower() for m in found.messages[:1] for f in m.fields)
+    return CloudTopic(
+        topic=found.topic,
+        frame=found.frame,
+        points=int(np.median(counts)) if counts else 0,
+        fields=names,
+        stamps=frozenset(found.t_ns),
+        is_camera=_is_camera(found, names),
+    )
+
+
+def _why_not(one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[str]) -> str:
+    """Why a cloud is not as a LiDAR measured it; empty = it is."""
+    if not one.points:
+        return "no points in its first minute"
+    better = [o for o in others if o is not one and o.points and not o.is_camera]
+    in_detail = [o.topic.name for o in better if o.detail > one.detail]
+    if one.is_camera:
+        return "of a depth camera: a narrow view without rings and times of points"
+    if last_name(one.frame) in WORLD_FRAMES or one.frame in fixed:
+        return f"in the fixed frame {one.frame}: points that a program has placed"
+    if in_detail and last_name(one.frame) in _ROBOT_FRAMES:
+        return f"in the frame of the robot, {one.frame}, with less detail than {in_detail[0]}"
+    for other in better:
+        if other.frame == one.frame and _is_copy(one, other):
+            return f"a copy of {other.topic.name} with less in it"
+    return ""
+
+
+def _is_copy(one: CloudTopic, other: CloudTopic) -> bool:
+    """Whether a cloud is made of another one: the same stamps, and less detail or fewer points."""
+    same = len(one.stamps & other.stamps) >= _SAME_STAMPS * min(len(one.stamps), len(other.stamps))
+    less = (one.detail, one.points) < (other.detail, _FEWER * other.points)
+    return same and less and one.detail <= other.detail
+
+
+def _is_camera(found: Contents, fields: Collection[str]) -> bool:
+    """Whether clouds are of a camera: a narrow view, and colors or an image without intensities."""
+    kinds: Mapping[str, tuple[str, ...]] = {"time": TIME_FIELDS, "ring": RING_FIELDS}
+    if any(find_field(fields, names) for names in kinds.values()):
+        return False
+    image = any(int(m.height) > 1 for m in found.messages)
+    colored = bool(find_field(fields, _COLORS))
+    plain = image and not find_field(fields, _INTENSITIES)
+    return (colored or plain) and _is_narrow(found)
+
+
+def _is_narrow(found: Contents) -> bool:
+    for message in found.messages:
+        try:
+            table = cloud_table(message)
+        except RecordingError:
+            continue
+        if not {"x", "y", "z"} <= set(table):
+            continue
+        p = np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
+        p = p[np.isfinite(p).all(axis=1) & p.any(axis=1)]
+        if not len(p):
+            continue
+        rays = p / np.linalg.norm(p, axis=1, keepdims=True)
+        middle = rays.mean(axis=0)
+        cosine = rays @ middle / max(float(np.linalg.norm(middle)), 1e-9)
+        return bool(np.percentile(cosine, 5) > np.cos(_WIDEST_CAMERA_RAD))
+    return False
+
+
+def is_cloud(topic: BagTopic) -> bool:
+    """Whether a topic has clouds."""
+    return topic.type == CLOUD and topic.messages > 0
