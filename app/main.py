@@ -23,6 +23,7 @@ from app.access.login.login_service import Access, open_access
 from app.access.middleware.origin import OriginMiddleware
 from app.access.pairing import routes as pairing_routes
 from app.access.people import Permission, allow_anonymous, needs
+from app.access.restoring import access_copies, restore_access
 from app.access.routes_check import check_declared
 from app.access.startup_notice import startup_notice
 from app.compute_pool.pool import ComputePool
@@ -79,6 +80,7 @@ from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
 from recon4 import __version__
+from recon4.errors import StoreError
 from recon4.review.trusted_keys import STATE, record_own_key
 from recon4.verify import open_state, seal_state
 
@@ -194,11 +196,16 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     for problem in open_state(settings.state):
         log.error("%s: %s; recon4 verify %s lists all", STATE, problem, settings.root)
     record_own_key(settings.state)
-    parts = app.state.parts = _open_parts(settings)
+    try:
+        parts = app.state.parts = _open_parts(settings)
+    except StoreError as error:
+        app.state.refusal = error  # `AnnouncingServer` raises it; uvicorn logs a traceback instead
+        yield
+        return
     app.state.metrics.follow(parts)
     watching = [
         asyncio.create_task(parts.supervisor.run()),
-        asyncio.create_task(maintain(parts.jobs, parts.uploads, parts.trash, slices=parts.slices)),
+        asyncio.create_task(_maintain(parts)),
         asyncio.create_task(rotate_logs(settings.state, parts.jobs, parts.current_capture)),
         asyncio.create_task(parts.current_capture.adopt()),
     ]
@@ -213,6 +220,7 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
 
 
 def _open_parts(settings: ServerSettings) -> ServerParts:
+    notice = restore_access(settings.state)
     jobs = JobStore(settings.state / "jobs.sqlite")
     pool = ComputePool(settings.state / "compute", children=child_register(settings))
     checks = ApprovalChecks()
@@ -228,7 +236,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
     )
     return ServerParts(
         settings=settings,
-        access=open_access(settings.state, login=settings.lan),
+        access=open_access(settings.state, login=settings.lan, notice=notice),
         projects=projects,
         thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
         trash=Trash(settings.root, settings.state / "trash", kept_s=settings.trash_retention_s),
@@ -246,6 +254,11 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         rig_uses=uses,
         calibrations=Calibrations(projects, uses),
     )
+
+
+async def _maintain(parts: ServerParts) -> None:
+    copies = access_copies(parts.settings.state)
+    await maintain(parts.jobs, parts.uploads, parts.trash, slices=parts.slices, people=copies)
 
 
 async def _close_parts(parts: ServerParts) -> None:

@@ -14,6 +14,7 @@ from app.live.current_capture import CurrentCapture
 from app.logs import rotate_grown
 from app.projects.trash import Trash
 from app.slices.store import Slices
+from app.state_copies import StateCopies
 from app.uploads.store import UploadStore
 
 log = logging.getLogger(__name__)
@@ -23,11 +24,14 @@ LOG_ROTATION_INTERVAL_S = 20.0
 """Interval of checking the logs of workers, viewers and captures [s]."""
 
 
-async def maintain(jobs: JobStore, uploads: UploadStore, trash: Trash, *, slices: Slices) -> None:
+async def maintain(
+    jobs: JobStore, uploads: UploadStore, trash: Trash, *, slices: Slices, people: StateCopies
+) -> None:
     """Sweep and back up every hour, until cancelled; a failure is logged and retried."""
     while True:
         for task in (
             jobs.back_up,
+            lambda: people.make(renew=True),
             lambda: uploads.sweep(time.time()),
             lambda: trash.sweep(time.time()),
             lambda: slices.exports.sweep(time.time()),

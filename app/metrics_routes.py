@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hmac
 import os
+import re
 import secrets
 from pathlib import Path
 
@@ -18,19 +19,21 @@ from app.metrics import Metrics
 
 TOKEN_FILE = "metrics.token"
 TOKEN_BYTES = 32
+TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
+"""Of that many bytes."""
 
 router = APIRouter()
 
 
 def make_metrics_token(state: Path, *, renew: bool = False) -> str:
-    """The token for ``/metrics``, created if there is none yet.
+    """The token for ``/metrics``, created if there is none yet, or it is damaged.
 
     Args:
         state: Folder of the server's own files; exists.
         renew: Replace the one there is.
     """
     path = state / TOKEN_FILE
-    if renew or not path.exists():
+    if renew or not _read_token(path):
         fresh = path.with_suffix(".new")
         fresh.unlink(missing_ok=True)
         descriptor = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
@@ -39,7 +42,7 @@ def make_metrics_token(state: Path, *, renew: bool = False) -> str:
             file.flush()
             os.fsync(file.fileno())
         fresh.replace(path)
-    return path.read_text("ascii").strip()
+    return _read_token(path)
 
 
 def may_read_metrics(request: Request) -> None:
@@ -73,8 +76,14 @@ def _has_token(request: Request) -> bool:
     state: Path = request.app.state.parts.settings.state
     if scheme.lower() != "bearer" or not given:
         return False
+    token = _read_token(state / TOKEN_FILE)
+    return bool(token) and hmac.compare_digest(given.strip().encode(), token.encode())
+
+
+def _read_token(path: Path) -> str:
+    """The token in a file; empty = there is none, or it is cut or damaged: then nothing fits."""
     try:
-        token = (state / TOKEN_FILE).read_text("ascii").strip()
-    except FileNotFoundError:
-        return False
-    return len(token) > TOKEN_BYTES and hmac.compare_digest(given.strip().encode(), token.encode())
+        token = path.read_text("ascii").strip()
+    except (OSError, UnicodeDecodeError):
+        return ""
+    return token if TOKEN.fullmatch(token) else ""

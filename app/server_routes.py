@@ -35,7 +35,7 @@ class ServerView(BaseModel):
 def read_server(server: Server) -> ServerView:
     """Version of the server, disk space, and notices for users."""
     disk = shutil.disk_usage(server.settings.root)
-    notices = [*filter(None, [server.jobs.notice]), *server.uploads.notices()]
+    notices = [*filter(None, [server.access.notice, server.jobs.notice]), *server.uploads.notices()]
     notices += unlisted_notices(server.settings.root)
     if disk.free < max(LITTLE_ROOM * disk.total, server.settings.free_disk_reserve_bytes):
         notices.append(

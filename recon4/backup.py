@@ -22,7 +22,6 @@ import time
 from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import asdict, dataclass
-from itertools import pairwise
 from pathlib import Path, PurePosixPath
 
 import msgspec
@@ -38,9 +37,10 @@ from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_t
 from recon4.store.sqlite_files import connect, connect_read_only
 
 FORMAT = 1
-SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls")
-"""Files of the server that are secret, or say whom it trusts: keys, password hashes, sessions.
-Backed up and restored only on request, so that a foreign backup makes no key trusted."""
+SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls", "metrics.token", "backups/access-")
+"""Beginnings of the names of files that are secret, or say whom the server trusts: keys, password
+hashes, sessions, the token of the metrics; also copies of them and damaged ones. Backed up and
+restored only on request, so that a foreign backup makes no key and no token valid."""
 _DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
 _TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
@@ -243,7 +243,9 @@ def _is_beside(name: str) -> bool:
 
 def _is_secret(name: str) -> bool:
     """Whether it belongs to `SECRETS`, of whatever server below the root."""
-    return any(a == STATE and b in SECRETS for a, b in pairwise(PurePosixPath(name).parts))
+    parts = PurePosixPath(name).parts
+    below = ("/".join(parts[k + 1 :]) for k, part in enumerate(parts) if part == STATE)
+    return any(rest.startswith(SECRETS) for rest in below)
 
 
 def _copy_all(

@@ -29,6 +29,7 @@ from recon4.store.seal import (
 STATE_FILES = (
     "jobs.sqlite",
     "access.sqlite",
+    "metrics.token",
     SIGNING_KEY,
     TRUSTED_KEYS,
     "tls",

@@ -12,8 +12,10 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import sqlalchemy as sa
+from alembic.util import CommandError
 
 from app.databases import migrate, open_engine
+from recon4.errors import StoreError
 
 METADATA = sa.MetaData()
 PEOPLE = sa.Table(
@@ -69,12 +71,20 @@ AUDIT = sa.Table(
 
 
 def open_database(path: Path) -> sa.Engine:
-    """Open the database; create it or migrate it to the newest schema."""
+    """Open the database; create it or migrate it to the newest schema.
+
+    Raises:
+        StoreError: If it is of another kind or version, or cannot be read.
+    """
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
     path.chmod(0o600)
     engine = open_engine(path)
-    with writing(engine) as connection:
-        migrate(connection, Path(__file__).parent)
+    try:
+        with writing(engine) as connection:
+            migrate(connection, Path(__file__).parent)
+    except (sa.exc.DatabaseError, CommandError) as error:
+        engine.dispose()
+        raise StoreError(f"{path} cannot be used: {getattr(error, 'orig', error)}") from error
     return engine
 
 

@@ -116,6 +116,7 @@ def metrics_token(
 def access_of(root: Path) -> Iterator[Access]:
     """Open the access database below a folder of projects, to change it."""
     from app.access.login.login_service import open_access
+    from app.access.restoring import check_access
     from app.errors import AppError
     from app.network.listen import make_state
     from app.settings import ServerSettings
@@ -123,6 +124,7 @@ def access_of(root: Path) -> Iterator[Access]:
 
     settings = ServerSettings(root=root)
     make_state(settings)
+    check_access(settings.state)
     with state_change(settings.state, "access.sqlite"):
         access = open_access(settings.state, login=True)
         try:

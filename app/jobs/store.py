@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import logging
 from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
@@ -13,11 +14,13 @@ from sqlalchemy.exc import IntegrityError
 
 from app.databases import migrate, open_engine
 from app.errors import Conflict, NotFound
-from app.jobs.backups import Backups
 from app.jobs.model import Inputs, Job, JobState
+from app.state_copies import StateCopies
 from recon4.errors import StoreError
 from recon4.names import visible
 from recon4.store.json_files import parse_object
+
+log = logging.getLogger(__name__)
 
 METADATA = sa.MetaData()
 JOBS = sa.Table(
@@ -42,8 +45,8 @@ class JobStore:
     """All jobs, finished ones too."""
 
     def __init__(self, path: Path) -> None:
-        self._backups = Backups(path)
-        self.notice = self._backups.repair()
+        self._copies = StateCopies(path)
+        self.notice = _restore(self._copies)
         """Notice for users: set when the file was damaged, else empty."""
         self._engine = open_engine(path)
         with self._engine.begin() as connection:
@@ -55,7 +58,7 @@ class JobStore:
 
     def back_up(self) -> None:
         """Make today's backup, unless there is one."""
-        self._backups.make()
+        self._copies.make()
 
     def add(self, job: Job) -> Job:
         """Append a job to the queue.
@@ -123,6 +126,26 @@ class JobStore:
     def _select(self, query: sa.Select[Any]) -> list[Job]:
         with self._engine.connect() as connection:
             return [_job(row) for row in connection.execute(query).mappings()]
+
+
+def _restore(copies: StateCopies) -> str:
+    """Replace a damaged queue; a notice about what was restored and lost, or empty."""
+    restored = copies.restore()
+    if restored is None:
+        return ""
+    kept = f"; it is kept as {restored.aside}" if restored.aside else ""
+    replaced = (
+        f"The backup of {restored.day} replaces it: jobs started later are no longer listed."
+        if restored.day
+        else "There is no intact backup, so the list is empty."
+    )
+    notice = (
+        f"The list of jobs was damaged ({restored.damage}){kept}. {replaced} Projects and "
+        "recordings are unchanged; start such a job again and it continues after its last "
+        "finished stage."
+    )
+    log.error(notice)
+    return notice
 
 
 def _row(job: Job) -> dict[str, object]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ipaddress
+import logging
 import os
 import ssl
 from dataclasses import dataclass
@@ -16,6 +17,8 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from recon4.errors import ConfigError
 from recon4.store.atomic import write_text
+
+log = logging.getLogger(__name__)
 
 VALID = timedelta(days=820)
 """Phones refuse more than 825 days."""
@@ -81,19 +84,45 @@ def made_certificate(folder: Path, names: frozenset[str]) -> Certificate:
         names: Host names and addresses to put in a new one.
     """
     found = Certificate(folder / "certificate.pem", folder / "key.pem", own=False)
-    if not _lasts(found):
+    damage = _damage(found)
+    if damage:
+        _put_aside(found, damage)
+    if damage or not _lasts(found):
         folder.mkdir(mode=0o700, exist_ok=True)
         _make(found, names)
     return found
 
 
 def _lasts(certificate: Certificate) -> bool:
-    try:
-        end = _read(certificate.chain).not_valid_after_utc
-        certificate.context()
-    except (OSError, ValueError, ConfigError):
+    if not certificate.chain.exists():
         return False
+    end = _read(certificate.chain).not_valid_after_utc
     return end - datetime.now(UTC) > RENEWED_BEFORE_END
+
+
+def _damage(certificate: Certificate) -> str:
+    """Why a made certificate cannot be used; empty = it can, or there is none yet."""
+    if not certificate.chain.exists() and not certificate.key.exists():
+        return ""
+    try:
+        _read(certificate.chain)
+        certificate.context()
+    except (OSError, ValueError, ConfigError) as error:
+        return str(error)
+    return ""
+
+
+def _put_aside(certificate: Certificate, damage: str) -> None:
+    stamp = f"{datetime.now(UTC):%Y%m%dT%H%M%S%f}"
+    for path in (certificate.chain, certificate.key):
+        if path.exists():
+            path.rename(path.with_name(f"{path.name}.damaged-{stamp}"))
+    log.error(
+        "the certificate was damaged (%s); it is kept as *.damaged-%s, and a new one was made: "
+        "its fingerprint is another, and every browser asks again",
+        damage,
+        stamp,
+    )
 
 
 def _make(certificate: Certificate, names: frozenset[str]) -> None:

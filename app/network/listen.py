@@ -40,12 +40,20 @@ class AnnouncingServer(uvicorn.Server):
         super().__init__(config)
         self._ready = ready
         self._table = connections_of(config)
+        self._state = getattr(config.app, "state", None)
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Start, accept connections, then call ``ready``."""
+        """Start, accept connections, then call ``ready``.
+
+        Raises:
+            StoreError: If the application has a reason not to start.
+        """
         await self.lifespan.startup()
         if self.lifespan.should_exit:
             sys.exit(uvicorn.config.STARTUP_FAILURE)
+        if (refusal := getattr(self._state, "refusal", None)) is not None:
+            await self.lifespan.shutdown()
+            raise refusal
         self.servers = []
         for listener in sockets or ():
             acceptor = Acceptor(

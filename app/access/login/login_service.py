@@ -19,6 +19,7 @@ from app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
 from app.access.login.sessions import Sessions, hash_of, new_token
 from app.access.pairing.grants import Pairings
 from app.access.people import Role
+from app.access.restoring import ACCESS_FILE
 from app.errors import Refused, TooMany, WrongPassword
 
 WRONG = "wrong name or password"
@@ -144,6 +145,8 @@ class Access:
     logins: LoginService
     engine: sa.Engine
     pairings: Pairings
+    notice: str = ""
+    """Notice for users: set when the database was damaged, else empty."""
     rates: dict[str, TokenBuckets] = field(default_factory=dict)
     """Action -> rate limit per person."""
 
@@ -152,21 +155,28 @@ class Access:
         self.engine.dispose()
 
 
-def open_access(state: Path, *, login: bool, clock: Callable[[], float] = time.time) -> Access:
+def open_access(
+    state: Path, *, login: bool, notice: str = "", clock: Callable[[], float] = time.time
+) -> Access:
     """Open the access database in the server's state folder.
 
     Args:
         state: The folder; exists.
         login: Whether people have to sign in.
+        notice: What was restored (`restore_access`); noted in the audit log.
         clock: Seconds since 1970, for sessions and the log.
     """
-    engine = open_database(state / "access.sqlite")
+    engine = open_database(state / ACCESS_FILE)
     accounts, sessions = Accounts(engine), Sessions(engine, clock)
+    log = AuditLog(engine, clock)
+    if notice:
+        log.add("server", "", action="restore people", what=notice)
     return Access(
         login=login,
+        notice=notice,
         accounts=accounts,
         sessions=sessions,
-        log=AuditLog(engine, clock),
+        log=log,
         logins=LoginService(accounts, sessions),
         engine=engine,
         pairings=Pairings(),
