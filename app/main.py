@@ -17,7 +17,7 @@ from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.routing import BaseRoute
 
 from app import error_responses, metrics_routes, server_routes
-from app.access import admin_routes
+from app.access import admin_routes, key_routes
 from app.access.login import routes as login_routes
 from app.access.login.login_service import Access, open_access
 from app.access.middleware.origin import OriginMiddleware
@@ -133,7 +133,14 @@ def _routes() -> list[BaseRoute]:
     A process that starts many servers (the tests) would spend a fifth of a second on each.
     """
     router = APIRouter()
-    for part in (login_routes, admin_routes, pairing_routes, project_routes, job_routes):
+    for part in (
+        login_routes,
+        admin_routes,
+        key_routes,
+        pairing_routes,
+        project_routes,
+        job_routes,
+    ):
         router.include_router(part.router)
     for part in (choices, server_routes, metrics_routes, reference_routes):
         router.include_router(part.router)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from recon4.review.approval_state import ApprovalState
+
 RESULTS: dict[str, str] = {
     "report.html": "Quality report",
     "map.laz": "Map, LAZ 1.4",
@@ -86,6 +88,8 @@ class ProjectView:
     """Whether there is a map, also a 2-D one, for a thumbnail."""
     summary: dict[str, object]
     """``summary.json`` of the run; empty before."""
+    approval: ApprovalState
+    """Of the files that are offered."""
     problem: str = ""
     """Files of the project that cannot be read, and why; empty = none."""
 
@@ -107,6 +111,8 @@ class ProjectCard:
     """Path length [m]; None before the first run has finished."""
     points: int | None
     """Points of the map; None before the first run has finished."""
+    approval: ApprovalState
+    """Of the files that are offered."""
     usability: str = ""
     """Verdict on the map: good, check or do not use; empty = not known."""
     problem: str = ""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse
 from pydantic import BaseModel, ConfigDict, Field
@@ -19,6 +21,7 @@ from app.network.request_caller import CalledBy
 from app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
 from app.projects.model import MAP_IMAGE, FolderEntry, ProjectCard, ProjectView
 from app.projects.trash import Deleted
+from recon4.review.state import artifact_keys
 
 router = APIRouter(
     prefix="/api",
@@ -33,6 +36,8 @@ REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src
 
 
 LOOK_LIMIT_S = 60.0
+COMPARED_WITHIN_S = 0.3
+"""The page of a project waits this long for the comparison with its signature [s]."""
 
 
 class Rename(BaseModel):
@@ -54,13 +59,17 @@ class Restored(BaseModel):
 @router.get("/projects", summary="Projects")
 def list_projects(server: Server) -> list[ProjectCard]:
     """List all projects, the newest first."""
-    return server.projects.all()
+    root = server.settings.root.resolve()
+    return [
+        replace(card, approval=server.checks.known(root / card.id, card.approval))
+        for card in server.projects.all()
+    ]
 
 
 @router.get("/projects/{project_id}", summary="One project")
 def read_project(project_id: str, server: Server) -> ProjectView:
     """Read a project with its results and finished stages."""
-    return server.projects.get(project_id)
+    return _compared(server, server.projects.get(project_id))
 
 
 @router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename a project")
@@ -70,7 +79,7 @@ def rename_project(
     """Change the display name of a project; its folder and URLs stay. Not while a job runs."""
     server.projects.rename(project_id, new.name.strip())
     audit(request, "rename project", f"{project_id}: {new.name}")
-    return server.projects.get(project_id)
+    return _compared(server, server.projects.get(project_id))
 
 
 @router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete a project")
@@ -163,6 +172,16 @@ async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
     return await caller.wait(
         server.compute_pool.run_background(Lane.INSPECT, terms, inspect_recording, real, beside)
     )
+
+
+def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
+    """A project with the outcome of the comparison of its files with their signature."""
+    found = project.approval
+    if not found.hash:
+        return project
+    root, keys = server.projects.folder(project.id), artifact_keys(project.summary)
+    found = server.checks.compared(root, keys, found, within_s=COMPARED_WITHIN_S)
+    return replace(project, approval=found)
 
 
 def _refuse_while_busy(server: ServerParts, project_id: str) -> None:

@@ -6,13 +6,13 @@ import math
 import os
 import re
 from collections.abc import Callable
-from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
 from app.errors import Conflict, NotFound
 from app.projects.clone import clone_artifacts
 from app.projects.folder_names import free_folder_name
+from app.projects.folder_times import Stamp, iso, stamp_of, weigh
 from app.projects.import_folders import ImportFolders
 from app.projects.model import (
     RESULTS,
@@ -27,9 +27,9 @@ from app.projects.model import (
 from recon4.errors import StoreError
 from recon4.model.usability import Usability
 from recon4.names import visible
+from recon4.review.approval_state import ApprovalState, approval_state, not_valid
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
-from recon4.store.checked import Altered
 from recon4.store.earlier_names import SUMMARY, current_names
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage as StageRow
@@ -37,7 +37,6 @@ from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
 
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-Stamp = tuple[int | None, ...]
 MAX_PROBLEM = 400
 """A longer description of a project's problem is cut [characters]."""
 _LARGE = 1 << 53
@@ -108,17 +107,21 @@ class ProjectStore:
 
         Raises:
             NotFound: If the project, or the file in it, does not exist.
-            Altered: If it was approved and changed since.
+            Altered: If it was approved and changed since, or its approval does not count.
         """
         folder = self.folder(project_id)
         if name not in RESULTS or not _is_result(folder, name):
             raise NotFound(f"project {project_id} has no file {name[:64]!r}")
+        if name == "summary.json":
+            return folder / name
         summary, _ = _summary(folder)
-        if name != "summary.json" and summary.get("approval"):
-            approval = approval_of(folder, artifact_keys(summary))
-            if approval is None:
-                raise Altered("summary.json names an approval that is in no row of the journal")
-            approval.check_issued_file(folder / name)
+        approval = approval_of(folder, artifact_keys(summary))
+        if approval is None:
+            return folder / name
+        stated = summary.get("approval")
+        if not (isinstance(stated, dict) and stated.get("hash") == approval.hash):
+            folder = approval.folder  # it counted, and was not handed out before a crash
+        approval.check_issued_file(folder / name)
         return folder / name
 
     def map_artifact(self, project_id: str) -> Path:
@@ -199,7 +202,7 @@ class ProjectStore:
         if not PROJECT_ID.fullmatch(entry.name) or not entry.is_dir(follow_symlinks=False):
             return None
         folder = Path(entry.path)
-        stamp = _stamp(folder)
+        stamp = stamp_of(folder)
         if stamp[0] is None:
             return None
         kept = self._cards.get(entry.name)
@@ -211,12 +214,12 @@ class ProjectStore:
         facts, problems = _object(folder, "project.json")
         summary, more = _summary(folder)
         stages, most = _stages(folder)
-        size, changed_s = _weigh(folder)
+        size, changed_s = weigh(folder)
         return ProjectView(
             id=folder.name,
             name=_name(facts, folder),
             finished=(folder / "summary.json").exists(),
-            updated=_iso(changed_s),
+            updated=iso(changed_s),
             bytes=size,
             preset=visible(str(facts.get("preset") or "")),
             rig=_name_of(facts.get("rig")),
@@ -225,22 +228,9 @@ class ProjectStore:
             viewable=any(stage.stage in VIEWABLE_STAGES for stage in stages),
             has_map=any(stage.stage == "map" for stage in stages),
             summary=summary,
+            approval=_approval(folder, summary),
             problem="; ".join(filter(None, (problems, more, most))),
         )
-
-
-def _stamp(folder: Path) -> Stamp:
-    """Modification times of the files of a card [ns]; None for a missing one."""
-    return tuple(
-        _changed_ns(folder / name) for name in ("project.json", "summary.json", "artifacts")
-    )
-
-
-def _changed_ns(path: Path) -> int | None:
-    try:
-        return path.stat().st_mtime_ns
-    except OSError:
-        return None
 
 
 def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
@@ -251,15 +241,24 @@ def _read_card(folder: Path, stamp: Stamp) -> ProjectCard:
         id=folder.name,
         name=_name(facts, folder),
         finished=finished,
-        updated=_iso(max(t_ns for t_ns in stamp if t_ns is not None) / 1e9),
+        updated=iso(max(t_ns for t_ns in stamp[:3] if t_ns is not None) / 1e9),
         preset=visible(str(facts.get("preset") or "")),
         rig=_name_of(facts.get("rig")),
         has_map=finished and ("points" in summary or summary.get("map") == "2d"),
         path_length_m=_number(summary.get("path_length_m")),
         points=_whole(summary.get("points")),
+        approval=_approval(folder, summary),
         usability=_usability(summary),
         problem="; ".join(filter(None, (problem, more))),
     )
+
+
+def _approval(folder: Path, summary: dict[str, object]) -> ApprovalState:
+    """State of the approval of the files of a project."""
+    try:
+        return approval_state(folder, artifact_keys(summary))
+    except StoreError as error:
+        return not_valid("Not approved: the approval cannot be read", error)
 
 
 def _usability(summary: dict[str, object]) -> str:
@@ -271,14 +270,6 @@ def _usability(summary: dict[str, object]) -> str:
 
 def _name(facts: dict[str, object], folder: Path) -> str:
     return visible(str(facts.get("name") or folder.name))
-
-
-def _iso(t_s: float) -> str:
-    """UTC, ISO 8601; the start of 1970 for a time out of range."""
-    try:
-        return datetime.fromtimestamp(t_s, UTC).isoformat(timespec="seconds")
-    except (ValueError, OverflowError, OSError):
-        return datetime.fromtimestamp(0, UTC).isoformat(timespec="seconds")
 
 
 def _number(value: Any) -> float | None:
@@ -366,18 +357,3 @@ def _object(folder: Path, name: str) -> tuple[dict[str, object], str]:
 
 def _name_of(rig: Any) -> str:
     return visible(str(rig.get("name", "")) if isinstance(rig, dict) else str(rig or ""))
-
-
-def _weigh(folder: Path) -> tuple[int, float]:
-    """Bytes below a folder, and modification time of its newest file [s]."""
-    size, changed_s = 0, 0.0
-    for parent, _, names in os.walk(folder):
-        for name in names:
-            try:
-                status = os.stat(os.path.join(parent, name), follow_symlinks=False)
-            except FileNotFoundError:
-                continue  # a running job removes files
-            size += status.st_size
-            if not name.startswith("ledger"):  # reading modifies it too
-                changed_s = max(changed_s, status.st_mtime)
-    return size, changed_s

@@ -7,25 +7,18 @@ read again (`recon4.store.checked`). The page gets a response at once, with the 
 from __future__ import annotations
 
 import threading
+from collections.abc import Mapping
 from concurrent.futures import Future, ThreadPoolExecutor, TimeoutError
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
-from typing import Literal
 
 from recon4.errors import Recon4Error
-from recon4.review.approved import Approval
+from recon4.review.approval_state import ApprovalState, altered, approval_state
+from recon4.review.approved import Approval, approval_of
+from recon4.store.checked import Altered
 
 ANSWER_WITHIN_S = 2.0
 """A request waits this long for a comparison [s]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class CheckState:
-    """State of the comparison of an approved map with its signature."""
-
-    state: Literal["checked", "checking", "altered"]
-    message: str = ""
-    """Of ``altered``: which file, what was expected, what was found."""
 
 
 class ApprovalChecks:
@@ -34,41 +27,66 @@ class ApprovalChecks:
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, "approval")
         self._lock = threading.Lock()
-        self._running: dict[tuple[Path, str], Future[CheckState]] = {}
+        self._running: dict[tuple[Path, str], Future[str]] = {}
+        self._altered: dict[tuple[Path, str], str] = {}
 
-    def state(self, root: Path, approval: Approval) -> CheckState:
-        """Compare every byte of the approved files; ``checking`` while that is not finished.
+    def state(
+        self, root: Path, keys: Mapping[str, str], *, within_s: float = ANSWER_WITHIN_S
+    ) -> ApprovalState:
+        """The approval of results, with the outcome of the comparison of every byte.
 
         Args:
             root: The project folder.
-            approval: Approval of its results.
+            keys: Stage -> key of its artifact.
+            within_s: Time to wait; later than that it is ``checking`` [s].
         """
-        key = (root, approval.hash)
+        found = approval_state(root, keys)
+        return self.compared(root, keys, found, within_s=within_s) if found.hash else found
+
+    def compared(
+        self, root: Path, keys: Mapping[str, str], found: ApprovalState, *, within_s: float
+    ) -> ApprovalState:
+        """A state that was read just now, with the outcome of the comparison."""
+        key = (root, found.hash)
         with self._lock:
             run = self._running.get(key)
             if run is None:
-                run = self._running[key] = self._pool.submit(compare, root, approval)
+                run = self._running[key] = self._pool.submit(compare, root, dict(keys))
         try:
-            found = run.result(ANSWER_WITHIN_S)
+            why = run.result(within_s)
         except TimeoutError:
-            return CheckState(state="checking")
+            return replace(found, checking=True)
         with self._lock:
             if self._running.get(key) is run:
                 del self._running[key]  # the next request compares files changed since
-        return found
+            self._altered[key] = why
+        return altered(found, why) if why else found
+
+    def known(self, root: Path, found: ApprovalState) -> ApprovalState:
+        """A state with the outcome of the last comparison, if there was one; nothing is read."""
+        with self._lock:
+            why = self._altered.get((root, found.hash), "") if found.hash else ""
+        return altered(found, why) if why else found
 
     def close(self) -> None:
         """Start no further comparison."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
-def compare(root: Path, approval: Approval) -> CheckState:
-    """Compare the artifacts and the issued files of an approval with what was signed."""
-    evidence = approval.evidence
+def compare(root: Path, keys: Mapping[str, str]) -> str:
+    """Compare artifacts and issued files with what was signed; what differs, empty = nothing."""
     try:
-        for stage, key in approval.artifacts.items():
-            evidence.artifact(stage, root / "artifacts" / key).check_all()
-        approval.check_issued()
+        approval = approval_of(root, keys)
+        if approval is None:
+            raise Altered("the approval is gone")
+        _compare_bytes(root, approval)
     except Recon4Error as error:
-        return CheckState(state="altered", message=str(error))
-    return CheckState(state="checked")
+        return str(error)
+    return ""
+
+
+def _compare_bytes(root: Path, approval: Approval) -> None:
+    evidence = approval.evidence
+    for stage, key in approval.artifacts.items():
+        evidence.artifact(stage, root / "artifacts" / key).check_all()
+    approval.check_issued()

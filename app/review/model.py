@@ -9,7 +9,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from app.names import Note
 from recon4.model.usability import MapVerdict
-from recon4.review.approved import LatestApproval
+from recon4.review.approval_state import ApprovalState
 
 Frame = Annotated[int, Field(ge=0, le=1 << 40)]
 Finite = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
@@ -114,16 +114,6 @@ class MapFacts:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class ApprovalView(LatestApproval):
-    """The newest approval, and whether the files still match its signature."""
-
-    check: Literal["", "checked", "checking", "altered"] = ""
-    """Empty if it does not cover the current results."""
-    altered: str = ""
-    """What differs from the signed files, where it was found out."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class ReviewView:
     """The state of a review."""
 
@@ -146,8 +136,8 @@ class ReviewView:
     """Whether a job is queued or running."""
     may_review: bool
     may_process: bool
-    approval: ApprovalView | None
-    """The newest approval."""
+    approval: ApprovalState
+    """Of the results."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Annotated, TypeVar
 
@@ -24,7 +23,6 @@ from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
 from app.review.model import (
     AlignmentView,
-    ApprovalView,
     Approve,
     Frame,
     MapFacts,
@@ -48,7 +46,7 @@ from recon4.review.approval import (
     signed_figures,
 )
 from recon4.review.approval import approve as sign
-from recon4.review.approved import Approval, approval_of, latest_approval
+from recon4.review.approved import Approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
 from recon4.review.pairs import (
@@ -64,7 +62,6 @@ from recon4.review.preview import Effect
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.review.trusted_keys import SIGNING_KEY, TRUSTED_KEYS, ensure_own_key
-from recon4.store.checked import Altered
 
 T = TypeVar("T")
 
@@ -334,7 +331,7 @@ def _view(project_id: str, server: ServerParts, who: Person) -> ReviewView:
         busy=_busy(project_id, server),
         may_review=who.may(Permission.REVIEW),
         may_process=who.may(Permission.PROCESS),
-        approval=_approval(root, rows, server),
+        approval=server.checks.state(root, artifact_keys(read_summary(root) or {})),
     )
 
 
@@ -350,24 +347,6 @@ def _map_facts(root: Path) -> MapFacts | None:
         warnings=[str(text) for text in summary.get("warnings", [])],
         figures=signed_figures(summary),
     )
-
-
-def _approval(root: Path, rows: Sequence[JournalRow], server: ServerParts) -> ApprovalView | None:
-    """The newest approval, and whether the files still match the signature."""
-    latest = latest_approval(root, rows)
-    if latest is None:
-        return None
-    found = ApprovalView(**asdict(latest))
-    if not found.current:
-        return found
-    try:
-        approval = approval_of(root, artifact_keys(read_summary(root) or {}))
-    except Altered as error:
-        return replace(found, check="altered", altered=str(error))
-    if approval is None:
-        return replace(found, check="altered", altered="the results are of other artifacts")
-    check = server.checks.state(root, approval)
-    return replace(found, check=check.state, altered=check.message)
 
 
 def _busy(project_id: str, server: ServerParts) -> bool:

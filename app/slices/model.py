@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 from app.names import Name
 from recon4.mapping.tiles import Surface
 from recon4.recording.tables.column_names import Meaning, Unit
+from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.limits import MOST_M, ControlLimits
@@ -185,6 +186,8 @@ class SliceExportRequest(SliceView):
     size: Literal["a4", "a3", "a2", "a1"] = "a4"
     scale: int = 0
     flat: bool = False
+    draft: bool = False
+    """Without the approval of the map, whether or not there is one."""
 
 
 class ControlFile(Strict):
@@ -303,8 +306,8 @@ class SliceFacts(BaseModel):
     crs: str
     frame: str
     """Frame, axes and unit, as text."""
-    approval: str
-    """Who approved the map, or `Not approved`."""
+    approval: ApprovalState
+    """Of the map."""
     references: list[ListedReference]
     sources: list[OtherMap]
     """Other maps to compare with."""

@@ -75,7 +75,7 @@ async def read_facts(
     artifacts = await run_in_threadpool(slices.artifacts, project_id, source)
     references = await run_in_threadpool(slices.references, project_id)
     sources = await run_in_threadpool(slices.sources, project_id)
-    approval = await run_in_threadpool(slices.approval_text, project_id, source)
+    approval = await run_in_threadpool(slices.approval, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
     return await caller.wait(
         slices.run_interactive(terms, work.facts, artifacts, references, sources, approval=approval)
@@ -91,7 +91,7 @@ async def slice_image(
     Of the requests of one ``page`` only the latest gets an image; the others get 409.
     """
     slices = server.slices
-    evidence = await run_in_threadpool(slices.evidence, project_id, ask.source)
+    evidence = await run_in_threadpool(slices.evidence_to_show, project_id, ask.source)
     artifacts = await run_in_threadpool(slices.artifacts, project_id, ask.source)
     reference = slices.reference(project_id, ask.reference)
     ask.plane.slice_plane()  # an invalid plane is rejected before the request waits
@@ -220,7 +220,7 @@ async def export(
     """
     asked = _parsed(ask)
     slices = server.slices
-    evidence = await run_in_threadpool(slices.evidence, project_id, asked.source)
+    evidence = await run_in_threadpool(slices.evidence, project_id, asked.source, draft=asked.draft)
     artifacts = await run_in_threadpool(
         slices.approved_artifacts, project_id, asked.source, evidence
     )
@@ -284,14 +284,19 @@ async def control_report(project_id: str, server: Server, caller: CalledBy) -> C
 
 @router.get("/control/report.{ending}", summary="Residuals as a file")
 async def control_file(
-    project_id: str, ending: Literal["csv", "html"], server: Server, *, caller: CalledBy
+    project_id: str,
+    ending: Literal["csv", "html"],
+    server: Server,
+    *,
+    caller: CalledBy,
+    draft: bool = False,
 ) -> Response:
-    """CSV, or a sheet to print and sign; both name the map and its approval."""
+    """CSV, or a sheet to print and sign; both name the map and, except a draft, its approval."""
     slices = server.slices
     artifacts = await run_in_threadpool(slices.artifacts, project_id)
     state = await run_in_threadpool(slices.control, project_id)
     project = await run_in_threadpool(server.projects.get, project_id)
-    evidence = await run_in_threadpool(slices.evidence, project_id)
+    evidence = await run_in_threadpool(slices.evidence, project_id, draft=draft)
     context = ExportContext(project.name, Path(artifacts["map"]).name, evidence)
     terms = slices.terms(project_id, caller.name)
     text = await caller.wait(

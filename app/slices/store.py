@@ -26,10 +26,11 @@ from app.slices.exports import Exports
 from app.slices.model import ControlState, ListedReference, OtherMap, Xyz
 from recon4.bounded import read_text_limited
 from recon4.errors import StoreError
-from recon4.review.approved import Approval, approval_of, approval_of_map
+from recon4.review.approval_state import ApprovalState, approval_state
+from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
 from recon4.review.evidence import Evidence
+from recon4.review.trusted_keys import UnknownSigner
 from recon4.store.atomic import write_json
-from recon4.store.checked import Altered
 from recon4.store.project import read_artifacts, read_stages
 from recon4.store.seal import begin_change, changing, check_sealed, end_change
 
@@ -131,38 +132,50 @@ class Slices:
         ]
         return earlier[:20] + others[:200]
 
-    def evidence(self, project_id: str, source: str = "") -> Evidence | None:
-        """Approval of the requested map and the expected hashes; None = not approved.
+    def evidence(
+        self, project_id: str, source: str = "", *, draft: bool = False
+    ) -> Evidence | None:
+        """Approval of the requested map and the expected hashes; None = not approved, or a draft.
 
         Raises:
-            Altered: If an approval counts but was changed.
+            Altered: If an approval was changed, or does not count.
         """
+        if draft:
+            return None
         _, found = self._approval(project_id, source)
         return found.evidence if found else None
 
-    def approval_text(self, project_id: str, source: str = "") -> str:
-        """Approval of the requested map as text, and the result of the hash check."""
+    def evidence_to_show(self, project_id: str, source: str = "") -> Evidence | None:
+        """As `evidence`; a map whose approval does not count is shown as one without.
+
+        Raises:
+            Altered: If an approval was changed.
+        """
+        try:
+            return self.evidence(project_id, source)
+        except (UnknownSigner, NotInJournal):
+            return None
+
+    def approval(self, project_id: str, source: str = "") -> ApprovalState:
+        """State of the approval of the requested map, with the outcome of the comparison."""
         try:
             root, found = self._approval(project_id, source)
-        except Altered as error:
-            return f"ALTERED: {error}"
-        from recon4.slices.sheet import approval_text
+        except StoreError:
+            root, found = self._root(project_id, source), None
+        if found is not None:
+            return self._checks.state(root, found.artifacts)
+        return approval_state(root, {} if source.startswith("map:") else _keys(root))
 
-        text = approval_text(found.evidence.stamp.to_json() if found else None)
-        if found is None:
-            return text
-        check = self._checks.state(root, found)
-        if check.state == "altered":
-            return f"ALTERED: {check.message}"
-        return text if check.state == "checked" else f"{text}, bytes not compared yet"
+    def _root(self, project_id: str, source: str) -> Path:
+        kind, _, name = source.partition(":")
+        return self._projects.folder(name if kind == "project" else project_id)
 
     def _approval(self, project_id: str, source: str) -> tuple[Path, Approval | None]:
+        root = self._root(project_id, source)
         kind, _, name = source.partition(":")
-        root = self._projects.folder(name if kind == "project" else project_id)
         if kind == "map":
             return root, approval_of_map(root, name)
-        keys = {stage: folder.name for stage, folder in read_artifacts(root).items()}
-        return root, approval_of(root, keys)
+        return root, approval_of(root, _keys(root))
 
     def approved_artifacts(
         self, project_id: str, source: str, evidence: Evidence | None
@@ -364,6 +377,11 @@ def _measured_along(before: ControlState, state: ControlState) -> dict[str, list
     usual = {name: every for name, at in state.picks.items() if before.picks.get(name) != at}
     known = before.along | usual | state.along
     return {name: known[name] for name in state.picks if name in known}
+
+
+def _keys(root: Path) -> dict[str, str]:
+    """Stage -> key of its artifact in the latest run."""
+    return {stage: folder.name for stage, folder in read_artifacts(root).items()}
 
 
 def _name_of(reference: Path) -> str:

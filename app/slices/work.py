@@ -30,6 +30,7 @@ from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import to_plain
 from recon4.names import visible
+from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
@@ -103,7 +104,7 @@ def facts(
     references: list[ListedReference],
     sources: list[OtherMap],
     *,
-    approval: str,
+    approval: ApprovalState,
 ) -> SliceFacts:
     """Facts about the map, its references, other maps and its approval."""
     tiles, frame = tiles_of(artifacts["map"]), map_frame(artifacts)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+from dataclasses import replace
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -77,7 +78,9 @@ def viewer_page(project_id: str, request: Request, server: Server) -> Response:
     if request.scope["query_string"]:
         return RedirectResponse(path, status_code=307)
     policy = {"Content-Security-Policy": policy_for(request.headers["host"])}
-    return HTMLResponse(with_shims(client(), project), headers=policy)
+    approval = server.checks.known(server.projects.folder(project.id), project.approval)
+    page = with_shims(client(), replace(project, approval=approval))
+    return HTMLResponse(page, headers=policy)
 
 
 @router.get("/projects/{project_id}/viewer/state", include_in_schema=False)
@@ -137,7 +140,7 @@ def policy_for(host: str) -> str:
 
 
 def frame_caption(project: ProjectView) -> str:
-    """Caption about the coordinates on screen: frame and units."""
+    """Caption about the coordinates on screen, frame and units, and whether the map is approved."""
     crs = project.summary.get("crs")
     place = f"local map frame of {crs}" if isinstance(crs, str) and crs else "map frame"
-    return f"{place} · z up · meters"
+    return f"{place} · z up · meters · {project.approval.text}"

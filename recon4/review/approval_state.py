@@ -11,7 +11,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.names import visible
+from recon4.names import LONGEST_NOTE, visible
 from recon4.review.approved import Approval, NotInJournal, approval_of
 from recon4.review.decisions import DecisionKind, fold
 from recon4.review.journal import JournalRow, read_rows
@@ -55,6 +55,12 @@ class ApprovalState:
     """UTC, ISO 8601."""
     hash: str = ""
     """SHA-256 of the signed statement."""
+    verdict: str = ""
+    """On the map when it was approved; empty before statement format 3."""
+    why: str = ""
+    """The signer's reason or remark."""
+    checking: bool = False
+    """Whether the bytes of the results are just being compared with the signed hashes."""
 
 
 NOT_APPROVED = ApprovalState(kind=ApprovalKind.DRAFT, text="Draft: not approved")
@@ -124,6 +130,8 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
         who=visible(stamp.who, most=MAX_NAME),
         time=stamp.time,
         hash=stamp.hash,
+        verdict=stamp.verdict,
+        why=visible(" ".join(stamp.why.split()), most=LONGEST_NOTE),
     )
     if stamp.version < newest:
         text = f"{state.text}; version {newest} is newer"

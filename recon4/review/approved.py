@@ -133,50 +133,14 @@ def _refuse_without_row(root: Path, rows: Sequence[JournalRow], keys: Mapping[st
             "is an older one, or the approval was interrupted; approve the map again"
         )
     summary = read_summary(root) or {}
-    named = (summary.get("approval") or {}).get("hash")
+    stated = summary.get("approval")
+    named = stated.get("hash") if isinstance(stated, dict) else stated
     approved = {_facts(row).approval for row in rows if row.kind == DecisionKind.APPROVE}
     if named and named not in approved and artifact_keys(summary) == dict(keys):
         raise NotInJournal(
             "summary.json names an approval that is in no row of the journal: put the journal "
             "back, or approve the map again"
         )
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LatestApproval:
-    """The newest approval of a project, as its journal has it."""
-
-    version: int
-    hash: str
-    who: str
-    time: str
-    why: str
-    verdict: str
-    """On the map; empty in earlier formats."""
-    current: bool
-    """Whether the results in the folder name it."""
-
-
-def latest_approval(root: Path, rows: Sequence[JournalRow]) -> LatestApproval | None:
-    """The newest approval; None if there is none.
-
-    Raises:
-        StoreError: If a file is damaged.
-    """
-    for row in reversed(rows):
-        if row.kind == DecisionKind.APPROVE:
-            facts = _facts(row)
-            named = ((read_summary(root) or {}).get("approval") or {}).get("hash")
-            return LatestApproval(
-                version=facts.version,
-                hash=facts.approval,
-                who=row.who,
-                time=row.time,
-                why=row.why,
-                verdict=facts.verdict,
-                current=named == facts.approval,
-            )
-    return None
 
 
 def read_approval(folder: Path, row: JournalRow) -> tuple[Approval, str]:

@@ -45,7 +45,7 @@ def test_its_loops_and_decisions_are_there(server):
     queue = server.get("/api/projects/format1/review/queue").json()
 
     assert [(one["frame_i"], one["frame_j"]) for one in review["standing"]] == [(20, 90)]
-    assert review["approval"]["who"] == "anna" and review["approval"]["current"]
+    assert review["approval"]["text"] == "Approved v1 · anna · 2026-11-22"
     assert len(queue["rows"]) > 50
 
 

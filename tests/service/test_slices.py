@@ -3,6 +3,7 @@
 import base64
 import io
 import json
+import shutil
 import threading
 from pathlib import Path
 
@@ -13,7 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from tests.project_builder import ROOM_M, approve_project, build_project
+from tests.project_builder import ROOM_M, approve_project, build_project, write_summary
 from tests.service.running import server_thread
 
 Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
@@ -55,7 +56,7 @@ def test_the_facts_about_the_map(server):
     assert body["points"] == 120_000
     assert body["bounds_m"][1] == pytest.approx(ROOM_M, abs=0.35)
     assert body["frame"] == "map frame (local), x y z, z up, meters"
-    assert body["approval"] == "Not approved"
+    assert body["approval"]["text"] == "Draft: not approved"
     assert [source["id"] for source in body["sources"]] == ["project:other"]
 
 
@@ -243,10 +244,15 @@ def test_an_export_of_an_approved_map_says_so(server):
 
     files = {ending: exported(server, ending).content for ending in ("laz", "csv", "dxf", "tif")}
     shown = server.get(BASE).json()["approval"]
-    (server.root / "office" / "decisions.sqlite").unlink()
+    office = server.root / "office"
+    (office / "decisions.sqlite").unlink()
     later = server.get(BASE).json()["approval"]
+    shutil.rmtree(office / "versions")  # a draft again, for the other tests
+    summary = json.loads((office / "summary.json").read_text())
+    write_summary(office, summary | {"approval": None})
 
-    assert shown.startswith("Approved by Eva (reviewer)") and "in no row of the journal" in later
+    assert shown["text"].startswith("Approved v1 · Eva · ")
+    assert later["kind"] == "not valid" and "in no row of the journal" in later["detail"]
 
     with laspy.open(io.BytesIO(files["laz"])) as laz:
         (record,) = [vlr for vlr in laz.header.vlrs if vlr.user_id == "recon4"]

@@ -8,42 +8,32 @@ import {
   mapText,
 } from "../../web/review/captions.js";
 
-const STATE = { busy: false, finished: true, in_map: true, may_review: true, approval: null };
+const DRAFT = { kind: "draft", text: "Draft: not approved", detail: "", checking: false, hash: "" };
+const STATE = { busy: false, finished: true, in_map: true, may_review: true, approval: DRAFT };
 const APPROVAL = {
-  version: 2,
-  who: "Eva",
-  time: "2026-01-02T03:04:00+00:00",
+  ...DRAFT,
+  kind: "approved",
+  text: "Approved v2 · Eva · 2026-01-02",
+  hash: "ab12",
   verdict: "good",
   why: "",
-  current: true,
-  altered: "",
 };
-const text = (check, more = {}) =>
-  approvalText({ approval: { ...APPROVAL, check, ...more }, in_map: true });
+const text = (more = {}) => approvalText({ ...APPROVAL, ...more });
 
 test("a map is marked as approved only once its bytes were compared", () => {
-  assert.match(text("checked"), /^✓ Approved: version 2 by Eva, /);
-  assert.match(text("checking"), /^Approved: .*being compared with the signature$/);
-  assert.match(text(""), /^Approved: .*not compared with the signature$/);
-  assert.equal(
-    text("altered", { altered: "map.laz differs" }),
-    "✗ Altered since the approval: map.laz differs",
-  );
+  assert.equal(text(), "✓ Approved v2 · Eva · 2026-01-02");
+  assert.match(text({ checking: true }), /^◷ Approved .*being compared with the signature$/);
 });
 
-test("without a current approval a map is a draft", () => {
-  assert.equal(approvalText(STATE), "Draft, not approved");
-  assert.match(text("", { current: false }), /^Draft. An earlier map was approved: version 2/);
-  const decided = { approval: { ...APPROVAL, check: "checked" }, in_map: false };
-  assert.match(
-    approvalText(decided),
-    /^Draft: decisions were made after the approval of version 2/,
-  );
+test("whatever does not count is marked with the words of the server", () => {
+  const kinds = ["draft", "earlier", "changed", "unknown signer", "not valid"];
+  const marks = kinds.map((kind) => text({ kind, text: "words" }));
+  assert.deepEqual(marks, ["◌ words", "▲ words", "▲ words", "✕ words", "✕ words"]);
 });
 
 test("the verdict that was overruled is named with the reason", () => {
   const why = { verdict: "do not use", why: "only the hall is needed" };
-  assert.match(text("checked", why), /, in spite of the verdict “do not use”: “only the hall/);
+  assert.match(text(why), /, in spite of the verdict “do not use”: “only the hall/);
 });
 
 test("a person who cannot approve a map reads why", () => {
@@ -52,10 +42,10 @@ test("a person who cannot approve a map reads why", () => {
   assert.match(approvalObstacle({ ...STATE, busy: true }), /job/);
   assert.match(approvalObstacle({ ...STATE, finished: false }), /no finished map/);
   assert.match(approvalObstacle({ ...STATE, in_map: false }), /not in the map/);
-  const approved = { ...STATE, approval: { ...APPROVAL, check: "checked" } };
-  assert.match(approvalObstacle(approved), /is approved/);
-  const altered = { ...STATE, approval: { ...APPROVAL, check: "altered" } };
-  assert.equal(approvalObstacle(altered), "");
+  const signed = (kind) => ({ ...STATE, approval: { ...APPROVAL, kind } });
+  assert.match(approvalObstacle(signed("approved")), /is approved/);
+  for (const kind of ["changed", "unknown signer", "not valid"])
+    assert.equal(approvalObstacle(signed(kind)), "");
 });
 
 test("a map tells whether it has the decisions of people", () => {

@@ -14,6 +14,7 @@ import { when } from "../shared/format.js";
 import "../shared/page_head.js";
 import "./session_list.js";
 import { withPassword } from "./recent_login.js";
+import { showTrustedKeys } from "./trusted_keys.js";
 
 const ROLES = {
   viewer: "Viewer: looks and measures",
@@ -124,3 +125,4 @@ byId("older").addEventListener("click", () => readLog(oldest));
 sessions.source = { read: listSessions, end: endSession };
 byId("without").hidden = (await attempt(byId("message"), readCurrentUser))?.login ?? true;
 await reload();
+await showTrustedKeys(() => readLog());

@@ -11,6 +11,7 @@ import {
   restoreProject,
   watchJobs,
 } from "../shared/api.js";
+import { approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
 import { attempt, byId, fill, make } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
@@ -59,6 +60,7 @@ function draw(id, project = projects.find((one) => one.id === id)) {
       make("strong", {}, project?.name ?? (view?.job.inputs.title || id)),
     ),
     open ? null : badge(stateOf(project, view)),
+    project?.finished ? approvalMark(project.approval) : null,
     project && project.name !== id ? make("p", { className: "quiet" }, id) : null,
     make("p", { className: "quiet" }, text.join(" · ")),
     project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,

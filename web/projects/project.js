@@ -9,6 +9,7 @@ import {
   viewerUrl,
   watchJobs,
 } from "../shared/api.js";
+import { approvalLines, approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
 import { byId, fill, make } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
@@ -23,6 +24,7 @@ import "./rig_section.js";
 const id = decodeURIComponent(location.pathname.split("/")[2]);
 const status = document.querySelector("job-status");
 const log = document.querySelector("job-log");
+const COMPARED_AGAIN_MS = 3000;
 const STAGE_WORDS = { done: "✓ Done", reused: "✓ Reused", running: "▶ Running" };
 let project = null;
 let view = null;
@@ -46,6 +48,7 @@ function draw() {
   fill(
     byId("state"),
     status.hidden ? badge(stateOf(project, view)) : null,
+    project?.finished ? approvalMark(project.approval) : null,
     make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")),
   );
   if (view) status.view = view;
@@ -78,6 +81,7 @@ function drawFiles() {
       : make("a", { href: fileUrl(id, file.name), download: "" }, file.label);
     return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
   };
+  fill(byId("approval"), ...(project ? approvalLines(project.approval) : []));
   fill(byId("files").querySelector("ul"), ...files.map(row));
 }
 
@@ -121,6 +125,7 @@ async function reload() {
   try {
     project = await readProject(id);
     lacking = null;
+    if (project.approval.checking) setTimeout(reload, COMPARED_AGAIN_MS);
     document.querySelector("rig-section").reload();
   } catch (error) {
     lacking = error;

@@ -1,6 +1,6 @@
 // Captions and units of the review page, and its keys. No DOM, no network.
 
-import { when } from "../shared/format.js";
+import { approvalLine, inSpiteOf } from "../shared/approval.js";
 
 export const VERDICTS = {
   accepted: { mark: "✓", word: "Accepted" },
@@ -79,25 +79,9 @@ export function decisionText(row, path_limit_m) {
   return `Rejected automatically: ${reason}`;
 }
 
-/** The verdict that a map was approved in spite of, with the signer's reason. */
-const inSpiteOf = ({ verdict, why }) =>
-  !verdict || verdict === "good"
-    ? ""
-    : `, in spite of the verdict “${verdict}”${why ? `: “${why}”` : ""}`;
-
-/** Who approved which version; a decision after the approval makes the map a draft again. */
-export function approvalText({ approval, in_map }) {
-  if (!approval) return "Draft, not approved";
-  const signed = `version ${approval.version} by ${approval.who}, ${when(approval.time)}`;
-  const version = signed + inSpiteOf(approval);
-  if (approval.check === "altered") return `✗ Altered since the approval: ${approval.altered}`;
-  if (!approval.current) return `Draft. An earlier map was approved: ${version}`;
-  if (!in_map) return `Draft: decisions were made after the approval of ${version}`;
-  if (approval.check === "checked") return `✓ Approved: ${version}`;
-  return approval.check === "checking"
-    ? `Approved: ${version}; the bytes are being compared with the signature`
-    : `Approved: ${version}; not compared with the signature`;
-}
+/** Who approved which version, and in spite of which verdict. */
+export const approvalText = (approval) =>
+  approvalLine(approval).text + (approval.hash ? inSpiteOf(approval) : "");
 
 /** Whether the map was made with the decisions in force. */
 export function mapText({ busy, finished, in_map, standing: activeDecisions }) {
@@ -118,5 +102,5 @@ export function approvalObstacle({ busy, finished, in_map, may_review, approval 
   if (busy) return "A job waits or runs";
   if (!finished) return "There is no finished map yet";
   if (!in_map) return "The last decisions are not in the map";
-  return approval?.current && approval.check !== "altered" ? "This map is approved" : "";
+  return ["approved", "earlier"].includes(approval.kind) ? "This map is approved" : "";
 }

@@ -1,5 +1,6 @@
 // The figures of a pair, the effect of the decisions, and the journal. Takes data, makes elements.
 
+import { approvalLine } from "../shared/approval.js";
 import { fill, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import {
@@ -198,19 +199,9 @@ export function showApproval(panel, state, { remake, approve }) {
     panel,
     make("h2", {}, "Map"),
     make("p", {}, mapText(state)),
-    make(
-      "p",
-      {
-        className:
-          approval?.check === "altered"
-            ? "error"
-            : approval?.check === "checked" && state.in_map
-              ? "good"
-              : "",
-      },
-      approvalText(state),
-    ),
-    approval ? make("p", { className: "quiet hash" }, approval.hash) : null,
+    make("p", { className: `approval ${approvalLine(approval).level}` }, approvalText(approval)),
+    approval.detail ? make("p", { className: "quiet approval-detail" }, approval.detail) : null,
+    approval.hash ? make("p", { className: "quiet hash" }, approval.hash) : null,
     make(
       "div",
       { className: "buttons" },
@@ -235,7 +226,7 @@ export function showApproval(panel, state, { remake, approve }) {
         "Approve map…",
       ),
     ),
-    obstacle && !state.busy && !(approval?.current && state.in_map)
+    obstacle && !state.busy && approval.kind !== "approved"
       ? make(
           "p",
           { className: "quiet" },

@@ -32,6 +32,10 @@ export const listSessions = () => request("GET /api/sessions");
 export const endSession = (session_id) =>
   request("DELETE /api/sessions/{session_id}", { path: { session_id } });
 export const readAudit = (before) => request("GET /api/audit", { query: { most: 25, before } });
+export const listTrustedKeys = () => request("GET /api/keys");
+export const addTrustedKey = (key) => request("POST /api/keys", { body: key });
+export const removeTrustedKey = (fingerprint) =>
+  request("DELETE /api/keys/{fingerprint}", { path: { fingerprint } });
 
 // -- projects and jobs
 
@@ -326,7 +330,8 @@ export const keepControl = (project_id, state) =>
   request("PUT /api/projects/{project_id}/slices/control", { path: { project_id }, body: state });
 export const readControlReport = (project_id) =>
   request("GET /api/projects/{project_id}/slices/control/report", { path: { project_id } });
-export const controlFileUrl = (id, ending) => `${slices(id)}/control/report.${ending}`;
+export const controlFileUrl = (id, ending, draft = false) =>
+  `${slices(id)}/control/report.${ending}${draft ? "?draft=true" : ""}`;
 export const readSurface = (project_id, point) =>
   request("GET /api/projects/{project_id}/slices/control/surface", {
     path: { project_id },

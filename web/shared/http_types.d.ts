@@ -45,16 +45,19 @@ export interface AlternativePath {
   residual_rad: number;
 }
 
-export interface ApprovalView {
-  version: number;
-  hash: string;
+export type ApprovalKind = "draft" | "approved" | "earlier" | "changed" | "unknown signer" | "not valid";
+
+export interface ApprovalState {
+  kind: ApprovalKind;
+  text: string;
+  detail: string;
+  version: number | null;
   who: string;
   time: string;
-  why: string;
+  hash: string;
   verdict: string;
-  current: boolean;
-  check: "" | "checked" | "checking" | "altered";
-  altered: string;
+  why: string;
+  checking: boolean;
 }
 
 export interface Approve {
@@ -415,6 +418,17 @@ export interface JobView {
   resumable: boolean;
 }
 
+export interface KeyView {
+  fingerprint: string;
+  public_key: string;
+  name: string;
+  own: boolean;
+  added: string;
+  by: string;
+  removed: string;
+  removed_by: string;
+}
+
 export interface LidarSlicesView {
   name: string;
   before: Array<[number, number]>;
@@ -516,6 +530,11 @@ export interface NewJob {
   settings?: Array<string>;
   clone_of?: string;
   only_new?: boolean;
+}
+
+export interface NewKey {
+  name: string;
+  public_key: string;
 }
 
 export interface NewMark {
@@ -663,6 +682,7 @@ export interface ProjectCard {
   has_map: boolean;
   path_length_m: number | null;
   points: number | null;
+  approval: ApprovalState;
   usability: string;
   problem: string;
 }
@@ -680,6 +700,7 @@ export interface ProjectView {
   viewable: boolean;
   has_map: boolean;
   summary: Record<string, any>;
+  approval: ApprovalState;
   problem: string;
 }
 
@@ -791,7 +812,7 @@ export interface ReviewView {
   busy: boolean;
   may_review: boolean;
   may_process: boolean;
-  approval: ApprovalView | null;
+  approval: ApprovalState;
 }
 
 export interface RigCard {
@@ -952,7 +973,7 @@ export interface SliceFacts {
   key: string;
   crs: string;
   frame: string;
-  approval: string;
+  approval: ApprovalState;
   references: Array<ListedReference>;
   sources: Array<OtherMap>;
 }
@@ -1111,6 +1132,10 @@ export interface WindowSpec {
 }
 
 export interface Operations {
+  "DELETE /api/keys/{fingerprint}": {
+    path: { fingerprint: string };
+    response: KeyView;
+  };
   "DELETE /api/me/sessions/{session_id}": {
     path: { session_id: string };
     response: string;
@@ -1173,6 +1198,9 @@ export interface Operations {
     path: { job_id: string };
     query?: { offset?: number };
     response: LogPiece;
+  };
+  "GET /api/keys": {
+    response: Array<KeyView>;
   };
   "GET /api/live": {
     response: CaptureView | null;
@@ -1274,6 +1302,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/slices/control/report.{ending}": {
     path: { project_id: string; ending: string };
+    query?: { draft?: boolean };
     response: any;
   };
   "GET /api/projects/{project_id}/slices/control/surface": {
@@ -1386,6 +1415,10 @@ export interface Operations {
   "POST /api/jobs/{job_id}/retry": {
     path: { job_id: string };
     response: JobView;
+  };
+  "POST /api/keys": {
+    body: NewKey;
+    response: KeyView;
   };
   "POST /api/live": {
     body: NewCapture;

@@ -8,6 +8,7 @@ import {
   readControlReport,
   readSurface,
 } from "../shared/api.js";
+import { isRefused } from "../shared/approval.js";
 import { attempt, make } from "../shared/dom.js";
 import { limitsForm } from "./limits.js";
 import { combined } from "./measured.js";
@@ -29,6 +30,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   /** @type {import("../shared/http_types").ControlState} */
   let kept = { points: [], frame: "map", picks: {}, along: {}, version: 0 };
   let mapKey = "";
+  let refused = false;
   let last = Promise.resolve();
   let georeferenced = false;
 
@@ -155,7 +157,11 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
       "All on the nearest surface",
     );
     const file = (ending, text, more) =>
-      make("a", { className: "button", href: controlFileUrl(id, ending), ...more }, text);
+      make(
+        "a",
+        { className: "button", href: controlFileUrl(id, ending, refused), ...more },
+        refused ? `${text}, as a draft` : text,
+      );
     table.replaceChildren(
       make("p", { className: `verdict ${found.verdict.level}` }, found.verdict.text),
       earlier.size
@@ -300,6 +306,11 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
   });
   return {
     element: make("div", {}, file, preview, message, table),
-    facts: (facts) => ([georeferenced, mapKey] = [Boolean(facts.crs), facts.key]),
+    facts: (facts) => {
+      [georeferenced, mapKey] = [Boolean(facts.crs), facts.key];
+      if (refused === isRefused(facts.approval)) return;
+      refused = !refused;
+      attempt(message, report);
+    },
   };
 }

@@ -1,7 +1,8 @@
 // Slices as files: sheets at a true scale, points, georeferenced images.
 
 import { sliceFileUrl } from "../shared/api.js";
-import { make } from "../shared/dom.js";
+import { approvalLines } from "../shared/approval_lines.js";
+import { fill, make } from "../shared/dom.js";
 
 const KINDS = [
   ["png", "PNG", "sheet, 300 dpi"],
@@ -33,6 +34,8 @@ export function exportPanel({ id, change, state, ask }) {
     ...SCALES.map((one) => make("option", { value: String(one) }, `1 : ${one}`)),
   );
   const flat = make("input", { type: "checkbox", id: "flat" });
+  const draft = make("input", { type: "checkbox", id: "draft" });
+  const approval = make("div", {});
   const count = make("input", {
     type: "number",
     min: 1,
@@ -59,6 +62,7 @@ export function exportPanel({ id, change, state, ask }) {
       size: size.value,
       scale: Number(scale.value),
       flat: flat.checked,
+      draft: draft.checked,
     };
   }
 
@@ -67,7 +71,7 @@ export function exportPanel({ id, change, state, ask }) {
     for (const [ending, link] of links) link.href = sliceFileUrl(id, ending, wanted());
   }
 
-  for (const control of [part, size, scale, flat]) control.addEventListener("change", draw);
+  for (const control of [part, size, scale, flat, draft]) control.addEventListener("change", draw);
   count.addEventListener(
     "change",
     () =>
@@ -100,6 +104,13 @@ export function exportPanel({ id, change, state, ask }) {
         flat,
         make("span", {}, "DXF laid flat: u, v instead of coordinates"),
       ),
+      approval,
+      make(
+        "label",
+        { className: "check" },
+        draft,
+        make("span", {}, "As a draft, without the approval of the map"),
+      ),
       make(
         "ul",
         { className: "files" },
@@ -107,5 +118,6 @@ export function exportPanel({ id, change, state, ask }) {
       ),
     ),
     show: draw,
+    facts: (found) => fill(approval, ...approvalLines(found.approval)),
   };
 }

@@ -9,6 +9,7 @@ import {
   readSlice,
   readSliceFacts,
 } from "../shared/api.js";
+import { approvalFact } from "../shared/approval_lines.js";
 import { byId, fill, make, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { cutText, distanceText, imageText, lengthText, pointText } from "./captions.js";
@@ -157,7 +158,7 @@ function describe() {
       ? [make("span", {}, `${count(facts.strays)} stray returns left out`)]
       : []),
     make("span", { className: "frame" }, facts.frame),
-    make("span", {}, facts.approval),
+    approvalFact(facts.approval),
   );
   legend(byId("legend"), {
     state,

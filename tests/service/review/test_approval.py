@@ -41,7 +41,7 @@ def test_an_approval_is_signed_and_every_export_carries_it(server, root):
 
     assert answer.status_code == 201, answer.text
     approval = answer.json()["approval"]
-    assert (approval["version"], approval["who"], approval["current"]) == (1, "local", True)
+    assert (approval["version"], approval["who"], approval["kind"]) == (1, "local", "approved")
     sha = approval["hash"]
     folder = root / "versions" / "1"
     record = json.loads((folder / "approval.json").read_text())
@@ -194,8 +194,8 @@ def test_a_later_map_does_not_change_an_approved_version(server, root, capsys):
     second = approve(server).json()["approval"]
 
     assert {path.name: hash_file(path) for path in files} == before
-    assert record["approval"]["current"] is False
-    assert (second["version"], second["current"]) == (2, True)
+    assert record["approval"]["text"] == "Draft: changed since version 1"
+    assert (second["version"], second["kind"]) == (2, "approved")
     assert main(["verify", str(root)]) == 0
     assert "version 1, approved by local" in capsys.readouterr().out
 

@@ -13,7 +13,8 @@ from recon4.progress import Silent
 from recon4.report.approval import draft_block
 from recon4.review import approval
 from recon4.review.approval import NotApprovable, approve, make_read_only
-from recon4.review.approved import approval_of_map, latest_approval
+from recon4.review.approval_state import approval_state
+from recon4.review.approved import approval_of_map
 from recon4.review.audit import audit_review
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import NAME, JournalChanged, append, read_rows
@@ -186,8 +187,8 @@ def test_the_reason_stands_wherever_the_signer_stands(unusable, key, capsys):
         assert '"verdict": "do not use"' in text and f'"why": "{why}"' in text
     (line,) = audit_review(unusable, Silent()).approvals
     assert line.endswith(f', verdict "do not use", reason "{why}"')
-    latest = latest_approval(unusable, read_rows(unusable))
-    assert (latest.verdict, latest.why) == ("do not use", why)
+    state = approval_state(unusable, {"map": "ab"})
+    assert (state.verdict, state.why) == ("do not use", why)
 
 
 def test_a_verdict_that_was_changed_after_the_run_is_not_signed(unusable, key):
@@ -241,14 +242,14 @@ def test_an_approval_that_counted_before_a_crash_is_handed_out_later(root, key, 
     with pytest.raises(KeyboardInterrupt):
         approve(root, key, SIGNER, confirmed=False)
     monkeypatch.undo()
-    before = latest_approval(root, read_rows(root))
+    before = (root / "report.html").read_text()
 
     with pytest.raises(NotApprovable, match="already"):
         approve(root, key, SIGNER, confirmed=False)
 
-    record = latest_approval(root, read_rows(root))
-    assert (before.current, record.current, record.version) == (False, True, 1)
-    assert record.hash in (root / "report.html").read_text()
+    state = approval_state(root, {"map": "ab"})
+    assert state.text.startswith("Approved v1 · Eva · ")
+    assert state.hash not in before and state.hash in (root / "report.html").read_text()
 
 
 def test_an_earlier_map_keeps_its_approval(root, key):
