@@ -26,8 +26,12 @@ class RobotBag(Bag):
 
     def tf(self, *transforms, topic="/tf_static", t_ns=T0_NS, kind=TF2):
         """Write transforms: parent, child and mount, or numbers x y z qx qy qz qw."""
-        stated = [self._transform(int(t_ns), *one) for one in transforms]
-        self.write(topic, kind, int(t_ns), self.make(kind, transforms=stated))
+        self.write(topic, kind, int(t_ns), self.stated(transforms, t_ns=t_ns, kind=kind))
+
+    def stated(self, transforms, *, t_ns=T0_NS, kind=TF2):
+        """A message of transforms."""
+        listed = [self._transform(int(t_ns), *one) for one in transforms]
+        return self.make(kind, transforms=listed)
 
     def description(self, urdf, *, topic="/robot_description", t_ns=T0_NS):
         """Write the description of a robot."""

@@ -30,7 +30,7 @@ MAX_TRANSFORMS = 10_000
 """Pairs of frames; the largest robots have some hundred."""
 MAX_MESSAGES = 20_000
 """Messages of one kind that are read: some minutes of the transforms of a robot that moves."""
-MAX_READ = 200_000
+MAX_READ = 100_000
 """Transforms of one topic that are read, however they are spread over messages."""
 MAX_DESCRIPTIONS = 20
 _LONGEST_M = 100.0
@@ -214,10 +214,12 @@ def _fault(pair: _Pair, numbers: _Numbers) -> str:
 
 
 def _repeat(one: _Statement, numbers: _Numbers, *, last: bool) -> None:
+    """Count another statement; one that differed once stays so, however often it is stated."""
     one.count += 1
-    if numbers == one.numbers or (one.differs and not last):
+    if numbers == one.numbers:
         return
-    before, now = (SE3.from_quat(n[3:], n[:3]) for n in (one.numbers, numbers))
-    one.differs |= not is_same(before, now)
+    if not one.differs:
+        before, now = (SE3.from_quat(n[3:], n[:3]) for n in (one.numbers, numbers))
+        one.differs = not is_same(before, now)
     if last:
         one.numbers = numbers

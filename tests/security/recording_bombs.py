@@ -53,6 +53,13 @@ from tests.security.mcap_bombs import (
     mcap_zstd,
     mcap_zstd_honest,
 )
+from tests.security.transform_bombs import (
+    tf_chain,
+    tf_flood,
+    urdf_deep,
+    urdf_entities,
+    urdf_joints,
+)
 
 BOMBS: dict[str, tuple[Callable[[Path], None], ...]] = {
     "bag1": (
@@ -78,6 +85,11 @@ BOMBS: dict[str, tuple[Callable[[Path], None], ...]] = {
         mcap_tiny_messages,
         mcap_sparse_record,
         mcap_sparse,
+        tf_chain,
+        tf_flood,
+        urdf_deep,
+        urdf_entities,
+        urdf_joints,
     ),
     "db3": (
         db3_view,
