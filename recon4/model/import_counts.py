@@ -23,6 +23,8 @@ class CountKind(StrEnum):
     """As expected of a good recording, or a part of another count."""
     REPAIRED = "repaired"
     """Damage that was repaired, or data that was converted: nothing is missing."""
+    REPLACED = "replaced"
+    """Data that could not be used, and what stands in for it is worse: a warning like a loss."""
     LOST = "lost"
     """Data that was in the recording, or should have been, and is not used."""
 
@@ -139,9 +141,10 @@ _MESSAGES = {
     ),
     "robot_descriptions_refused": _stated("not read", noun="descriptions of a robot (URDF)"),
     "clouds": _read("clouds"),
-    "clouds_wrong_times": _lost(
-        "clouds",
+    "clouds_wrong_times": CountWording(
+        CountKind.REPLACED,
         "the times of their points make no sense, they are taken from the azimuth or the stamp",
+        "clouds",
     ),
     "stamps_missing": _repaired("clouds", "without a stamp, the time of recording is used"),
     "stamps_wrong": _repaired("clouds", "a stamp of another time, the time of recording is used"),
@@ -210,7 +213,13 @@ _SCANS = {
     "beams": _read("beams"),
     "beams_off_grid": _lost("beams", "between the places of a scan, left out"),
     "ranges_not_numbers": _stated("negative or no numbers, left out", noun="ranges"),
+    "scans_wrong_time": _repaired(
+        "scans", "a stamp of another time or none, the time of recording is used"
+    ),
     "lines": _read("line scans"),
+    "lines_wrong_time": _repaired(
+        "lines", "a stamp of another time or none, the time of recording is used"
+    ),
     "lines_converted": _repaired("lines", "ranges in another unit, converted"),
     "lines_empty": _usual("", "without a return", noun="line scans"),
     "lines_missing": _lost("lines", "never arrived", apart=True),
@@ -291,7 +300,18 @@ def losses(counts: Mapping[str, int], details: Mapping[str, str] | None = None) 
         counts: Of an import; names of other versions are passed over.
         details: What the reader knows of a count besides.
     """
-    found = [_loss(name, counts, details or {}) for name in _of_kind(counts, CountKind.LOST)]
+    return _largest_first(counts, CountKind.LOST, details or {})
+
+
+def replaced(counts: Mapping[str, int], details: Mapping[str, str] | None = None) -> list[Loss]:
+    """All counts of data that something worse stands in for, the largest ratio first."""
+    return _largest_first(counts, CountKind.REPLACED, details or {})
+
+
+def _largest_first(
+    counts: Mapping[str, int], kind: CountKind, details: Mapping[str, str]
+) -> list[Loss]:
+    found = [_loss(name, counts, details) for name in _of_kind(counts, kind)]
     return sorted(found, key=lambda loss: -loss.ratio if loss.ratio == loss.ratio else -1.0)
 
 

@@ -14,7 +14,7 @@ from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.trajectory import Trajectory
-from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row
+from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row, stamp_clock
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize
@@ -184,7 +184,6 @@ def _of_bags(
     paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
 ) -> tuple[LaserScans, LaserMount | None]:
     files = [file for path in paths for file in bag_paths(path)]
-    collector = ScanCollector(0, report)
     poses = SampleBatch(pose_row, join_poses, report)
     parts: list[LaserScans] = []
     walks: list[Trajectory] = []
@@ -192,6 +191,7 @@ def _of_bags(
         named = Named(settings.laser_topic), Named(settings.odometry_topic)
         topic = choose_topic(bag, named[0], LASER_KIND, report=report)
         odometry = choose_topic(bag, named[1], ODOMETRY_KIND, report=report)
+        collector = ScanCollector(0, report, stamps=stamp_clock(bag, topic))
         mount = mount_of_bag(bag, topic, odometry, report=report)
         for message in bag.messages({topic, odometry} - {""}):
             report.count("messages")

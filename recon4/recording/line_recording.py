@@ -16,7 +16,7 @@ from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_messages import cloud_table, stamp_ns
+from recon4.recording.bag_messages import cloud_table, stamp_clock, stamp_ns
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, Bag, BagMessage, BagTopic
@@ -26,6 +26,7 @@ from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.range_units import LaserUnit, line_factor
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
+from recon4.recording.stamps import StampClock
 from recon4.recording.topic_choice import choose_imu, imu_batches, named_imu
 from recon4.recording.transform_messages import has_frames
 from recon4.settings import IngestSettings
@@ -136,9 +137,15 @@ class LineRecording:
     def _read(self, bag: Bag) -> Iterator[LineItem]:
         sensor = self.rig.sensors[self._row]
         head = HeadAngles(sensor.name, sensor.head_rate_rad_s, self._report)
-        lines = LineAssembly(self._row, self.rig, head, report=self._report)
+        topics = (self._lines, self._head, self._scans)
+        stamps = {topic: stamp_clock(bag, topic) for topic in topics}
+        lines = LineAssembly(
+            self._row, self.rig, head, report=self._report, stamps=stamps[self._lines]
+        )
         imu = imu_batches(bag, self._imu, self._report)
-        scans = ScanCollector(self._offset_ns(self._laser_row), self._report)
+        scans = ScanCollector(
+            self._offset_ns(self._laser_row), self._report, stamps=stamps[self._scans]
+        )
         unit = LaserUnit(self._report)
         wanted = {self._lines, self._head, self._scans, *imu} - {""}
         for message in bag.messages(wanted):
@@ -147,7 +154,7 @@ class LineRecording:
             if content is None:
                 continue
             if message.topic == self._head:
-                self._push_angle(head, message, content)
+                self._push_angle(head, message, content, stamps=stamps[self._head])
             elif message.topic == self._lines:
                 yield from lines.push(message, content)
             elif message.topic == self._scans:
@@ -160,13 +167,17 @@ class LineRecording:
             yield from batch.flush()
         head.finish(self.seconds)
 
-    def _push_angle(self, head: HeadAngles, message: BagMessage, content: Any) -> None:
-        if len(content.position) == 0:
+    def _push_angle(
+        self, head: HeadAngles, message: BagMessage, content: Any, *, stamps: StampClock
+    ) -> None:
+        t_ns = stamp_ns(content.header.stamp)
+        known = stamps.offset_ns is not None
+        sound = stamps.is_sound(t_ns, message.t_ns)
+        if len(content.position) == 0 or (known and not sound):
             self._report.count("head_angles_invalid")
             return
-        t_ns = stamp_ns(content.header.stamp)
-        t_ns = (t_ns if t_ns > 0 else message.t_ns) + self._offset_ns(self._row)
-        head.push(t_ns, float(content.position[0]))
+        t_ns = t_ns if sound else message.t_ns
+        head.push(t_ns + self._offset_ns(self._row), float(content.position[0]))
 
     def _offset_ns(self, row: int | None) -> int:
         return 0 if row is None else round(1e9 * self.rig.sensors[row].time_offset_s)
@@ -213,8 +224,17 @@ class LineRecording:
 class LineAssembly:
     """Turns the lines of a profiler into its frame as soon as the angle of its head is known."""
 
-    def __init__(self, row: int, rig: Rig, head: HeadAngles, *, report: ImportReport) -> None:
+    def __init__(
+        self,
+        row: int,
+        rig: Rig,
+        head: HeadAngles,
+        *,
+        report: ImportReport,
+        stamps: StampClock | None = None,
+    ) -> None:
         self._row, self._head, self._report = row, head, report
+        self._stamps = stamps or StampClock()
         self._sensor = rig.sensors[row]
         self._offset_ns = round(1e9 * self._sensor.time_offset_s)
         self._clouds = CloudDecoder(row, self._sensor, report=report)
@@ -278,7 +298,10 @@ class LineAssembly:
 
     def _shots(self, message: BagMessage, content: Any) -> Shots | None:
         t_ns = stamp_ns(content.header.stamp)
-        t_ns = (t_ns if t_ns > 0 else message.t_ns) + self._offset_ns
+        if not self._stamps.is_sound(t_ns, message.t_ns):
+            self._report.count("lines_wrong_time")
+            t_ns = self._stamps.expected_ns(message.t_ns)
+        t_ns += self._offset_ns
         try:
             if message.type == CLOUD:
                 table = cloud_table(content)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import dataclass, field
 
-from recon4.model.import_counts import count_text, losses, repairs
+from recon4.model.import_counts import Loss, count_text, losses, repairs, replaced
 
 MAX_TEXTS = 200
 """Number of different remarks kept; further ones are counted."""
@@ -65,7 +65,7 @@ class ImportReport:
 
     def warn_of_losses(self) -> None:
         """Add a warning for each large loss that no reader warned of; call once, at the end."""
-        for loss in losses(self.counts, self.details):
+        for loss in self._losses():
             if loss.is_warned:
                 self.warn(loss.text)
 
@@ -75,7 +75,10 @@ class ImportReport:
 
     def lost(self) -> list[str]:
         """All counts of lost data, in words."""
-        return [loss.text for loss in losses(self.counts, self.details)]
+        return [loss.text for loss in self._losses()]
+
+    def _losses(self) -> list[Loss]:
+        return losses(self.counts, self.details) + replaced(self.counts, self.details)
 
     def repaired(self) -> list[str]:
         """All counts of repaired data, in words."""

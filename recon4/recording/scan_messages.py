@@ -14,6 +14,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.bags import BagMessage
 from recon4.recording.report import ImportReport
+from recon4.recording.stamps import StampClock
 
 _SCANS_AT_ONCE = 250
 _MAX_BEAMS = 100_000
@@ -73,7 +74,14 @@ class _Collected:
 class ScanCollector:
     """Collects the scans of a 2-D laser, each with the beams and angles it states."""
 
-    def __init__(self, offset_ns: int, report: ImportReport, *, exact_angles: bool = False) -> None:
+    def __init__(
+        self,
+        offset_ns: int,
+        report: ImportReport,
+        *,
+        exact_angles: bool = False,
+        stamps: StampClock | None = None,
+    ) -> None:
         """Prepare.
 
         Args:
@@ -81,7 +89,9 @@ class ScanCollector:
             report: Receives counts.
             exact_angles: Take the angles as they are; those of a bag are float32, so only the
                 digits of `usual_angles` mean something.
+            stamps: Of the topic of a bag.
         """
+        self._stamps = stamps or StampClock()
         self._offset_ns, self._report = offset_ns, report
         self._exact = exact_angles
         self._scans: list[_Collected] = []
@@ -92,7 +102,10 @@ class ScanCollector:
         """Add a message; returns scans in batches."""
         stamp = scan.header.stamp
         t_ns = int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
-        yield from self.add(scan, t_ns if t_ns > 0 else message.t_ns, where=message.topic)
+        if not self._stamps.is_sound(t_ns, message.t_ns):
+            self._report.count("scans_wrong_time")
+            t_ns = self._stamps.expected_ns(message.t_ns)
+        yield from self.add(scan, t_ns, where=message.topic)
 
     def add(
         self, scan: Any, t_ns: int, *, where: str, odometry: Sequence[float] | None = None

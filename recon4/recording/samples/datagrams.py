@@ -22,6 +22,7 @@ from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
+from recon4.recording.stamps import StampClock
 from recon4.recording.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.velodyne.sensor_clock import SECOND_NS
 
@@ -37,6 +38,7 @@ class SampleDecoder:
 
     report: ImportReport
     _last_ns: dict[str, int] = field(default_factory=dict)
+    _stamps: dict[str, StampClock] = field(default_factory=dict)
     _sd: tuple[int, list[float]] = (0, [math.nan] * 3)
     """Time of arrival [ns] of the last GST sentence, and its standard deviations e, n, u [m]."""
 
@@ -94,6 +96,9 @@ class SampleDecoder:
             values[2] = float(height_above_ellipsoid(columns, self.report)[0])
             values = values[: len(GNSS_HEADER) - 1]
         if "t_ns" in record:
+            if not self._stamps.setdefault(kind, StampClock()).is_sound(t_ns, arrival_ns):
+                self.report.count("samples_damaged")
+                return
             self.report.note_lag(kind.upper(), arrival_ns - t_ns)
         yield kind, t_ns, values
 

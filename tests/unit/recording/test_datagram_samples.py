@@ -58,3 +58,15 @@ def test_what_is_no_sample_is_counted():
     assert imu is gnss is None
     assert report.counts["samples_damaged"] == 7
     assert report.counts["nmea_damaged"] == 2
+
+
+def test_one_sample_with_an_absurd_time_does_not_block_those_after_it():
+    report = ImportReport()
+    arrival_ns = [NOON_NS + k * 10_000_000 for k in range(20)]
+    stamps_ns = [t + (k == 7) * 10**17 for k, t in enumerate(arrival_ns)]
+    texts = [b'{"t_ns": %d, %s' % (t, IMU[1:]) for t in stamps_ns]
+
+    imu, _ = SampleDecoder(report).push(arrival_ns, texts)
+
+    assert len(imu) == 19 and report.counts["samples_damaged"] == 1
+    assert report.counts["samples_out_of_order"] == 0

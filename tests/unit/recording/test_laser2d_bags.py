@@ -7,11 +7,13 @@ import pytest
 
 from recon4.errors import StoreError
 from recon4.model.laser_scans import joined_scans
+from recon4.recording.formats.bags import BagMessage
 from recon4.recording.info import describe
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector
 from recon4.recording.scan_replay import datagrams_of_scans
+from recon4.recording.stamps import StampClock
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.line_store import LineStoreWriter, load_laser_scans
 from tests.laser_rows import angles_of, rows_of, with_times
@@ -200,3 +202,21 @@ def test_a_scan_that_came_twice_is_no_loss_and_another_one_of_its_time_is():
 
     assert report.counts["scans_repeated"] == report.counts["scans_duplicate"] == 1
     assert len(report.lost()) == 1
+
+
+@pytest.mark.parametrize("wrong_s", [0, 2_147_483_647])
+def test_one_scan_with_the_stamp_of_another_time_keeps_its_place(wrong_s):
+    report = ImportReport()
+    usual = [(10**18 + k * 10**8, 10**18 + k * 10**8) for k in range(9)]
+    collector = ScanCollector(0, report, stamps=StampClock(usual))
+    parts = []
+    for k, (t_ns, _) in enumerate(usual):
+        seconds, nanosec = (wrong_s, 0) if k == 4 else divmod(t_ns, 10**9)
+        header = SimpleNamespace(stamp=SimpleNamespace(sec=seconds, nanosec=nanosec))
+        one = message(header=header, scan_time=0.1, ranges=[2.0 + k, 3.0, 4.0])
+        parts += collector.push(BagMessage("/scan", "", t_ns, b""), one)
+
+    found = joined_scans([*parts, *collector.flush()])
+
+    assert found.t_ns.tolist() == [t_ns for t_ns, _ in usual]
+    assert report.counts["scans_wrong_time"] == 1 and not report.lost()
