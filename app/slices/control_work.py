@@ -10,9 +10,10 @@ from app.slices.model import ControlState, ExportContext
 from app.slices.work import Artifacts, map_frame, map_of, stamp_text, tiles_of
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.result_files import covariances_of
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
-from recon4.slices.control_points import AxisOrder, ControlPoint, ControlPreview, read_control
+from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
 from recon4.slices.frames import MapFrame
 from recon4.slices.limits import ControlLimits
@@ -22,9 +23,9 @@ from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text
 
 
-def preview_control(data: bytes, name: str, order: AxisOrder | None) -> ControlPreview:
+def preview_control(data: bytes, name: str, choice: ColumnChoice) -> ControlPreview:
     """Points and open questions of a survey file."""
-    return read_control(data, name=name, order=order)
+    return read_control(data, name=name, choice=choice)
 
 
 def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:

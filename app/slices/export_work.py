@@ -97,7 +97,7 @@ def _export_sheet(
         sources=source_text(context.key),
         approval=stamp_text(context.evidence),
         surface=surface_text(tiles.surface),
-        reference=against.name if against else "",
+        reference=against.caption if against else "",
         sensors=tiles.notes.sensors,
     )
     write_sheet(made, layout, path, span=span_of(ask, made), text=text)

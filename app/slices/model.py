@@ -10,6 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 from app.names import Name
 from recon4.mapping.tiles import Surface
 from recon4.recording.tables.column_names import Meaning, Unit
+from recon4.recording.tables.coordinates import MAX_COLUMNS, ColumnChoice
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
@@ -195,7 +196,14 @@ class ControlFile(Strict):
 
     name: Name = Field(default="points.csv", max_length=200)
     base64: str = Field(max_length=900_000)
-    order: Literal["EN", "NE"] | None = None
+    columns: tuple[Meaning, ...] = Field(default=(), max_length=MAX_COLUMNS)
+    """Meaning of each column, from the left; empty = as the table says."""
+    unit: Unit | None = None
+
+    @property
+    def choice(self) -> ColumnChoice:
+        """Columns and unit."""
+        return ColumnChoice(self.columns, self.unit)
 
 
 class ControlSpec(Strict):

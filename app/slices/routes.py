@@ -254,7 +254,7 @@ async def preview_control(
     terms = Terms(person=caller.name)
     return await caller.wait(
         server.slices.run_background(
-            terms, control_work.preview_control, data, file.name, file.order
+            terms, control_work.preview_control, data, file.name, file.choice
         )
     )
 

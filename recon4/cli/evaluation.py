@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
+from recon4.cli.tables import parse_choice
 from recon4.errors import ConfigError
 from recon4.model.plain import to_plain
 from recon4.terminal import write
@@ -18,8 +19,10 @@ from recon4.terminal import write
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density
     from recon4.evaluation.evaluate import Evaluation
+    from recon4.evaluation.reference_mesh import TriangleMesh
     from recon4.evaluation.relations import RelationErrors
     from recon4.geometry.se3 import Array
+    from recon4.recording.tables.coordinates import ColumnChoice
     from recon4.slices.residuals import ControlReport
 
 evaluation = typer.Typer()
@@ -50,6 +53,17 @@ LimitsOption = Annotated[
         "distances; - = not required. Usual: 14,12,28,24,5.",
     ),
 ]
+ColumnsOption = Annotated[
+    str,
+    typer.Option(
+        metavar="id,x,y,z",
+        help="Columns of the tables of --markers from the left, if their names do not tell: "
+        "id, x (east), y (north), z (height), -x, -y, role, or - (not used).",
+    ),
+]
+UnitOption = Annotated[
+    str, typer.Option(help="Unit of --model and of --markers: m, dm, cm, mm, km, ft, us-ft or in.")
+]
 PatchOption = Annotated[
     str,
     typer.Option(
@@ -72,6 +86,8 @@ def evaluate(  # noqa: PLR0913 - options of a command
     model: ModelOption = None,
     floor: FloorOption = False,
     markers: MarkersOption = None,
+    columns: ColumnsOption = "",
+    unit: UnitOption = "",
     limits: LimitsOption = "",
     patch: PatchOption = "",
     report: ReportOption = None,
@@ -92,14 +108,14 @@ def evaluate(  # noqa: PLR0913 - options of a command
         record["relations"] = asdict(compared)
         texts.append(relations_text(compared))
     elif truth is not None:
-        found = _against_truth(result, truth, model=model, floor=floor)
+        found = _against_truth(result, truth, model=_model(model, unit, result), floor=floor)
         record, texts = found.to_json(), [found.table()]
         if report is not None:
             _write_report(result, found, report)
     if markers is not None:
         from recon4.slices.residual_table import residual_text
 
-        table = _marker_table(*markers, limits=limits)
+        table = _marker_table(*markers, choice=parse_choice(columns, unit), limits=limits)
         record["markers"] = asdict(table)
         texts.append(residual_text(table))
     if patch:
@@ -112,7 +128,31 @@ def evaluate(  # noqa: PLR0913 - options of a command
         write("\n\n".join(texts))
 
 
-def _against_truth(result: Path, truth: Path, *, model: Path | None, floor: bool) -> Evaluation:
+def _model(path: Path | None, unit: str, result: Path) -> TriangleMesh | None:
+    """The model in meters.
+
+    Raises:
+        ConfigError: If no unit is given and it is far larger than the map of the result.
+    """
+    from recon4.evaluation.reference_mesh import TriangleMesh, read_mesh
+    from recon4.mapping.tiles import TileSet
+    from recon4.recording.tables.column_names import UNITS_M
+    from recon4.slices.placement import check_extent
+    from recon4.store.project import is_project, read_artifacts
+
+    if path is None:
+        return None
+    mesh, chosen = read_mesh(path), parse_choice("", unit).unit
+    if chosen:
+        return TriangleMesh(mesh.vertices_m * UNITS_M[chosen], mesh.triangles)
+    map_ = read_artifacts(result).get("map") if is_project(result) else None
+    check_extent(mesh.bounds(), TileSet.open(map_).bounds_m if map_ else None, certain=False)
+    return mesh
+
+
+def _against_truth(
+    result: Path, truth: Path, *, model: TriangleMesh | None, floor: bool
+) -> Evaluation:
     from recon4.evaluation.evaluate import MapChunks
     from recon4.evaluation.evaluate import evaluate as evaluate_result
     from recon4.store.project import is_project, read_artifacts
@@ -146,7 +186,9 @@ def _write_report(project: Path, found: Evaluation, path: Path) -> None:
     write_report(path, assess(project_facts(project, found)))
 
 
-def _marker_table(surveyed: Path, measured: Path, *, limits: str) -> ControlReport:
+def _marker_table(
+    surveyed: Path, measured: Path, *, choice: ColumnChoice, limits: str
+) -> ControlReport:
     import numpy as np
 
     from recon4.evaluation.markers import read_markers
@@ -155,10 +197,13 @@ def _marker_table(surveyed: Path, measured: Path, *, limits: str) -> ControlRepo
     from recon4.slices.measured import MeasuredPosition
     from recon4.slices.residuals import ControlContext, residuals
 
-    points = [ControlPoint(m.name, tuple(m.xyz_m.tolist()), m.role) for m in read_markers(surveyed)]
+    points = [
+        ControlPoint(m.name, tuple(m.xyz_m.tolist()), m.role)
+        for m in read_markers(surveyed, choice=choice)
+    ]
     positions = {
         m.name: MeasuredPosition(np.nan_to_num(m.xyz_m), np.eye(3)[np.isfinite(m.xyz_m)])
-        for m in read_markers(measured, partial=True)
+        for m in read_markers(measured, partial=True, choice=choice)
     }
     return residuals(points, positions, ControlContext(limits=parse_limits(limits)))
 

@@ -3,19 +3,27 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from recon4.cli.confinement import confine_command
+from recon4.cli.references import (
+    ColumnsOption,
+    FrameOption,
+    ReferenceOption,
+    UnitOption,
+    open_reference,
+)
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
     from recon4.review.stamp import Stamp
     from recon4.slices.frames import MapFrame
+    from recon4.slices.reference import Reference
     from recon4.slices.slice_plane import SlicePlane
 
 slices = typer.Typer()
@@ -31,6 +39,7 @@ class SliceLook:
     """Name of the project."""
     stamp: Stamp | None
     """Approval of the map."""
+    reference: Reference | None = None
 
 
 ProjectArgument = Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")]
@@ -53,6 +62,10 @@ def cut_map(  # noqa: PLR0913 - options of a command
     draft: Annotated[
         bool, typer.Option("--draft", help="Without approval, whether or not there is one.")
     ] = False,
+    reference: ReferenceOption = None,
+    columns: ColumnsOption = "",
+    unit: UnitOption = "",
+    frame_of_reference: FrameOption = "auto",
 ) -> None:
     """Cut a map and write the slice, at full resolution. It carries the map's approval."""
     confine_command(write=[file.parent])
@@ -73,7 +86,10 @@ def cut_map(  # noqa: PLR0913 - options of a command
         approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
     )
     look = SliceLook(color, project.name, approval.stamp if approval else None)
-    points = _write(tiles, planes, file, frame=frame, look=look)
+    reading = (columns, unit, frame_of_reference)
+    with open_reference(reference, reading, tiles=tiles, frame=frame) as against:
+        look = replace(look, reference=against, color="distance" if against else color)
+        points = _write(tiles, planes, file, frame=frame, look=look)
     state = latest_state(project, draft=draft)
     sys.stdout.write(f"{points} points in {file}\n{state.text}\n")
 
@@ -137,6 +153,8 @@ def _write(
 
     ending = file.suffix.lower()
     writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
+    if ending in writers and look.reference:
+        raise ConfigError(f"distances to a reference are written as an image, got {file.name}")
     if ending in writers:
         with atomic_file(file) as temporary:
             points = writers[ending](SliceSelection(tiles, planes), temporary, frame=frame)
@@ -173,16 +191,23 @@ def _write_image(
     window = extent(tiles, plane)
     if file.suffix.lower() == ".tif":
         side_m = max(window.right - window.left, window.top - window.bottom)
-        made = draw(tiles, plane, RasterGrid(window, max(0.005, side_m / 6000)), color=color)
+        made = draw(
+            tiles,
+            plane,
+            RasterGrid(window, max(0.005, side_m / 6000)),
+            color=color,
+            reference=look.reference,
+        )
         title = f"{look.name}: {surface_text(tiles.surface)}. {approval}"
         write_geotiff(
             made, file, frame=frame, rgba=made.rgba(made.span, "light"), description=title
         )
         return made.points
     layout = lay_out(window)
-    made = draw(tiles, plane, layout.paper, color=color)
+    made = draw(tiles, plane, layout.paper, color=color, reference=look.reference)
     key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
     lie = surface_text(tiles.surface)
-    text = SheetText(look.name, frame.text, source_text(key), approval, lie)
+    against = look.reference.caption if look.reference else ""
+    text = SheetText(look.name, frame.text, source_text(key), approval, lie, against)
     write_sheet(made, layout, file, span=made.span, text=text)
     return made.points

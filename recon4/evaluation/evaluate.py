@@ -19,7 +19,7 @@ from recon4.evaluation.kitti import (
     official_drift,
     thesis_drift,
 )
-from recon4.evaluation.reference_mesh import TriangleMesh, distance_to, read_mesh
+from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
 from recon4.evaluation.sharpness import Sharpness, around, draw_places, sharpness, thin
 from recon4.evaluation.slices import RelativeError, relative_error, spread_slices
 from recon4.evaluation.text import evaluation_text
@@ -98,7 +98,7 @@ def evaluate(
     project_or_trajectory: Path,
     *,
     truth: Path,
-    model: Path | None = None,
+    model: TriangleMesh | None = None,
     chunks: MapChunks | None = None,
     frames: Frames | None = None,
 ) -> Evaluation:
@@ -119,15 +119,14 @@ def evaluate(
     estimate, true = find_trajectory(project_or_trajectory), find_trajectory(truth)
     pairs = pair_poses(at_frames(estimate), true)
     aligned = absolute_error(pairs)
-    mesh = read_mesh(model) if model is not None else None
     floor = relative = as_measured = None
-    if mesh is not None and frames is not None:
+    if model is not None and frames is not None:
         tenth = [frames[row] for row in range(0, len(frames), _EVERY)]
-        floor = relative_error_floor(tenth, frames.rig, mesh, estimate=estimate, truth=true)
-    if mesh is not None and chunks is not None:
-        relative = _relative(chunks.delivered, mesh, start=aligned.T_true_map)
+        floor = relative_error_floor(tenth, frames.rig, model, estimate=estimate, truth=true)
+    if model is not None and chunks is not None:
+        relative = _relative(chunks.delivered, model, start=aligned.T_true_map)
         if chunks.measured is not None:
-            as_measured = _relative(chunks.measured, mesh, start=aligned.T_true_map)
+            as_measured = _relative(chunks.measured, model, start=aligned.T_true_map)
     return Evaluation(
         estimate=project_or_trajectory.name,
         truth=truth.name,

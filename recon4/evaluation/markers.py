@@ -2,22 +2,20 @@
 
 from __future__ import annotations
 
-import csv
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from recon4.bounded import lines_limited, parse_float
+from recon4.bounded import read_bytes_limited
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, raise_question
+from recon4.recording.tables.points import TablePoint, read_point_table
 
 Role = Literal["control", "check"]
 _MAX_BYTES = 16 << 20
-
-NOT_MEASURED = ("", "-", "–")
-"""Cells of a coordinate that was not measured."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -31,46 +29,36 @@ class SurveyMarker:
     """Control points were used to make the map; only check points measure its accuracy."""
 
 
-def read_markers(path: Path, *, partial: bool = False) -> tuple[SurveyMarker, ...]:
-    """Read a CSV of markers: columns ``name``, ``x_m``, ``y_m``, ``z_m``, optional ``role``.
+def read_markers(
+    path: Path, *, partial: bool = False, choice: ColumnChoice = AS_THE_TABLE_SAYS
+) -> tuple[SurveyMarker, ...]:
+    """Read a table of markers, for example ``name``, ``x_m``, ``y_m``, ``z_m``, ``role``.
+
+    Columns are found by their names, see `recon4.recording.tables`.
 
     Args:
         path: The file.
         partial: Whether coordinates may be missing: an empty cell or a dash = not measured.
+        choice: What a person says of the columns.
 
     Raises:
         CorruptFile: Naming the line, what was expected and what was found.
+        ConfigError: With a question, if the columns are not certain.
     """
-    try:
-        rows = csv.DictReader(lines_limited(path, max_bytes=_MAX_BYTES))
-        return tuple(
-            _marker(row, f"{path.name} line {rows.line_num}", partial=partial) for row in rows
-        )
-    except csv.Error as error:
-        raise CorruptFile(f"{path.name}: cannot be read as CSV: {error}") from error
+    data = read_bytes_limited(path, _MAX_BYTES)
+    found = read_point_table(data, path.name, choice=choice, purpose="markers", partial=partial)
+    raise_question(found.preview, path.name)
+    if found.skipped:
+        raise CorruptFile(f"{path.name} {found.skipped[0]}")
+    return tuple(_marker(row, f"{path.name} line {row.line}") for row in found.points)
 
 
-def _marker(line: dict[str, str | None], where: str, *, partial: bool) -> SurveyMarker:
-    try:
-        xyz_m = np.array([_coordinate(line[key], partial=partial) for key in ("x_m", "y_m", "z_m")])
-        name, role = line["name"] or "", line.get("role") or "check"
-    except (KeyError, ValueError) as error:
+def _marker(row: TablePoint, where: str) -> SurveyMarker:
+    xyz_m = np.array(row.xyz_m)
+    role = row.role or "check"
+    if role not in {"control", "check"} or np.isnan(xyz_m).all():
         raise CorruptFile(
-            f"{where}: expected name, x_m, y_m, z_m, got {str(line)[:200]}"
-        ) from error
-    if not name or role not in {"control", "check"} or np.isnan(xyz_m).all():
-        raise CorruptFile(
-            f"{where}: expected a name, a role control or check and finite numbers, "
-            f"got {str(line)[:200]}"
+            f"{where}: expected a name, a role control or check and finite numbers, got "
+            f"{row.name[:40]!r}, {role[:40]!r}, {list(row.xyz_m)}"
         )
-    return SurveyMarker(name, xyz_m, "control" if role == "control" else "check")
-
-
-def _coordinate(cell: str | None, *, partial: bool) -> float:
-    text = (cell or "").strip()
-    if partial and cell is not None and text in NOT_MEASURED:
-        return float("nan")
-    value = parse_float(text)
-    if not np.isfinite(value):
-        raise ValueError(text)
-    return value
+    return SurveyMarker(row.name, xyz_m, "control" if role == "control" else "check")

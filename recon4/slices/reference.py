@@ -27,7 +27,7 @@ FAR_M = 0.5
 """Search radius of distances [m]; larger ones are returned as infinite."""
 MAX_FACTS_BYTES = 1 << 20
 """Size of ``reference.json``."""
-_LONGEST_NOTE = 400
+_LONGEST_NOTE, _LONGEST_CAPTION = 400, 150
 _MARGIN_M = 2.0
 """Points of a request are measured in cubes of this size, each with its own search tree [m]."""
 
@@ -73,6 +73,14 @@ class Reference:
     method: Method = "plane"
     mesh: TriangleMesh | None = None
     tiles: TileSet | None = None
+    notes: tuple[str, ...] = ()
+    """How its columns, units and CRS were read, as sentences."""
+
+    @property
+    def caption(self) -> str:
+        """Its name and how it was read, for one line of a sheet."""
+        text = ". ".join((self.name, " ".join(self.notes)) if self.notes else (self.name,))
+        return text if len(text) <= _LONGEST_CAPTION else f"{text[: _LONGEST_CAPTION - 1]}…"
 
     def distance(self, p_map: Array) -> Array:
         """Distance of points of the map (N, 3) to the reference [m], (N,); inf = over `FAR_M`."""
@@ -156,8 +164,10 @@ def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
     facts = read_facts(folder)
     T = SE3.from_matrix(_matrix(facts.T_map_reference, folder.name))
     if facts.kind == "mesh":
-        return Reference(facts.name, folder, T, method, mesh=_mesh(folder / "mesh.npz"))
-    return Reference(facts.name, folder, T, method, tiles=TileSet.open(folder))
+        mesh = _mesh(folder / "mesh.npz")
+        return Reference(facts.name, folder, T, method, mesh=mesh, notes=facts.notes)
+    tiles = TileSet.open(folder)
+    return Reference(facts.name, folder, T, method, tiles=tiles, notes=facts.notes)
 
 
 def read_facts(folder: Path) -> ReferenceFacts:

@@ -39,7 +39,7 @@ def test_a_survey_is_imported_checked_and_exported(server, page, screenshot):
     opened(page, server)
 
     choose_survey(page, b"ID;X;Y;Z\nA;0,02;5;1,5\nB;16,01;4;1,2\nC;8;0,15;1,4\nD;8;5;20\n")
-    expect(page.get_by_text("is 0.020 the easting")).to_be_visible()
+    expect(page.get_by_text("is 0.02 the easting")).to_be_visible()
     page.get_by_role("button", name="Use, in the map's frame").click()
     expect(page.locator(".verdict")).to_contain_text("– No verdict: no point is measured")
     expect(page.locator(".verdict")).to_contain_text("4 more not measured")

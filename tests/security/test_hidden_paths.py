@@ -29,6 +29,7 @@ TAKING = {
     ("POST", "/api/jobs", "gnss"),
     ("POST", "/api/live", "rig"),
     ("POST", "/api/projects/{project_id}/slices/references", "path"),
+    ("POST", "/api/projects/{project_id}/slices/references/preview", "path"),
 }
 """Every route and field that takes a path; a new one is added here and attacked."""
 NO_PATHS = {
@@ -79,6 +80,7 @@ def send(server, method, path, field, hidden):
         "/api/jobs": {"project": "stolen", "recordings": [str(server.root / "office")]},
         "/api/live": {"project": "stolen", "rig": hidden},
         "/api/projects/office/slices/references": {"name": "stolen"},
+        "/api/projects/office/slices/references/preview": {},
     }
     value = [hidden] if field == "recordings" else hidden
     return server.post(path, json={**bodies[path], field: value})

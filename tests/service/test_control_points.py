@@ -37,7 +37,7 @@ def test_control_points_are_looked_at_kept_and_judged(server):
     report = server.get(f"{BASE}/control/report").json()
     near = server.get(f"{BASE}/control/surface", params={"point": "A"}).json()
 
-    assert preview["question"].startswith("Point A: is 0.020 the easting")
+    assert preview["table"]["question"].startswith("is 0.02 the easting")
     assert kept.status_code == 200
     assert report["rows"][0]["east_m"] == pytest.approx(-0.02)
     assert report["passed"] is None and report["outdated"] == []

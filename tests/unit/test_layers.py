@@ -80,7 +80,7 @@ MAY_IMPORT = {
     "recon4/export": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},
     "recon4/evaluation": STAGE
-    | {"recon4.mapping", "recon4.evaluation", "recon4.simulation"}
+    | {"recon4.mapping", "recon4.evaluation", "recon4.simulation", "recon4.recording.tables"}
     | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "cloud_headers", "poses")},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}

@@ -179,7 +179,8 @@ export interface Comparison {
 export interface ControlFile {
   name?: string;
   base64: string;
-  order?: "EN" | "NE" | null;
+  columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
+  unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
 }
 
 export interface ControlPoint {
@@ -191,10 +192,7 @@ export interface ControlPoint {
 
 export interface ControlPreview {
   points: Array<ControlPoint>;
-  delimiter: string;
-  decimal: string;
-  order: "EN" | "NE";
-  question: string;
+  table: TablePreview;
   skipped: Array<string>;
 }
 

@@ -10,6 +10,7 @@ import {
 } from "../shared/api.js";
 import { isRefused } from "../shared/approval.js";
 import { attempt, make } from "../shared/dom.js";
+import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { combined } from "./measured.js";
 import { figures, residualCells } from "./residual_table.js";
@@ -21,6 +22,14 @@ const without = (record, key) =>
 const named = (ids) =>
   ids.slice(0, MAX_NAMED).join(", ") +
   (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
+
+/** How many points were read, and where the first of them lies. */
+function firstPoint(points) {
+  if (!points.length) return "";
+  const [one] = points;
+  const [x, y, z] = one.xyz_m.map((value) => value.toFixed(3));
+  return `${points.length} points; the first, ${one.id}: east ${x}, north ${y}, height ${z} m`;
+}
 
 export function controlPanel({ id, change, point: pointAt, measured }) {
   const message = make("p", { className: "error", role: "alert" });
@@ -39,58 +48,47 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     () => file.files[0] && attempt(message, () => look(file.files[0])),
   );
 
-  async function look(chosen, order = null) {
+  async function look(chosen, columns = [], unit = null) {
     const data = new Uint8Array(await chosen.arrayBuffer());
     if (data.length > 600_000)
       throw new Error("The file has more than 600 kB; a list of points is smaller");
     let binary = "";
     for (const one of data) binary += String.fromCharCode(one);
-    const found = await previewControl(id, { name: chosen.name, base64: btoa(binary), order });
-    const rows = found.points
-      .slice(0, 5)
-      .map((one) =>
-        make(
-          "tr",
-          {},
-          make("th", { scope: "row" }, one.id),
-          ...one.xyz_m.map((x) => make("td", { className: "number" }, x.toFixed(3))),
-        ),
-      );
+    const asked = { name: chosen.name, base64: btoa(binary), columns, unit };
+    show(chosen, await previewControl(id, asked), unit);
+  }
+
+  /** The first rows of a survey file, its columns and its points, to be confirmed. */
+  function show(chosen, found, unit) {
     const button = (text, action) =>
       make("button", { type: "button", onclick: () => attempt(message, action) }, text);
     const use = (frame) => () =>
       keep((now) => ({ points: found.points, frame, picks: {}, along: {}, limits: now.limits }));
+    const again = (columns, other) => {
+      const open = missing(columns);
+      const table = { ...found.table, columns, question: `${open}.` };
+      if (open) return show(chosen, { ...found, points: [], table }, other ?? unit);
+      return attempt(message, () => look(chosen, columns, other ?? unit));
+    };
+    const swapped = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
+    const swap = () =>
+      look(
+        chosen,
+        found.table.columns.map((one) => swapped[one] ?? one),
+        unit,
+      );
     preview.replaceChildren(
-      make(
-        "p",
-        {},
-        `${found.points.length} points, separated by "${found.delimiter}", ` +
-          `decimal "${found.decimal}"`,
-      ),
-      make(
-        "table",
-        {},
-        make(
-          "thead",
-          {},
-          make(
-            "tr",
-            {},
-            ...["Point", "East, x", "North, y", "Height"].map((text, k) =>
-              make("th", { scope: "col", className: k ? "number" : "" }, text),
-            ),
-          ),
-        ),
-        make("tbody", {}, ...rows),
-      ),
+      columnTable(found.table, again),
+      make("p", {}, firstPoint(found.points)),
       ...found.skipped.slice(0, 5).map((text) => make("p", { className: "error" }, text)),
-      found.question ? make("p", {}, found.question) : "",
       make(
         "div",
         { className: "buttons" },
-        button("Swap east and north", () => look(chosen, found.order === "NE" ? "EN" : "NE")),
-        button("Use, in the map's frame", use("map")),
-        ...(georeferenced ? [button("Use, in the map's CRS", use("crs"))] : []),
+        button("Swap east and north", swap),
+        ...(found.points.length ? [button("Use, in the map's frame", use("map"))] : []),
+        ...(found.points.length && georeferenced
+          ? [button("Use, in the map's CRS", use("crs"))]
+          : []),
       ),
     );
   }

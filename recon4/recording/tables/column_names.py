@@ -127,6 +127,11 @@ def column_name(text: str) -> ColumnName:
     return ColumnName(meaning, family, unit, stated if stated and unit is None else "")
 
 
+def is_unit(text: str) -> bool:
+    """Whether a cell is the name of a unit, in brackets or without."""
+    return _plain(text) in _UNIT_WORDS
+
+
 def parse_meanings(text: str) -> tuple[Meaning, ...]:
     """The columns as a person writes them: ``id,x,y,z``; ``-`` is a column that is not used.
 

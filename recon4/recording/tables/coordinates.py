@@ -24,6 +24,13 @@ from recon4.recording.tables.column_names import (
     column_name,
 )
 from recon4.recording.tables.layout import TableLayout, is_number
+from recon4.recording.tables.proposals import (
+    AXIS_NAMES,
+    Purpose,
+    columns_by_name,
+    columns_by_order,
+    with_id,
+)
 
 SHOWN_ROWS = 5
 _MAX_SHOWN_CELL = 40
@@ -34,8 +41,6 @@ GEODETIC_M = 100_000.0
 """Larger coordinates are those of a national system, where x often points north [m]."""
 _SJTSK_Y, _SJTSK_X = (4.0e5, 9.3e5), (9.3e5, 1.24e6)
 """Range of positive coordinates of S-JTSK, which count to the west and to the south [m]."""
-_BESIDES: tuple[Meaning, ...] = ("id", "role", "radius")
-_WORDS: dict[str, str] = {"x": "x (east)", "y": "y (north)", "z": "z (height)"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +104,7 @@ def preview_table(
     choice: ColumnChoice,
     *,
     place: Array | None = None,
-    of_points: bool = False,
+    purpose: Purpose = "cloud",
 ) -> TablePreview:
     """First rows of a table and how it is going to be read; never raises a question.
 
@@ -107,9 +112,9 @@ def preview_table(
         layout: Of the table.
         choice: What a person said.
         place: Easting and northing of the map [m], (2,), if the coordinates are in its CRS.
-        of_points: Whether it is a list of named points, which begin with an id if nothing is named.
+        purpose: What the table is for: lists of points begin with a name if nothing is named.
     """
-    found = _propose(layout, choice, place, of_points=of_points)
+    found = _propose(layout, choice, place, purpose=purpose)
     shown = tuple(
         tuple(cell[:_MAX_SHOWN_CELL] for cell in row[:MAX_COLUMNS])
         for row in layout.rows[:SHOWN_ROWS]
@@ -132,20 +137,43 @@ def table_columns(
     name: str,
     *,
     place: Array | None = None,
-    of_points: bool = False,
+    purpose: Purpose = "cloud",
 ) -> TableColumns:
     """The columns to read.
 
     Raises:
         ConfigError: With the question and the answer that fits best, if they are not certain.
     """
-    found = _propose(layout, choice, place, of_points=of_points)
-    if found.question:
+    found = _propose(layout, choice, place, purpose=purpose)
+    raise_question(preview_table(layout, choice, place=place, purpose=purpose), name)
+    return _columns(layout, found)
+
+
+def raise_question(preview: TablePreview, name: str) -> None:
+    """Raise the question of a preview, with the answer that fits best.
+
+    Raises:
+        ConfigError: If there is one.
+    """
+    if preview.question:
         raise ConfigError(
-            f"{name}: {found.question} Say which column is what (--columns "
-            f"{_suggestion(found.columns)}); the first row is "
-            f"{' | '.join(layout.rows[0])[:160]}"
+            f"{name}: {preview.question} Say which column is what (--columns "
+            f"{_suggestion(preview.columns)}); the first row is "
+            f"{' | '.join(preview.rows[0])[:160]}"
         )
+
+
+def chosen_columns(
+    layout: TableLayout, choice: ColumnChoice, *, purpose: Purpose = "cloud"
+) -> TableColumns | None:
+    """The columns as they are proposed; None if coordinates are missing among them."""
+    found = _propose(layout, choice, None, purpose=purpose)
+    axes = {column.lstrip("-") for column in found.columns}
+    complete = axes >= {"x", "y", "z"} or axes >= {"lat", "lon", "z"}
+    return _columns(layout, found) if complete else None
+
+
+def _columns(layout: TableLayout, found: _Proposal) -> TableColumns:
     columns = found.columns
     geographic = "lat" in columns
     axes = ("lon", "lat", "z") if geographic else ("x", "y", "z")
@@ -177,108 +205,42 @@ def _suggestion(columns: tuple[Meaning, ...]) -> str:
 
 
 def _propose(
-    layout: TableLayout, choice: ColumnChoice, place: Array | None, *, of_points: bool
+    layout: TableLayout, choice: ColumnChoice, place: Array | None, *, purpose: Purpose
 ) -> _Proposal:
     names = [column_name(name) for name in layout.names]
     if choice.columns:
         columns = check_meanings(choice.columns)
         units = _units(names, columns, choice.unit)
-        return _Proposal(columns, _not_numbers(layout, columns), units)
-    found, question = _by_name(names) if names else _by_order(layout, of_points=of_points)
+        return _Proposal(columns, _not_numbers(layout, columns, purpose), units)
+    found, question = columns_by_name(names) if names else columns_by_order(layout, purpose=purpose)
+    if names and purpose != "cloud" and "id" not in found:
+        found, question = with_id(found), question or "no column is named as the name of a point."
+    if names and layout.stray_head and purpose == "cloud" and not question:
+        question = f"the line {layout.stray_head[:60]!r} below the names is no row of numbers."
     units = _units(names, found, choice.unit)
     odd = next((name.odd_unit for name in names if name.odd_unit and name.meaning != "-"), "")
     if not question and odd and choice.unit is None:
         question = f"the unit {odd[:20]!r} of a column is not known."
-    question = question or _not_numbers(layout, found)
+    question = question or _not_numbers(layout, found, purpose)
     proposal = _Proposal(found, question, units)
     if question:
         return proposal
-    return _Proposal(*_at_place(layout, proposal, names, place=place, of_points=of_points), units)
+    return _Proposal(*_at_place(layout, proposal, names, place=place, purpose=purpose), units)
 
 
-def _by_name(names: list[ColumnName]) -> tuple[tuple[Meaning, ...], str]:
-    """Columns by their names, and what remains open."""
+def _not_numbers(layout: TableLayout, columns: Sequence[Meaning], purpose: Purpose) -> str:
+    """Which column of a coordinate has no number; empty = each has some.
 
-    def rows(meaning: Meaning, family: str | None = None) -> list[int]:
-        return [
-            k
-            for k, name in enumerate(names)
-            if name.meaning == meaning and family in (None, name.family)
-        ]
-
-    xy, en = (rows("x", "xy"), rows("y", "xy")), (rows("x", "en"), rows("y", "en"))
-    degrees = (rows("lon"), rows("lat"))
-    pairs = [pair for pair in (xy, en) if all(pair)] or [pair for pair in (degrees,) if all(pair)]
-    heights = rows("z", "xy") if all(xy) and rows("z", "xy") else rows("z")
-    first, second = pairs[0] if pairs else ([], [])
-    axes: tuple[Meaning, Meaning] = ("lon", "lat") if (first, second) == degrees else ("x", "y")
-    columns: list[Meaning] = ["-"] * len(names)
-    taken: tuple[tuple[Meaning, list[int]], ...] = (
-        *((meaning, rows(meaning)) for meaning in _BESIDES),
-        (axes[0], first),
-        (axes[1], second),
-        ("z", heights),
-    )
-    for meaning, found in taken:
-        if found:
-            columns[found[0]] = meaning
-    missing = [
-        _WORDS[m] for m, found in zip("xyz", (first, second, heights), strict=True) if not found
-    ]
-    if missing:
-        return tuple(columns), f"no column is named as {' or '.join(missing)}."
-    if len(pairs) > 1:
-        return tuple(columns), "there are columns x, y and columns east, north."
-    if any(len(found) > 1 for found in (first, second, heights)):
-        return tuple(columns), "several columns have names of one coordinate."
-    return tuple(columns), ""
-
-
-def _by_order(layout: TableLayout, *, of_points: bool) -> tuple[tuple[Meaning, ...], str]:
-    """Columns of a table without names: x, y, z first, unless the first one is an id."""
-    rest = max(0, layout.width - 3)
-    unused: tuple[Meaning, ...] = ("-",)
-    plain: tuple[Meaning, ...] = ("x", "y", "z", *unused * rest)
-    with_id: tuple[Meaning, ...] = ("id", "x", "y", "z", *unused * (rest - 1))
-    if layout.stray_head:
-        columns = with_id if rest and (of_points or _is_id(layout)) else plain
-        return columns, f"the line {layout.stray_head[:60]!r} does not name each column."
-    if of_points:
-        # name, x, y, z and the radius of a target
-        return (*with_id[:4], "radius") if layout.width == 5 else with_id, ""
-    if rest and _is_id(layout):
-        return with_id, "no column has a name, and the first one is like a point number."
-    if rest and all(_is_whole(cell) for row in layout.rows for cell in row if is_number(cell)):
-        return plain, "no column has a name, and all numbers are whole."
-    return plain, ""
-
-
-def _is_id(layout: TableLayout) -> bool:
-    """Whether the first column is text, or whole numbers beside numbers that are not."""
-    first = [row[0] for row in layout.rows]
-    others = [cell for row in layout.rows for cell in row[1:4]]
-    return (all(map(_is_whole, first)) and any(map(_has_decimals, others))) or not all(
-        map(is_number, first)
-    )
-
-
-def _is_whole(cell: str) -> bool:
-    return cell.lstrip("+-").isdigit()
-
-
-def _has_decimals(cell: str) -> bool:
-    return is_number(cell) and not _is_whole(cell)
-
-
-def _not_numbers(layout: TableLayout, columns: Sequence[Meaning]) -> str:
-    """What is no number in the columns of the coordinates of the first row; empty = all are."""
-    row = layout.rows[0]
+    Rows of a list of points are judged one by one instead.
+    """
+    if purpose != "cloud":
+        return ""
     for k, meaning in enumerate(columns):
-        if meaning not in ("-", "id", "role", "radius") and not (
-            k < len(row) and is_number(row[k])
-        ):
-            cell = row[k] if k < len(row) else ""
-            return f"column {k + 1} has no numbers, but {cell[:40]!r}."
+        if meaning in ("-", "id", "role", "radius"):
+            continue
+        cells = [row[k] for row in layout.rows if k < len(row)]
+        if not any(map(is_number, cells)):
+            return f"column {k + 1} has no numbers, but {(cells or [''])[0][:40]!r}."
     return ""
 
 
@@ -300,7 +262,7 @@ def _at_place(
     names: list[ColumnName],
     *,
     place: Array | None,
-    of_points: bool,
+    purpose: Purpose,
 ) -> tuple[tuple[Meaning, ...], str]:
     """Check axes that national systems name otherwise: x to the north, or to the south."""
     columns = found.columns
@@ -320,15 +282,19 @@ def _at_place(
             return columns, ""
         doubt = "the coordinates are near the map only with other axes than its names say."
         if fits:
-            return fits[0], doubt if by_direction or of_points else ""
+            return fits[0], doubt if by_direction or purpose != "cloud" else ""
     if by_direction:
         return columns, ""
     if _SJTSK_Y[0] < min(a, b) < _SJTSK_Y[1] and _SJTSK_X[0] < max(a, b) < _SJTSK_X[1]:
         meanings: tuple[Meaning, Meaning] = ("-x", "-y") if a < b else ("-y", "-x")
         turned = _renamed(columns, dict(zip((x, y), meanings, strict=True)))
         return turned, "these are like Y and X of S-JTSK, which count to the west and south."
-    if of_points:
-        return columns, f"is {a:.3f} the easting (x) and {b:.3f} the northing (y)?"
+    if purpose == "survey" or (purpose == "markers" and not names):
+        first = layout.rows[0]
+        return (
+            columns,
+            f"is {_cell(first, x)} the easting (x) and {_cell(first, y)} the northing (y)?",
+        )
     if names and y < x and min(abs(a), abs(b)) > GEODETIC_M:
         return columns, "y stands before x: x may point north, as in geodetic lists."
     return columns, ""
@@ -349,6 +315,10 @@ def _renamed(columns: tuple[Meaning, ...], meanings: Mapping[int, Meaning]) -> t
     return tuple(meanings.get(k, meaning) for k, meaning in enumerate(columns))
 
 
+def _cell(row: Sequence[str], at: int) -> str:
+    return row[at][:_MAX_SHOWN_CELL] if at < len(row) else "–"
+
+
 def _middle(layout: TableLayout, column: int) -> float:
     values = [
         float(row[column]) for row in layout.rows if column < len(row) and is_number(row[column])
@@ -364,7 +334,7 @@ def _description(layout: TableLayout, found: _Proposal) -> str:
             continue
         named = layout.names[at] if at < len(layout.names) and layout.names[at] else ""
         meaning = found.columns[at]
-        axis = {"lon": "longitude", "lat": "latitude"}.get(meaning, _WORDS[word])
+        axis = {"lon": "longitude", "lat": "latitude"}.get(meaning, AXIS_NAMES[word])
         sign = "minus " if meaning.startswith("-") else ""
         words.append(f"{axis} = {sign}{named.strip()[:30] or f'column {at + 1}'}")
     units = dict.fromkeys(UNIT_NAMES[unit] for unit in found.units)

@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass
 
 from recon4.errors import CorruptFile
+from recon4.recording.tables.column_names import is_unit
 
 _SAMPLE = 60
 """Lines from which the layout is detected."""
@@ -20,6 +21,8 @@ _QUOTED_COMMA = re.compile(r'"([-+]?[0-9]+),([0-9]+)"')
 _GROUPED = re.compile(r"[-+]?[0-9]{1,3}(?:[.' ,][0-9]{3})+(?:[.,][0-9]+)?")
 """Digits in groups of three, as 1.234,5 or 1'234.5: nobody can tell a group from a decimal."""
 _FEWEST = 3
+NOT_MEASURED = ("", "-", "–")
+"""Cells of a coordinate that was not measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +37,8 @@ class TableLayout:
     """Lines before the first row of numbers."""
     names: tuple[str, ...]
     """Names of the columns; empty = the file has none."""
+    names_line: int
+    """Line of the names, from 0; -1 = there are none."""
     stray_head: str
     """A line above the numbers with text that does not name each column; empty = there is none."""
     promised: int | None
@@ -47,33 +52,39 @@ class TableLayout:
         return len(_without_end(self.rows[0]))
 
     @staticmethod
-    def of(text: str, name: str) -> TableLayout:
-        """Detect the layout from the first lines.
+    def of(text: str, name: str, *, fewest: int = _FEWEST) -> TableLayout:
+        r"""Detect the layout from the first lines.
+
+        Args:
+            text: The lines, each ending with ``\n``.
+            name: Of the file, for messages.
+            fewest: Numbers that make a line a row.
 
         Raises:
-            CorruptFile: If no line has three numbers.
+            CorruptFile: If no line has that many numbers.
         """
         lines = text.split("\n")
-        delimiter = _delimiter([line for line in lines[:_SAMPLE] if _content(line)])
+        delimiter = _delimiter([line for line in lines[:_SAMPLE] if is_content(line)])
         decimal = _decimal(lines[:_SAMPLE], delimiter)
         for first, line in enumerate(lines):
-            if _content(line) and _is_data(split_row(line, delimiter, decimal)):
+            if is_content(line) and _numbers(split_row(line, delimiter, decimal)) >= fewest:
                 break
         else:
-            seen = next((line for line in lines if _content(line)), "")
+            seen = next((line for line in lines if is_content(line)), "")
             raise CorruptFile(
                 f"{name}: expected rows with three numbers or more, got {seen.strip()[:80]!r}"
             )
-        rows = [split_row(line, delimiter, decimal) for line in lines[first:] if _content(line)]
+        rows = [split_row(line, delimiter, decimal) for line in lines[first:] if is_content(line)]
         head = lines[:first]
         width = len(_without_end(rows[0]))
-        names = _names(head, delimiter, width)
+        names_line, names = _names(head, delimiter, width, exact=fewest == _FEWEST)
         return TableLayout(
             delimiter=delimiter,
             decimal=decimal,
             head_lines=first,
             names=names,
-            stray_head="" if names else _stray(head),
+            names_line=names_line,
+            stray_head=_stray(head, names_line),
             promised=_promised(head),
             rows=tuple(tuple(row) for row in rows[:_SAMPLE]),
         )
@@ -112,7 +123,7 @@ def wrong_number(cell: str) -> str:
     return f"expected a number, got {cell[:40]!r}"
 
 
-def _content(line: str) -> bool:
+def is_content(line: str) -> bool:
     """Whether a line is neither blank nor a comment nor the rule of a printed table."""
     text = line.strip()
     return bool(text) and not text.startswith(_COMMENTS) and bool(text.strip("|-:=+ "))
@@ -135,36 +146,66 @@ def _loosely(cell: str) -> bool:
 
 
 def _decimal(lines: list[str], delimiter: str) -> str:
-    for line in filter(_content, lines):
+    for line in filter(is_content, lines):
         if any(_COMMA_NUMBER.fullmatch(cell) for cell in split_row(line, delimiter, ".")):
             return ","
     return "."
 
 
-def _is_data(cells: list[str]) -> bool:
-    return sum(map(is_number, cells)) >= _FEWEST
+def _numbers(cells: list[str]) -> int:
+    return sum(is_number(cell) or cell in NOT_MEASURED[1:] for cell in cells)
 
 
-def _names(head: list[str], delimiter: str, width: int) -> tuple[str, ...]:
-    """The last line above the numbers that has a name for each column."""
-    for line in reversed(head):
-        text = line.strip().lstrip("#/%! ")
-        if not text or _COUNT.fullmatch(text):
-            continue
-        for sign in dict.fromkeys((delimiter, ",", "", "\t", ";")):
-            cells = [cell.strip('"') for cell in split_row(text, sign, ".")]
-            named = _without_end(cells)
-            if len(cells) >= width >= len(named) and not any(map(is_number, named)):
-                return tuple(cells[:width])
+def _names(
+    head: list[str], delimiter: str, width: int, *, exact: bool
+) -> tuple[int, tuple[str, ...]]:
+    """The last line above the numbers that has a name for each column, and its place.
+
+    A line of units below the names, as ``[m];[m];[m]``, is joined to them.
+    """
+    units: tuple[str, ...] = ()
+    for at in range(len(head) - 1, -1, -1):
+        cells = _name_cells(head[at].strip().lstrip("#/%! "), delimiter, width, exact=exact)
+        if cells and not units and all(map(is_unit, filter(None, cells))):
+            units = cells
+        elif cells:
+            units += ("",) * (len(cells) - len(units))
+            joined = (
+                f"{c} [{u.strip('[]()')}]" if u else c for c, u in zip(cells, units, strict=False)
+            )
+            return at, tuple(joined)
+    return -1, ()
+
+
+def _name_cells(text: str, delimiter: str, width: int, *, exact: bool) -> tuple[str, ...]:
+    """The cells of a line that names columns; empty if it does not.
+
+    ``exact`` = a name for each cell of a row; else rows may be shorter.
+    """
+    if not text or _COUNT.fullmatch(text):
+        return ()
+    for sign in dict.fromkeys((delimiter, ",", "", "\t", ";")):
+        cells = [cell.strip('"') for cell in split_row(text, sign, ".")]
+        named = _without_end(cells)
+        fits = len(cells) >= width and named and (not exact or width >= len(named))
+        if fits and not any(map(is_number, named)):
+            return tuple(cells[: max(width, len(named))])
     return ()
 
 
-def _stray(head: list[str]) -> str:
-    return next((line.strip() for line in reversed(head) if _is_text(line)), "")
+def _stray(head: list[str], names_line: int) -> str:
+    """A line between the names (or the begin) and the numbers that is neither."""
+    below = [line for line in head[names_line + 1 :] if _is_text(line)]
+    others = [line for line in below if names_line < 0 or not _all_units(line)]
+    return others[-1].strip() if others else ""
+
+
+def _all_units(line: str) -> bool:
+    return all(map(is_unit, filter(None, re.split(r"[;,|\s]+", line))))
 
 
 def _is_text(line: str) -> bool:
-    return _content(line) and not _COUNT.fullmatch(line.strip()) and line.strip()[:4] != "sep="
+    return is_content(line) and not _COUNT.fullmatch(line.strip()) and line.strip()[:4] != "sep="
 
 
 def _promised(head: list[str]) -> int | None:

@@ -9,7 +9,7 @@ import trimesh
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.evaluation.evaluate import MapChunks, at_frames, evaluate
-from recon4.evaluation.reference_mesh import TriangleMesh, sample_mesh
+from recon4.evaluation.reference_mesh import TriangleMesh, read_mesh, sample_mesh
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
@@ -131,7 +131,7 @@ def test_everything_at_once_with_model_and_map(tmp_path: Path) -> None:
     found = evaluate(
         tmp_path / "estimate.tum",
         truth=tmp_path / "truth.tum",
-        model=tmp_path / "model.ply",
+        model=read_mesh(tmp_path / "model.ply"),
         chunks=MapChunks(
             lambda: np.array_split(points, 7),
             lambda: np.array_split(points + 0.01 * rough * normals, 7),

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from recon4.errors import CorruptFile
+from recon4.errors import ConfigError, CorruptFile
 from recon4.evaluation.markers import read_markers
+from recon4.recording.tables.coordinates import ColumnChoice
 
 
 def test_markers_are_read_from_csv(tmp_path: Path) -> None:
@@ -41,3 +42,16 @@ def test_a_coordinate_may_be_not_measured_only_where_that_is_expected(
     assert str(found.xyz_m.tolist()) == "[1.0, nan, 3.0]"
     with pytest.raises(CorruptFile, match="line 2"):
         read_markers(file)
+
+
+def test_columns_of_markers_are_found_by_name_or_asked_for(tmp_path: Path) -> None:
+    german, plain = tmp_path / "german.csv", tmp_path / "plain.csv"
+    german.write_text("Punkt;Hochwert;Rechtswert;Höhe [mm]\nA;2,5;1,5;3500\n")
+    plain.write_text("A,2.5,1.5,3.5\n")
+
+    with pytest.raises(ConfigError, match=r"is 2\.5 the easting .*--columns id,x,y,z"):
+        read_markers(plain)
+    chosen = read_markers(plain, choice=ColumnChoice(("id", "y", "x", "z")))
+
+    assert read_markers(german)[0].xyz_m.tolist() == [1.5, 2.5, 3.5]
+    assert chosen[0].xyz_m.tolist() == [1.5, 2.5, 3.5]

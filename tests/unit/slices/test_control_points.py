@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import CorruptFile
+from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint, read_control
 from recon4.slices.limits import ControlLimits
@@ -28,16 +29,19 @@ def test_surveys_of_all_kinds_are_understood(text):
     found = read_control(text.encode())
 
     assert found.points[0].xyz_m == (1.5, 2.5, 3.5) and found.skipped == ()
-    assert bool(found.question) == ("north" not in text)
+    assert bool(found.table.question) == ("north" not in text)
 
 
 def test_the_order_is_asked_for_and_can_be_turned():
     data = b"A,5400000.0,600000.0,300\n"
 
-    found, turned = read_control(data), read_control(data, order="NE")
+    found, turned = (
+        read_control(data),
+        read_control(data, choice=ColumnChoice(("id", "y", "x", "z"))),
+    )
 
-    assert "is 5400000.000 the easting" in found.question
-    assert turned.points[0].xyz_m == (600000.0, 5400000.0, 300.0) and turned.question == ""
+    assert "is 5400000.0 the easting" in found.table.question
+    assert turned.points[0].xyz_m == (600000.0, 5400000.0, 300.0) and turned.table.question == ""
 
 
 def test_lines_that_say_nothing_are_named_not_dropped():
@@ -213,3 +217,56 @@ def test_the_points_of_the_thesis_have_its_figures_and_are_too_few_for_a_verdict
     assert check.mean_2d_m == pytest.approx(0.058, abs=5e-4)
     assert (check.mean_up_m, check.max_up_m) == pytest.approx((0.0995, 0.152))
     assert found.passed is None
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Punkt;Hochwert;Rechtswert;Höhe\n1;2,5;1,5;3,5\n",
+        "Code,Northing,Easting,Elevation,Name\nfence,2.5,1.5,3.5,1\n",
+        "//Name X[mm] Y[mm] Z[mm]\n1 1500 2500 3500\n",
+        "id\teast\tnorth\tup\tname of photo\n1\t1.5\t2.5\t3.5\tIMG 1\n",
+        "EPSG:5514\n;;;\nčíslo bodu;sever;východ;výška\n1;2,5;1,5;3,5\n",
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "cp1250"])
+def test_surveys_are_read_by_the_names_of_their_columns(text, encoding):
+    found = read_control(text.replace("Höhe", "Hohe").encode(encoding, errors="replace"))
+
+    assert [(p.id, p.xyz_m) for p in found.points] == [("1", (1.5, 2.5, 3.5))]
+    assert found.skipped == ()
+
+
+def test_real_tables_of_a_survey_are_asked_for_what_they_have_twice(data):
+    file = data("control/mms-road") / "GCPs.csv"
+
+    found = read_control(file.read_bytes(), name=file.name)
+    answered = ["id", "y", "x", "-", "z", *["-"] * 14]
+    chosen = read_control(file.read_bytes(), choice=ColumnChoice(tuple(answered)))
+
+    assert found.table.question == "several columns have names of one coordinate."
+    assert found.table.header[1:5] == (
+        *("Northing", "Easting", "Orthometric Height", "Ellipsoidal Height"),
+    )
+    assert len(chosen.points) == 16 and chosen.points[0].id == "GCP01"
+    assert chosen.points[0].xyz_m == (679471.773, 1527234.402, -28.270)
+
+
+def test_points_of_a_topographic_list_are_asked_for_their_axes(data):
+    file = data("control/topo-points") / "Test.txt"
+
+    found = read_control(file.read_bytes())
+
+    assert (len(found.points), len(found.skipped)) == (388, 58)  # numbers of points come twice
+    assert "is 507830.722" in found.table.question
+    assert found.points[0].xyz_m == (507830.722, 4273070.997, 66.914)
+
+
+def test_a_row_that_is_no_point_is_listed_before_the_first_that_is_one_too():
+    found = read_control(b"ID,X,Y,Z,role\nA,1,x,3,\nB,1,2,3,\nC,1,2,3,boss\n")
+
+    assert [point.id for point in found.points] == ["B"]
+    assert found.skipped == (
+        "line 2: expected a number, got 'x'",
+        "line 4: expected control or check, got 'boss'",
+    )

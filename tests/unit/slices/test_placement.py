@@ -163,7 +163,7 @@ ROOM = (np.zeros(3), np.array([12.0, 8.0, 3.0]))
 
 @pytest.mark.parametrize("times", [1000.0, 100.0])
 def test_a_model_in_another_unit_is_asked_for_it(times):
-    with pytest.raises(ConfigError, match="states no unit: say which one"):
+    with pytest.raises(ConfigError, match="states no unit: choose one"):
         check_extent((ROOM[0] * times, ROOM[1] * times), ROOM, certain=False)
     assert check_extent((ROOM[0] * times, ROOM[1] * times), ROOM, certain=True) == ()
 
