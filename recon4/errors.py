@@ -8,6 +8,7 @@
     │   ├── EmptyRecording     the file is readable but has no points
     │   └── CorruptFile        bytes do not match the format
     ├── OutOfRange             a time is outside the trajectory
+    ├── MapTooLarge            a map has more cells than fit into memory
     ├── CalibrationError       measurements do not determine a calibration
     ├── GraphError             a pose graph cannot be solved (not finite, not connected, …)
     ├── GeoreferenceError      no usable CRS, transformation or position
@@ -67,6 +68,10 @@ class CorruptFile(RecordingError):
 
 class OutOfRange(Recon4Error):
     """A time is outside the trajectory."""
+
+
+class MapTooLarge(Recon4Error):
+    """A map has more cells than fit into memory."""
 
 
 class CalibrationError(Recon4Error):

@@ -36,7 +36,7 @@ from recon4.run_summary import (
     timings,
 )
 from recon4.settings import values_by_group
-from recon4.slam2d.map_files import read_map
+from recon4.slam2d.map_files import overview_name, read_overview
 from recon4.slam2d.stage import read_covariance
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.verdict import Facts2d, judge
@@ -50,6 +50,7 @@ from recon4.store.stage import StageRun, figures_of
 RESULTS_2D = (
     "map.png",
     "map.yaml",
+    "overview.png",
     "trajectory.tum",
     "odometry.tum",
     "edges.json",
@@ -175,10 +176,11 @@ def _import_report(folder: Mapping[str, Path]) -> Mapping[str, object]:
 def _writers(root: Path, made: _Made, about: About) -> list[Callable[[], None]]:
     """One function a file of `RESULTS_2D`."""
     folder = made.folder
-    graph = _final_graph(folder)
+    graph, shown = _final_graph(folder), overview_name(folder["map_2d"])
     return [
         lambda: copy_file(folder["map_2d"] / "map.png", root / "map.png"),
         lambda: copy_file(folder["map_2d"] / "map.yaml", root / "map.yaml"),
+        lambda: copy_file(folder["map_2d"] / f"{shown}.png", root / "overview.png"),
         lambda: write_trajectory(folder["map_2d"], root / "trajectory.tum"),
         lambda: write_trajectory(folder["odometry_2d"], root / "odometry.tum"),
         lambda: copy_file(graph / "edges.json", root / "edges.json"),
@@ -190,7 +192,7 @@ def _writers(root: Path, made: _Made, about: About) -> list[Callable[[], None]]:
 def _page(made: _Made, about: About) -> Page2d:
     """Content of the report."""
     folder, facts = made.folder, made.facts
-    written = read_map(folder["map_2d"])
+    written = read_overview(folder["map_2d"])
     sd_m = np.sqrt(np.linalg.eigvalsh(read_covariance(folder["map_2d"])[:, 1:, 1:])[:, -1])
     return Page2d(
         title=about.project.name,
@@ -201,7 +203,7 @@ def _page(made: _Made, about: About) -> Page2d:
         warnings=facts.scans.warnings,
         figures=_key_figures(made),
         grid=GridImage(
-            (folder["map_2d"] / "map.png").read_bytes(),
+            (folder["map_2d"] / f"{overview_name(folder['map_2d'])}.png").read_bytes(),
             written.cell_m,
             written.origin_m,
             (written.gray.shape[1], written.gray.shape[0]),

@@ -11,6 +11,7 @@ RESULTS: dict[str, str] = {
     "map.laz": "Map, LAZ 1.4",
     "map.png": "2-D map, image",
     "map.yaml": "2-D map, description for nav2",
+    "overview.png": "2-D map, image as the pages show it",
     "trajectory.tum": "Trajectory, TUM",
     "odometry.tum": "Odometry trajectory, TUM",
     "poses_covariance.csv": "Poses of the multiframes with covariances, CSV",
@@ -20,8 +21,8 @@ RESULTS: dict[str, str] = {
 }
 """Files of a project that may be downloaded, and their descriptions."""
 
-MAP_IMAGE = "map.png"
-"""In the artifact of a 2-D map."""
+MAP_IMAGES = ("overview.png", "map.png")
+"""In the artifact of a 2-D map; the first one there is shown."""
 
 STAGE_ORDER = (
     "frames",

@@ -19,7 +19,7 @@ from app.jobs.model import JobState
 from app.names import Name
 from app.network.request_caller import CalledBy
 from app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
-from app.projects.model import MAP_IMAGE, FolderEntry, ProjectCard, ProjectView
+from app.projects.model import MAP_IMAGES, FolderEntry, ProjectCard, ProjectView
 from app.projects.trash import Deleted
 from recon4.review.state import artifact_keys
 
@@ -138,8 +138,9 @@ def report(project_id: str, server: Server) -> FileResponse:
 async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
     """The map from above as PNG image, made at the first request; a 2-D map is its own image."""
     artifact = await run_in_threadpool(server.projects.map_of_any_kind, project_id)
-    if (artifact / MAP_IMAGE).is_file():
-        return FileResponse(artifact / MAP_IMAGE, media_type="image/png")
+    for image in MAP_IMAGES:
+        if (artifact / image).is_file():
+            return FileResponse(artifact / image, media_type="image/png")
     return FileResponse(await caller.wait(server.thumbnails.of(artifact, person=caller.name)))
 
 

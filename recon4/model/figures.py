@@ -362,6 +362,10 @@ class Map2dFigures(Figures, frozen=True, kw_only=True):
 
     cell_m: float
     """Edge of a cell [m]."""
+    enlarged: int = 1
+    """How many times larger it is than requested, because the map would be too large."""
+    overview_cell_m: float = 0.0
+    """Edge of a cell of ``overview.png`` [m]; 0 = of an earlier version, without one."""
     size: tuple[int, int]
     """Cells along x and y."""
     free_m2: float

@@ -18,9 +18,12 @@ _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 0
 _OCCUPIED_THRESHOLD, _FREE_THRESHOLD = 0.65, 0.196
 """Thresholds for these gray values: 205 is a probability of 0.1961, which is neither."""
 
-
+OVERVIEW_CELLS = 4096
+"""Cells along the longer side of the image that pages show: browsers and graphics cards decode it
+at once, and some refuse 16384."""
 _MAX_YAML_BYTES = 4096
 _MAX_PIXELS = 1 << 28
+_BLOCK_CELLS = 1 << 22
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,53 +50,113 @@ class TrinaryMap:
 
 def trinary_image(grid: OccupancyGrid, settings: Grid2dSettings) -> NDArray[np.uint8]:
     """Occupied black, free white, unknown gray; the first row has the largest y, (Y, X)."""
-    probability = grid.probability
-    image = np.full(probability.shape, _UNKNOWN, np.uint8)
-    image[probability < settings.free_threshold] = _FREE
-    image[probability > settings.occupied_threshold] = _OCCUPIED
-    return np.ascontiguousarray(np.flipud(image.T))
+    width, height = grid.log_odds.shape
+    image = np.full((height, width), _UNKNOWN, np.uint8)
+    columns = max(1, _BLOCK_CELLS // max(height, 1))
+    for first in range(0, width, columns):
+        probability = grid.probability_of(slice(first, first + columns)).T[::-1]
+        part = image[:, first : first + columns]
+        part[probability < settings.free_threshold] = _FREE
+        part[probability > settings.occupied_threshold] = _OCCUPIED
+    return image
 
 
-def write_map(folder: Path, grid: OccupancyGrid, settings: Grid2dSettings) -> None:
-    """Write ``map.png`` and ``map.yaml``.
+def overview_of(gray: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
+    """An image of at most `OVERVIEW_CELLS` on either side, with the same lower left corner.
+
+    A cell is occupied if any of those that it joins is, else free if any is.
+
+    Args:
+        gray: Image of a map, (Y, X).
+
+    Returns:
+        The smaller image, and how many cells it joins along x and along y.
+    """
+    joined = max(1, -(-max(gray.shape) // OVERVIEW_CELLS))
+    if joined == 1:
+        return gray, 1
+    rows, columns = (-(-n // joined) for n in gray.shape)
+    out = np.full((rows, columns), _UNKNOWN, np.uint8)
+    for row in range(rows):  # the last row begins at the lower edge
+        last = len(gray) - joined * (rows - 1 - row)
+        part = gray[max(last - joined, 0) : last]
+        starts = np.arange(0, gray.shape[1], joined)
+        occupied = np.logical_or.reduceat((part == _OCCUPIED).any(axis=0), starts)
+        free = np.logical_or.reduceat((part == _FREE).any(axis=0), starts)
+        out[row] = np.where(occupied, _OCCUPIED, np.where(free, _FREE, _UNKNOWN))
+    return out, joined
+
+
+def write_map(folder: Path, grid: OccupancyGrid, settings: Grid2dSettings) -> TrinaryMap:
+    """Write ``map.png`` and ``map.yaml``, and ``overview.png`` and ``overview.yaml`` for pages.
 
     Args:
         folder: Where to write.
         grid: The finished grid.
         settings: Thresholds.
+
+    Returns:
+        The map as it was written.
     """
+    gray = trinary_image(grid, settings)
+    made = TrinaryMap(gray, grid.cell_m, (float(grid.origin[0]), float(grid.origin[1])))
+    small, joined = overview_of(gray)
+    _write(folder, "map", made)
+    _write(folder, "overview", TrinaryMap(small, joined * made.cell_m, made.origin_m))
+    return made
+
+
+def _write(folder: Path, name: str, made: TrinaryMap) -> None:
     from PIL import Image
 
-    Image.fromarray(trinary_image(grid, settings), mode="L").save(folder / "map.png")
+    Image.fromarray(made.gray, mode="L").save(folder / f"{name}.png")
     text = (
-        "image: map.png\n"
+        f"image: {name}.png\n"
         "mode: trinary\n"
-        f"resolution: {grid.cell_m:.6g}\n"
-        f"origin: [{grid.origin[0]:.6f}, {grid.origin[1]:.6f}, 0]\n"
+        f"resolution: {made.cell_m:.6g}\n"
+        f"origin: [{made.origin_m[0]:.6f}, {made.origin_m[1]:.6f}, 0]\n"
         "negate: 0\n"
         f"occupied_thresh: {_OCCUPIED_THRESHOLD}\n"
         f"free_thresh: {_FREE_THRESHOLD}\n"
     )
-    (folder / "map.yaml").write_text(text, "ascii")
+    (folder / f"{name}.yaml").write_text(text, "ascii")
+
+
+def read_overview(folder: Path) -> TrinaryMap:
+    """Read what pages show of a map; of an earlier version the map itself.
+
+    Raises:
+        StoreError: If the files are missing, damaged or larger than any map.
+    """
+    return _read(folder, overview_name(folder))
+
+
+def overview_name(folder: Path) -> str:
+    """Name of the image that pages show, without its ending."""
+    return "overview" if (folder / "overview.png").is_file() else "map"
 
 
 def read_map(folder: Path) -> TrinaryMap:
-    """Read the files of `write_map`.
+    """Read the map in full resolution.
 
     Raises:
-        StoreError: If they are missing, damaged or larger than any map.
+        StoreError: If its files are missing, damaged or larger than any map.
     """
+    return _read(folder, "map")
+
+
+def _read(folder: Path, name: str) -> TrinaryMap:
     from PIL import Image
 
-    text = read_text_limited(folder / "map.yaml", _MAX_YAML_BYTES, failure=StoreError)
+    text = read_text_limited(folder / f"{name}.yaml", _MAX_YAML_BYTES, failure=StoreError)
     facts = dict(line.partition(": ")[::2] for line in text.splitlines())
     try:
         x, y = facts["origin"].strip("[]").split(",")[:2]
         cell_m, origin_m = float(facts["resolution"]), (float(x), float(y))
-        with Image.open(folder / "map.png", formats=["PNG"]) as image:
+        with Image.open(folder / f"{name}.png", formats=["PNG"]) as image:
             if image.mode != "L" or image.width * image.height > _MAX_PIXELS:
                 raise ValueError(f"an image of {image.width} x {image.height}, {image.mode}")
             gray = np.asarray(image)
-    except (KeyError, ValueError, OSError, SyntaxError) as error:
+    except (KeyError, ValueError, OSError, SyntaxError, Image.DecompressionBombError) as error:
         raise StoreError(f"{folder.name}: the 2-D map cannot be read: {error}") from error
     return TrinaryMap(gray, cell_m, origin_m)

@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.errors import MapTooLarge
 from recon4.geometry.se3 import Array
 from recon4.kernels.occupancy2d import cast_scan, crossing_beams
 
 MAX_CELLS = 150_000_000
-"""Cells of the largest grid; 600 MB with what is needed to fill it."""
+"""Cells of the largest grid; 1.2 GB with what is needed to fill it."""
 _MARGIN_M = 5.0
 """A grid that grows gets this much more on each side [m]."""
 _LARGEST_LOG_ODDS = 6.0
@@ -41,21 +42,41 @@ class OccupancyGrid:
     @property
     def probability(self) -> NDArray[np.float32]:
         """Probability of each cell to be occupied, 0.5 = unknown, (X, Y)."""
-        return np.asarray(1.0 - 1.0 / (1.0 + np.exp(self.log_odds)), np.float32)
+        return self.probability_of(slice(None))
+
+    def probability_of(self, rows: slice) -> NDArray[np.float32]:
+        """Probability of the cells of some rows along x, (R, Y)."""
+        return np.asarray(1.0 - 1.0 / (1.0 + np.exp(self.log_odds[rows])), np.float32)
 
     def cover(self, low: Array, high: Array) -> None:
-        """Grow to include a rectangle [m]; ``low`` and ``high`` are its corners, (2,)."""
-        if self.log_odds.size:
-            end = self.origin + np.array(self.log_odds.shape) * self.cell_m
-            if np.all(low >= self.origin) and np.all(high < end):
-                return
-            low, high = np.minimum(low, self.origin), np.maximum(high, end)
+        """Grow to include a rectangle, with a margin on the sides that grow.
+
+        Args:
+            low: Its smallest x and y [m], (2,).
+            high: Its largest x and y [m], (2,).
+
+        Raises:
+            MapTooLarge: If the grid would have more than about `MAX_CELLS` cells.
+        """
         first = np.floor((low - _MARGIN_M) / self.cell_m).astype(np.int64)
         last = np.ceil((high + _MARGIN_M) / self.cell_m).astype(np.int64)
+        if self.log_odds.size:
+            begin = np.round(self.origin / self.cell_m).astype(np.int64)
+            end = begin + self.log_odds.shape
+            first = np.where(low < self.origin, np.minimum(first, begin), begin)
+            last = np.where(high >= end * self.cell_m, np.maximum(last, end), end)
+            if np.array_equal(first, begin) and np.array_equal(last, end):
+                return
         shape = tuple(int(n) for n in last - first)
+        if shape[0] * shape[1] > 1.01 * MAX_CELLS:
+            raise MapTooLarge(
+                f"the occupancy grid would be {shape[0] * self.cell_m:.0f} x "
+                f"{shape[1] * self.cell_m:.0f} m in cells of {self.cell_m:g} m: expected at most "
+                f"{MAX_CELLS} cells. Is a position wrong? Larger cells need less"
+            )
         log_odds, seen = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
         if self.log_odds.size:
-            at = np.round(self.origin / self.cell_m).astype(np.int64) - first
+            at = begin - first
             rows = slice(int(at[0]), int(at[0]) + self.log_odds.shape[0])
             columns = slice(int(at[1]), int(at[1]) + self.log_odds.shape[1])
             log_odds[rows, columns], seen[rows, columns] = self.log_odds, self._seen

@@ -131,28 +131,33 @@ def make_grid(
         progress: Counts scans.
     """
     chosen = settings.grid2d
-    low, high = _extent(scans, poses, settings)
-    cell_m = fitting_cell_m(low, high, chosen.cell_m)
-    grid = OccupancyGrid(cell_m, chosen.p_free, chosen.p_occupied)
     level = None
     if attitude is not None:
         level = leveling(attitude.at(scans.t_ns, slack_ns=1_000_000_000))
+
+    def placed(k: int) -> Array:
+        R = None if level is None else level[k]
+        seen = scan_points(scans, k, settings=settings.slam2d, R_level_laser=R)
+        return transform(poses[k], seen.points)
+
+    # Made at once: growing with the walk would copy a large grid again and again.
+    corners = np.concatenate([_corners(placed(k), poses[k]) for k in range(len(scans))])
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    cell_m = fitting_cell_m(low, high, chosen.cell_m)
+    grid = OccupancyGrid(cell_m, chosen.p_free, chosen.p_occupied)
+    grid.cover(low, high)
     last = np.full(3, np.inf)
     for k in track(range(len(scans)), progress, what="Grid", unit="scans"):
         moved = poses[k] - last
         near = float(np.hypot(moved[0], moved[1])) < _GRID_STEP_M
         if near and abs(float(moved[2])) < _GRID_STEP_RAD:
             continue
-        R = None if level is None else level[k]
-        scan = scan_points(scans, k, settings=settings.slam2d, R_level_laser=R)
-        grid.add_scan(transform(poses[k], scan.points), poses[k, :2])
+        grid.add_scan(placed(k), poses[k, :2])
         last = poses[k]
     return grid
 
 
-def _extent(scans: LaserScans, poses: Array, settings: Settings) -> tuple[Array, Array]:
-    """Corners of a rectangle that holds all returns [m]."""
-    ranges = np.where(scans.range_m <= settings.slam2d.max_range_m, scans.range_m, 0.0)
-    farthest = np.maximum.reduceat(ranges, scans.start[:-1])[:, None]
-    low, high = poses[:, :2] - farthest, poses[:, :2] + farthest
-    return low.min(axis=0), high.max(axis=0)
+def _corners(p_map: Array, pose: Array) -> Array:
+    """Smallest and largest x and y of the returns of a scan and its laser [m], (2, 2)."""
+    both = np.concatenate([pose[None, :2], p_map])
+    return np.stack([both.min(axis=0), both.max(axis=0)])

@@ -24,7 +24,7 @@ from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
 from recon4.slam2d.loops import close_loops
-from recon4.slam2d.map_files import write_map
+from recon4.slam2d.map_files import read_overview, write_map
 from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
 from recon4.slam2d.scan_points import scan_points
 from recon4.slam2d.slam import make_grid, map_poses, run_steps, scan_covariances
@@ -211,10 +211,12 @@ def build_map(
     grid = make_grid(scans, poses, attitude=None, settings=settings, progress=progress)
     save_trajectory(out / "trajectory.npz", Trajectory(scans.t_ns, to_se3(poses)))
     np.savez(out / "poses.npz", t_ns=scans.t_ns, pose=poses, covariance=covariance)
-    write_map(out, grid, settings.grid2d)
-    free = int((grid.probability < settings.grid2d.free_threshold).sum())
+    written = write_map(out, grid, settings.grid2d)
+    free = int(np.count_nonzero(written.free))
     return Map2dFigures(
         cell_m=grid.cell_m,
+        enlarged=round(grid.cell_m / settings.grid2d.cell_m),
+        overview_cell_m=read_overview(out).cell_m,
         size=(grid.log_odds.shape[0], grid.log_odds.shape[1]),
         free_m2=round(free * grid.cell_m**2, 2),
         crossing_ratio=round(_crossing(grid, scans, poses, settings=settings), 4),

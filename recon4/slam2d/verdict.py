@@ -31,6 +31,8 @@ _SILENT_S = 1.0
 _CROSSING_CHECK, _CROSSING_BAD = 0.1, 0.2
 _SEARCHED_RATIO = 0.005
 _UNCERTAIN_M = 0.5
+_COARSE_M = 0.25
+"""With larger cells walls and doors cannot be distinguished [m]."""
 _STEEP_DEG = 30.0
 """A laser tilted by more does not see the walls of a plan [°]."""
 _LONG_WALK_M = 60.0
@@ -59,7 +61,7 @@ def judge(facts: Facts2d) -> MapVerdict:
     """The worst finding decides."""
     unobserved = unobserved_stretches(facts.steps, facts.poses)
     findings = [*_imported(facts.imported), *_mounting(facts.scans), *_tracking(facts)]
-    findings += [*_observability(facts, unobserved), *_consistency(facts)]
+    findings += [*_observability(facts, unobserved), *_consistency(facts), *_resolution(facts.map)]
     order = {Usability.DO_NOT_USE: 0, Usability.CHECK: 1, Usability.GOOD: 2}
     findings.sort(key=lambda finding: order[finding[0]])
     usability = findings[0][0] if findings else Usability.GOOD
@@ -168,6 +170,16 @@ def _observability(facts: Facts2d, unobserved: tuple[Unobserved, ...]) -> Iterat
             Usability.CHECK,
             f"Positions are uncertain by up to {facts.map.largest_sd_m:.1f} m (one standard "
             "deviation).",
+        )
+
+
+def _resolution(made: Map2dFigures) -> Iterator[Finding2d]:
+    if made.enlarged > 1:
+        width_m, height_m = (cells * made.cell_m for cells in made.size)
+        yield (
+            Usability.DO_NOT_USE if made.cell_m > _COARSE_M else Usability.CHECK,
+            f"The map is {width_m:.0f} x {height_m:.0f} m large: its cells are {made.cell_m:g} m, "
+            f"{made.enlarged} times as large as requested. Is a position wrong?",
         )
 
 

@@ -6,15 +6,21 @@ import { byId, fill, make } from "../shared/dom.js";
 /** Whether the map of a project is a 2-D one. */
 export const isPlan = (project) => project.summary.map === "2d";
 
+const inCm = (m) => Math.round(m * 1000) / 10;
+
 /** Shows the plan in place of cuts and findings. */
 export function showPlan(id, project) {
   const main = document.querySelector("main");
   main.className = "plan";
-  const cell_cm = Math.round(project.summary.grid.cell_m * 1000) / 10;
+  const { cell_m, overview_cell_m } = project.summary.grid;
+  // Of an earlier version: there is no overview.
+  const shown_m = overview_cell_m || cell_m;
+  const name = overview_cell_m ? "overview.png" : "map.png";
   const words = make("p", {
     textContent:
       "This is a 2-D map: one slice at the height of the laser, so no other can be cut. " +
-      `A pixel is ${cell_cm} cm. `,
+      `A pixel is ${inCm(shown_m)} cm. ` +
+      (shown_m > cell_m ? `The file map.png has pixels of ${inCm(cell_m)} cm. ` : ""),
   });
   words.append(
     make("a", {
@@ -26,7 +32,7 @@ export function showPlan(id, project) {
     main,
     words,
     make("img", {
-      src: fileUrl(id, "map.png"),
+      src: fileUrl(id, name),
       alt: "Floor plan: walls black, free white, not seen gray",
     }),
   );

@@ -22,7 +22,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
-from recon4.slam2d.map_files import read_map
+from recon4.slam2d.map_files import read_overview
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import open_frames
 from recon4.store.project import read_artifacts
@@ -123,7 +123,7 @@ class ProjectSource:
             multiframes=frames,
             preview=self._preview(frames) if cloud is None else None,
             sensors=self._sensors(),
-            plan=self._of_stage("map_2d", read_map),
+            plan=self._of_stage("map_2d", read_overview),
             gnss=self._gnss(georeference.georeference, trajectory),
             crs=georeference.crs.name if georeference.crs else "",
         )

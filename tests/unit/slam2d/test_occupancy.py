@@ -1,13 +1,26 @@
 """Occupancy grids: beams, growth, and the files that nav2 reads."""
 
+import struct
+
 import numpy as np
 import pytest
 from PIL import Image
 from ruamel.yaml import YAML
 
-from recon4.settings import Grid2dSettings
-from recon4.slam2d.map_files import trinary_image, write_map
+from recon4.errors import MapTooLarge, StoreError
+from recon4.progress import Silent
+from recon4.settings import Grid2dSettings, Settings
+from recon4.slam2d import occupancy
+from recon4.slam2d.map_files import (
+    OVERVIEW_CELLS,
+    read_map,
+    read_overview,
+    trinary_image,
+    write_map,
+)
 from recon4.slam2d.occupancy import MAX_CELLS, OccupancyGrid, crossing_ratio, fitting_cell_m
+from recon4.slam2d.slam import make_grid
+from tests.planar_walks import furnished_room, scanned
 
 
 def grid_of(*scans, cell_m=0.1):
@@ -50,6 +63,35 @@ def test_a_grid_that_grows_keeps_what_it_has():
     assert grown.log_odds.shape > alone.log_odds.shape
     assert at(grown, 1.05, 0.05) == at(alone, 1.05, 0.05)
     assert at(grown, -31.05, 40.05) == pytest.approx(0.9)
+
+
+def test_a_grid_grows_only_where_the_walk_leaves_it():
+    walk = [([[6.0 * k + 2.0, 0.0]], [6.0 * k, 0.0]) for k in range(200)]
+
+    grid = grid_of(*walk)
+
+    width_m, height_m = np.array(grid.log_odds.shape) * grid.cell_m
+    assert 1196.0 < width_m < 1196.0 + 25.0
+    assert height_m < 11.0
+
+
+def test_a_position_far_away_is_a_clear_error_where_a_grid_grows():
+    grid = grid_of(([[2.05, 0.05]], [0.05, 0.05]))
+
+    with pytest.raises(MapTooLarge, match=r"would be 1000010 x 1000010 m.* wrong\?"):
+        grid.add_scan(np.array([[1e6, 1e6]]), np.zeros(2))
+
+
+def test_a_map_with_a_position_far_away_is_bounded(monkeypatch):
+    monkeypatch.setattr(occupancy, "MAX_CELLS", 100_000)
+    scans = scanned(furnished_room(), np.zeros((3, 3)), odometry=False).scans
+    poses = np.array([[0.0, 0.0, 0.0], [1e6, -1e6, 0.5], [0.1, 0.0, 0.0]])
+
+    grid = make_grid(scans, poses, attitude=None, settings=Settings(), progress=Silent())
+
+    assert grid.log_odds.size <= 101_000
+    assert grid.cell_m == 0.05 * 2**16
+    assert np.count_nonzero(grid.log_odds) >= 2
 
 
 def test_a_map_that_would_be_too_large_gets_larger_cells():
@@ -97,3 +139,59 @@ def _meaning(value, described):
     if occupancy > described["occupied_thresh"]:
         return 100
     return 0 if occupancy < described["free_thresh"] else -1
+
+
+def far_apart():
+    """A grid of 202 million cells with two walls of one cell, far apart."""
+    grid = OccupancyGrid(0.05, 0.4, 0.9)
+    grid.origin = np.array([-100.0, -50.0])
+    grid.log_odds = np.zeros((15_000, 13_500), np.float32)
+    grid.log_odds[2, 5] = grid.log_odds[14_998, 13_497] = 5.0
+    grid.log_odds[3, 5] = -5.0
+    return grid
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("large")
+    return folder, write_map(folder, far_apart(), Grid2dSettings())
+
+
+def test_a_map_of_202_million_cells_is_written_in_full(large):
+    folder, written = large
+
+    with open(folder / "map.png", "rb") as file:
+        width, height = struct.unpack(">II", file.read(24)[16:])
+    assert (width, height) == (15_000, 13_500)
+    assert (folder / "map.png").stat().st_size < 2_000_000
+    rows, columns = np.nonzero(written.occupied)
+    assert sorted(zip(rows.tolist(), columns.tolist(), strict=True)) == [(2, 14_998), (13_494, 2)]
+
+
+def test_pages_show_an_overview_of_a_large_map_with_the_same_places(large):
+    shown = read_overview(large[0])
+
+    assert max(shown.gray.shape) <= OVERVIEW_CELLS
+    assert shown.cell_m == pytest.approx(0.2)
+    assert shown.origin_m == (-100.0, -50.0)
+    rows, columns = np.nonzero(shown.occupied)
+    up = len(shown.gray) - 1 - rows
+    found = np.stack([columns, up], axis=1) * shown.cell_m + shown.origin_m
+    walls = np.array([[14_998, 13_497], [2, 5]]) * 0.05 + [-100.0, -50.0]
+    assert np.all((walls - found >= 0.0) & (walls - found < shown.cell_m))
+    assert not shown.free.any()
+
+
+def test_an_image_too_large_to_decode_is_an_error_of_the_store(large):
+    with pytest.raises(StoreError, match="cannot be read: Image size"):
+        read_map(large[0])
+
+
+def test_a_small_map_is_its_own_overview(tmp_path):
+    grid = grid_of(*[([[2.05, 1.05]], [0.05, 0.05])] * 3)
+
+    write_map(tmp_path, grid, Grid2dSettings())
+
+    assert (tmp_path / "overview.png").read_bytes() == (tmp_path / "map.png").read_bytes()
+    (tmp_path / "overview.png").unlink()
+    np.testing.assert_array_equal(read_overview(tmp_path).gray, read_map(tmp_path).gray)

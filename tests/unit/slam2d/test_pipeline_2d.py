@@ -24,6 +24,7 @@ from recon4.recording.sources import Sources
 from recon4.results_2d import RESULTS_2D
 from recon4.settings import Settings, override
 from recon4.simulation.line_bag import open_line_bag
+from recon4.slam2d import occupancy
 from recon4.slam2d.map_files import read_map
 from recon4.store.hashing import hash_file
 from recon4.verify import verify
@@ -147,6 +148,16 @@ def test_a_silent_laser_without_odometry_is_part_of_the_verdict(tmp_path):
     assert "silent for 5.2 s at 4.9 s" in " ".join(summary.warnings)
     assert summary.verdict.usability is not Usability.GOOD
     assert "is unknown" in " ".join(summary.verdict.reasons)
+
+
+def test_a_map_whose_cells_had_to_be_enlarged_says_so(tmp_path, room, monkeypatch):
+    monkeypatch.setattr(occupancy, "MAX_CELLS", 20_000)
+
+    summary = run(tmp_path, room.scans[:40])
+
+    assert summary.grid.enlarged == 4
+    assert summary.verdict.usability is Usability.CHECK
+    assert "its cells are 0.2 m, 4 times as large" in " ".join(summary.verdict.reasons)
 
 
 def test_scans_that_are_not_used_stand_in_the_verdict(tmp_path, room):
