@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 
@@ -28,6 +28,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.frames import Frames
 from recon4.model.plain import finite_or_none
 from recon4.model.trajectory import Trajectory
+from recon4.recording.formats.poses import tum_hint
 
 _EVERY = 10
 """Of the multiframes, every tenth is placed by the estimate and by the truth."""
@@ -93,6 +94,9 @@ class Evaluation:
         assert isinstance(plain, dict)
         return plain
 
+    hints: tuple[str, ...] = ()
+    """What is strange about the files."""
+
 
 def evaluate(
     project_or_trajectory: Path,
@@ -142,7 +146,13 @@ def evaluate(
         measured=as_measured,
         floor=floor,
         quality=map_quality(chunks.delivered) if chunks is not None else None,
+        hints=_hints({project_or_trajectory: estimate, truth: true}),
     )
+
+
+def _hints(walks: Mapping[Path, Trajectory]) -> tuple[str, ...]:
+    found = {path.name: tum_hint(walk) for path, walk in walks.items()}
+    return tuple(f"{name}: {hint}" for name, hint in found.items() if hint)
 
 
 def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajectory:

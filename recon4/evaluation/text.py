@@ -27,7 +27,8 @@ def evaluation_text(found: Evaluation) -> str:
         f"({percentage(found.coverage_ratio)} covered by ground truth), "
         f"{found.duration_s:.1f} s, {found.path_length_m:.1f} m"
     )
-    parts = [head, ate_text(found), *(drift_text(drift) for drift in found.drift)]
+    hints = [f"Warning: {hint}" for hint in found.hints]
+    parts = [head, *hints, ate_text(found), *(drift_text(drift) for drift in found.drift)]
     if found.relative is not None:
         parts.append(relative_text(found.relative))
     if found.relative is not None and found.measured is not None:

@@ -43,6 +43,13 @@ class FrameFiles:
     """Why times that are there were not used; empty = nothing to remark."""
 
     @property
+    def rate_hz(self) -> float:
+        """Files a second by their times; NaN = unknown."""
+        steps = np.diff(self.t_ns)
+        usual = float(np.median(steps)) if len(steps) else 0.0
+        return 1e9 / usual if usual > 0.0 else float("nan")
+
+    @property
     def are_static(self) -> bool:
         """Whether they are scans of 3DTK, which have no motion inside."""
         return self.files[0].suffix.lower() == SCAN_SUFFIX

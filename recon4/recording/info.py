@@ -25,7 +25,7 @@ from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FI
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
-from recon4.recording.formats.poses import pose_format, read_tum
+from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
     BAGS,
@@ -228,7 +228,7 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
         model=frames_model(frames.files),
         content=frames_label(frames),
         count=len(frames.files),
-        rate_hz=1e9 / frames.period_ns,
+        rate_hz=frames.rate_hz,
         fields=fields,
     )
     return replace(
@@ -246,18 +246,21 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
 
 
 def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> RecordingInfo:
+    hint = ""
     if kind is RecordingKind.IMU_CSV:
         t_ns, what = read_imu_csv(path).t_ns, "IMU samples"
     elif kind is RecordingKind.GNSS_CSV:
         t_ns, what = read_gnss_csv(path).t_ns, "GNSS samples"
     elif pose_format(path) == "tum":
-        t_ns, what = read_tum(path).t_ns, "poses (TUM)"
+        walk = read_tum(path)
+        t_ns, what, hint = walk.t_ns, "poses (TUM)", tum_hint(walk)
     else:
         return replace(info, samples=("poses (KITTI)",), missing=("times of the poses",))
     first, last = int(t_ns.min()), int(t_ns.max())
     rate = f", {(len(t_ns) - 1) * 1e9 / (last - first):.1f} a second" if last > first else ""
     text = f"{len(t_ns)} {what}{rate}"
-    return replace(info, t_first_ns=first, t_last_ns=last, samples=(text,))
+    warnings = (hint,) if hint else ()
+    return replace(info, t_first_ns=first, t_last_ns=last, samples=(text,), warnings=warnings)
 
 
 # -- head

@@ -1,5 +1,6 @@
 """What `recon4 info` says of a recording."""
 
+import numpy as np
 import pytest
 
 from recon4.errors import UnknownFormat
@@ -59,3 +60,18 @@ def test_poses_are_recognized_and_are_no_recording(tmp_path):
     assert recognize(path) is RecordingKind.POSES
     with pytest.raises(UnknownFormat, match="alone is no recording"):
         run(path, out=tmp_path / "o")
+
+
+def test_the_rate_of_frames_is_that_of_their_times(tmp_path):
+    folder = frame_folder(tmp_path / "f", [f"{k}.pcd" for k in range(4)])
+    (folder / "times.txt").write_text("".join(f"{1000 + 0.5 * k}\n" for k in range(4)))
+
+    (sensor,) = describe(folder).sensors
+
+    assert sensor.rate_hz == pytest.approx(2.0)
+
+
+def test_a_single_frame_has_no_rate(tmp_path):
+    (sensor,) = describe(frame_folder(tmp_path / "f", ["0.pcd"])).sensors
+
+    assert np.isnan(sensor.rate_hz)

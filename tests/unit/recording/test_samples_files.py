@@ -4,10 +4,20 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording, UnknownFormat
+from recon4.evaluation.evaluate import evaluate
+from recon4.evaluation.text import evaluation_text
 from recon4.geometry.se3 import SE3
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.formats.poses import pose_format, read_kitti, read_tum, write_kitti, write_tum
+from recon4.recording.formats.poses import (
+    pose_format,
+    read_kitti,
+    read_tum,
+    tum_hint,
+    write_kitti,
+    write_tum,
+)
+from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER, read_gnss_csv, read_imu_csv
@@ -260,6 +270,68 @@ def test_tum_worked_out_by_hand(tmp_path):
 
     assert poses.t_ns.tolist() == [1_500_000_000]
     np.testing.assert_allclose(poses.T_a_b[0] @ np.array([1.0, 0, 0]), [1, 3, 3], atol=1e-9)
+
+
+HEADS = {
+    "qw first": ("timestamp tx ty tz qw qx qy qz", [0, 1, 2, 3, 7, 4, 5, 6]),
+    "usual": ("timestamp,tx,ty,tz,qx,qy,qz,qw", [0, 1, 2, 3, 4, 5, 6, 7]),
+    "comment": ("# time x y z q_w q_x q_y q_z", [0, 1, 2, 3, 7, 4, 5, 6]),
+    "units": (
+        "#timestamp [s] p_x [m] p_y [m] p_z [m] qw qx qy qz",
+        [0, 1, 2, 3, 7, 4, 5, 6],
+    ),
+}
+
+
+@pytest.mark.parametrize("head", HEADS)
+def test_a_head_line_states_the_order_of_a_tum_file(tmp_path, head):
+    before, (line, order) = trajectory(), HEADS[head]
+    write_tum(tmp_path / "t.tum", before)
+    rows = [row.split() for row in (tmp_path / "t.tum").read_text().splitlines()]
+    separator = "," if "," in line else " "
+    lines = [line, *(separator.join(row[k] for k in order) for row in rows)]
+
+    path = write(tmp_path / "other.txt", "\n".join(lines))
+    after = read_tum(path)
+
+    assert pose_format(path) == "tum"
+    np.testing.assert_array_equal(after.t_ns, before.t_ns)
+    np.testing.assert_allclose(after.T_a_b.R, before.T_a_b.R, atol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("unit_ns", "text"),
+    [(1, "{}"), (1000, "{}.{:03d}"), (1_000_000, "{}.{:06d}"), (1_000_000_000, "{}.{:09d}")],
+    ids=["ns", "us", "ms", "s"],
+)
+def test_times_of_a_tum_file_are_read_in_their_unit(tmp_path, unit_ns, text):
+    times = [T0, T0 + 123_456_789]
+    rows = [f"{text.format(*divmod(t, unit_ns))} 1 2 3 0 0 0 1" for t in times]
+
+    poses = read_tum(write(tmp_path / "t.tum", "\n".join(rows)))
+
+    assert poses.t_ns.tolist() == times
+
+
+def turning(count=60):
+    yaw = np.linspace(0.0, 5.0, count)
+    T = [SE3.from_rpy(0.02 * np.sin(7 * a), 0.02 * np.cos(5 * a), a, t=[a, 0, 0]) for a in yaw]
+    return Trajectory(T0 + 100_000_000 * np.arange(count), SE3.stack(T))
+
+
+def test_quaternions_with_qw_first_are_noticed_without_a_head_line(tmp_path):
+    write_tum(tmp_path / "t.tum", turning())
+    rows = [row.split() for row in (tmp_path / "t.tum").read_text().splitlines()]
+    path = write(tmp_path / "w.tum", "\n".join(" ".join([*r[:4], r[7], *r[4:7]]) for r in rows))
+
+    assert tum_hint(read_tum(tmp_path / "t.tum")) == ""
+    assert tum_hint(trajectory()) == ""
+    assert "is qw the first number" in tum_hint(read_tum(path))
+    (warning,) = describe(path).warnings
+    assert "is qw the first number" in warning
+    found = evaluate(path, truth=tmp_path / "t.tum")
+    assert "Warning: w.tum: the body rolls over" in evaluation_text(found)
+    assert "Warning" not in evaluation_text(evaluate(tmp_path / "t.tum", truth=tmp_path / "t.tum"))
 
 
 def test_kitti_comes_back(tmp_path):
