@@ -16,6 +16,9 @@ TILE = 64
 _AROUND = 2
 """Tiles of the window on each side of the body's tile."""
 WINDOW = TILE * (2 * _AROUND + 1)
+SHOWN = 64
+"""Tiles on each side of the body's tile that a layer is given for: 8256 cells in all, which a phone
+can draw, and which bound the memory when the body jumps far away."""
 MARGIN = TILE * _AROUND
 """Smallest distance of the body from the border of the window [cells]."""
 
@@ -76,18 +79,20 @@ class Tiles:
                 self._kept[key] = {name: values.copy() for name, values in tile.items()}
 
     def whole(self, name: str) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """A layer of the whole plan: first cell (2,) and cells (H, W)."""
+        """A layer of the plan up to `SHOWN` tiles from the body: first cell (2,), cells (H, W)."""
         self.keep()
         dtype, fill = self._layers[name]
-        if not self._kept:
+        body = np.array(self._corner, np.int64) + _AROUND
+        keys = np.array(list(self._kept), dtype=np.int64).reshape(-1, 2)
+        keys = keys[np.abs(keys - body).max(axis=1) <= SHOWN]
+        if not len(keys):
             return np.zeros(2, np.int64), np.full((0, 0), fill, dtype)
-        keys = np.array(list(self._kept), dtype=np.int64)
         first = keys.min(axis=0)
         shape = (keys.max(axis=0) - first + 1) * TILE
         cells = np.full(shape, fill, dtype)
-        for key, tile in self._kept.items():
-            i, j = (np.array(key) - first) * TILE
-            cells[i : i + TILE, j : j + TILE] = tile[name]
+        for key in keys:
+            i, j = (key - first) * TILE
+            cells[i : i + TILE, j : j + TILE] = self._kept[int(key[0]), int(key[1])][name]
         return first * TILE, cells
 
     def _blank(self, size: int) -> Layers:

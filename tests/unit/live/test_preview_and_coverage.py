@@ -6,7 +6,7 @@ import pytest
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import CELL_M, Coverage, CoverageClass
 from recon4.live.preview.floors import Floors
-from recon4.live.preview.tiles import TILE, WINDOW, Tiles
+from recon4.live.preview.tiles import SHOWN, TILE, WINDOW, Tiles
 
 
 def values(count):
@@ -308,6 +308,20 @@ def test_a_street_that_rises_gently_is_one_floor():
     assert len(floors) == 1
 
 
+def test_a_jump_far_away_does_not_make_the_plan_larger_than_a_phone_can_draw():
+    tiles = Tiles({"seen": ("u1", 0)})
+    for at in (0, 3000, 4_000_000):  # 0, 750 m and 1000 km away
+        tiles.move_to(np.array([at, -at]))
+        tiles.window["seen"][WINDOW // 2, WINDOW // 2] = 1
+
+    _, far = tiles.whole("seen")
+    tiles.move_to(np.array([3000, -3000]))
+    _, near = tiles.whole("seen")
+
+    assert far.sum() == 1 and max(far.shape) <= WINDOW
+    assert near.sum() == 2 and max(near.shape) <= (2 * SHOWN + 1) * TILE
+
+
 def test_the_work_of_a_second_and_the_memory_of_a_plan_follow_what_was_seen():
     tiles = Tiles({"seen": ("u1", 0)})
 
@@ -317,6 +331,7 @@ def test_the_work_of_a_second_and_the_memory_of_a_plan_follow_what_was_seen():
             tiles.window["seen"][WINDOW // 2, WINDOW // 2] = 1
 
     assert tiles.window["seen"].shape == (WINDOW, WINDOW)
+    tiles.move_to(np.zeros(2, np.int64))
     _, cells = tiles.whole("seen")
     assert cells.sum() == 10
     assert max(cells.shape) <= 12 * TILE
