@@ -20,10 +20,13 @@ _ROTATION_TOLERANCE = 1e-2
 _UNITS = ((1e17, 1), (1e14, 1_000), (1e11, 1_000_000))
 """From this value on a time is no number of seconds, which would be after the year 5000; ns in one
 unit."""
+_POSITION_NAMES = ("{}", "t{}", "p{}", "p_{}", "t_{}", "pos_{}", "position_{}", "p_rs_r_{}")
+_TURN_NAMES = ("q{}", "q_{}", "orientation_{}", "rotation_{}", "q_rs_{}")
+"""Forms of the names of an axis; the last ones are those of EuRoC."""
 _TUM_NAMES = (
     ("timestamp", "time", "t", "stamp", "timestamp_s", "timestamp_ns", "time_ns", "t_ns"),
-    *(tuple(form.format(a) for form in ("{}", "t{}", "p{}", "p_{}", "t_{}")) for a in "xyz"),
-    *(tuple(form.format(a) for form in ("q{}", "q_{}")) for a in "xyzw"),
+    *(tuple(form.format(a) for form in _POSITION_NAMES) for a in "xyz"),
+    *(tuple(form.format(a) for form in _TURN_NAMES) for a in "xyzw"),
 )
 """Names of the columns in a head line, in the order of the format."""
 _TURNED, _LEVEL = 0.5, 0.2
