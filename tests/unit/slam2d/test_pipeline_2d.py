@@ -60,6 +60,11 @@ def run(folder, scans, **given):
     return process(Sources((folder / "walk.log",), **given), folder / "out")
 
 
+def other_reasons(summary):
+    """Why the map is not good, besides the loop closure of so short a walk, which is unverified."""
+    return [text for text in summary.verdict.reasons if "unverified" not in text]
+
+
 def test_a_log_becomes_a_project_with_all_its_results(mapped, room):
     folder, summary = mapped
     out = folder / "out"
@@ -69,7 +74,7 @@ def test_a_log_becomes_a_project_with_all_its_results(mapped, room):
     assert written == json.loads(json.dumps(summary.to_json()))
     assert written["map"] == "2d"
     assert {name: hash_file(out / name) for name in RESULTS_2D} == written["hashes"]["results"]
-    assert summary.verdict.usability is Usability.GOOD
+    assert other_reasons(summary) == []
     assert summary.scans == len(room.scans)
     assert summary.path_length_m == pytest.approx(11.4, abs=0.6)
     trajectory = read_tum(out / "trajectory.tum")
@@ -188,7 +193,7 @@ def test_mirrored_scans_are_repaired_and_said(tmp_path, room):
     summary = run(tmp_path, mirrored(room.scans))
 
     assert "wrong order" in " ".join(summary.warnings)
-    assert summary.verdict.usability is Usability.GOOD
+    assert other_reasons(summary) == []
 
 
 def test_a_log_without_a_usable_scan_is_refused(tmp_path, room):
