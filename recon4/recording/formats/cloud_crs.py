@@ -7,6 +7,7 @@ meters by its standard and may state a system. PLY, PCD, OBJ, STL and text state
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,6 +25,10 @@ _EPSG_CODES = range(1024, 32767)
 _UNIT_CODES = {9001: 1.0, 9002: 0.3048, 9003: 1200.0 / 3937.0}
 """EPSG code of a unit of length -> meters."""
 _MAX_WKT = 256 * 1024
+_WKT = 2112
+_EXTENDED_AT, _EXTENDED_HEAD, _MAX_EXTENDED = 235, 60, 100
+"""Extended records of LAS 1.4: place of their offset and count in the header, bytes of a head, and
+how many are looked at."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -108,7 +113,8 @@ def _of_las(path: Path) -> StatedCrs:
                 records = list(las.header.vlrs.get_by_id("LASF_Projection"))
         except Exception as error:  # laspy documents no errors of damaged records
             raise CorruptFile(f"{path.name}: not sound LAS records: {error!r}"[:400]) from error
-    texts = [str(getattr(r, "string", "")).strip("\0 ") for r in records if r.record_id == 2112]
+    texts = [str(getattr(r, "string", "")).strip("\0 ") for r in records if r.record_id == _WKT]
+    texts += _extended_wkt(path)
     keys = _geo_keys(records)
     from_wkt = next((_from_wkt(text) for text in texts if text), None)
     if from_wkt is not None and from_wkt.crs is not None:
@@ -116,6 +122,28 @@ def _of_las(path: Path) -> StatedCrs:
     if keys:
         return _from_keys(keys)
     return from_wkt or StatedCrs()
+
+
+def _extended_wkt(path: Path) -> list[str]:
+    """WKT records behind the points, where LAS 1.4 may have them; damaged ones are left out."""
+    texts: list[str] = []
+    with open_regular(path) as file:
+        head = file.read(_EXTENDED_AT + 12)
+        if len(head) < _EXTENDED_AT + 12 or head[25] < 4:
+            return []
+        at, count = struct.unpack_from("<QI", head, _EXTENDED_AT)
+        for _ in range(min(count, _MAX_EXTENDED)):
+            file.seek(at)
+            record = file.read(_EXTENDED_HEAD)
+            if len(record) < _EXTENDED_HEAD:
+                break
+            user, number, length = struct.unpack_from("<16sHQ", record, 2)
+            if user.rstrip(b"\0") == b"LASF_Projection" and number == _WKT and length <= _MAX_WKT:
+                texts.append(file.read(length).decode("utf-8", "replace").strip("\0 "))
+            at += _EXTENDED_HEAD + length
+            if at > path.stat().st_size:
+                break
+    return [text for text in texts if text]
 
 
 def _geo_keys(records: list[Any]) -> dict[int, float]:

@@ -92,6 +92,19 @@ def test_a_crs_in_feet_is_used_in_feet_and_on_a_local_map_converted():
     assert place_file(stated, LOCAL).to_map(points) == pytest.approx(points * US_FOOT_M)
 
 
+def test_a_crs_behind_the_points_is_found(tmp_path):
+    las = laspy.LasData(laspy.LasHeader(version="1.4", point_format=6))
+    las.x, las.y, las.z = P_MAP.T
+    wkt = CRS.from_epsg(2255).to_wkt("WKT1_GDAL").encode()
+    las.evlrs = laspy.vlrs.vlrlist.VLRList([laspy.VLR("LASF_Projection", 2112, "", wkt)])
+    las.write(tmp_path / "a.las")
+
+    stated = stated_crs(tmp_path / "a.las")
+
+    assert "Mississippi West (ftUS)" in stated.name
+    assert stated.unit_m == pytest.approx(US_FOOT_M)
+
+
 def test_degrees_do_not_meet_a_local_map(tmp_path):
     path = write_las(tmp_path / "a.las", from_utm("EPSG:4326"), "EPSG:4326", step=1e-9)
 
