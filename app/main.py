@@ -16,7 +16,7 @@ from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
 from starlette.routing import BaseRoute
 
-from app import error_responses, metrics_routes, server_routes
+from app import docs_pages, error_responses, metrics_routes, server_routes
 from app.access import admin_routes, key_routes
 from app.access.login import routes as login_routes
 from app.access.login.login_service import Access, open_access
@@ -142,7 +142,7 @@ def _routes() -> list[BaseRoute]:
         job_routes,
     ):
         router.include_router(part.router)
-    for part in (choices, server_routes, metrics_routes, reference_routes):
+    for part in (choices, server_routes, metrics_routes, reference_routes, docs_pages):
         router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)

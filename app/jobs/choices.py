@@ -12,7 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.access.people import Permission, needs
 from recon4.errors import WrongSettings
 from recon4.model.rig import rig_presets
-from recon4.settings import PRESETS, override, preset, values_by_group
+from recon4.settings import PRESET_TEXTS, PRESETS, override, preset, values_by_group
 from recon4.settings_help import GroupHelp, SettingHelp, describe_settings
 
 router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(Permission.LOOK))])
@@ -35,6 +35,8 @@ class Choices(BaseModel):
     """Presets and rigs of a new job."""
 
     presets: list[str]
+    preset_texts: dict[str, str]
+    """Preset -> what it is for, in a line."""
     rigs: list[str]
 
 
@@ -84,7 +86,7 @@ class SettingsCheck(BaseModel):
 @router.get("/choices", summary="Presets and rigs")
 def read_choices() -> Choices:
     """List the presets and the shipped rigs for a new job."""
-    return Choices(presets=list(PRESETS), rigs=rig_presets())
+    return Choices(presets=list(PRESETS), preset_texts=PRESET_TEXTS, rigs=rig_presets())
 
 
 @router.get("/settings", summary="Every setting")

@@ -28,7 +28,7 @@ from app.pages import page_response
 from app.rig_files import check_rig_file
 from recon4.live.findings import CaptureFinding
 from recon4.live.protocol import AddMark, Pause, Resume
-from recon4.settings import PRESETS
+from recon4.settings import PRESET_TEXTS, PRESETS
 
 LOOK = [Depends(needs(Permission.LOOK))]
 CAPTURE = [Depends(needs(Permission.CAPTURE))]
@@ -76,6 +76,8 @@ class CaptureChoices(BaseModel):
     """Presets and rigs for a capture."""
 
     presets: list[str]
+    preset_texts: dict[str, str]
+    """Preset -> what it is for, in a line."""
     rigs: list[RigChoice]
 
 
@@ -118,7 +120,9 @@ async def read_choices(server: Server, caller: CalledBy) -> CaptureChoices:
         terms = Terms(person=caller.name, access=FileAccess(read=files))
         pool = server.compute_pool
         own = await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rigs_in, files))
-    return CaptureChoices(presets=list(PRESETS), rigs=own + shipped_rigs())
+    return CaptureChoices(
+        presets=list(PRESETS), preset_texts=PRESET_TEXTS, rigs=own + shipped_rigs()
+    )
 
 
 @router.post("", status_code=201, dependencies=CAPTURE, summary="Start a capture")

@@ -14,6 +14,7 @@ from fastapi.responses import HTMLResponse, RedirectResponse, Response
 from app.deps import Server
 from app.pages import WEB
 from app.projects.model import ProjectView
+from app.viewer.hotkeys import HOTKEYS
 
 router = APIRouter()
 
@@ -39,6 +40,18 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   document.getElementById('cover').remove();
   if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
+// The list of keys, by its key or button.
+addEventListener('DOMContentLoaded', () => {
+  const keys = document.getElementById('keys');
+  document.getElementById('show-keys').onclick = () => keys.showModal();
+  addEventListener('keydown', (event) => {
+    if (keys.open && event.key === 'Escape') {  // before viser takes the key
+      keys.close();
+      event.stopImmediatePropagation();
+    } else if (event.key === '?' && !event.target.closest?.('input, textarea, select'))
+      keys.showModal();
+  }, true);
+});
 // While it opens, the cover counts the seconds and shows why the viewer does not start.
 addEventListener('DOMContentLoaded', () => {
   const began = performance.now();
@@ -62,6 +75,14 @@ addEventListener('DOMContentLoaded', () => {
 #frame-caption { position: fixed; left: 0; top: 0; z-index: 5; padding: 4px 10px;
   font: 12px/1.5 system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
   pointer-events: none; border-bottom-right-radius: 6px; }
+#show-keys { position: fixed; left: 8px; bottom: 8px; z-index: 5; width: 44px; height: 44px;
+  font: 600 16px system-ui, sans-serif; color: #e8edf2; background: rgb(16 20 24 / 72%);
+  border: 1px solid #3a444e; border-radius: 8px; }
+#keys { font: 14px/1.6 system-ui, sans-serif; color: #e8edf2; background: #101418;
+  border: 1px solid #3a444e; border-radius: 8px; }
+#keys ul { list-style: none; margin: 0; padding: 0; }
+#keys kbd { display: inline-block; min-width: 64px; }
+#keys button { min-height: 44px; min-width: 88px; margin-top: 8px; font: inherit; }
 </style>
 """
 
@@ -125,8 +146,21 @@ def with_shims(page: str, project: ProjectView) -> str:
     badge = (
         f'<div id="cover">{image}<span id="cover-words" role="status">Opening the map…</span></div>'
         f'<div id="frame-caption">{html.escape(frame_caption(project))}</div>'
+        '<button id="show-keys" type="button" aria-label="Keys">?</button>' + list_of_keys()
     )
     return page[:head] + drawing() + SHIMS + page[head:body] + badge + page[body:]
+
+
+def list_of_keys() -> str:
+    """A dialog with all keys, as HTML."""
+    rows = [*((key.capitalize(), label) for label, key, _ in HOTKEYS), ("?", "This list")]
+    items = "".join(
+        f"<li><kbd>{html.escape(key)}</kbd> {html.escape(label)}</li>" for key, label in rows
+    )
+    return (
+        '<dialog id="keys" aria-label="Keys"><form method="dialog">'
+        f"<ul>{items}</ul><button>Close</button></form></dialog>"
+    )
 
 
 def policy_for(host: str) -> str:

@@ -13,7 +13,7 @@ from recon4.settings.intensity import IntensitySettings
 from recon4.settings.lines import LineSettings
 from recon4.settings.mapping import MapSettings
 from recon4.settings.odometry import OdometrySettings, ScanSettings
-from recon4.settings.presets import PRESETS, Settings, preset
+from recon4.settings.presets import PRESET_TEXTS, PRESETS, Settings, preset
 from recon4.settings.refine import RefineSettings
 from recon4.settings.registration import (
     OverlapSettings,
@@ -31,6 +31,7 @@ from recon4.settings.slam2d import (
 
 __all__ = [
     "PRESETS",
+    "PRESET_TEXTS",
     "CalibrationSettings",
     "EntropySettings",
     "GnssSettings",

@@ -56,6 +56,16 @@ class Settings:
     grid2d: Grid2dSettings = field(default_factory=Grid2dSettings)
 
 
+PRESET_TEXTS = {
+    "indoor": "Rooms, corridors, halls",
+    "staircase": "Several floors; the same settings as indoor",
+    "outdoor": "Streets, squares, fields: voxels of 3 cm, ranges up to 100 m",
+    "hector": "A 2-D laser, matched as hector_slam does; no loop closures",
+    "wuerzburg": "A backpack with a profiler, by the methods of its publication",
+    "thesis": "The algorithm of the 4RECON thesis as published",
+}
+"""Preset -> what it is for, in a line."""
+
 PRESETS: dict[str, Settings] = {
     "indoor": Settings(),
     "staircase": Settings(),

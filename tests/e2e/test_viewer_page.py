@@ -182,3 +182,29 @@ def test_a_viewer_that_does_not_start_says_so_over_the_thumbnail_and_is_tried_ag
 
     expect(cover).to_have_count(0, timeout=60_000)
     expect(page.get_by_text("60 000 of 60 000 points")).to_be_attached()
+
+
+@looks("desktop light")
+def test_escape_ends_measuring_and_a_list_names_the_keys(viewer):
+    viewer.keyboard.press("m")
+    expect(viewer.get_by_text("Stop measuring (M)")).to_be_attached()
+    viewer.keyboard.press("Escape")
+    expect(viewer.get_by_text("Measure a distance (M)")).to_be_attached()
+
+    viewer.keyboard.press("?")
+    expect(viewer.get_by_role("dialog", name="Keys")).to_contain_text("View from above")
+    viewer.keyboard.press("Escape")
+    expect(viewer.get_by_role("dialog", name="Keys")).to_be_hidden()
+    viewer.get_by_role("button", name="Keys").click()
+    expect(viewer.get_by_role("dialog", name="Keys")).to_be_visible()
+
+
+@looks("desktop light")
+def test_keys_of_the_map_work_on_the_project_page_without_a_click(finished, page):
+    page.goto(f"{finished.url}/projects/office/")
+    inside = page.frame_locator("iframe")
+    expect(inside.get_by_text("60 000 of 60 000 points")).to_be_attached()
+
+    page.keyboard.press("m")
+
+    expect(inside.get_by_text("Stop measuring (M)")).to_be_attached()

@@ -71,6 +71,10 @@ test("the time left is given once it is known", () => {
     runProgressText({ run_progress: 0.5, run_eta_s: 61, status }),
     "50 % of the run · about 1 min 1 s left",
   );
+  assert.equal(
+    runProgressText({ run_progress: 0.99, run_eta_s: 0.2, status }),
+    "99 % of the run · nearly done",
+  );
 });
 
 test("progress names how far, how fast and how long", () => {

@@ -21,9 +21,10 @@ function dialog(id, act) {
     const submitter = /** @type {HTMLButtonElement | null} */ (event.submitter);
     if (submitter?.value === "cancel") return;
     event.preventDefault();
-    if (submitter) submitter.disabled = true;
+    const text = submitter?.textContent ?? "";
+    if (submitter) [submitter.disabled, submitter.textContent] = [true, "One moment…"];
     const done = await attempt(message, () => act(form));
-    if (submitter) submitter.disabled = false;
+    if (submitter) [submitter.disabled, submitter.textContent] = [false, text];
     if (done !== undefined) element.close();
   });
   return () => {
@@ -71,7 +72,9 @@ async function begin() {
   offer(form.rig, choices.rigs.map(rig), kept().rig);
   offer(
     form.preset,
-    choices.presets.map((name) => make("option", { value: name }, name)),
+    choices.presets.map((name) =>
+      make("option", { value: name }, `${name}: ${choices.preset_texts[name]}`),
+    ),
     kept().preset,
   );
   const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();

@@ -35,9 +35,12 @@ export class NewJob extends HTMLElement {
     name: "preset",
     onchange: () => {
       this.#touched.add("preset");
+      this.#explainPreset();
       this.#editor.show(this.#preset.value);
     },
   });
+  #presetText = make("span");
+  #presetTexts = {}; // preset -> what it is for
   #rig = make(
     "select",
     { name: "rig", onchange: () => this.#touched.add("rig") },
@@ -86,7 +89,7 @@ export class NewJob extends HTMLElement {
                 "Finished stages with unchanged inputs are reused."
             : "",
         ),
-        field("Preset", this.#preset),
+        field("Preset", this.#preset, this.#presetText),
         field("Rig", this.#rig),
         make(
           "details",
@@ -115,6 +118,8 @@ export class NewJob extends HTMLElement {
     this.#taken = new Set(projects?.flatMap(({ id, name }) => [id, name]));
     const option = (name) => make("option", { value: name }, name);
     this.#preset.append(...(choices?.presets ?? []).map(option));
+    this.#presetTexts = choices?.preset_texts ?? {};
+    this.#explainPreset();
     this.#rig.append(
       ...(rigs ?? []).map(({ id, path, shipped, version }) =>
         make("option", { value: path }, shipped ? id : `${id}, version ${version}`),
@@ -122,6 +127,10 @@ export class NewJob extends HTMLElement {
     );
     if (this.#again) this.#fill(this.#again);
     else this.#suggest({ project: this.#project.value || undefined }); // may be taken
+  }
+
+  #explainPreset() {
+    this.#presetText.textContent = this.#presetTexts[this.#preset.value] ?? "";
   }
 
   /** A job to repeat; set before the form is shown. */
@@ -177,6 +186,7 @@ export class NewJob extends HTMLElement {
     };
     put("project", this.#project, this.#again ? project : project && this.#free(project));
     put("preset", this.#preset, preset);
+    this.#explainPreset();
     put("rig", this.#rig, rig);
     put("imu", this.#imu, imu);
     put("gnss", this.#gnss, gnss);
@@ -195,14 +205,15 @@ export class NewJob extends HTMLElement {
     this.#message.textContent = "";
     [this.#start.disabled, this.#start.textContent] = [true, "Checking the recording…"];
     const readable = await this.#isReadable();
-    [this.#start.disabled, this.#start.textContent] = [false, "Start"];
     if (!readable) {
       this.#message.textContent = "This recording cannot be read, see above: nothing was started";
       this.#recording.focus();
-      return;
+    } else {
+      this.#start.textContent = "Starting…";
+      const added = await attempt(this.#message, () => this.#add(this.#job()));
+      if (added) location.assign(projectUrl(added.job.project));
     }
-    const added = await attempt(this.#message, () => this.#add(this.#job()));
-    if (added) location.assign(projectUrl(added.job.project));
+    [this.#start.disabled, this.#start.textContent] = [false, "Start"];
   }
 
   #job() {

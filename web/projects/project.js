@@ -113,7 +113,12 @@ function showMap() {
   const walking =
     view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
   if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
-  byId("viewer").replaceChildren(make("iframe", { src: viewerUrl(id), title: "Map in 3-D" }));
+  const viewer = make("iframe", { src: viewerUrl(id), title: "Map in 3-D" });
+  // Keys work without a click first: the viewer takes them unless another control has the focus.
+  const takeKeys = () => document.activeElement === document.body && viewer.focus();
+  viewer.addEventListener("load", takeKeys);
+  viewer.addEventListener("pointerenter", takeKeys);
+  byId("viewer").replaceChildren(viewer);
 }
 
 function drawLog() {

@@ -52,10 +52,13 @@ export function stateOf(project, view) {
   return project?.finished || state === "succeeded" ? "finished" : "unfinished";
 }
 
+/** A remaining time; near its end an estimate of parts of a second would promise too much. */
+const timeLeft = (s, about = "") => (s < 1 ? "nearly done" : `${about}${seconds(s)} left`);
+
 /** Progress of the whole run and its remaining time. */
 export function runProgressText({ run_progress, run_eta_s, status }) {
   if (!status.what) return "Starting";
-  const left = run_eta_s === null ? [] : [`about ${seconds(run_eta_s)} left`];
+  const left = run_eta_s === null ? [] : [timeLeft(run_eta_s, "about ")];
   return [`${Math.round(run_progress * 100)} % of the run`, ...left].join(" · ");
 }
 
@@ -68,6 +71,6 @@ export function progressText({ status, fraction }) {
     const rate = status.rate_per_s;
     parts.push(`${rate < 10 ? rate.toFixed(1) : count(rate)} ${status.unit}/s`);
   }
-  if (status.eta_s !== null) parts.push(`${seconds(status.eta_s)} left`);
+  if (status.eta_s !== null) parts.push(timeLeft(status.eta_s));
   return `This part ${parts.join(" · ")}`;
 }

@@ -116,6 +116,7 @@ export interface CalibrationView {
 
 export interface CaptureChoices {
   presets: Array<string>;
+  preset_texts: Record<string, string>;
   rigs: Array<RigChoice>;
 }
 
@@ -147,6 +148,7 @@ export interface Changes {
 
 export interface Choices {
   presets: Array<string>;
+  preset_texts: Record<string, string>;
   rigs: Array<string>;
 }
 

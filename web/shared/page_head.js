@@ -44,6 +44,7 @@ export class PageHead extends HTMLElement {
       ...(live ? [link(liveUrl, "Live")] : []),
       link("/rigs", "Rigs"),
       ...(may.includes("process") ? [link("/storage", "Storage"), link("/api", "API")] : []),
+      link("/docs/", "Help"),
       ...(may.includes("administer") ? [link("/people", "People")] : []),
       ...(login
         ? [

@@ -13,24 +13,12 @@ from app.viewer.client.legend import Legend
 from app.viewer.client.legend_html import counted, facts_html, legend_html
 from app.viewer.client.view import EdgeColor, Points, ViewState
 from app.viewer.cloud.palette import Palette, Range
+from app.viewer.hotkeys import HOTKEYS
 from app.viewer.scene.build import Content
 from app.viewer.scene.layers import Layer
 from recon4.mapping.tiles import Surface
 
 Update = Callable[[ViewState], ViewState]
-HOTKEYS: tuple[tuple[str, Any, str], ...] = (
-    ("Raw or normalized intensity", "N", "normalized"),
-    ("Points on fitted surfaces, as measured, or stray returns", "R", "surface"),
-    ("Fit the map into the view", "F", "fit"),
-    ("View from above", "7", "above"),
-    ("View from the south", "1", "south"),
-    ("View from the east", "3", "east"),
-    ("Narrow field of view, nearly orthographic", "O", "narrow"),
-    ("Measure a distance between two points", "M", "measure"),
-    ("Play or stop", "P", "play"),
-)
-"""Label, key, and name for `PanelCallbacks.command`."""
-
 
 LIE: dict[str, Surface] = {
     "on fitted surfaces": "fitted",

@@ -88,6 +88,8 @@ class PointerTools:
         match name:
             case "measure":
                 self._measuring, self._first = not self._measuring, None
+            case "stop measuring":
+                self._measuring, self._first = False, None
             case "keep point" if self._last is not None:
                 self._keep((self._last,))
             case "undo measure":

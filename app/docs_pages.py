@@ -1,0 +1,71 @@
+"""The documentation as pages of the server: the Markdown files of `docs/`, without internet."""
+
+from __future__ import annotations
+
+import html
+import re
+from functools import cache
+from pathlib import Path
+
+from fastapi import APIRouter, Depends
+from fastapi.responses import FileResponse, HTMLResponse
+from markdown_it import MarkdownIt
+
+from app.access.people import Permission, needs
+from app.errors import NotFound
+from app.pages import WEB, html_of
+
+router = APIRouter(
+    prefix="/docs", dependencies=[Depends(needs(Permission.LOOK))], include_in_schema=False
+)
+PAGE = "shared/docs.html"
+"""``{title}`` and ``{content}`` are filled in."""
+START = "tour"
+_NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
+_IMAGE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\.(png|webp)")
+
+
+@cache
+def folder() -> Path:
+    """The Markdown files: of an installed package inside of it, else of the checkout."""
+    inside = WEB / "docs"
+    return inside if inside.is_dir() else WEB.parent / "docs"
+
+
+@router.get("/")
+def docs_start() -> HTMLResponse:
+    """Show the first page of the documentation."""
+    return docs_page(START)
+
+
+@router.get("/images/{name}")
+def docs_image(name: str) -> FileResponse:
+    """Send an image of the documentation."""
+    path = folder() / "images" / name
+    if not _IMAGE.fullmatch(name) or not path.is_file():
+        raise NotFound(f"the documentation has no image {name[:64]!r}")
+    return FileResponse(path)
+
+
+@router.get("/{name}")
+def docs_page(name: str) -> HTMLResponse:
+    """Show a page of the documentation."""
+    path = folder() / f"{name.removesuffix('.md')}.md"
+    if not _NAME.fullmatch(name.removesuffix(".md")) or not path.is_file():
+        raise NotFound(f"the documentation has no page {name[:64]!r}")
+    text = path.read_text("utf-8")
+    title = html.escape(text.split("\n", 1)[0].lstrip("# "))
+    page = html_of(PAGE).replace("{title}", title)
+    return HTMLResponse(page.replace("{content}", rendered(text)))
+
+
+def rendered(markdown: str) -> str:
+    """HTML of a page; raw HTML in it is kept, because it is ours."""
+    body: str = MarkdownIt("commonmark", {"html": True}).enable("table").render(markdown)
+    return re.sub(r"<h([23])>(.*?)</h\1>", _with_anchor, body)
+
+
+def _with_anchor(heading: re.Match[str]) -> str:
+    plain = re.sub(r"<[^>]+>", "", heading[2]).lower()
+    anchor = re.sub(r"[^\w -]", "", plain).replace(" ", "-")
+    return f'<h{heading[1]} id="{anchor}">{heading[2]}</h{heading[1]}>'
