@@ -22,7 +22,7 @@ from app.access.login import routes as login_routes
 from app.access.login.login_service import Access, open_access
 from app.access.middleware.origin import OriginMiddleware
 from app.access.pairing import routes as pairing_routes
-from app.access.people import Permission, allow_anonymous, needs
+from app.access.people import LOCAL, READER, Permission, allow_anonymous, needs
 from app.access.restoring import access_copies, restore_access
 from app.access.routes_check import check_declared
 from app.access.startup_notice import startup_notice
@@ -51,8 +51,7 @@ from app.network.listen import (
     hosts_of,
     listening,
     make_state,
-    only_one,
-    private_files,
+    own_files,
     urls,
     uvicorn_config,
 )
@@ -70,6 +69,7 @@ from app.rigs import routes as rig_routes
 from app.rigs.calibrations import Calibrations
 from app.rigs.store import RigStore
 from app.rigs.uses import RigUses
+from app.server_routes import READ_ONLY
 from app.settings import ServerSettings
 from app.slices import reference_routes
 from app.slices import routes as slice_routes
@@ -115,7 +115,10 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_middleware(RequestBodyLimitMiddleware, max_body_size=settings.max_body_bytes)
     pinned = settings.tls_certificate is not None
     app.add_middleware(
-        OriginMiddleware, hosts=hosts_of(settings), login=settings.lan, pinned=pinned
+        OriginMiddleware,
+        hosts=hosts_of(settings),
+        local=None if settings.lan else READER if settings.read_only else LOCAL,
+        pinned=pinned,
     )
     metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
     app.add_middleware(MetricsMiddleware, metrics=metrics.http)
@@ -175,7 +178,7 @@ def serve(
         StoreError: If it cannot listen there, or another server runs on the same folder.
     """
     raise_file_limit()
-    with private_files(settings.lan), only_one(settings), listening(settings) as listener:
+    with own_files(settings) as settings, listening(settings) as listener:
         sweep_leftovers(settings)
         certificate = certificate_of(settings)
         app = create_app(settings)
@@ -184,9 +187,9 @@ def serve(
 
         def ready() -> None:
             access: Access = app.state.parts.access
-            on_ready(
-                best + path, startup_notice(access, best, others=others, certificate=certificate)
-            )
+            notice = startup_notice(access, best, others=others, certificate=certificate)
+            read_only = [READ_ONLY] if settings.read_only else []
+            on_ready(best + path, [*read_only, *notice])
 
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
         # uvicorn shuts down in order, then raises the signal again: by then all is done

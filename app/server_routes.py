@@ -14,6 +14,10 @@ from recon4 import __version__
 
 router = APIRouter(prefix="/api", tags=["server"], dependencies=[Depends(needs(Permission.LOOK))])
 
+READ_ONLY = (
+    "The folder of the projects cannot be written: it is shown as it is. Jobs, uploads, reviews, "
+    "rigs and live captures need a copy of it."
+)
 LITTLE_ROOM = 0.1
 """Free fraction of the disk below which a notice is shown."""
 
@@ -36,8 +40,11 @@ def read_server(server: Server) -> ServerView:
     """Version of the server, disk space, and notices for users."""
     disk = shutil.disk_usage(server.settings.root)
     notices = [*filter(None, [server.access.notice, server.jobs.notice]), *server.uploads.notices()]
+    notices += [READ_ONLY] if server.settings.read_only else []
     notices += unlisted_notices(server.settings.root)
-    if disk.free < max(LITTLE_ROOM * disk.total, server.settings.free_disk_reserve_bytes):
+    if not server.settings.read_only and disk.free < max(
+        LITTLE_ROOM * disk.total, server.settings.free_disk_reserve_bytes
+    ):
         notices.append(
             f"The disk is nearly full: {disk.free / 1e9:.1f} GB of {disk.total / 1e9:.0f} GB are "
             "free. Delete projects or uploads that are not needed."

@@ -73,6 +73,9 @@ class ServerSettings:
     trash_retention_s: float = 7 * 86400.0
     """A deleted project can be restored for this long [s]."""
 
+    state_folder: Path | None = None
+    """Folder of the server's own files; None = ``.recon4`` in ``root``. With another one the server
+    only shows ``root``, and changes nothing."""
     sensor_bind_address: str = "0.0.0.0"
     """Address of the network interface for the sensors of a live capture; 0.0.0.0 = any."""
 
@@ -103,7 +106,12 @@ class ServerSettings:
     @property
     def state(self) -> Path:
         """Folder of the server's own files: jobs, locks, thumbnails."""
-        return self.root / ".recon4"
+        return self.state_folder or self.root / ".recon4"
+
+    @property
+    def read_only(self) -> bool:
+        """Whether nothing in ``root`` is changed."""
+        return self.state_folder is not None
 
     @property
     def import_roots(self) -> tuple[Path, ...]:

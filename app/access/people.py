@@ -67,6 +67,8 @@ class Person:
 
 LOCAL = Person("local", Role.ADMIN)
 """The person at this computer, when the server listens on loopback only."""
+READER = Person("local", Role.VIEWER)
+"""The same person, when the folder of the projects cannot be written."""
 NOBODY = Person("nobody", Role.NOBODY)
 """A caller who has not signed in."""
 
@@ -98,6 +100,8 @@ def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
         if not who.may(what):
             path = connection.scope["path"]
             await asyncio.to_thread(audit, connection, what, path, outcome="refused")
+            if who is READER:
+                raise Refused("the folder of the projects cannot be written: nothing can change")
             raise Refused(f"{who.name} is a {who.role} here and may not {what}; ask an admin")
         return who
 

@@ -7,7 +7,10 @@ import os
 import socket
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import uvicorn
 from fastapi import FastAPI
@@ -24,7 +27,7 @@ from app.network.connections import (
 from app.network.hosts import LOOPBACK, own_names
 from app.network.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
 from app.settings import ServerSettings
-from recon4.errors import StoreError
+from recon4.errors import ConfigError, StoreError
 from recon4.store.atomic import make_folders
 from recon4.store.locks import trying_lock
 
@@ -137,6 +140,28 @@ def presented_fingerprint(settings: ServerSettings) -> str | None:
         return None
     chain = settings.tls_certificate or settings.state / "tls" / "certificate.pem"
     return Certificate(chain, chain, own=False).fingerprint()
+
+
+@contextmanager
+def own_files(settings: ServerSettings) -> Iterator[ServerSettings]:
+    """Lock the server's folder; with a root that cannot be written, one that is temporary.
+
+    Raises:
+        ConfigError: If the root cannot be written and people have to sign in.
+        StoreError: If another server has the lock.
+    """
+    with ExitStack() as stack:
+        stack.enter_context(private_files(settings.lan))
+        if not os.access(settings.root, os.W_OK):
+            if settings.lan:
+                raise ConfigError(
+                    f"{settings.root} cannot be written, so nobody can sign in and nothing can be "
+                    "logged: serve a copy of it, or serve it without --lan"
+                )
+            folder = stack.enter_context(TemporaryDirectory(prefix="recon4-state-"))
+            settings = replace(settings, state_folder=Path(folder))
+        stack.enter_context(only_one(settings))
+        yield settings
 
 
 @contextmanager

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from starlette.requests import HTTPConnection
 
 from app.access.login.login_backoff import network
-from app.access.people import LOCAL, Permission, person
+from app.access.people import LOCAL, READER, Permission, person
 from app.errors import TooMany
 
 TOO_MANY = 4429
@@ -77,7 +77,7 @@ class Streams:
         if self.open >= available:
             opened = f"{self.open} {self._what} are open"
             return f"{opened}, the limit is {available}: close one, try again"
-        if who is LOCAL:
+        if who in (LOCAL, READER):
             return None
         if self._people[name] >= limits.max_per_person:
             return f"you have {limits.max_per_person} {self._what} open: close one and try again"

@@ -7,6 +7,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -19,7 +20,13 @@ from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.store.atomic import raise_if_full
 from recon4.store.hashing import CHAIN_START, hash_json
 from recon4.store.seal import changing
-from recon4.store.sqlite_files import connect, make_durable, merge_log, sync_commits
+from recon4.store.sqlite_files import (
+    connect,
+    connect_to_read,
+    make_durable,
+    merge_log,
+    sync_commits,
+)
 
 NAME = "decisions.sqlite"
 
@@ -201,6 +208,10 @@ def _rows(db: sqlite3.Connection) -> list[JournalRow]:
 def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection]:
     db: sqlite3.Connection | None = None
     try:
+        if not write and not os.access(path.parent, os.W_OK):
+            db = connect_to_read(path)
+            yield db
+            return
         db = connect(path)
         if write:
             make_durable(db)

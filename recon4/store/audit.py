@@ -25,7 +25,7 @@ from recon4.store.project import (
     read_stages,
 )
 from recon4.store.seal import OPEN, compare_all, read_seals
-from recon4.store.sqlite_files import connect_read_only
+from recon4.store.sqlite_files import connect_to_read
 from recon4.store.stage import damage_of, read_manifest
 
 _JOURNAL = "decisions.sqlite"
@@ -104,7 +104,7 @@ def content_damage(path: Path) -> list[str]:
     """Check the content of a file that has no hash: integrity of SQLite, syntax of JSON."""
     try:
         if path.suffix == ".sqlite" and path.exists():
-            with closing(connect_read_only(path)) as db:
+            with closing(connect_to_read(path)) as db:
                 messages = [str(row[0]) for row in db.execute("PRAGMA integrity_check(5)")]
             return [] if messages == ["ok"] else [f"{path.name}: {messages[0]}"]
         if path.suffix == ".json" and path.exists():

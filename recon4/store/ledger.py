@@ -10,7 +10,13 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.store.atomic import raise_if_full
-from recon4.store.sqlite_files import connect, connect_read_only, make_durable, merge_log
+from recon4.store.sqlite_files import (
+    connect,
+    connect_read_only,
+    connect_to_read,
+    make_durable,
+    merge_log,
+)
 
 SCHEMA_VERSION = 1
 _PAGE_BYTES = 512
@@ -200,5 +206,6 @@ def _read_only(path: Path) -> sqlite3.Connection:
     """A connection that creates no file; without a write-ahead log it opens it as immutable."""
     if not path.exists():
         return connect(":memory:")
-    written = path.with_name(f"{path.name}-wal").exists()
-    return connect_read_only(path, immutable=not written)
+    if path.with_name(f"{path.name}-wal").exists():
+        return connect_to_read(path)
+    return connect_read_only(path, immutable=True)

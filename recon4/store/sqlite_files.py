@@ -2,7 +2,11 @@
 
 from __future__ import annotations
 
+import os
+import shutil
 import sqlite3
+import tempfile
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +36,36 @@ def connect_read_only(path: Path, *, immutable: bool = False) -> sqlite3.Connect
     options = "mode=ro&immutable=1" if immutable else "mode=ro"
     uri = f"{path.resolve().as_uri()}?{options}"
     return sqlite3.connect(uri, isolation_level=None, timeout=BUSY_S, uri=True)
+
+
+def connect_to_read(path: Path) -> sqlite3.Connection:
+    """Open an existing file to read, also where nothing can be written (read-only media).
+
+    SQLite keeps files beside a file with a write-ahead log, even to read it. Where it cannot make
+    them, the file is opened as immutable, or with its log as a copy in memory.
+
+    Raises:
+        sqlite3.Error: If it cannot be opened.
+    """
+    if os.access(path.parent, os.W_OK):
+        return connect_read_only(path)
+    log = path.with_name(f"{path.name}-wal")
+    if not log.exists() or not log.stat().st_size:
+        return connect_read_only(path, immutable=True)
+    return _copy_with_log(path, log)
+
+
+def _copy_with_log(path: Path, log: Path) -> sqlite3.Connection:
+    try:
+        with tempfile.TemporaryDirectory(prefix="recon4-") as folder:
+            for one in (path, log):
+                shutil.copyfile(one, Path(folder, one.name))
+            with closing(connect(Path(folder, path.name))) as whole:
+                copy = connect(":memory:")
+                whole.backup(copy)
+    except OSError as error:
+        raise sqlite3.OperationalError(f"its log cannot be read here: {error}") from error
+    return copy
 
 
 def make_durable(connection: Any) -> None:

@@ -16,7 +16,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.access.middleware.rejection import Rejection, note
 from app.access.middleware.session import SessionMiddleware
-from app.access.people import LOCAL
+from app.access.people import NOBODY, Person
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -59,10 +59,20 @@ class Hosts:
 class OriginMiddleware:
     """Rejects foreign hosts and origins and callers without a session; adds security headers."""
 
-    def __init__(self, app: ASGIApp, *, hosts: Hosts, login: bool, pinned: bool = False) -> None:
-        self._app = SessionMiddleware(app) if login else app
+    def __init__(
+        self, app: ASGIApp, *, hosts: Hosts, local: Person | None, pinned: bool = False
+    ) -> None:
+        """Wrap an application.
+
+        Args:
+            app: The application.
+            hosts: Host names it accepts.
+            local: Who every caller is; None = people sign in.
+            pinned: Whether browsers may insist on TLS from now on.
+        """
+        self._app = app if local else SessionMiddleware(app)
         self._hosts = hosts
-        self._login = login
+        self._local = local or NOBODY
         self._headers = HEADERS | (PINNED if pinned else {})
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
@@ -70,7 +80,7 @@ class OriginMiddleware:
             await self._app(scope, receive, send)
             return
         send = self._with_headers(scope, send)
-        scope.setdefault("state", {}).update(person=LOCAL, signed_in_s=0.0)
+        scope.setdefault("state", {}).update(person=self._local, signed_in_s=0.0)
         if (rejection := judge(scope, self._hosts)) is None:
             await self._app(scope, receive, send)
         else:
@@ -78,7 +88,7 @@ class OriginMiddleware:
             await rejection.answer(scope, receive, send)
 
     def _with_headers(self, scope: Scope, send: Send) -> Send:
-        private = self._login and scope["path"].startswith("/api/")
+        private = self._local is NOBODY and scope["path"].startswith("/api/")
         wanted = self._headers | (PRIVATE if private else {})
 
         async def send_with_headers(message: Message) -> None:
