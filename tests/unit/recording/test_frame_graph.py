@@ -80,3 +80,11 @@ def test_a_mount_reads_as_people_write_it():
     text = mount_text(mount(0.1, -0.0001, 2, roll=180, yaw=-90))
 
     assert text == "xyz 0.100 0.000 2.000 m, roll 180.0 pitch 0.0 yaw -90.0°"
+
+
+@pytest.mark.parametrize("pitch", [90.0, -90.0])
+def test_the_mount_of_a_vertical_lidar_has_no_yaw(pitch):
+    text = mount_text(mount(pitch=pitch, roll=30, yaw=-10))
+    roll = 30 + 10 * np.sign(pitch)
+
+    assert text.endswith(f"roll {roll:.1f} pitch {pitch:.1f} yaw 0.0°")
