@@ -211,7 +211,7 @@ def approve(page):
     page.get_by_role("button", name="Approve map…").click()
     page.get_by_label("Remark").fill("walked through it, all walls single")
     page.get_by_role("button", name="Sign").click()
-    expect(page.locator("#signing")).to_contain_text("✓ Approved: version 1 by local")
+    expect(page.locator("#signing")).to_contain_text("✓ Approved v1 · local · ")
     page.get_by_text("Journal", exact=True).click()
     expect(page.locator("#journal")).to_contain_text("approved the map")
 
@@ -219,6 +219,7 @@ def approve(page):
 def take_away(page, root):
     """The map as LAZ and the report contain the approval."""
     page.get_by_role("link", name="Map", exact=True).click()
+    expect(page.locator("#approval")).to_contain_text("✓ Approved v1 · local · ")
     with page.expect_download() as download:
         page.locator("#files").get_by_role("link", name=re.compile("LAZ")).click()
     with page.expect_popup() as report:
@@ -245,7 +246,9 @@ def decide_again(page):
     expect(page.locator("#signing")).to_contain_text("✓ Approved")
     select_next(page)
     page.keyboard.press("r")
-    expect(page.locator("#signing")).to_contain_text("Draft: decisions were made after")
+    expect(page.locator("#signing")).to_contain_text(
+        "changed since: later decisions are not in this map"
+    )
     expect(page.get_by_role("button", name="Approve map…")).to_be_disabled()
 
 

@@ -213,7 +213,7 @@ def test_decide_make_a_new_map_approve_export(opened, root, screenshot):
     page.get_by_label("Remark").fill("compared with the plan")
     page.get_by_role("button", name="Sign").click()
 
-    expect(page.locator("#signing")).to_contain_text("Approved: version 1 by local")
+    expect(page.locator("#signing")).to_contain_text("✓ Approved v1 · local · ")
     page.get_by_text("Journal", exact=True).click()
     expect(page.locator("#journal")).to_contain_text("approved the map")
     screenshot(page, "review-approved")
