@@ -44,10 +44,11 @@ def findings(rig: Rig, newest: Newest, problem: str) -> list[CaptureFinding]:
     if status is not None:
         found += [*_disk(status), *_sensors(rig, status), *_samples(rig, status)]
         found += [*_strangers(rig, status), *_drops(status)]
+    found += _too_slow(status, newest.pose)
     if newest.pose is not None:
         found += _tracking(newest.pose)
     if newest.notes is not None:
-        found += _reader(newest.notes)
+        found += _reader(newest.notes, lost_here=status is not None and status.kernel_drops > 0)
     if newest.fix is not None:
         found += _position(newest.fix)
     order: dict[Level, int] = {"error": 0, "warning": 1, "info": 2}
@@ -204,17 +205,9 @@ def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
 
 
 def _drops(status: Status) -> list[CaptureFinding]:
-    found = []
-    if status.kernel_drops:
-        count = status.kernel_drops
-        found.append(
-            CaptureFinding("error", f"{count} packets were lost: this computer is too busy")
-        )
-    if status.file.dropped:
-        count = status.file.dropped
-        text = f"{count} packets are not in the recording: the disk was full or too slow"
-        found.append(CaptureFinding("error", text))
-    return found
+    count = status.file.dropped
+    text = f"{count} packets are not in the recording: the disk was full or too slow"
+    return [CaptureFinding("error", text)] if count else []
 
 
 def _tracking(pose: Pose) -> list[CaptureFinding]:
@@ -225,28 +218,46 @@ def _tracking(pose: Pose) -> list[CaptureFinding]:
         found.append(CaptureFinding("warning", "Turn slower"))
     elif unobserved_text(pose):
         found.append(CaptureFinding("warning", unobserved_text(pose)))
-    elif _degraded(pose):
+    elif _degraded(pose) and not _behind(pose):
         found.append(
             CaptureFinding("warning", "Tracking is degraded: walk slower, look at more walls")
         )
     if pose.remark:
         found.append(CaptureFinding("warning", f"{pose.remark[0].upper()}{pose.remark[1:]}"))
-    return found + _late(pose)
+    return found
 
 
-def _late(pose: Pose) -> list[CaptureFinding]:
-    """Latency of the preview. Frames are left out of the preview, never of the recording."""
+def _too_slow(status: Status | None, pose: Pose | None) -> list[CaptureFinding]:
+    """One finding for all that a computer without enough time does.
+
+    Frames are left out of the preview, never of the recording; packets that the kernel drops are
+    in neither.
+    """
+    lost = status.kernel_drops if status is not None else 0
+    late = _late(pose) if pose is not None else ""
+    if lost:
+        behind = f"; {late[0].lower()}{late[1:]}" if late else ""
+        text = f"{lost} packets were lost: this computer is too busy{behind}"
+        return [CaptureFinding("error", text)]
+    level: Level = "warning" if pose is not None and _behind(pose) else "info"
+    return [CaptureFinding(level, f"{late}; the recording is complete")] if late else []
+
+
+def _behind(pose: Pose) -> bool:
+    return pose.age_s > _LATE_S
+
+
+def _late(pose: Pose) -> str:
+    """Latency of the preview in words; empty = there is none."""
     recent = pose.lately
-    behind = f"The preview is {pose.age_s:.0f} s behind" if pose.age_s > _LATE_S else ""
+    behind = f"The preview is {pose.age_s:.0f} s behind" if _behind(pose) else ""
     left_out = (
         f"{recent.thinned} of the last {recent.frames} frames are left out of the preview "
         f"({pose.thinned} in all)"
         if recent.thinned
         else ""
     )
-    text = ": ".join(part for part in (behind, left_out) if part)
-    level: Level = "warning" if behind else "info"
-    return [CaptureFinding(level, f"{text}; the recording is complete")] if text else []
+    return ": ".join(part for part in (behind, left_out) if part)
 
 
 def _degraded(pose: Pose) -> bool:
@@ -261,12 +272,13 @@ def _degraded(pose: Pose) -> bool:
     )
 
 
-def _reader(notes: Notes) -> list[CaptureFinding]:
+def _reader(notes: Notes, *, lost_here: bool) -> list[CaptureFinding]:
+    """What the reader repairs; packets that this computer lost are no fault of the cable."""
     found = [CaptureFinding("warning", text) for text in notes.warnings[-3:]]
     found += [CaptureFinding("warning", text) for text in scan_remarks(notes)]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
-    if packets > 1000 and missing > _MAX_LOST * packets:
+    if packets > 1000 and missing > _MAX_LOST * packets and not lost_here:
         percent = 100.0 * missing / (packets + missing)
         text = f"{percent:.0f} % of the packets never arrived: check the cable"
         found.append(CaptureFinding("warning", text))

@@ -227,6 +227,19 @@ def test_the_gnss_fix_gives_findings(changed, level, text):
     assert found_in(fix=fix(**changed)) == [(level, text)]
 
 
+def test_a_computer_that_is_too_slow_is_one_finding():
+    slow = pose(age_s=4.2, thinned=7, lately=RecentFrames(frames=20, thinned=5), error_m=0.2)
+    read = notes(recent={"packets": 9000, "packets_missing": 900})
+
+    assert found_in(status(kernel_drops=900), pose=slow, notes=read) == [
+        (
+            "error",
+            "900 packets were lost: this computer is too busy; the preview is 4 s behind: 5 of "
+            "the last 20 frames are left out of the preview (7 in all)",
+        )
+    ]
+
+
 def test_the_most_urgent_comes_first():
     paused = status(paused=True, kernel_drops=3)
     found = found_in(paused, problem="gone", pose=pose(remark="x"))
