@@ -158,7 +158,8 @@ def _measured(values: Array, least: int) -> tuple[Array, str]:
         return values, ""
     if _is_zero(finite):
         return nothing, "all its values are 0"
-    return nothing, f"its {' and '.join(constant)} never changes in {len(finite)} samples"
+    axes = " and ".join(", ".join(constant).rsplit(", ", 1))
+    return nothing, f"its {axes} never change in {len(finite)} samples"
 
 
 def _without_free_fall(accel: Array) -> Array:

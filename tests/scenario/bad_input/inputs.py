@@ -37,9 +37,10 @@ def write_pcap(path, t_ns, payloads):
 
 def write_imu(path, *, count=100, gyro=(0.0, 0.0, 0.0), accel=(0.0, 0.0, 9.80665), noise=1e-4):
     """Samples of an IMU; ``noise`` makes each differ from the one before it."""
-    x, y, z = gyro
-    force = ",".join(map(str, accel))
-    rows = [f"{T0_NS + k * 10_000_000},{x},{y},{z + noise * (k % 7)},{force}" for k in range(count)]
+    rows = []
+    for k in range(count):
+        values = (value + noise * (k % 7) for value in (*gyro, *accel))
+        rows.append(",".join(map(str, (T0_NS + k * 10_000_000, *values))))
     path.write_text("\n".join([",".join(IMU_HEADER), *rows]) + "\n")
     return path
 
