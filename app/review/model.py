@@ -32,6 +32,9 @@ class NewDecision(BaseModel):
     """The pose the reviewer saw, x y z qx qy qz qw; empty if there was none."""
     measurement: Annotated[str, Field(max_length=64)] = ""
     """Of ``replace`` and ``add``: the ``measurement`` id that ``align`` returned."""
+    seen_seq: Annotated[int | None, Field(ge=0)] = None
+    """Last row of the journal that the reviewer saw: reject the request if another person decided
+    about this pair since; null = do not compare."""
 
 
 class Step(BaseModel):

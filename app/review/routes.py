@@ -193,7 +193,10 @@ def decide(project_id: str, new: NewDecision, server: Server, *, who: Who) -> Re
         T_i_j=tuple(new.T_i_j),
         measurement=server.reviews.measurement(root, pair, new.measurement) if measured else None,
     )
-    append(root, decision)
+    try:
+        append(root, decision, seen_seq=new.seen_seq)
+    except JournalChanged as error:
+        raise Conflict(str(error)) from error
     return _view(project_id, server, who)
 
 

@@ -120,23 +120,33 @@ def read_decided(root: Path) -> Decided:
     return fold(row.decision() for row in read_rows(root))
 
 
-def append(root: Path, decision: Decision, *, after_seq: int | None = None) -> JournalRow:
+def append(
+    root: Path,
+    decision: Decision,
+    *,
+    after_seq: int | None = None,
+    seen_seq: int | None = None,
+) -> JournalRow:
     """Append a row; it is on disk when this returns.
 
     Args:
         root: The project folder.
         decision: The new decision.
         after_seq: Required number of the last row; None = any.
+        seen_seq: Last row that the person saw; None = not known.
 
     Raises:
         NothingToUndo: If there is no decision to undo or redo.
-        JournalChanged: If the last row is not ``after_seq``.
+        JournalChanged: If the last row is not ``after_seq``, or another person decided about the
+            same pair after ``seen_seq``.
         StoreError: If the file is damaged or cannot be written (`NoSpace`: disk full).
     """
     with changing(root, NAME), _database(root / NAME, write=True) as db:
         db.execute("BEGIN IMMEDIATE")  # no other writer from here on
         rows = _rows(db)
         _check(rows, decision, after_seq)
+        if seen_seq is not None:
+            _check_pair(rows[seen_seq:], decision)
         row = _next(rows, decision)
         db.execute(
             f"INSERT INTO journal ({_COLUMNS}) VALUES (?,?,?,?,?,?,?,?,?,?)",
@@ -177,6 +187,16 @@ def _check(rows: Sequence[JournalRow], decision: Decision, after_seq: int | None
         left = decided.undoable if decision.kind is DecisionKind.UNDO else decided.redoable
         if not left:
             raise NothingToUndo(f"there is nothing to {decision.kind}")
+
+
+def _check_pair(unseen: Sequence[JournalRow], decision: Decision) -> None:
+    """Reject a decision about a pair that another person decided meanwhile."""
+    for row in reversed(unseen):
+        if (row.frame_i, row.frame_j) == decision.pair and row.who != decision.who:
+            raise JournalChanged(
+                f"{row.who} decided about this pair meanwhile ({row.kind}): look at it again, then "
+                "decide"
+            )
 
 
 def _next(rows: Sequence[JournalRow], decision: Decision) -> JournalRow:

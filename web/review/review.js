@@ -133,7 +133,8 @@ function send(kind, more = {}) {
   const why = reason.value.trim();
   reason.value = "";
   const T_i_j = row.measured ? (facts?.measured ?? []) : [];
-  const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j, why, ...more };
+  const seen_seq = state.server.seq;
+  const body = { kind, frame_i: pair[0], frame_j: pair[1], T_i_j, why, seen_seq, ...more };
   selected.decided = kind !== "restore";
   const sent = inTurn(async () => {
     try {

@@ -513,6 +513,7 @@ export interface NewDecision {
   why?: string;
   T_i_j?: Array<number>;
   measurement?: string;
+  seen_seq?: number | null;
 }
 
 export interface NewInvitation {

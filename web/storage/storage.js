@@ -50,8 +50,7 @@ async function deleteAfterwards({ kind, name, id, used_by }) {
 
 function actions(item) {
   const { kind, id, name } = item;
-  if (kind === "project")
-    return [make("a", { className: "button", href: projectUrl(id) }, "Open")];
+  if (kind === "project") return [make("a", { className: "button", href: projectUrl(id) }, "Open")];
   const label = kind === "deleted" ? "Delete now" : "Delete…";
   const button = (text, onclick) =>
     make("button", { type: "button", ariaLabel: `${text} ${name}`, onclick }, text);

@@ -9,7 +9,7 @@ import pytest
 
 from app.review.store import Reviews
 from recon4.review.decisions import Decision, DecisionKind, fold
-from recon4.review.journal import read_rows
+from recon4.review.journal import append, read_rows
 from recon4.review.source import Source
 from tests.review_project import make
 from tests.service.review.reviewing import RIGHT, WRONG, decide
@@ -61,6 +61,19 @@ def test_two_browsers_at_once_lose_nothing(server, root):
 
     assert codes == [201] * 40
     assert {row.frame_i for row in read_rows(root)} == set(range(40))
+
+
+def test_a_decision_about_a_pair_that_another_person_decided_meanwhile_is_refused(server, root):
+    append(root, Decision(kind=DecisionKind.REJECT, who="rita", pair=(17, 77)))
+
+    late = decide(server, "accept", RIGHT, seen_seq=0)
+    other = decide(server, "reject", WRONG, seen_seq=0)
+    knowing = decide(server, "accept", RIGHT, seen_seq=1)
+
+    assert late.status_code == 409
+    assert "rita decided about this pair meanwhile (reject)" in late.json()["detail"]
+    assert (other.status_code, knowing.status_code) == (201, 201)
+    assert [row.who for row in read_rows(root)] == ["rita", "local", "local"]
 
 
 @pytest.mark.parametrize(
