@@ -71,7 +71,7 @@ from app.rigs.store import RigStore
 from app.rigs.uses import RigUses
 from app.server_routes import READ_ONLY
 from app.settings import ServerSettings
-from app.slices import reference_routes
+from app.slices import align_routes, reference_routes
 from app.slices import routes as slice_routes
 from app.slices.store import Slices
 from app.storage import routes as storage_routes
@@ -145,7 +145,8 @@ def _routes() -> list[BaseRoute]:
         job_routes,
     ):
         router.include_router(part.router)
-    for part in (choices, server_routes, metrics_routes, reference_routes, docs_pages):
+    more = (choices, server_routes, metrics_routes, reference_routes, align_routes, docs_pages)
+    for part in more:
         router.include_router(part.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)

@@ -36,11 +36,17 @@ BEGAN_NS = 1_700_000_000_000_000_000
 
 
 def build_project(
-    root: Path, *, points: int = 60_000, with_map: bool = True, strays: int = 0
+    root: Path,
+    *,
+    points: int = 60_000,
+    with_map: bool = True,
+    strays: int = 0,
+    normals: bool = False,
 ) -> None:
     """Make a finished project in an empty folder (or one that has come as far as odometry).
 
-    The map has that many stray returns in the middle of each tile, beside its points.
+    The map has that many stray returns in the middle of each tile, beside its points, and normals
+    of the room's walls if asked for.
     """
     with Project.open(root) as project:
         project.describe(preset="indoor", rig="4RECON")
@@ -53,7 +59,8 @@ def build_project(
         runner.run(Stage("level", 1, (), _level), walk=walk)
         count = Input(f"points {points}", points)
         loose = Input(f"strays {strays}", strays)
-        runner.run(Stage("map", 1, (), _map, MapFigures), points=count, strays=loose)
+        faces = Input(f"normals {normals}", normals)
+        runner.run(Stage("map", 1, (), _map, MapFigures), points=count, strays=loose, normals=faces)
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
     (root / "report.html").write_text(
         "<!doctype html><title>Report</title><h1>Report</h1>" + draft_block()
@@ -207,7 +214,7 @@ def _level(context: StageContext, *, walk: Trajectory) -> None:
     )
 
 
-def _map(context: StageContext, *, points: int, strays: int) -> MapFigures:
+def _map(context: StageContext, *, points: int, strays: int, normals: bool) -> MapFigures:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
     with TileWriter(context.out, list(FIELDS), tile_m=TILE_M) as writer:
@@ -218,9 +225,21 @@ def _map(context: StageContext, *, points: int, strays: int) -> MapFigures:
             xyz = np.vstack(
                 [mine - key * TILE_M, np.tile([0.5 * TILE_M, 0.5 * TILE_M, 1.5], (strays, 1))]
             )
-            writer.append(tuple(int(k) for k in key), _columns(xyz, rng), strays=strays)
+            columns = _columns(xyz, rng)
+            if normals:
+                columns["normal"] = _room_normals(xyz + key * TILE_M)
+            writer.append(tuple(int(k) for k in key), columns, strays=strays)
     low, high = (tuple(corner.tolist()) for corner in (p.min(axis=0), p.max(axis=0)))
     return MapFigures(points=points, bounds_m=(low, high))
+
+
+def _room_normals(p: np.ndarray) -> np.ndarray:
+    """Into the room where a point lies on one of its six faces, else zero, (N, 3)."""
+    out = np.zeros((len(p), 3), np.float16)
+    for axis, end in enumerate(ROOM_M):
+        out[np.abs(p[:, axis]) < 0.03, axis] = 1.0
+        out[np.abs(p[:, axis] - end) < 0.03, axis] = -1.0
+    return np.where(np.abs(out).sum(axis=1, keepdims=True) == 1.0, out, 0.0).astype(np.float16)
 
 
 def _columns(xyz: np.ndarray, rng: np.random.Generator) -> dict[str, np.ndarray]:

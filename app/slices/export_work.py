@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import numpy as np
+
 from app.slices.model import ExportContext, SliceExportRequest
 from app.slices.work import (
     Artifacts,
@@ -15,6 +17,7 @@ from app.slices.work import (
     window_of,
 )
 from recon4.review.stamp import stamp_file
+from recon4.slices.compare import compare, signed_text
 from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.points import SliceWindow
 from recon4.slices.sheet import SheetText, lay_out, source_text, surface_text, write_sheet
@@ -91,7 +94,12 @@ def _export_sheet(
     against = reference_of(reference, ask.method)
     layout = lay_out(window_of(ask, tiles, plane), ask.size, ask.scale)
     made = draw(tiles, plane, layout.paper, color=ask.color, reference=against)
+    compared = ""
+    if against is not None and ask.color == "distance":
+        found = compare(tiles, [plane], against, rng=np.random.default_rng(1))
+        compared = f"{found.fit.text}; {signed_text(found.point_weighted.signed)}"
     text = SheetText(
+        compared=compared,
         project=context.project,
         frame=map_frame(artifacts).text,
         sources=source_text(context.key),

@@ -27,8 +27,10 @@ from recon4.slices.slice_plane import (
 )
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
+Part = Annotated[float, Field(ge=-2.0, le=2.0, allow_inf_nan=False)]
 Xy = tuple[Coordinate, Coordinate]
 Xyz = tuple[Coordinate, Coordinate, Coordinate]
+Pose = tuple[Coordinate, Coordinate, Coordinate, Part, Part, Part, Part]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
 """A coordinate u or v of a slice [m]; its origin is arbitrary."""
 MAX_SIDE_PX = 4096
@@ -174,9 +176,32 @@ class CompareRequest(Strict):
 class AlignRequest(Strict):
     """Request to align a reference with the map."""
 
-    how: Literal["none", "icp", "pairs"]
+    how: Literal["none", "icp", "pairs", "undo"]
     p_map: list[Xyz] = Field(default=[], max_length=100)
+    """Points picked in the map [m]."""
     p_reference: list[Xyz] = Field(default=[], max_length=100)
+    """The same points in the reference, in its own frame [m]."""
+    level: bool = False
+    """Pairs: picked from above. Both stay level, and the floors are laid on each other."""
+    refine: bool = False
+    """Pairs: refine by ICP."""
+    pose: Pose | None = None
+    """ICP: ``T_map_reference`` to start from, x y z qx qy qz qw; None = the present alignment."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlignPoints:
+    """Points of map and reference to be laid on each other by a person."""
+
+    p_map: str
+    """Points of the map relative to ``middle_map``, little-endian float32 x y z, base64."""
+    p_reference: str
+    """The same of the reference, in its own frame."""
+    middle_map: Xyz
+    middle_reference: Xyz
+    pose: Pose
+    """Of the reference's middle frame in the map's, x y z qx qy qz qw: the present alignment, or
+    middle on middle if they are apart."""
 
 
 class SliceExportRequest(SliceView):
@@ -272,6 +297,8 @@ class ListedReference:
     frame: Literal["map", "crs"] = "map"
     T_map_reference: list[list[float]] | None = None
     alignment: str = "none"
+    fit: str = ""
+    can_undo: bool = False
     kind: Literal["mesh", "cloud", "damaged"]
     points: int = 0
     triangles: int = 0
@@ -284,7 +311,9 @@ class ListedReference:
     @staticmethod
     def of(reference_id: str, facts: ReferenceFacts) -> ListedReference:
         """A reference whose files are all right."""
-        return ListedReference(id=reference_id, **asdict(facts))
+        shown = asdict(facts)
+        can_undo = shown.pop("earlier") is not None
+        return ListedReference(id=reference_id, can_undo=can_undo, **shown)
 
 
 @dataclass(frozen=True, slots=True)

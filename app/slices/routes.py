@@ -13,7 +13,7 @@ from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
 from app.access.people import Permission, needs
-from app.compute_pool.model import FileAccess, Terms
+from app.compute_pool.model import Terms
 from app.deps import Server
 from app.error_responses import ProblemDetail
 from app.errors import BadRequest
@@ -23,7 +23,6 @@ from app.projects.routes import REPORT_POLICY
 from app.slices import control_work, readers, work
 from app.slices.exports import ExportRequest
 from app.slices.model import (
-    AlignRequest,
     CompareRequest,
     ControlFile,
     ControlState,
@@ -38,12 +37,11 @@ from app.slices.model import (
     WindowSpec,
     Xyz,
 )
-from app.slices.store import Asking, ReferenceFolder
+from app.slices.store import Asking
 from recon4.errors import ConfigError
 from recon4.slices.compare import Comparison
 from recon4.slices.control_points import ControlPreview
 from recon4.slices.double_places import DoubleReport
-from recon4.slices.reference import ReferenceFacts
 from recon4.slices.residuals import ControlReport
 
 LOOK = [Depends(needs(Permission.LOOK))]
@@ -176,32 +174,6 @@ def remove_reference(project_id: str, reference_id: str, server: Server) -> Resp
     """Remove a reference; the imported source file stays."""
     server.slices.remove_reference(project_id, reference_id)
     return Response(status_code=204)  # without a content type: there is no JSON in it
-
-
-@router.post("/references/{reference_id}/align", dependencies=PROCESS, summary="Align it")
-async def align(
-    project_id: str, reference_id: str, ask: AlignRequest, *, server: Server, caller: CalledBy
-) -> ReferenceFacts:
-    """Align a reference with the map: by ICP, by pairs of points, or not at all."""
-    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
-    folder = server.slices.reference(project_id, reference_id)
-    pairs = (ask.p_map, ask.p_reference)
-    terms = Terms(
-        person=caller.name,
-        access=FileAccess(read=(Path(artifacts["map"]),), write=(Path(folder),)),
-        large=True,
-    )
-    return await caller.wait(
-        server.slices.write_reference(
-            ReferenceFolder(project_id, Path(folder)),
-            terms,
-            work.align_reference,
-            artifacts["map"],
-            folder,
-            ask.how,
-            pairs=pairs,
-        )
-    )
 
 
 @router.get("/export.{ending}", response_class=FileResponse, summary="Export slices")

@@ -26,24 +26,20 @@ from app.slices.model import (
     Xyz,
 )
 from recon4.errors import ConfigError, StoreError
-from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import to_plain
 from recon4.names import visible
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
-from recon4.slices.align import align_by_icp, align_by_pairs
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
-from recon4.slices.imports import set_alignment
 from recon4.slices.pick import measured_directions, nearest_surface, pick
 from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import (
     Method,
     Reference,
-    ReferenceFacts,
     load_reference,
     read_facts,
 )
@@ -213,35 +209,12 @@ def comparison(map_folder: str, reference: str, ask: CompareRequest) -> Comparis
     against = reference_of(reference, ask.method)
     assert against is not None
     planes = [spec.slice_plane() for spec in ask.planes] or usual_planes(tiles)
-    return Comparison.of(compare(tiles, planes, against), against)
+    return compare(tiles, planes, against, rng=np.random.default_rng(1))
 
 
 def comparison_csv(map_folder: str, reference: str, ask: CompareRequest) -> str:
     """Compare slices with a reference, as CSV."""
-    tiles = tiles_of(map_folder)
-    against = reference_of(reference, ask.method)
-    assert against is not None
-    return to_csv(
-        compare(tiles, [spec.slice_plane() for spec in ask.planes] or usual_planes(tiles), against)
-    )
-
-
-def align_reference(
-    map_folder: str, reference: str, how: str, *, pairs: tuple[list[Xyz], list[Xyz]]
-) -> ReferenceFacts:
-    """Align a reference with the map; its earlier alignment is replaced."""
-    folder = Path(reference)
-    if how == "none":
-        return set_alignment(folder, SE3.identity(), description="none")
-    if how == "pairs":
-        p_map, p_reference = np.array(pairs[0]), np.array(pairs[1])
-        T, left_m = align_by_pairs(p_map.reshape(-1, 3), p_reference.reshape(-1, 3))
-        description = f"{len(left_m)} pairs, largest residual {100.0 * float(left_m.max()):.1f} cm"
-        return set_alignment(folder, T, description=description)
-    against = reference_of(reference, "plane")
-    assert against is not None
-    fit = align_by_icp(tiles_of(map_folder), against, rng=np.random.default_rng(1))
-    return set_alignment(folder, fit.T_map_reference, description=fit.description)
+    return to_csv(comparison(map_folder, reference, ask))
 
 
 def surface_at(artifacts: Artifacts, xyz_m: Xyz, frame: str) -> SurfacePoint:

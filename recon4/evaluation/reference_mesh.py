@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, RecordingError
 from recon4.geometry.se3 import SE3, Array
+
+if TYPE_CHECKING:
+    from recon4.geometry.raycast import Scene
 
 _KERNEL_M = 0.05
 """Scale of the Cauchy kernel: points of moving people must not pull the map."""
@@ -66,17 +69,21 @@ def read_mesh(path: Path) -> TriangleMesh:
 
 def distance_to(mesh: TriangleMesh) -> Callable[[Array], Array]:
     """A function giving the distance of points (N, 3) to the nearest triangle [m], (N,)."""
+    return scene_of(mesh).distance
+
+
+def scene_of(mesh: TriangleMesh) -> Scene:
+    """The mesh prepared for distances and nearest points."""
     from recon4.geometry.mesh import WorldMesh as RayMesh
     from recon4.geometry.raycast import Scene
 
-    scene = Scene(
+    return Scene(
         RayMesh(
             mesh.vertices_m.astype(np.float32),
             mesh.triangles.astype(np.uint32),
             np.ones(len(mesh.triangles), dtype=np.float32),
         )
     )
-    return scene.distance
 
 
 class SurfacePoints(NamedTuple):

@@ -120,7 +120,7 @@ def relative_error(
             tally.add(p_model)
     rows = tuple(tally.row() for tally in tallies)
     measured = [row.mean_m for row in rows if row.points]
-    histogram = np.sum([tally.histogram for tally in tallies], axis=0)
+    histogram = np.sum([one.tally.histogram for one in tallies], axis=0)
     return RelativeError(
         slices=rows,
         point_weighted=merge_slices(rows),
@@ -131,15 +131,45 @@ def relative_error(
     )
 
 
+class DistanceTally:
+    """Counts and sums of distances to the model, without keeping them."""
+
+    def __init__(self) -> None:
+        self.histogram = np.zeros(int(np.ceil(OUTLIER_M / HISTOGRAM_STEP_M)), dtype=np.int64)
+        self.sum_m = 0.0
+        self.outliers = self.within_2cm = self.within_5cm = 0
+
+    def add(self, distance_m: Array) -> None:
+        """Add distances [m], (N,); those beyond `OUTLIER_M` are only counted."""
+        near = distance_m[distance_m < OUTLIER_M]
+        self.outliers += len(distance_m) - len(near)
+        self.sum_m += float(near.sum())
+        self.within_2cm += int((near < 0.02).sum())
+        self.within_5cm += int((near < 0.05).sum())
+        classes = np.minimum((near / HISTOGRAM_STEP_M).astype(np.int64), len(self.histogram) - 1)
+        self.histogram += np.bincount(classes, minlength=len(self.histogram))
+
+    def row(self, name: str) -> SliceError:
+        """The figures of a slice of this name."""
+        points = int(self.histogram.sum())
+        return SliceError(
+            name=name,
+            points=points,
+            outliers=self.outliers,
+            mean_m=_ratio(self.sum_m, points),
+            ratio_within_2cm=_ratio(self.within_2cm, points),
+            ratio_within_5cm=_ratio(self.within_5cm, points),
+        )
+
+
 class _ErrorAccumulator:
     """Accumulates the errors of a slice; distances are computed in batches."""
 
     def __init__(self, where: Slice, distance: Distance) -> None:
         self.where = where
         self.distance = distance
-        self.histogram = np.zeros(int(np.ceil(OUTLIER_M / HISTOGRAM_STEP_M)), dtype=np.int64)
-        self.sum_m = 0.0
-        self.outliers = self.within_2cm = self.within_5cm = self.waiting_points = 0
+        self.tally = DistanceTally()
+        self.waiting_points = 0
         self.waiting: list[Array] = []
 
     def add(self, p_model: Array) -> None:
@@ -151,29 +181,14 @@ class _ErrorAccumulator:
 
     def row(self) -> SliceError:
         self._measure()
-        points = int(self.histogram.sum())
-        return SliceError(
-            name=self.where.name,
-            points=points,
-            outliers=self.outliers,
-            mean_m=_ratio(self.sum_m, points),
-            ratio_within_2cm=_ratio(self.within_2cm, points),
-            ratio_within_5cm=_ratio(self.within_5cm, points),
-        )
+        return self.tally.row(self.where.name)
 
     def _measure(self) -> None:
         if not self.waiting_points:
             return
         points = np.ascontiguousarray(np.concatenate(self.waiting))
         self.waiting, self.waiting_points = [], 0
-        distance_m = np.asarray(self.distance(points), dtype=np.float64)
-        near = distance_m[distance_m < OUTLIER_M]
-        self.outliers += len(distance_m) - len(near)
-        self.sum_m += float(near.sum())
-        self.within_2cm += int((near < 0.02).sum())
-        self.within_5cm += int((near < 0.05).sum())
-        classes = np.minimum((near / HISTOGRAM_STEP_M).astype(np.int64), len(self.histogram) - 1)
-        self.histogram += np.bincount(classes, minlength=len(self.histogram))
+        self.tally.add(np.asarray(self.distance(points), dtype=np.float64))
 
 
 def merge_slices(rows: tuple[SliceError, ...]) -> SliceError:

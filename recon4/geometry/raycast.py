@@ -54,6 +54,19 @@ class Scene:
             out[start : start + _NEAREST_BATCH] = distances.numpy()
         return out
 
+    def nearest(self, points: Array) -> tuple[Array, Array]:
+        """Nearest points of the surface [m] and unit normals of their triangles, (N, 3) each."""
+        import open3d as o3d
+
+        foot, normal = np.empty((len(points), 3)), np.empty((len(points), 3))
+        for start in range(0, len(points), _NEAREST_BATCH):
+            rows = slice(start, start + _NEAREST_BATCH)
+            part = np.ascontiguousarray(points[rows], dtype=np.float32)
+            answer = self._scene.compute_closest_points(o3d.core.Tensor.from_numpy(part))
+            foot[rows] = answer["points"].numpy()
+            normal[rows] = answer["primitive_normals"].numpy()
+        return foot, normal
+
 
 def distance_to_mesh(mesh: WorldMesh, points: Array) -> Array:
     """Distance of points in the map to the nearest triangle [m], (N, 3) -> (N,)."""

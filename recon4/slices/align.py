@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.reference_mesh import SurfacePoints, fit_planes, sample_mesh
+from recon4.evaluation.reference_mesh import SurfacePoints, fit_planes
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.tiles import TileSet
+from recon4.slices.fit import fit_of, sample_reference, sample_tiles
 from recon4.slices.reference import Reference
 
 _SAMPLES = 60_000
-_TARGETS = 400_000
 _ROUNDS = 60
 _NEAR_M = 0.5
 _ON_M = 0.10
 _MIN_POINTS = 100
+_FLOOR_SAMPLES = 400_000
+_FLOOR_NEAR_M = 3.0
+_LEVEL = np.cos(np.deg2rad(30.0))
+_BIN_M = 0.05
 _MIN_NEAR = 0.02
 """Smallest ratio of map points near the reference, which may be one room of a building."""
 _MIN_ON = 0.6
@@ -33,14 +37,80 @@ def align_by_pairs(p_map: Array, p_reference: Array) -> tuple[SE3, Array]:
     Raises:
         ConfigError: With fewer than three pairs, or pairs on a line.
     """
-    if len(p_map) < 3 or len(p_map) != len(p_reference):
-        raise ConfigError(f"alignment: expected three pairs of points or more, got {len(p_map)}")
-    if np.linalg.matrix_rank(p_reference - p_reference.mean(axis=0), tol=0.05) < 2:
-        raise ConfigError(
-            "alignment: the points lie on a line, so the rotation about it is undetermined"
-        )
+    _check_pairs(p_map, p_reference, axes=3)
     T = align_points(p_map, p_reference)
     return T, np.linalg.norm(p_map - T @ p_reference, axis=1)
+
+
+def align_level_pairs(p_map: Array, p_reference: Array, *, up_m: float) -> tuple[SE3, Array]:
+    """Fit of points picked from above: rotation about the vertical and horizontal translation.
+
+    Points on a wall picked from above have any height, so heights of the pairs are not used.
+
+    Args:
+        p_map: Picked in the map [m], (N, 3).
+        p_reference: The same points in the reference [m], (N, 3).
+        up_m: Height of the map minus that of the reference, see `floor_offset`.
+
+    Returns:
+        ``T_map_reference`` and the horizontal residual of each pair [m], (N,).
+
+    Raises:
+        ConfigError: With fewer than three pairs, or pairs at one place.
+    """
+    _check_pairs(p_map, p_reference, axes=2)
+    flat = np.array([1.0, 1.0, 0.0])
+    # A fourth point above the middle holds the vertical axis.
+    above = np.array([0.0, 0.0, 1e3])
+    a = np.vstack([p_map * flat, (p_map * flat).mean(axis=0) + above])
+    b = np.vstack([p_reference * flat, (p_reference * flat).mean(axis=0) + above])
+    T = align_points(a, b)
+    T = SE3(T.R, T.t * flat + np.array([0.0, 0.0, up_m]))
+    return T, np.linalg.norm((p_map - T @ p_reference) * flat, axis=1)
+
+
+def floor_offset(
+    tiles: TileSet,
+    reference: Reference,
+    p_map: Array,
+    *,
+    p_reference: Array,
+    rng: np.random.Generator,
+) -> float:
+    """Height of the map's floor minus that of the reference near picked points [m].
+
+    The lowest level of many points on level surfaces within 3 m of the points; 0 where there is
+    none.
+    """
+    ours = _floor_m(sample_tiles(tiles, _FLOOR_SAMPLES), p_map)
+    theirs = _floor_m(sample_reference(reference, rng), p_reference)
+    return 0.0 if ours is None or theirs is None else ours - theirs
+
+
+def _floor_m(surface: SurfacePoints, near: Array) -> float | None:
+    from scipy.spatial import cKDTree
+
+    distance, _ = cKDTree(near[:, :2]).query(surface.p[:, :2], distance_upper_bound=_FLOOR_NEAR_M)
+    level = np.isfinite(distance) & (np.abs(surface.normals[:, 2]) > _LEVEL)
+    z = surface.p[level, 2]
+    if len(z) < _MIN_POINTS:
+        return None
+    count, edges = np.histogram(z, np.arange(z.min() - _BIN_M, z.max() + 2 * _BIN_M, _BIN_M))
+    lowest = int(np.flatnonzero(count >= 0.3 * count.max())[0])
+    found = z[np.abs(z - edges[lowest : lowest + 2].mean()) <= _BIN_M]
+    return float(np.median(found))
+
+
+def _check_pairs(p_map: Array, p_reference: Array, *, axes: int) -> None:
+    if len(p_map) < 3 or len(p_map) != len(p_reference):
+        raise ConfigError(f"alignment: expected three pairs of points or more, got {len(p_map)}")
+    spread = p_reference[:, :axes] - p_reference[:, :axes].mean(axis=0)
+    if np.linalg.matrix_rank(spread, tol=0.05) < axes - 1:
+        raise ConfigError(
+            "alignment: the points lie on a line, so the rotation about it is undetermined"
+            if axes == 3
+            else "alignment: the points lie at one place, so the rotation is undetermined"
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +124,8 @@ class IcpFit:
     """Ratio of these within 10 cm of its surface, 0..1."""
     mean_m: float
     """Mean distance of the inliers from the surface [m]."""
+    text: str
+    """Whether the reference fits the map, see `ReferenceFit`."""
 
     @property
     def description(self) -> str:
@@ -76,7 +148,7 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
             converge.
     """
     p_map = _sample_map(tiles, rng)
-    surface = _targets(reference, rng)
+    surface = sample_reference(reference, rng)
     start = reference.T_map_reference.inverse()
     fit = fit_planes(p_map, surface, T_model_map=start, rounds=_ROUNDS, max_distance_m=_NEAR_M)
     near = len(fit.distance_m)
@@ -85,14 +157,21 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
     if near < _MIN_POINTS or near_ratio < _MIN_NEAR:
         raise ConfigError(
             f"ICP: the map and the reference do not overlap: {100.0 * near_ratio:.1f} % of "
-            f"the map is within {100.0 * _NEAR_M:.0f} cm of it; align by pairs"
+            f"the map is within {100.0 * _NEAR_M:.0f} cm of it; use Align by pairs"
         )
     if not fit.converged or inlier_ratio < _MIN_ON:
         why = f"inlier ratio (10 cm) {100.0 * inlier_ratio:.0f} %"
         if not fit.converged:
             why = f"no convergence after {_ROUNDS} iterations"
-        raise ConfigError(f"ICP did not align the reference with the map: {why}; align by pairs")
-    return IcpFit(fit.T_model_map.inverse(), near_ratio, inlier_ratio, float(on.mean()))
+        raise ConfigError(
+            f"ICP did not align the reference with the map: {why}; use Align by pairs"
+        )
+    T = fit.T_model_map.inverse()
+    check = fit_of(tiles, replace(reference, T_map_reference=T), rng=rng)
+    if check.fits is False:
+        # Floors and ceilings lie on each other also where a reference is turned.
+        raise ConfigError(f"ICP: {check.text}; use Align by pairs")
+    return IcpFit(T, near_ratio, inlier_ratio, float(on.mean()), check.text)
 
 
 def _sample_map(tiles: TileSet, rng: np.random.Generator) -> Array:
@@ -100,18 +179,3 @@ def _sample_map(tiles: TileSet, rng: np.random.Generator) -> Array:
     parts = [tile.xyz_m(limit=int(np.ceil(ratio * len(tile)))) for tile in tiles]
     points = np.concatenate(parts or [np.empty((0, 3))])
     return points[rng.permutation(len(points))[:_SAMPLES]]
-
-
-def _targets(reference: Reference, rng: np.random.Generator) -> SurfacePoints:
-    if reference.mesh is not None:
-        return sample_mesh(reference.mesh, spacing_m=0.05, rng=rng)
-    assert reference.tiles is not None
-    ratio = min(1.0, _TARGETS / max(1, len(reference.tiles)))
-    points, normals = [np.empty((0, 3))], [np.empty((0, 3))]
-    for tile in reference.tiles:
-        limit = int(np.ceil(ratio * len(tile)))
-        columns = tile.read(["normal"], limit=limit)
-        known = np.any(columns["normal"] != 0.0, axis=1)
-        points.append(tile.xyz_m(limit=limit)[known])
-        normals.append(columns["normal"][known].astype(np.float64))
-    return SurfacePoints(np.concatenate(points), np.concatenate(normals))

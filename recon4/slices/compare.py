@@ -10,35 +10,38 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.slices import (
-    OUTLIER_M,
-    RelativeError,
-    Slice,
-    SliceError,
-    merge_slices,
-    relative_error,
-)
-from recon4.geometry.se3 import SE3
+from recon4.evaluation.slices import OUTLIER_M, DistanceTally, SliceError, merge_slices
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
+from recon4.slices.fit import ReferenceFit, fit_of
 from recon4.slices.points import points_in
 from recon4.slices.reference import Method, Reference
+from recon4.slices.residual_table import UNKNOWN
+from recon4.slices.signed import (
+    HISTOGRAM_END_M,
+    HISTOGRAM_STEP_M,
+    SignedFigures,
+    SignedTally,
+    merged,
+)
 from recon4.slices.slice_plane import ERROR_THICKNESS_M, SlicePlane, horizontal, vertical
 
 
 @dataclass(frozen=True, slots=True)
 class ComparedSlice:
-    """A `SliceError` whose figures are None without points."""
+    """One slice against a reference; figures without points are None."""
 
     name: str
     points: int
     outliers: int
     mean_m: float | None
+    """Mean distance, without sign."""
     ratio_within_2cm: float | None
     ratio_within_5cm: float | None
+    signed: SignedFigures
 
     @staticmethod
-    def of(row: SliceError) -> ComparedSlice:
+    def of(row: SliceError, signed: SignedFigures) -> ComparedSlice:
         """The row of a slice."""
         return ComparedSlice(
             name=row.name,
@@ -47,12 +50,13 @@ class ComparedSlice:
             mean_m=finite_or_none(row.mean_m),
             ratio_within_2cm=finite_or_none(row.ratio_within_2cm),
             ratio_within_5cm=finite_or_none(row.ratio_within_5cm),
+            signed=signed,
         )
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """Errors of map slices against a reference (V Table 3.2), as plain values."""
+    """Errors of map slices against a reference (V Table 3.2), and their signs."""
 
     slices: tuple[ComparedSlice, ...]
     point_weighted: ComparedSlice
@@ -62,27 +66,23 @@ class Comparison:
     outlier_m: float
     """Points farther from the reference are only counted [m]."""
     histogram: tuple[int, ...]
-    """Points by distance, up to 100 classes of 1 mm."""
+    """Points by signed distance, from ``-histogram_end_m`` on; the end classes are open."""
+    histogram_step_m: float
+    histogram_end_m: float
+    fit: ReferenceFit
     reference: str
     """Name of the reference."""
     method: Method
 
-    @staticmethod
-    def of(found: RelativeError, reference: Reference) -> Comparison:
-        """The comparison with a reference."""
-        return Comparison(
-            slices=tuple(ComparedSlice.of(row) for row in found.slices),
-            point_weighted=ComparedSlice.of(found.point_weighted),
-            plain_mean_m=finite_or_none(found.plain_mean_m),
-            outlier_m=found.outlier_m,
-            histogram=tuple(found.histogram[:100].tolist()),
-            reference=reference.name,
-            method=reference.method,
-        )
 
-
-def compare(tiles: TileSet, planes: Sequence[SlicePlane], reference: Reference) -> RelativeError:
-    """Mean distance and ratios within 2 and 5 cm of every slice, from all its points.
+def compare(
+    tiles: TileSet,
+    planes: Sequence[SlicePlane],
+    reference: Reference,
+    *,
+    rng: np.random.Generator,
+) -> Comparison:
+    """Mean distance and ratios within 2 and 5 cm of every slice, from all its points; and signs.
 
     Points farther than 0.5 m from the reference (people, changed objects) are outliers and counted
     separately. Averages are weighted by points, as in V, and plain over the slices.
@@ -93,25 +93,30 @@ def compare(tiles: TileSet, planes: Sequence[SlicePlane], reference: Reference) 
     if not planes:
         raise ConfigError("comparison: expected one slice or more, got none")
     found = [_one(tiles, plane, reference) for plane in planes]
-    rows = tuple(one.slices[0] for one in found)
+    rows = tuple(row for row, _ in found)
     measured = [row.mean_m for row in rows if row.points]
-    return RelativeError(
-        slices=rows,
-        point_weighted=merge_slices(rows),
-        plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
+    all_signed = merged([signed for _, signed in found])
+    return Comparison(
+        slices=tuple(ComparedSlice.of(row, signed.figures()) for row, signed in found),
+        point_weighted=ComparedSlice.of(merge_slices(rows), all_signed.figures()),
+        plain_mean_m=float(np.mean(measured)) if measured else None,
         outlier_m=OUTLIER_M,
-        histogram=np.sum([one.histogram for one in found], axis=0),
-        alignment="given",
+        histogram=tuple(all_signed.histogram.tolist()),
+        histogram_step_m=HISTOGRAM_STEP_M,
+        histogram_end_m=HISTOGRAM_END_M,
+        fit=fit_of(tiles, reference, rng=rng),
+        reference=reference.name,
+        method=reference.method,
     )
 
 
-def _one(tiles: TileSet, plane: SlicePlane, reference: Reference) -> RelativeError:
-    return relative_error(
-        (plane.to_map(part.uvd) for part in points_in(tiles, plane)),
-        [Slice(plane.name, plane.normal, plane.offset_m, plane.thickness_m)],
-        T_model_map=SE3.identity(),
-        distance=reference.distance,
-    )
+def _one(tiles: TileSet, plane: SlicePlane, reference: Reference) -> tuple[SliceError, SignedTally]:
+    distances, signed = DistanceTally(), SignedTally()
+    for part in points_in(tiles, plane, ["normal"]):
+        found = reference.offsets(plane.to_map(part.uvd))
+        distances.add(found.distance_m)
+        signed.add(found, part.columns["normal"].astype(np.float64))
+    return distances.row(plane.name), signed
 
 
 def usual_planes(
@@ -136,23 +141,48 @@ def usual_planes(
     return tuple(planes)
 
 
-def to_csv(found: RelativeError) -> str:
-    """The table as CSV in centimeters and percent: one row per slice, then both averages."""
+def to_csv(found: Comparison) -> str:
+    """The table as CSV in centimeters and percent, then both averages, the fit, the histogram."""
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
-    rows.writerow(["slice", "points", "outliers", "mean_cm", "below_2cm_pct", "below_5cm_pct"])
+    rows.writerow(
+        [
+            *("slice", "points", "outliers", "mean_cm", "below_2cm_pct", "below_5cm_pct"),
+            *("signed_points", "signed_mean_cm", "signed_sd_cm"),
+            *("shift_x_cm", "shift_y_cm", "shift_z_cm"),
+        ]
+    )
     for row in (*found.slices, found.point_weighted):
         name = "average weighted by points" if row is found.point_weighted else row.name
-        rows.writerow([name, row.points, row.outliers, *_figures(row)])
-    rows.writerow(["plain average of the slices", "", "", _number(100.0 * found.plain_mean_m)])
+        figures = (row.mean_m, row.ratio_within_2cm, row.ratio_within_5cm)
+        signed = (row.signed.mean_m, row.signed.sd_m, *row.signed.shift_m)
+        rows.writerow(
+            [
+                *(name, row.points, row.outliers, *map(_number, figures)),
+                *(row.signed.points, *map(_number, signed)),
+            ]
+        )
+    rows.writerow(["plain average of the slices", "", "", _number(found.plain_mean_m)])
+    rows.writerow([])
+    out.write(f"# against {' '.join(found.reference.split())}: {found.fit.text}\n")
+    out.write(
+        "# signed: + = the map lies in front of the reference, on the side it was seen from\n"
+    )
+    rows.writerow(["signed_from_cm", "points"])
+    for k, count in enumerate(found.histogram):
+        low_m = k * found.histogram_step_m - found.histogram_end_m
+        rows.writerow([f"{100.0 * low_m:.1f}" if k else "below", count])
     return out.getvalue()
 
 
-def _figures(row: SliceError) -> list[str]:
-    return [
-        _number(100.0 * value) for value in (row.mean_m, row.ratio_within_2cm, row.ratio_within_5cm)
-    ]
+def signed_text(signed: SignedFigures) -> str:
+    """The signed figures as one line in centimeters."""
+    x, y, z = map(_number, signed.shift_m)
+    return (
+        f"signed mean {_number(signed.mean_m)} cm, σ {_number(signed.sd_m)} cm; "
+        f"shift of the map x {x}, y {y}, z {z} cm"
+    )
 
 
-def _number(value: float) -> str:
-    return f"{value:.2f}" if np.isfinite(value) else ""
+def _number(value: float | None) -> str:
+    return UNKNOWN if value is None else f"{100.0 * value:.2f}"

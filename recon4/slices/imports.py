@@ -11,7 +11,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import CorruptFile, UnknownFormat
+from recon4.errors import ConfigError, CorruptFile, UnknownFormat
 from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
@@ -26,7 +26,7 @@ from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, NEAR_M, Colum
 from recon4.slices.frames import LOCAL, MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.placement import FilePlacement, FrameAsked, check_extent, place_file
-from recon4.slices.reference import ReferenceFacts, read_facts
+from recon4.slices.reference import EarlierAlignment, ReferenceFacts, read_facts
 from recon4.store.atomic import atomic_folder, write_json
 
 TILE_M = 5.0
@@ -126,10 +126,42 @@ class _Imported:
     columns: str = ""
 
 
-def set_alignment(folder: Path, T_map_reference: SE3, *, description: str) -> ReferenceFacts:
-    """Store the alignment of a reference with the map."""
-    matrix = T_map_reference.matrix().tolist()
-    facts = replace(read_facts(folder), T_map_reference=matrix, alignment=description)
+def set_alignment(
+    folder: Path, T_map_reference: SE3, *, description: str, fit: str = ""
+) -> ReferenceFacts:
+    """Store the alignment of a reference with the map; the one before it is kept."""
+    facts = read_facts(folder)
+    return _keep(
+        folder,
+        replace(
+            facts,
+            T_map_reference=T_map_reference.matrix().tolist(),
+            alignment=description,
+            fit=fit,
+            earlier=_present(facts),
+        ),
+    )
+
+
+def undo_alignment(folder: Path) -> ReferenceFacts:
+    """Return to the alignment before the last one; a second time undoes the undoing.
+
+    Raises:
+        ConfigError: If it was never aligned.
+    """
+    facts = read_facts(folder)
+    if facts.earlier is None:
+        raise ConfigError("this reference was not aligned yet: there is nothing to undo")
+    return _keep(folder, replace(facts, **asdict(facts.earlier), earlier=_present(facts)))
+
+
+def _present(facts: ReferenceFacts) -> EarlierAlignment:
+    return EarlierAlignment(
+        T_map_reference=facts.T_map_reference, alignment=facts.alignment, fit=facts.fit
+    )
+
+
+def _keep(folder: Path, facts: ReferenceFacts) -> ReferenceFacts:
     write_json(folder / "reference.json", asdict(facts))
     return facts
 

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import msgspec
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
-from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
+from recon4.evaluation.reference_mesh import TriangleMesh, scene_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.names import visible
@@ -22,14 +22,28 @@ from recon4.slices.slice_plane import SlicePlane
 from recon4.store.arrays import load_arrays
 from recon4.store.json_files import read_object
 
+if TYPE_CHECKING:
+    from recon4.geometry.raycast import Scene
+
 Method = Literal["plane", "point"]
 FAR_M = 0.5
 """Search radius of distances [m]; larger ones are returned as infinite."""
+_KNOWN = 0.25
+"""Smallest squared length of a normal: where there is none, it is zero."""
 MAX_FACTS_BYTES = 1 << 20
 """Size of ``reference.json``."""
 _LONGEST_NOTE, _LONGEST_CAPTION = 400, 150
 _MARGIN_M = 2.0
 """Points of a request are measured in cubes of this size, each with its own search tree [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EarlierAlignment:
+    """An alignment that was replaced."""
+
+    T_map_reference: list[list[float]]
+    alignment: str
+    fit: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,6 +59,10 @@ class ReferenceFacts:
     """4 x 4, row by row."""
     alignment: str = "none"
     """How it was aligned with the map, as text."""
+    fit: str = ""
+    """How well it lies on the map after its last alignment, as text; empty = not compared."""
+    earlier: EarlierAlignment | None = None
+    """The alignment before the last one, to undo that."""
     kind: Literal["mesh", "cloud"]
     points: int = 0
     """Of a cloud."""
@@ -56,6 +74,18 @@ class ReferenceFacts:
     """Unit of the file, if a person chose it."""
     notes: tuple[str, ...] = ()
     """How its columns, units and CRS were read, as sentences."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ReferenceOffsets:
+    """Where points lie beside a reference."""
+
+    distance_m: Array
+    """Distance to the reference [m], (N,); inf = over `FAR_M`."""
+    across_m: Array
+    """Signed distance from the nearest surface along its normal [m], (N,); 0 without normal."""
+    normal: Array
+    """Unit normal of that surface, of either sign, (N, 3); zeros = not known."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,11 +114,13 @@ class Reference:
 
     def distance(self, p_map: Array) -> Array:
         """Distance of points of the map (N, 3) to the reference [m], (N,); inf = over `FAR_M`."""
+        return self.offsets(p_map).distance_m
+
+    def offsets(self, p_map: Array) -> ReferenceOffsets:
+        """Where points of the map (N, 3) lie beside the reference."""
         p = self.T_map_reference.inverse() @ np.ascontiguousarray(p_map, dtype=np.float64)
-        if self.mesh is not None:
-            found = np.asarray(self._to_mesh(p), dtype=np.float64)
-            return np.where(found <= FAR_M, found, np.inf)
-        return self._to_cloud(p)
+        found = self._to_mesh(p) if self.mesh is not None else self._to_cloud(p)
+        return replace(found, normal=found.normal @ self.T_map_reference.R.T)
 
     def outline(self, plane: SlicePlane, window: SliceWindow, *, step_m: float) -> Iterator[Array]:
         """The reference inside a slice, as points u, v, distance from the plane [m], (M, 3) each.
@@ -106,38 +138,50 @@ class Reference:
                 yield part.uvd
 
     @cached_property
-    def _to_mesh(self) -> Callable[[Array], Array]:
+    def _scene(self) -> Scene:
         assert self.mesh is not None
-        return distance_to(self.mesh)
+        return scene_of(self.mesh)
 
-    def _to_cloud(self, p: Array) -> Array:
-        """Distance to a cloud, cube by cube, so that only nearby points are in memory."""
+    def _to_mesh(self, p: Array) -> ReferenceOffsets:
+        foot, normal = self._scene.nearest(p)
+        distance = np.linalg.norm(p - foot, axis=1)
+        across = np.einsum("ni,ni->n", normal, p - foot)
+        return ReferenceOffsets(np.where(distance <= FAR_M, distance, np.inf), across, normal)
+
+    def _to_cloud(self, p: Array) -> ReferenceOffsets:
+        """Offsets from a cloud, cube by cube, so that only nearby points are in memory."""
         assert self.tiles is not None
-        out = np.full(len(p), np.inf)
+        out = ReferenceOffsets(np.full(len(p), np.inf), np.zeros(len(p)), np.zeros((len(p), 3)))
         cubes = np.floor(p / _MARGIN_M).astype(np.int64)
         order = np.lexsort(cubes.T)
         changes = np.flatnonzero(np.any(np.diff(cubes[order], axis=0) != 0, axis=1)) + 1
         for rows in np.split(order, changes) if len(p) else []:
             low = p[rows].min(axis=0) - FAR_M
             high = p[rows].max(axis=0) + FAR_M
-            out[rows] = self._near(p[rows], low, high)
+            found = self._near(p[rows], low, high)
+            out.distance_m[rows], out.across_m[rows] = found.distance_m, found.across_m
+            out.normal[rows] = found.normal
         return out
 
-    def _near(self, p: Array, low: Array, high: Array) -> Array:
+    def _near(self, p: Array, low: Array, high: Array) -> ReferenceOffsets:
         from scipy.spatial import cKDTree
 
         q, normal = points_between(self.tiles, low, high)
+        out = ReferenceOffsets(np.full(len(p), np.inf), np.zeros(len(p)), np.zeros((len(p), 3)))
         if not len(q):
-            return np.full(len(p), np.inf)
+            return out
         tree = cKDTree(q, balanced_tree=False, compact_nodes=False)
         distance, row = tree.query(p, distance_upper_bound=FAR_M)
         near = np.isfinite(distance)
+        n = normal[row[near]]
+        known = np.einsum("ni,ni->n", n, n) > _KNOWN
+        n[~known] = 0.0
+        across = np.einsum("ni,ni->n", n, p[near] - q[row[near]])
         if self.method == "plane":
-            n = normal[row[near]]
-            flat = np.abs(np.einsum("ni,ni->n", n, p[near] - q[row[near]]))
-            known = np.einsum("ni,ni->n", n, n) > 0.25
-            distance[near] = np.where(known, flat, distance[near])
-        return np.asarray(distance, dtype=np.float64)
+            distance[near] = np.where(known, np.abs(across), distance[near])
+        out.distance_m[:] = distance
+        out.normal[near], out.across_m[near] = n, across
+        return out
 
 
 def points_between(tiles: TileSet | None, low: Array, high: Array) -> tuple[Array, Array]:

@@ -58,6 +58,8 @@ class SheetText:
     surface: str
     """Where the points lie, see `surface_text`."""
     reference: str = ""
+    compared: str = ""
+    """How the slice lies beside the reference, see `compare.signed_text`."""
     sensors: tuple[str, ...] = field(default=())
 
 
@@ -197,6 +199,7 @@ def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, *, text: SheetTex
         x, 1.0 - 9.0 / up_mm, title, fontsize=10, weight="bold", color=_INK, parse_math=False
     )
     figure.text(x, 1.0 - 15.0 / up_mm, facts, color=_INK, parse_math=False)
+    figure.text(x, 11.5 / up_mm, text.compared, fontsize=5.5, color=_INK, parse_math=False)
     figure.text(x, 4.5 / up_mm, text.sources, fontsize=5.5, color=_QUIET, parse_math=False)
     figure.text(x, 8.0 / up_mm, text.approval, fontsize=6, color=_INK, parse_math=False)
 

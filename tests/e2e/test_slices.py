@@ -185,7 +185,7 @@ def test_findings_are_those_of_the_map_that_is_shown(server, page):
 
 
 @looks("desktop light", "phone dark")
-def test_a_reference_is_compared_and_shown(server, page, screenshot):
+def test_a_reference_is_compared_and_shown(server, page):
     path = server.root / "walls.xyz"
     rows = [
         f"{x} {y / 20:.2f} {z / 10:.1f}"
@@ -207,8 +207,6 @@ def test_a_reference_is_compared_and_shown(server, page, screenshot):
     expect(page.get_by_role("row", name=re.compile("Mean of all points"))).to_be_visible()
     expect(page.get_by_role("link", name="Download CSV")).to_be_visible()
     fits(page)
-    page.get_by_role("link", name="Download CSV").scroll_into_view_if_needed()
-    screenshot(page, "slices-reference")
     page.get_by_role("button", name="Remove").click()
     expect(page.get_by_role("button", name="Remove")).to_have_count(0)
 

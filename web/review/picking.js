@@ -8,6 +8,11 @@ const PAIRS = 3;
 export class Picking {
   i = []; // in the frame of the first place
   j = []; // in the frame of the second place
+  #names;
+
+  constructor(names = ["first (blue) place", "second (orange) place"]) {
+    this.#names = names;
+  }
 
   get #isFirst() {
     return this.i.length === this.j.length;
@@ -19,11 +24,14 @@ export class Picking {
 
   /** What to pick next. */
   get text() {
-    const place = this.#isFirst ? "first (blue)" : "second (orange)";
-    return `Pick point ${this.j.length + 1} of ${PAIRS} in the ${place} place`;
+    const name = this.#names[this.#isFirst ? 0 : 1];
+    return `Pick point ${this.j.length + 1} of ${PAIRS} in the ${name}`;
   }
 
-  /** Picks the point nearest to a position on the screen, if one is near. */
+  /**
+   * Picks the point nearest to a position on the screen, if one is near. `toScreen` gives its
+   * position there, null if it is not shown.
+   */
   pick([x, y], points, pose, toScreen) {
     const first = this.#isFirst;
     const [candidates, T] = first ? [points.i, IDENTITY] : [points.j, pose];
@@ -31,8 +39,8 @@ export class Picking {
     let nearest = PICK_PX;
     for (let k = 0; k < candidates.length; k += 3) {
       const p = [candidates[k], candidates[k + 1], candidates[k + 2]];
-      const [u, v] = toScreen(apply(T, p));
-      const d = Math.hypot(u - x, v - y);
+      const at = toScreen(apply(T, p));
+      const d = at ? Math.hypot(at[0] - x, at[1] - y) : Infinity;
       if (d < nearest) [nearest, best] = [d, p];
     }
     if (best) (first ? this.i : this.j).push(best);

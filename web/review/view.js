@@ -64,8 +64,9 @@ export class PairView extends HTMLElement {
     const views = this.#group("View", VIEWS, (key) => this.show(key));
     const shown = this.#group("Show", SHOWN, (key) => this.compare(key));
     const stage = [this.#canvas, this.#over, this.#legend(), this.#empty];
+    const ofPlaces = this.#names ? [] : [shown, this.#reach];
     this.replaceChildren(
-      make("div", { className: "view-tools" }, views, shown, this.#differs, this.#reach),
+      make("div", { className: "view-tools" }, views, this.#differs, ...ofPlaces),
       make("div", { className: "view-stage" }, ...stage),
       this.#cut,
     );
@@ -83,6 +84,12 @@ export class PairView extends HTMLElement {
       return this.#buttons[key];
     });
     return make("div", { role: "group", ariaLabel: label, className: "segmented" }, ...buttons);
+  }
+
+  /** Names of two clouds that are no places of a walk, if the page gave them: data-first, -second. */
+  get #names() {
+    const { first, second } = this.dataset;
+    return first === undefined ? null : [first, second];
   }
 
   /** Multiframes shown around each place. */
@@ -187,7 +194,8 @@ export class PairView extends HTMLElement {
 
   /** Starts picking the same three points in both places; `done({p_i, p_j})`. */
   pick(done) {
-    this.#picking = new Picking();
+    const [first, second] = this.#names ?? [];
+    this.#picking = new Picking(first && [`${first} (blue)`, `${second} (orange)`]);
     this.#onPicked = done;
     this.compare("after");
     this.#canvas.focus();
@@ -217,7 +225,8 @@ export class PairView extends HTMLElement {
 
   #legend() {
     const key = (name, text) => make("span", { className: `key ${name}` }, text);
-    const keys = [key("first", "first"), key("second", "second"), key("both", "both")];
+    const [first, second] = this.#names ?? ["first", "second"];
+    const keys = [key("first", first), key("second", second), key("both", "both")];
     return make("div", { className: "view-key" }, ...keys);
   }
 
@@ -299,7 +308,14 @@ export class PairView extends HTMLElement {
 
   /** Picks a point of the places by turns; after the last one reports all. */
   pickAt(at) {
-    this.#picking.pick(at, this.#points, this.pose, (p) => this.on(p));
+    const [low, high] = this.#view === "cut" ? this.#slab() : EVERYTHING;
+    const eye = this.camera.axes()[2];
+    const toScreen = (p) => {
+      const [x, y, z] = turn(this.#upright, p);
+      const depth = eye[0] * x + eye[1] * y + eye[2] * z;
+      return depth < low || depth > high ? null : this.on(p);
+    };
+    this.#picking.pick(at, this.#points, this.pose, toScreen);
     if (this.#picking.isDone) {
       const { i: p_i, j: p_j } = this.#picking;
       this.#picking = null;

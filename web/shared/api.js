@@ -319,6 +319,10 @@ export const alignReference = (project_id, reference_id, settings) =>
     path: { project_id, reference_id },
     body: settings,
   });
+export const readAlignPoints = (project_id, reference_id) =>
+  request("GET /api/projects/{project_id}/slices/references/{reference_id}/points", {
+    path: { project_id, reference_id },
+  });
 export const previewControl = (project_id, file) =>
   request("POST /api/projects/{project_id}/slices/control/preview", {
     path: { project_id },

@@ -21,10 +21,21 @@ export interface AgreementView {
   imu_rms: number | null;
 }
 
+export interface AlignPoints {
+  p_map: string;
+  p_reference: string;
+  middle_map: [number, number, number];
+  middle_reference: [number, number, number];
+  pose: [number, number, number, number, number, number, number];
+}
+
 export interface AlignRequest {
-  how: "none" | "icp" | "pairs";
+  how: "none" | "icp" | "pairs" | "undo";
   p_map?: Array<[number, number, number]>;
   p_reference?: Array<[number, number, number]>;
+  level?: boolean;
+  refine?: boolean;
+  pose?: [number, number, number, number, number, number, number] | null;
 }
 
 export interface AlignmentView {
@@ -166,6 +177,7 @@ export interface ComparedSlice {
   mean_m: number | null;
   ratio_within_2cm: number | null;
   ratio_within_5cm: number | null;
+  signed: SignedFigures;
 }
 
 export interface Comparison {
@@ -174,6 +186,9 @@ export interface Comparison {
   plain_mean_m: number | null;
   outlier_m: number;
   histogram: Array<number>;
+  histogram_step_m: number;
+  histogram_end_m: number;
+  fit: ReferenceFit;
   reference: string;
   method: "plane" | "point";
 }
@@ -451,6 +466,8 @@ export interface ListedReference {
   frame: "map" | "crs";
   T_map_reference: Array<Array<number>> | null;
   alignment: string;
+  fit: string;
+  can_undo: boolean;
   kind: "mesh" | "cloud" | "damaged";
   points: number;
   triangles: number;
@@ -723,25 +740,19 @@ export interface RecordingSummary {
   gnss: string;
 }
 
-export interface ReferenceFacts {
-  name: string;
-  file: string;
-  frame: "map" | "crs";
-  T_map_reference: Array<Array<number>>;
-  alignment: string;
-  kind: "mesh" | "cloud";
-  points: number;
-  triangles: number;
-  columns: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
-  unit: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | "";
-  notes: Array<string>;
-}
-
 export interface ReferenceFile {
   path: string;
   frame?: "auto" | "map" | "crs";
   columns?: Array<"x" | "y" | "z" | "-x" | "-y" | "lat" | "lon" | "id" | "role" | "radius" | "-">;
   unit?: "m" | "dm" | "cm" | "mm" | "km" | "ft" | "us-ft" | "in" | null;
+}
+
+export interface ReferenceFit {
+  near_ratio: number;
+  walls_ratio: number | null;
+  level_ratio: number | null;
+  fits: boolean | null;
+  text: string;
 }
 
 export interface ReferencePreview {
@@ -961,6 +972,13 @@ export interface SettingView {
 
 export interface SettingsCheck {
   problems: Record<string, string>;
+}
+
+export interface SignedFigures {
+  points: number;
+  mean_m: number | null;
+  sd_m: number | null;
+  shift_m: [number | null, number | null, number | null];
 }
 
 export interface SliceFacts {
@@ -1331,6 +1349,10 @@ export interface Operations {
     query?: { source?: string };
     response: WindowSpec;
   };
+  "GET /api/projects/{project_id}/slices/references/{reference_id}/points": {
+    path: { project_id: string; reference_id: string };
+    response: AlignPoints;
+  };
   "GET /api/projects/{project_id}/thumbnail": {
     path: { project_id: string };
     response: string;
@@ -1552,7 +1574,7 @@ export interface Operations {
   "POST /api/projects/{project_id}/slices/references/{reference_id}/align": {
     path: { project_id: string; reference_id: string };
     body: AlignRequest;
-    response: ReferenceFacts;
+    response: ListedReference;
   };
   "POST /api/rigs": {
     body: NewRig;

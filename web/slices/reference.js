@@ -10,12 +10,13 @@ import {
 import { attempt, make } from "../shared/dom.js";
 import { bytes, count } from "../shared/format.js";
 import { Sending, sorted } from "../projects/resumable_upload.js";
+import { openAlignment } from "./align.js";
+import { comparison, METHODS } from "./comparison.js";
 import { ofInput } from "./picking.js";
 import { referenceReader } from "./reading.js";
 import { planeOf, moved } from "./state.js";
 
 const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
-const METHODS = { plane: "to the reference's surface", point: "to its nearest point (V)" };
 
 export function referencePanel({ id, change, state, reload }) {
   const message = make("p", { className: "error", role: "alert" });
@@ -137,6 +138,11 @@ export function referencePanel({ id, change, state, reload }) {
 
   async function align(one, how) {
     await alignReference(id, one.id, { how });
+    await realigned();
+  }
+
+  async function realigned() {
+    table.replaceChildren(); // of the alignment before
     await reload();
     change({}, { keep: true });
   }
@@ -163,55 +169,8 @@ export function referencePanel({ id, change, state, reload }) {
     };
     if (!ask.reference) throw new Error("Choose a reference first");
     change({ method: method.value }, { keep: true });
-    show(await compareSlices(id, ask), ask);
-  }
-
-  function show(found, ask) {
-    const cell = (text) => make("td", { className: "number" }, text);
-    const figure = (x, digits = 2) => cell(x === null ? "–" : (x * 100).toFixed(digits));
-    const row = (name, one) =>
-      make(
-        "tr",
-        {},
-        make("th", { scope: "row" }, name),
-        figure(one.mean_m),
-        figure(one.ratio_within_2cm, 1),
-        figure(one.ratio_within_5cm, 1),
-        cell(count(one.points)),
-        cell(count(one.outliers)),
-      );
-    const head = ["Slice", "Mean [cm]", "< 2 cm [%]", "< 5 cm [%]", "Points", "Beyond 50 cm"].map(
-      (text, k) => make("th", { scope: "col", className: k ? "number" : "" }, text),
-    );
-    const rows = [
-      ...found.slices.map((one) => row(one.name, one)),
-      row("Mean of all points", found.point_weighted),
-    ];
-    rows.push(
-      make(
-        "tr",
-        {},
-        make("th", { scope: "row" }, "Mean of the slices"),
-        figure(found.plain_mean_m),
-      ),
-    );
-    table.replaceChildren(
-      make(
-        "div",
-        { className: "scroll" },
-        make("table", {}, make("thead", {}, make("tr", {}, ...head)), make("tbody", {}, ...rows)),
-      ),
-      make(
-        "p",
-        { className: "quiet" },
-        `Against ${found.reference}, distances ${METHODS[found.method]}`,
-      ),
-      make(
-        "a",
-        { className: "button", href: compareCsvUrl(id, ask), download: "" },
-        "Download CSV",
-      ),
-    );
+    const found = await compareSlices(id, ask);
+    table.replaceChildren(...comparison(found, compareCsvUrl(id, ask)));
   }
 
   function rows(facts) {
@@ -226,6 +185,9 @@ export function referencePanel({ id, change, state, reload }) {
           make("strong", {}, one.name),
           make("span", { className: "quiet" }, `${size}, alignment: ${one.alignment}`),
           one.notes?.length ? make("small", { className: "quiet" }, one.notes.join(" ")) : null,
+          one.fit
+            ? make("span", { className: one.fit.startsWith("✕") ? "bad" : "quiet" }, one.fit)
+            : null,
           make(
             "span",
             { className: "buttons" },
@@ -233,6 +195,8 @@ export function referencePanel({ id, change, state, reload }) {
               change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true }),
             ),
             make_("Align by ICP", () => align(one, "icp")),
+            make_("Align by pairs", () => openAlignment(id, one, realigned)),
+            one.can_undo ? make_("Undo alignment", () => align(one, "undo")) : null,
             make_("No alignment", () => align(one, "none")),
             make_("Remove", () => remove(one)),
           ),

@@ -11,14 +11,11 @@ from recon4.errors import ConfigError, CorruptFile, RecordingError
 from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3
 from recon4.recording.formats.reference_clouds import read_points
-from recon4.slices.align import align_by_icp, align_by_pairs
-from recon4.slices.compare import compare, to_csv, usual_planes
 from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference, mesh_lines
 from recon4.slices.slice_plane import free, horizontal
-from tests.unit.slices.room_map import wall, write_map
 
 P = np.random.default_rng(4).uniform(-3.0, 3.0, (500, 3)).round(3)
 BOX_TRIANGLES = "013 032 475 467 051 045 237 276 026 064 157 173"
@@ -226,92 +223,6 @@ def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
 
     assert moved.distance(np.array([[2.0, 0.05, 1.0]]))[0] == pytest.approx(0.05, abs=1e-6)
     assert np.abs(outline[:, 1]).max() < 1e-6 and outline[:, 0].max() == pytest.approx(6.0)
-
-
-def test_the_table_says_how_far_the_map_is_off(tmp_path):
-    p, _ = wall(np.random.default_rng(2), 20_000, x_m=0.03, sigma_m=0.0)
-    tiles = write_map(tmp_path / "map", p)
-    reference = reference_wall(tmp_path)
-
-    found = compare(tiles, [horizontal(0.5, thickness_m=0.2), horizontal(9.0)], reference)
-
-    assert found.slices[0].mean_m == pytest.approx(0.03, abs=1e-4)
-    assert (found.slices[0].ratio_within_2cm, found.slices[0].ratio_within_5cm) == (0.0, 1.0)
-    assert np.isnan(found.slices[1].mean_m)
-    assert found.point_weighted.mean_m == pytest.approx(found.plain_mean_m)
-    rows = to_csv(found).splitlines()
-    assert rows[1].split(",")[3:] == ["3.00", "0.00", "100.00"]
-    assert rows[2] == "z = 9.000 m,0,0,,,"
-
-
-def test_eight_slices_are_spread_over_the_map(tmp_path):
-    tiles = write_map(tmp_path, np.array([[0.0, 0.0, 0.0], [8.0, 8.0, 8.0]]))
-
-    planes = usual_planes(tiles)
-
-    assert [plane.origin_m[2] for plane in planes[:4]] == pytest.approx([1.0, 3.0, 5.0, 7.0])
-    assert len(planes) == 8 and all(plane.thickness_m == 0.02 for plane in planes)
-
-
-def test_pairs_of_points_lay_a_reference_onto_the_map():
-    T = SE3.from_rpy(0.02, 0.01, 1.0, t=[3.0, 2.0, 1.0])
-    q = np.array([[0, 0, 0], [4, 0, 0], [0, 3, 0], [1, 1, 2.0]])
-
-    found, left_m = align_by_pairs(T @ q, q)
-
-    assert np.abs(found.matrix() - T.matrix()).max() < 1e-9 and left_m.max() < 1e-9
-
-
-@pytest.mark.parametrize("q", [np.eye(3)[:2], np.outer(np.arange(4), [1.0, 2.0, 3.0])])
-def test_pairs_that_leave_the_turn_open_are_refused(q):
-    with pytest.raises(ConfigError):
-        align_by_pairs(q + 1.0, q)
-
-
-@pytest.fixture
-def box_reference(tmp_path):
-    write_mesh(tmp_path / "box.ply")
-    import_reference(tmp_path / "box.ply", tmp_path / "reference")
-    return load_reference(tmp_path / "reference")
-
-
-def three_sides(rng, *, noise_m=0.0):
-    sides = [rng.uniform(size=(8000, 3)) * [4, 3, 2] for _ in range(3)]
-    for axis, side in enumerate(sides):
-        side[:, axis] = noise_m * rng.standard_normal(len(side))
-    return np.concatenate(sides)
-
-
-def test_icp_finds_a_small_offset_and_says_what_remains(tmp_path, box_reference):
-    rng = np.random.default_rng(3)
-    T = SE3.from_rpy(0.0, 0.0, 0.02, t=[0.05, -0.03, 0.04])
-    elsewhere = np.add(rng.uniform(size=(24_000, 3)), [9.0, 0.0, 0.0])
-    p = np.concatenate([three_sides(rng, noise_m=0.01), elsewhere])
-    tiles = write_map(tmp_path / "map", T @ p)
-
-    found = align_by_icp(tiles, box_reference, rng=rng)
-
-    assert np.abs(found.T_map_reference.matrix() - T.matrix()).max() < 2e-3
-    assert found.near_ratio == pytest.approx(0.5, abs=0.02) and found.inlier_ratio > 0.99
-    assert found.mean_m == pytest.approx(0.01 * np.sqrt(2.0 / np.pi), abs=0.001)
-    assert "0.8 cm from it on average" in found.description
-
-
-def test_icp_onto_something_else_is_refused(tmp_path, box_reference):
-    rng = np.random.default_rng(3)
-    bush = rng.uniform(size=(5_000, 3)) * [4, 3, 2]
-    tiles = write_map(tmp_path / "map", bush)
-
-    with pytest.raises(ConfigError, match="did not align the reference with the map"):
-        align_by_icp(tiles, box_reference, rng=rng)
-
-
-def test_icp_over_a_distance_is_refused(tmp_path, box_reference):
-    rng = np.random.default_rng(3)
-    tiles = write_map(tmp_path / "map", np.add(three_sides(rng), [20.0, 0.0, 0.0]))
-
-    with pytest.raises(ConfigError, match=r"0\.0 % of the map is within 50 cm"):
-        align_by_icp(tiles, box_reference, rng=rng)
 
 
 def test_a_free_cut_of_a_mesh_is_in_its_plane():

@@ -19,8 +19,10 @@ from recon4.review.queue import AlternativePath
 from recon4.review.solve import Difference, EdgeConflict, Move
 from recon4.slices.compare import ComparedSlice, Comparison
 from recon4.slices.control_points import ControlPoint
+from recon4.slices.fit import ReferenceFit
 from recon4.slices.measured import MeasuredPosition
 from recon4.slices.residuals import residuals
+from recon4.slices.signed import SignedFigures
 
 WORK = [
     function
@@ -59,8 +61,9 @@ def test_records_come_back_as_they_were():
         (1, 2), (10**18, 10**18 + 1), POSE, POSE, None, POSE[3:], 0.1, 0.2,
         (AlternativePath((1, 3, 2), 0.1, 0.01),), 1,
     )  # fmt: skip
-    row = ComparedSlice.of(ROW)
-    table = Comparison((row,), row, None, 0.5, tuple(range(100)), "model", "plane")
+    row = ComparedSlice.of(ROW, SignedFigures(9, -0.01, 0.02, (0.03, None, 0.0)))
+    fit = ReferenceFit(0.9, 0.8, None, True, "✓")
+    table = Comparison((row,), row, None, 0.5, tuple(range(100)), 0.002, 0.1, fit, "model", "plane")
     report = residuals(
         [ControlPoint("A", (0.0, 0.0, 0.0))],
         {"A": MeasuredPosition.full(np.array([0.01, 0.0, 0.0]))},

@@ -1,0 +1,149 @@
+"""Whether a reference fits the map at all: a wrong one still has points near it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.evaluation.reference_mesh import SurfacePoints, sample_mesh
+from recon4.geometry.se3 import SE3
+from recon4.mapping.tiles import TileSet
+from recon4.slices.reference import FAR_M, Reference
+
+COMPARED = 60_000
+SAMPLES = 400_000
+_COVERED_M = 2.0
+"""Surfaces farther from the other are outside of it, and not compared [m]."""
+ON_M = 0.10
+"""A point within this of a surface of the same orientation agrees with it [m]."""
+LEAST_NEAR = 0.02
+"""Smallest ratio of the map near the reference, which may be one room of a building."""
+LEAST_AGREEING = 0.6
+"""Smallest ratio of agreeing points among those near the other."""
+_NOT_JUDGED = "– Not judged whether the reference fits: hardly any flat surface in both"
+_PARALLEL = 0.8
+_LEVEL = np.cos(np.deg2rad(30.0))
+_LEAST_POINTS = 100
+_LEAST_PART = 0.05
+"""Fewer of the points near the other are no group of their own."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceFit:
+    """How well map and reference lie on each other."""
+
+    near_ratio: float
+    """Ratio of the map within 50 cm of the reference, 0..1."""
+    walls_ratio: float | None
+    """Of the walls within 2 m of the other: ratio within 10 cm of one of the same orientation.
+    None = hardly any walls."""
+    level_ratio: float | None
+    """The same of floors and ceilings. These agree also where the reference is turned."""
+    fits: bool | None
+    """None = not judged: map or reference have hardly any flat surface."""
+    text: str
+
+
+def reference_fit(
+    map_points: SurfacePoints, surface: SurfacePoints, T_map_reference: SE3
+) -> ReferenceFit:
+    """Compare samples of a map with samples of a reference, in its own frame.
+
+    Each is compared with the other: either may be one room of the other's building, and then the
+    larger one has surfaces beside it that are not in the smaller one.
+    """
+    if not len(map_points.p) or not len(surface.p):
+        return ReferenceFit(0.0, None, None, None, _NOT_JUDGED)
+    moved = SurfacePoints(T_map_reference @ surface.p, surface.normals @ T_map_reference.R.T)
+    ours, theirs = _agreement(map_points, moved), _agreement(moved, map_points)
+    return _judged(
+        ours.near_ratio, _best(ours.walls, theirs.walls), _best(ours.level, theirs.level)
+    )
+
+
+class _Agreement(NamedTuple):
+    near_ratio: float
+    walls: float | None
+    level: float | None
+
+
+def _agreement(points: SurfacePoints, other: SurfacePoints) -> _Agreement:
+    """How many of the points near another surface lie on it."""
+    from scipy.spatial import cKDTree
+
+    every = max(1, len(points.p) // COMPARED)
+    p, normals = points.p[::every], points.normals[::every]
+    distance, row = cKDTree(other.p).query(p, distance_upper_bound=_COVERED_M)
+    covered = np.isfinite(distance)
+    n, m = normals[covered], other.normals[row[covered]]
+    across = np.abs(np.einsum("ni,ni->n", m, p[covered] - other.p[row[covered]]))
+    agrees = (across < ON_M) & (np.abs(np.einsum("ni,ni->n", n, m)) > _PARALLEL)
+    agrees &= distance[covered] < FAR_M
+    level = np.abs(n[:, 2]) > _LEVEL
+    near_ratio = float((distance < FAR_M).mean())
+    return _Agreement(near_ratio, _ratio(agrees, ~level), _ratio(agrees, level))
+
+
+def _best(a: float | None, b: float | None) -> float | None:
+    return max((ratio for ratio in (a, b) if ratio is not None), default=None)
+
+
+def fit_of(tiles: TileSet, reference: Reference, *, rng: np.random.Generator) -> ReferenceFit:
+    """How well a reference lies on the map at its present alignment."""
+    map_points = sample_tiles(tiles, SAMPLES)
+    return reference_fit(map_points, sample_reference(reference, rng), reference.T_map_reference)
+
+
+def sample_tiles(tiles: TileSet, count: int) -> SurfacePoints:
+    """Points with normals spread over a map or cloud; those without a normal are left out."""
+    ratio = min(1.0, count / max(1, len(tiles)))
+    points, normals = [np.empty((0, 3))], [np.empty((0, 3))]
+    for tile in tiles:
+        limit = int(np.ceil(ratio * len(tile)))
+        columns = tile.read(["normal"], limit=limit)
+        known = np.any(columns["normal"] != 0.0, axis=1)
+        points.append(tile.xyz_m(limit=limit)[known])
+        normals.append(columns["normal"][known].astype(np.float64))
+    return SurfacePoints(np.concatenate(points), np.concatenate(normals))
+
+
+def sample_reference(reference: Reference, rng: np.random.Generator) -> SurfacePoints:
+    """Points with normals spread over a reference, in its own frame."""
+    if reference.mesh is not None:
+        return sample_mesh(reference.mesh, spacing_m=0.05, rng=rng)
+    assert reference.tiles is not None
+    return sample_tiles(reference.tiles, SAMPLES)
+
+
+def _ratio(agrees: NDArray[np.bool_], group: NDArray[np.bool_]) -> float | None:
+    count = int(group.sum())
+    if count < max(_LEAST_POINTS, _LEAST_PART * len(group)):
+        return None
+    return float(agrees[group].mean())
+
+
+def _judged(near: float, walls: float | None, level: float | None) -> ReferenceFit:
+    if near < LEAST_NEAR:
+        text = (
+            f"✕ The reference does not fit: {100.0 * near:.1f} % of the map is within "
+            f"{100.0 * FAR_M:.0f} cm of it"
+        )
+        return ReferenceFit(near, walls, level, False, text)
+    groups = (("walls", walls), ("floors and ceilings", level))
+    parts = [(name, ratio) for name, ratio in groups if ratio is not None]
+    if not parts:
+        return ReferenceFit(near, walls, level, None, _NOT_JUDGED)
+    fits = all(ratio >= LEAST_AGREEING for _, ratio in parts)
+    agree = " and ".join(f"{100.0 * ratio:.0f} % of the {name}" for name, ratio in parts)
+    start = "✓ The reference fits" if fits else "✕ The reference does not fit"
+    return ReferenceFit(
+        near,
+        walls,
+        level,
+        fits,
+        f"{start}: where both are, {agree} lie within {100.0 * ON_M:.0f} cm of a surface of "
+        "the same orientation",
+    )
