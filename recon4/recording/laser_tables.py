@@ -31,6 +31,8 @@ _SHIFTED = 0.05
 beams by a quarter of the angle between them."""
 _FINER = 8
 """Beams at irregular angles are placed on a grid of this part of the angle between them."""
+_NEAREST = 0.51
+"""The nearest place is never farther than half of a step."""
 _USUAL_REACH_M = 30.0
 
 
@@ -93,6 +95,8 @@ class _BeamGrid:
     beams: int
     step_ns: float
     """Time between two beams [ns]."""
+    off_grid: float = _OFF_GRID
+    """Part of the step by which a beam may be off its place."""
 
     @staticmethod
     def usual(scans: Sequence[Columns], where: str) -> _BeamGrid:
@@ -132,7 +136,7 @@ class _BeamGrid:
         """Beams of a scan in steps from the first, and which of them lie on the grid."""
         place = np.asarray((scan["beam_deg"] - self.first_deg) / self.step_deg, dtype=np.float64)
         beam = np.rint(np.nan_to_num(place, nan=-1.0))
-        on_grid = (np.abs(place - beam) < _OFF_GRID) & (beam >= 0) & (beam < self.beams)
+        on_grid = (np.abs(place - beam) <= self.off_grid) & (beam >= 0) & (beam < self.beams)
         return place, np.asarray(on_grid, dtype=np.bool_)
 
     def _own(self, scan: Columns) -> _BeamGrid:
@@ -147,9 +151,10 @@ class _BeamGrid:
         if not 0 < np.ptp(number) * _FINER < _MAX_BEAMS:
             return self
         fitted, first = np.polyfit(number, angle, 1)
+        off_grid = _OFF_GRID
         if np.abs(first + fitted * number - angle).max() > abs(fitted) / _FINER:
-            fitted, number = step / _FINER, np.rint((angle - angle[0]) * _FINER / step)
-            first = angle[0]
+            fitted, first, off_grid = step / _FINER, float(angle[0]), _NEAREST
+            number = np.rint((angle - first) / fitted)
         number, lowest = number - number.min(), number.min()
         steps = np.diff(number)
         times = np.diff(t_ns)[steps > 0] / steps[steps > 0]
@@ -158,6 +163,7 @@ class _BeamGrid:
             step_deg=float(fitted),
             beams=int(number.max()) + 1,
             step_ns=float(np.median(times)) if len(times) else 0.0,
+            off_grid=off_grid,
         )
 
 

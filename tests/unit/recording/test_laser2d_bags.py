@@ -220,3 +220,24 @@ def test_one_scan_with_the_stamp_of_another_time_keeps_its_place(wrong_s):
 
     assert found.t_ns.tolist() == [t_ns for t_ns, _ in usual]
     assert report.counts["scans_wrong_time"] == 1 and not report.lost()
+
+
+def test_beams_of_a_table_at_irregular_angles_are_kept_near_their_angles(tmp_path):
+    rng = np.random.default_rng(7)
+    angle = np.linspace(-180.0, 180.0, 450, endpoint=False) + rng.uniform(-0.3, 0.3, (20, 450))
+    columns = {
+        "t_ns": (10**18 + 10**8 * np.arange(20)[:, None] + 10**5 * np.arange(450)).ravel(),
+        "beam_deg": angle.ravel(),
+        "range_m": rng.uniform(1.0, 9.0, angle.size).astype(np.float32),
+        "scan": np.repeat(np.arange(20), 450),
+    }
+    write_csv(tmp_path / "scans.csv", columns)
+
+    report = ImportReport()
+    found = read_laser2d([tmp_path / "scans.csv"], report)
+
+    assert report.counts["beams_off_grid"] == 0
+    seen = np.isfinite(found.ranges(3))
+    assert np.array_equal(found.ranges(3)[seen], columns["range_m"].reshape(20, 450)[3])
+    off_deg = np.rad2deg(found.angles_rad(3)[seen]) - angle[3]
+    assert np.abs(off_deg).max() < 0.06
