@@ -107,7 +107,7 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.state.connections = ConnectionTable(
         ConnectionLimits.within(
             settings.max_connections,
-            per_address=settings.max_connections_per_address,
+            per_address=settings.max_connections_of_an_address,
             files=open_file_limit(),
         )
     )
@@ -117,8 +117,9 @@ def create_app(settings: ServerSettings) -> FastAPI:
     app.add_middleware(
         OriginMiddleware,
         hosts=hosts_of(settings),
-        local=None if settings.lan else READER if settings.read_only else LOCAL,
+        local=None if settings.login else READER if settings.read_only else LOCAL,
         pinned=pinned,
+        behind=settings.behind,
     )
     metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
     app.add_middleware(MetricsMiddleware, metrics=metrics.http)
@@ -247,7 +248,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
     )
     return ServerParts(
         settings=settings,
-        access=open_access(settings.state, login=settings.lan, notice=notice),
+        access=open_access(settings.state, login=settings.login, notice=notice),
         projects=projects,
         thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
         trash=Trash(settings.root, settings.state / "trash", kept_s=settings.trash_retention_s),

@@ -7,6 +7,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
+from app.network.behind import PublicAddress
 from recon4.errors import ConfigError
 from recon4.names import is_unnameable, visible
 from recon4.sandbox import ONE_THREAD as ONE_THREAD
@@ -25,6 +26,8 @@ class ServerSettings:
     """Port to listen on; 0 = any free one."""
     lan: bool = False
     """TLS and login together; neither goes without the other."""
+    behind: PublicAddress | None = None
+    """Address of the reverse proxy on this computer that does TLS for the server; with login."""
     tls_certificate: Path | None = None
     """The user's own certificate chain, PEM; None = one is made."""
     tls_key: Path | None = None
@@ -86,6 +89,8 @@ class ServerSettings:
             _refuse_open_network(self.host)
             if self.tls_certificate or self.tls_key:
                 raise ConfigError("a certificate goes with --lan, which also turns on the login")
+        if self.lan and self.behind is not None:
+            raise ConfigError("--behind and --lan exclude each other: the proxy does TLS")
         if (self.tls_certificate is None) != (self.tls_key is None):
             raise ConfigError("give --tls-cert and --tls-key together, or neither")
         if is_unnameable(self.root):
@@ -107,6 +112,16 @@ class ServerSettings:
     def state(self) -> Path:
         """Folder of the server's own files: jobs, locks, thumbnails."""
         return self.state_folder or self.root / ".recon4"
+
+    @property
+    def login(self) -> bool:
+        """Whether people have to sign in."""
+        return self.lan or self.behind is not None
+
+    @property
+    def max_connections_of_an_address(self) -> int:
+        """Most open connections per address; a proxy is one address for everybody."""
+        return self.max_connections if self.behind else self.max_connections_per_address
 
     @property
     def read_only(self) -> bool:

@@ -25,6 +25,9 @@ def serve(  # noqa: PLR0913 - what a server can be started with
     root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
     *,
     lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
+    behind: Annotated[
+        str, typer.Option(help="Address of a reverse proxy with TLS, https://NAME/; with login.")
+    ] = "",
     host: Annotated[str, typer.Option(help="Address to listen on; default by --lan.")] = "",
     port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,
     tls_cert: Annotated[Path | None, typer.Option(help="Your certificate chain, PEM.")] = None,
@@ -38,6 +41,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
     show: Annotated[bool, typer.Option("--open", help="Open it in this browser.")] = False,
 ) -> None:
     """Show projects in the browser: results, jobs, 3D viewer. Ctrl-C ends it."""
+    from app.network.behind import public_address
     from app.settings import (
         ServerSettings,
         allowed_hosts_from_environment,
@@ -48,6 +52,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
         chosen = ServerSettings(
             root=root,
             lan=lan,
+            behind=public_address(behind) if behind else None,
             host=host or ("0.0.0.0" if lan else "127.0.0.1"),
             port=port,
             tls_certificate=tls_cert,

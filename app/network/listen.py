@@ -115,6 +115,8 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
 
 def hosts_of(settings: ServerSettings) -> Hosts:
     """Host names the server accepts."""
+    if settings.behind is not None:
+        return Hosts(frozenset({settings.behind.host}))
     if not settings.lan:
         return Hosts(LOOPBACK)
     names = {name.lower() for name in settings.allowed_hosts}
@@ -151,12 +153,12 @@ def own_files(settings: ServerSettings) -> Iterator[ServerSettings]:
         StoreError: If another server has the lock.
     """
     with ExitStack() as stack:
-        stack.enter_context(private_files(settings.lan))
+        stack.enter_context(private_files(settings.login))
         if not os.access(settings.root, os.W_OK):
-            if settings.lan:
+            if settings.login:
                 raise ConfigError(
                     f"{settings.root} cannot be written, so nobody can sign in and nothing can be "
-                    "logged: serve a copy of it, or serve it without --lan"
+                    "logged: serve a copy of it, or serve it without --lan and --behind"
                 )
             folder = stack.enter_context(TemporaryDirectory(prefix="recon4-state-"))
             settings = replace(settings, state_folder=Path(folder))
@@ -218,6 +220,8 @@ def listening(settings: ServerSettings) -> Iterator[socket.socket]:
 def urls(settings: ServerSettings, listener: socket.socket) -> list[str]:
     """URLs of the server, the best first."""
     name, port = listener.getsockname()[:2]
+    if settings.behind is not None:
+        return [settings.behind.url]
     scheme = "https" if settings.lan else "http"
     names = [name]
     if name in ("0.0.0.0", "::"):

@@ -17,6 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.access.middleware.rejection import Rejection, note
 from app.access.middleware.session import SessionMiddleware
 from app.access.people import NOBODY, Person
+from app.network.behind import PublicAddress
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -60,7 +61,13 @@ class OriginMiddleware:
     """Rejects foreign hosts and origins and callers without a session; adds security headers."""
 
     def __init__(
-        self, app: ASGIApp, *, hosts: Hosts, local: Person | None, pinned: bool = False
+        self,
+        app: ASGIApp,
+        *,
+        hosts: Hosts,
+        local: Person | None,
+        pinned: bool = False,
+        behind: PublicAddress | None = None,
     ) -> None:
         """Wrap an application.
 
@@ -69,16 +76,20 @@ class OriginMiddleware:
             hosts: Host names it accepts.
             local: Who every caller is; None = people sign in.
             pinned: Whether browsers may insist on TLS from now on.
+            behind: The proxy that requests come through; None = there is none.
         """
         self._app = app if local else SessionMiddleware(app)
         self._hosts = hosts
         self._local = local or NOBODY
+        self._behind = behind
         self._headers = HEADERS | (PINNED if pinned else {})
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
+        if self._behind is not None:
+            scope = self._behind.seen_through(scope)
         send = self._with_headers(scope, send)
         scope.setdefault("state", {}).update(person=self._local, signed_in_s=0.0)
         if (rejection := judge(scope, self._hosts)) is None:

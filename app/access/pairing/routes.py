@@ -137,7 +137,9 @@ def invite(new: NewInvitation, request: Request, server: Server, *, who: Who) ->
     _with_login(server)
     token = server.access.pairings.invite(who, new.role)
     audit(request, "invite phone", new.role)
-    links = [_link(host, request, token) for host in _hosts(request, server.settings.host)]
+    behind = server.settings.behind
+    hosts = [behind.host] if behind else _hosts(request, server.settings.host)
+    links = [_link(host, request, token) for host in hosts]
     return InvitationView(links=links, seconds=INVITATION_S, role=new.role)
 
 
