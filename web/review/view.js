@@ -86,7 +86,7 @@ export class PairView extends HTMLElement {
     return make("div", { role: "group", ariaLabel: label, className: "segmented" }, ...buttons);
   }
 
-  /** Names of two clouds that are no places of a walk, if the page gave them: data-first, -second. */
+  /** Names of two clouds that are no places of a walk, if the page gave data-first, -second. */
   get #names() {
     const { first, second } = this.dataset;
     return first === undefined ? null : [first, second];

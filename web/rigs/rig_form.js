@@ -86,7 +86,11 @@ export class RigForm extends HTMLElement {
           "IMU",
           this.#triple(imu, "xyz_m", { label: "Position", of: XYZ, path: "imu", ...CM }),
           this.#triple(imu, "rpy_deg", { label: "Rotation", of: RPY, path: "imu", ...DEGREES }),
-          this.#numbers(imu, "imu", this.#text(imu, "topic", { label: "Topic", path: "imu.topic" })),
+          this.#numbers(
+            imu,
+            "imu",
+            this.#text(imu, "topic", { label: "Topic", path: "imu.topic" }),
+          ),
         ),
         this.#group(
           "GNSS antenna",

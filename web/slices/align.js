@@ -76,8 +76,9 @@ export async function openAlignment(id, one, changed) {
     make(
       "p",
       { className: "quiet" },
-      "Pick the same three points in the map (blue) and the reference (orange) by turns, as corners ",
-      "of walls far from each other. Or move the reference by its handle and ring (Above), then refine.",
+      "Pick the same three points in the map (blue) and the reference (orange) by turns, as ",
+      "corners of walls far from each other. Or move the reference by its handle and ring ",
+      "(Above), then refine.",
     ),
     view,
     make("div", { className: "buttons" }, pick, byHand, undo),

@@ -76,7 +76,7 @@ export function comparison(found, csvUrl) {
   ].filter(Boolean);
 }
 
-/** Bars of [x, y, width, height] in a box of width 1 a class and height 100, and the most points. */
+/** Bars [x, y, width, height] in a box of width 1 a class and height 100, and the most points. */
 export function bars(classes) {
   const most = Math.max(...classes);
   return classes.map((n, k) => {

@@ -61,7 +61,7 @@ def test_info_lists_the_traffic_of_a_capture_without_lidar(tmp_path, capsys):
     OTHERS["other_traffic.pcap"](tmp_path / "other_traffic.pcap")
 
     assert main(["info", str(tmp_path / "other_traffic.pcap")]) == 0
-    assert "9 packets to port 2368" in capsys.readouterr().out
+    assert "9 packets from 192.168.1.201 to port 2368" in capsys.readouterr().out
 
 
 def test_a_missing_file_is_one_line_with_its_name(pcap, refuse, tmp_path):
