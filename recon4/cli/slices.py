@@ -171,6 +171,7 @@ def _write(
 def _write_image(
     tiles: TileSet, plane: SlicePlane, file: Path, *, frame: MapFrame, look: SliceLook
 ) -> int:
+    from recon4.mapping.tiles import surface_text
     from recon4.slices.colors import LABELS
     from recon4.slices.export import write_geotiff
     from recon4.slices.points import extent
@@ -179,7 +180,6 @@ def _write_image(
         approval_text,
         lay_out,
         source_text,
-        surface_text,
         write_sheet,
     )
     from recon4.slices.slice_image import RasterGrid, draw

@@ -39,6 +39,16 @@ Surface = Literal["fitted", "raw", "strays"]
 """Points on the surfaces fitted to all returns, or as measured, or only the stray returns."""
 Number = TypeVar("Number", int, float)
 _MALFORMED = (ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError)
+_SURFACE_TEXT: dict[Surface, str] = {
+    "fitted": "on fitted surfaces",
+    "raw": "as measured",
+    "strays": "stray returns only",
+}
+
+
+def surface_text(surface: Surface) -> str:
+    """Where the points of a map lie, for sheets, captions and the report."""
+    return _SURFACE_TEXT[surface]
 
 
 @dataclass(frozen=True, slots=True)

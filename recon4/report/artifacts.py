@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
-from recon4.model.figures import CalibrationFigures, MapFigures, PlaneThickness
+from recon4.model.figures import CalibrationFigures, MapFigures
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory
@@ -53,8 +53,8 @@ class Results:
     """Covariances of the final poses; None = not stated."""
     intensity: dict[str, NDArray[Any]] = field(default_factory=dict)
     """Columns of ``diagnostics.npz``."""
-    thickness: PlaneThickness | None = None
-    """Of the planar surfaces of the map, as the stage ``map`` measured it."""
+    map: MapFigures | None = None
+    """Figures of the stage ``map``, with the thickness of its planar surfaces."""
 
     @property
     def placement(self) -> Placement:
@@ -85,7 +85,7 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         georeference=_json(artifacts, "level", "georeference.json"),
         uncertainty=load_uncertainty(artifacts["level"]) if "level" in artifacts else None,
         intensity=_arrays(artifacts, "intensity", "diagnostics.npz"),
-        thickness=_thickness(artifacts),
+        map=_map_figures(artifacts),
     )
 
 
@@ -142,10 +142,10 @@ def _support(artifacts: Mapping[str, Path]) -> SurfaceSupport | None:
     return None if path is None else load_record(path, SurfaceSupport)
 
 
-def _thickness(artifacts: Mapping[str, Path]) -> PlaneThickness | None:
+def _map_figures(artifacts: Mapping[str, Path]) -> MapFigures | None:
     if _file(artifacts, "map", "manifest.json") is None:
         return None
-    return read_figures(artifacts["map"], MapFigures).thickness
+    return read_figures(artifacts["map"], MapFigures)
 
 
 def _latest_trajectory(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> Trajectory | None:

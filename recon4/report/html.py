@@ -12,8 +12,8 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from recon4.evaluation.table import number, percentage
-from recon4.mapping.tiles import TileSet
-from recon4.model.figures import PlaneThickness
+from recon4.mapping.tiles import Surface, TileSet, surface_text
+from recon4.model.figures import MapFigures
 from recon4.model.pose_graph import EdgeKind
 from recon4.report import chart_groups
 from recon4.report.approval import draft_block
@@ -54,7 +54,7 @@ def render(assessed: Assessment) -> str:
         .get_template("template.html.jinja")
         .render(
             facts=facts,
-            thickness=results.thickness,
+            thickness=results.map.thickness if results.map else None,
             results=results,
             findings=assessed.findings,
             approval=draft_block(),
@@ -154,17 +154,27 @@ def _key_figures(
         out.append(("e_r", number(e_r, 2, 100.0), "cm"))
     if facts.stages:
         out.append(("computing time", _duration(sum(s.seconds for s in facts.stages)), "min:s"))
-    return out + _thickness(results.thickness)
+    return out + _thickness(results.map)
 
 
-def _thickness(found: PlaneThickness | None) -> list[tuple[str, str, str]]:
-    if found is None or found.p50_m is None or found.p95_m is None or found.planar_coverage is None:
+def _thickness(found: MapFigures | None) -> list[tuple[str, str, str]]:
+    """Thickness where the points lie and where they were measured, in the words of the slices."""
+    if found is None:
         return []
-    spread = f"{number(found.p50_m, 2, 100.0)} / {number(found.p95_m, 2, 100.0)}"
-    return [
-        ("thickness of planar surfaces, median / p95", spread, "cm"),
-        ("planar places", number(found.planar_coverage, 0, 100.0), "%"),
-    ]
+    where: Surface = found.surface
+    rows = [(surface_text(where), found.thickness)]
+    if found.thickness_as_measured is not None:
+        rows.append((surface_text("raw"), found.thickness_as_measured))
+    out = []
+    for words, thickness in rows:
+        if thickness is None or thickness.p50_m is None or thickness.p95_m is None:
+            continue
+        spread = f"{number(thickness.p50_m, 2, 100.0)} / {number(thickness.p95_m, 2, 100.0)}"
+        out.append((f"thickness σ {words}, median / p95", spread, "cm"))
+    covered = found.thickness.planar_coverage if found.thickness else None
+    if out and covered is not None:
+        out.append(("planar places", number(covered, 0, 100.0), "%"))
+    return out
 
 
 def _flat(value: Any, prefix: str = "") -> list[tuple[str, str]]:

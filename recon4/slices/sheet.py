@@ -11,7 +11,6 @@ import numpy as np
 
 import recon4
 from recon4.errors import ConfigError
-from recon4.mapping.tiles import Surface
 from recon4.model.usability import Usability
 from recon4.names import visible
 from recon4.slices.colors import (
@@ -56,7 +55,7 @@ class SheetText:
     approval: str
     """Who approved the map and when, or `Not approved`."""
     surface: str
-    """Where the points lie, see `surface_text`."""
+    """Where the points lie, see `recon4.mapping.tiles.surface_text`."""
     reference: str = ""
     compared: str = ""
     """How the slice lies beside the reference, see `compare.signed_text`."""
@@ -284,17 +283,7 @@ def approval_text(approval: Mapping[str, object] | None) -> str:
     return f"{signed}. Verdict on the map: {verdict}{reason}"
 
 
-_SURFACE_TEXT: dict[Surface, str] = {
-    "fitted": "on fitted surfaces",
-    "raw": "as measured",
-    "strays": "stray returns only",
-}
 """Where the points of a map lie, or which they are."""
-
-
-def surface_text(surface: Surface) -> str:
-    """Where the points of a map lie, for sheets and captions."""
-    return _SURFACE_TEXT[surface]
 
 
 def source_text(artifact_key: str) -> str:

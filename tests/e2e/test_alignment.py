@@ -39,6 +39,7 @@ def test_a_turned_reference_is_found_and_aligned_by_three_pairs(server, page, sc
     page.get_by_text("Compare with a reference").click()
     page.get_by_label("Path of the reference").fill(str(server.root / "turned.xyz"))
     page.get_by_role("button", name="Add reference").click()
+    page.get_by_role("button", name="Use these columns").click()
     expect(page.locator("#legend")).to_contain_text("Distance to reference [cm]")
 
     page.get_by_role("button", name="Compare", exact=True).click()

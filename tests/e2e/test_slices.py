@@ -46,6 +46,9 @@ def test_a_slice_is_shown_with_frame_units_and_legend(server, page, screenshot):
     expect(page.locator(".facing")).to_contain_text("z = 1.500 m")
     expect(page.locator(".facing")).to_contain_text("map frame (local), x y z, z up, meters")
     expect(page.get_by_role("img", name=re.compile("Slice z = 1.500 m, .* points"))).to_be_visible()
+    expect(page.get_by_role("heading", level=1)).to_have_text("Slices")
+    named = "canvases => canvases.every((one) => one.getAttribute('aria-label'))"
+    assert page.locator("canvas").evaluate_all(named)
     expect(page.get_by_label("Low end of the colors")).to_be_visible()
     fits(page)
     screenshot(page, "slices")

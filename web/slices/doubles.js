@@ -65,7 +65,7 @@ export function doublesPanel({ id, change, point, state }) {
     const seen = found.patches
       ? `${count(found.patches)} patches were visited twice; distance between the visits ` +
         `${cm(found.median_separation_m)} (median), ${cm(found.p95_separation_m)} (95 %); ` +
-        `a surface is ${cm(found.median_sigma_m)} thick (σ).`
+        `thickness σ as measured ${cm(found.median_sigma_m)}.`
       : "No surface was visited twice: double walls cannot be detected.";
     const verdict = found.walls.length
       ? make("p", { className: "verdict bad" }, `✕ ${found.walls.length} double walls`)
@@ -100,7 +100,7 @@ export function doublesPanel({ id, change, point, state }) {
       "",
       "Separation",
       "Limit",
-      "Thickness σ",
+      "Thickness σ as measured",
       "D = separation / σ",
       "Weaker layer",
       "Visits",

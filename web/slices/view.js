@@ -13,7 +13,7 @@ const COARSEST_M = 50;
 const CLICK_PX = 5; // a pointer that moves farther drags
 
 export class SliceView extends HTMLElement {
-  #canvas = make("canvas", { tabIndex: 0 });
+  #canvas = make("canvas", { tabIndex: 0, ariaLabel: "Slice" }); // until `label` says of what
   #center = null;
   #metersPerPx = 0.01;
   #image = null;
@@ -48,7 +48,7 @@ export class SliceView extends HTMLElement {
 
   /** The label for screen readers. */
   set label(text) {
-    this.#canvas.setAttribute("aria-label", text);
+    this.#canvas.setAttribute("aria-label", text || "Slice");
   }
 
   /** Middle [m] and meters per pixel; null before the first image. */

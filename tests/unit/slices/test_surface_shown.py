@@ -9,7 +9,7 @@ from app.viewer.client.legend import legend
 from app.viewer.client.view import ViewState, view_from_json
 from app.viewer.cloud.parts import Cloud
 from app.viewer.scene.build import Content
-from recon4.slices.sheet import surface_text
+from recon4.mapping.tiles import surface_text
 from tests.unit.slices.room_map import write_map
 
 LEVEL = SlicePlaneSpec(kind="horizontal", z_m=1.0, thickness_m=0.5)
