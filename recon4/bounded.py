@@ -11,7 +11,7 @@ import math
 import os
 import re
 import stat
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -116,11 +116,20 @@ def lines_limited(
     max_line_bytes: int = MAX_LINE_BYTES,
     max_bytes: int,
     failure: Failure = CorruptFile,
+    on_damaged: Callable[[Recon4Error], None] | None = None,
 ) -> Iterator[str]:
     r"""Lines of a UTF-8 text file with their ends, one in memory at a time.
 
     A byte order mark is left out; ``\n``, ``\r\n`` and a lone ``\r`` inside a line are kept as
     they are.
+
+    Args:
+        path: The file.
+        max_line_bytes: Longest line [bytes].
+        max_bytes: Largest file [bytes].
+        failure: Class of the errors.
+        on_damaged: Receives the error of a line that cannot be read, which then is an empty one;
+            None = the error is raised.
 
     Raises:
         Recon4Error: Of the class ``failure``, naming the line that is too long, holds a NUL or is
@@ -131,12 +140,26 @@ def lines_limited(
         number = 0
         while line := file.readline(max_line_bytes + 1):
             number += 1
-            if len(line) > max_line_bytes:
-                raise failure(
-                    f"{path.name}: line {number}: expected at most {max_line_bytes} bytes, "
-                    "got a longer line"
-                )
-            yield _line(line, number, path.name, failure=failure)
+            try:
+                if len(line) > max_line_bytes:
+                    raise failure(
+                        f"{path.name}: line {number}: expected at most {max_line_bytes} bytes, "
+                        "got a longer line"
+                    )
+                text = _line(line, number, path.name, failure=failure)
+            except failure as error:
+                if on_damaged is None:
+                    raise
+                on_damaged(error)
+                text = ""
+                _skip_line(file, line, max_line_bytes)
+            yield text
+
+
+def _skip_line(file: BinaryIO, line: bytes, piece: int) -> None:
+    """Read to the end of a line whose beginning was read."""
+    while line and not line.endswith(b"\n"):
+        line = file.readline(piece)
 
 
 def text_blocks(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from pathlib import Path
 
@@ -29,6 +29,7 @@ from recon4.model.frames import Frames
 from recon4.model.plain import finite_or_none
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import tum_hint
+from recon4.recording.report import ImportReport
 
 _EVERY = 10
 """Of the multiframes, every tenth is placed by the estimate and by the truth."""
@@ -120,7 +121,7 @@ def evaluate(
         OutOfRange: If the truth covers fewer than two poses.
         Recon4Error: If a file cannot be read.
     """
-    estimate, true = find_trajectory(project_or_trajectory), find_trajectory(truth)
+    (estimate, hints), (true, more) = map(_with_hints, (project_or_trajectory, truth))
     pairs = pair_poses(at_frames(estimate), true)
     aligned = absolute_error(pairs)
     floor = relative = as_measured = None
@@ -146,13 +147,16 @@ def evaluate(
         measured=as_measured,
         floor=floor,
         quality=map_quality(chunks.delivered) if chunks is not None else None,
-        hints=_hints({project_or_trajectory: estimate, truth: true}),
+        hints=hints + more,
     )
 
 
-def _hints(walks: Mapping[Path, Trajectory]) -> tuple[str, ...]:
-    found = {path.name: tum_hint(walk) for path, walk in walks.items()}
-    return tuple(f"{name}: {hint}" for name, hint in found.items() if hint)
+def _with_hints(path: Path) -> tuple[Trajectory, tuple[str, ...]]:
+    """A trajectory, and what the reader of the figures must know of its file."""
+    report = ImportReport()
+    walk = find_trajectory(path, report)
+    hints = [*report.lost(), tum_hint(walk)]
+    return walk, tuple(f"{path.name}: {hint}" for hint in hints if hint)
 
 
 def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajectory:

@@ -7,16 +7,20 @@ from pathlib import Path
 from recon4.errors import UnknownFormat
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.poses import read_tum
+from recon4.recording.report import ImportReport
 from recon4.store.arrays import load_trajectory
 
 
-def find_trajectory(path: Path) -> Trajectory:
+def find_trajectory(path: Path, report: ImportReport | None = None) -> Trajectory:
     """The trajectory at a path: a file, or ``trajectory.tum`` of a project folder.
+
+    Args:
+        path: The file or the folder.
+        report: Gets the counts of poses and damaged lines of a text file; None = not wanted.
 
     Raises:
         UnknownFormat: If there is none, or the ending is neither ``.tum``, ``.txt`` nor ``.npz``.
-        CorruptFile: Naming the line that is not eight finite numbers, no rotation, or not later
-            than the one before.
+        CorruptFile: If too many lines are damaged, naming the first.
         EmptyRecording: If the file holds no pose.
     """
     file = path / "trajectory.tum" if path.is_dir() else path
@@ -25,5 +29,5 @@ def find_trajectory(path: Path) -> Trajectory:
     if file.suffix == ".npz":
         return load_trajectory(file)
     if file.suffix in {".tum", ".txt"}:
-        return read_tum(file)
+        return read_tum(file, report)
     raise UnknownFormat(f"{file.name}: expected a trajectory as .tum, .txt or .npz")

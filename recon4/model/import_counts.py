@@ -155,6 +155,7 @@ _SAMPLES = {
     "imu_kept": _read("IMU samples used"),
     "imu_nan": _lost("imu_kept", "no numbers, dropped", apart=True),
     "imu_wrong_time": _lost("imu_kept", "a stamp of another time, dropped", apart=True),
+    "imu_lines_damaged": _lost("imu_kept", "damaged lines of the file, dropped", apart=True),
     "imu_duplicate": _lost("imu_kept", "the time of another, dropped", apart=True),
     "imu_repeated": _lost("imu_kept", "repeated by the driver, dropped", apart=True, stated=True),
     "imu_unsorted": _repaired("imu_kept", "earlier than the one before, sorted"),
@@ -171,6 +172,7 @@ _SAMPLES = {
     "gnss_constant": _lost("gnss_kept", "one position for all, dropped", apart=True, stated=True),
     "gnss_no_fix": _usual("", "without a fix", noun="GNSS positions"),
     "gnss_wrong_time": _lost("gnss_kept", "a stamp of another time, dropped", apart=True),
+    "gnss_lines_damaged": _lost("gnss_kept", "damaged lines of the file, dropped", apart=True),
     "gnss_duplicate": _lost("gnss_kept", "the time of another, dropped", apart=True),
     "gnss_unsorted": _repaired("gnss_kept", "earlier than the one before, sorted"),
     "gnss_heights_unstated": _usual("", "with a height of unknown kind", noun="GNSS positions"),
@@ -183,6 +185,7 @@ _SAMPLES = {
     "samples_damaged": _lost("sample_datagrams", "damaged samples, dropped"),
     "samples_out_of_order": _lost("sample_datagrams", "earlier than the one before, dropped"),
     "poses": _read("poses for comparison"),
+    "poses_damaged": _lost("poses", "damaged lines of the file, dropped", apart=True),
     "poses_wrong_time": _lost("poses", "a stamp of another time, dropped", apart=True),
 }
 _SCANS = {
@@ -216,6 +219,9 @@ _SCANS = {
     "scans_wrong_time": _repaired(
         "scans", "a stamp of another time or none, the time of recording is used"
     ),
+    "rows": _read("rows of tables"),
+    "rows_damaged": _lost("rows", "damaged lines of the file, dropped", apart=True),
+    "rows_wrong_time": _lost("rows", "a time far from its neighbors, dropped", apart=True),
     "lines": _read("line scans"),
     "lines_wrong_time": _repaired(
         "lines", "a stamp of another time or none, the time of recording is used"

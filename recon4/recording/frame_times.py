@@ -18,10 +18,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.bounded import lines_limited
 from recon4.errors import CorruptFile
 from recon4.model.trajectory import Times
+from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
+from recon4.recording.report import ImportReport
+from recon4.recording.stamps import strays
 
 TIME_FILES = ("times.txt", "timestamps.txt")
 ASSUMED_NS = 100_000_000
@@ -46,7 +50,7 @@ class FrameTimes:
     source: str
     """Where they are from; empty = assumed."""
     remark: str = ""
-    """Why times that are there could not be used; empty = nothing to remark."""
+    """Why times that are there could not be used, or which are damaged; empty = nothing."""
 
 
 def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
@@ -71,35 +75,69 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
             continue
         if len(times) != len(files):
             remarks.append(f"{beside.name} has {len(times)} times for {len(files)} files, not used")
-        elif np.any(np.diff(times) <= 0):
-            row = int(np.flatnonzero(np.diff(times) <= 0)[0]) + 2
-            remarks.append(f"{beside.name}: time {row} is not later than the one before, not used")
-        else:
-            return FrameTimes(times, beside.name)
+            continue
+        sound = _in_order(times)
+        damaged = np.flatnonzero(~sound)
+        where = f"{beside.name}: time {damaged[0] + 1}" if len(damaged) else ""
+        if len(damaged) > MAX_RATIO * len(times):
+            remarks.append(f"{where} is not later than the one before, not used")
+            continue
+        if len(damaged):
+            repaired = f"{len(damaged)} of {len(times)} times are damaged, the first is {where}"
+            remarks.append(f"{repaired}: times between those of their neighbors are used")
+        return FrameTimes(_filled(times, sound), beside.name, "; ".join(remarks))
     assumed = np.arange(len(files), dtype=np.int64) * ASSUMED_NS
     return FrameTimes(assumed, "", "; ".join(remarks))
 
 
 def read_times(path: Path) -> Times:
-    """Read a text file with one time a line [ns], (N,).
+    """Read a text file with one time a line [ns], (N,); -1 where the line is damaged.
 
     Raises:
-        CorruptFile: If a line is neither a number nor a date.
+        CorruptFile: If too many lines are neither a number nor a date, naming the first.
     """
-    found = []
-    for number, line in enumerate(lines_limited(path, max_bytes=_MAX_BYTES), 1):
+    damage = DamagedLines(ImportReport(), "")
+    found: list[int] = []
+    unreadable = 0
+    lines = lines_limited(path, max_bytes=_MAX_BYTES, on_damaged=damage.add)
+    for number, line in enumerate(lines, 1):
         text = line.strip()
-        if not text or text.startswith("#"):
-            continue
-        t_ns = _number_ns(text)
-        if t_ns is None:
-            t_ns = _date_ns(text)
-        if t_ns is None:
-            raise CorruptFile(
-                f"{path.name}, line {number}: expected seconds or a date, got {text!r:.60}"
-            )
-        found.append(t_ns)
+        if damage.number > unreadable:
+            found.append(-1)
+        elif text and not text.startswith("#"):
+            t_ns = _time_ns(text)
+            found.append(-1 if t_ns is None else t_ns)
+            if t_ns is None:
+                what = f"expected seconds or a date, got {text!r:.60}"
+                damage.add(CorruptFile(f"{path.name}, line {number}: {what}"))
+        unreadable = damage.number
+    damage.check(len(found) - damage.number)
     return np.array(found, np.int64)
+
+
+def _time_ns(text: str) -> int | None:
+    t_ns = _number_ns(text)
+    return _date_ns(text) if t_ns is None else t_ns
+
+
+def _in_order(t_ns: Times) -> NDArray[np.bool_]:
+    """Which times are there and later than all sound ones before them."""
+    there = t_ns >= 0
+    there[there] = ~strays(t_ns[there])
+    before = np.concatenate([[-1], np.maximum.accumulate(np.where(there, t_ns, -1))[:-1]])
+    return np.asarray(there & (t_ns > before))
+
+
+def _filled(t_ns: Times, sound: NDArray[np.bool_]) -> Times:
+    """Times with those that are not sound taken from their neighbors; at an end, a step further."""
+    if sound.all():
+        return t_ns
+    rows, known = np.flatnonzero(sound), t_ns[sound]
+    filled = known[0] + np.interp(np.arange(len(t_ns)), rows, known - known[0]).astype(np.int64)
+    step = int(np.median(np.diff(known))) if len(known) > 1 else ASSUMED_NS
+    ahead = np.minimum(np.arange(len(t_ns)) - rows[0], 0)
+    behind = np.maximum(np.arange(len(t_ns)) - rows[-1], 0)
+    return np.where(sound, t_ns, filled + step * (ahead + behind)).astype(np.int64)
 
 
 def name_time_ns(stem: str) -> int | None:

@@ -246,21 +246,27 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
 
 
 def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> RecordingInfo:
-    hint = ""
+    hint, report = "", ImportReport()
     if kind is RecordingKind.IMU_CSV:
-        t_ns, what = read_imu_csv(path).t_ns, "IMU samples"
+        t_ns, what = read_imu_csv(path, report).t_ns, "IMU samples"
     elif kind is RecordingKind.GNSS_CSV:
-        t_ns, what = read_gnss_csv(path).t_ns, "GNSS samples"
+        t_ns, what = read_gnss_csv(path, report).t_ns, "GNSS samples"
     elif pose_format(path) == "tum":
-        walk = read_tum(path)
+        walk = read_tum(path, report)
         t_ns, what, hint = walk.t_ns, "poses (TUM)", tum_hint(walk)
     else:
         return replace(info, samples=("poses (KITTI)",), missing=("times of the poses",))
     first, last = int(t_ns.min()), int(t_ns.max())
     rate = f", {(len(t_ns) - 1) * 1e9 / (last - first):.1f} a second" if last > first else ""
     text = f"{len(t_ns)} {what}{rate}"
-    warnings = (hint,) if hint else ()
-    return replace(info, t_first_ns=first, t_last_ns=last, samples=(text,), warnings=warnings)
+    return replace(
+        info,
+        t_first_ns=first,
+        t_last_ns=last,
+        samples=(text,),
+        lost=tuple(report.lost()),
+        warnings=(hint,) if hint else (),
+    )
 
 
 # -- head

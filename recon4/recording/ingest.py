@@ -62,7 +62,7 @@ class _Samples:
         imu, gnss = sources.imu, sources.gnss
         return cls(
             LineStoreWriter(out),
-            imu=[read_imu_csv(imu)] if imu else [],
+            imu=[read_imu_csv(imu, report)] if imu else [],
             gnss=[read_gnss_csv(gnss, report)] if gnss else [],
         )
 

@@ -74,7 +74,7 @@ def laser_batches(path: Path, report: ImportReport, *, offset_ns: int = 0) -> It
     Raises:
         RecordingError: If the table cannot be read.
     """
-    blocks = read_columns(path, LASER_COLUMNS, _LASER_OPTIONAL)
+    blocks = read_columns(path, LASER_COLUMNS, _LASER_OPTIONAL, report=report)
     scans = sweeps(blocks, "beam_deg", number="scan", where=path.name)
     head = list(islice(scans, _GRID_SCANS))
     collector = _ScanRows(_BeamGrid.usual(head, path.name), report)

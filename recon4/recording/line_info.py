@@ -68,20 +68,20 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
     """
     tables = LineTables.of([path])
     has_head = "head_deg" in column_names(tables.lines)
-    seen = _read_lines(tables.lines)
+    report = ImportReport()
+    seen = _read_lines(tables.lines, report)
     rows = max(seen.rows, estimate_rows(tables.lines) if seen.rows >= _MOST_ROWS else 0)
     part = seen.rows / rows
     seconds = 1e-9 * (seen.t_last_ns - seen.t_first_ns)
     sensors: tuple[SensorInfo, ...] = (_profiler(tables.lines.name, seen, part),)
     missing, samples = _absent(tables, has_head), []
-    report = ImportReport()
     if tables.laser2d is not None:
         try:
             sensors += (_laser2d(tables.laser2d, report),)
         except RecordingError as error:
             report.warn(str(error))
     if tables.imu is not None:
-        imu_ns = read_imu_csv(tables.imu).t_ns
+        imu_ns = read_imu_csv(tables.imu, report).t_ns
         samples.append(f"{tables.imu.name}: {len(imu_ns)} IMU samples")
     return replace(
         info,
@@ -98,9 +98,9 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
     )
 
 
-def _read_lines(path: Path) -> _Seen:
+def _read_lines(path: Path, report: ImportReport) -> _Seen:
     seen = _Seen()
-    blocks = read_columns(path, LINE_COLUMNS, ("head_deg", "line"))
+    blocks = read_columns(path, LINE_COLUMNS, ("head_deg", "line"), report=report)
     for line in sweeps(blocks, "shot_deg", number="line", where=path.name):
         seen.add(line, path.name)
         if seen.rows >= _MOST_ROWS:

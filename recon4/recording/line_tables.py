@@ -105,7 +105,7 @@ class LineTableRecording:
             batches = laser_batches(self._tables.laser2d, self._report, offset_ns=offset_ns)
             yield from map(LaserUnit(self._report).in_meters, batches)
         if self._tables.imu is not None:
-            yield read_imu_csv(self._tables.imu)
+            yield read_imu_csv(self._tables.imu, self._report)
 
     def _lines(self) -> Iterator[LineItem]:
         sensor, path = self.rig.sensors[self._row], self._tables.lines
@@ -113,7 +113,7 @@ class LineTableRecording:
         lines = LineAssembly(self._row, self.rig, head, report=self._report)
         offset_ns = round(1e9 * sensor.time_offset_s)
         first_ns = last_ns = 0
-        blocks = read_columns(path, LINE_COLUMNS, _LINE_OPTIONAL)
+        blocks = read_columns(path, LINE_COLUMNS, _LINE_OPTIONAL, report=self._report)
         for line in sweeps(blocks, "shot_deg", number="line", where=path.name):
             t_ns = line[TIME] + offset_ns
             if np.any(np.diff(t_ns) < 0):

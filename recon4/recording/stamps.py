@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
 
 _OTHER_NS = 10_000_000_000
 """A stamp that is farther from its place among the others is wrong [ns]."""
 _CONFIRM = 3
+_STRAYS_RATIO = 0.05
 """Stamps in a row that must agree on another clock: fewer are wrong ones."""
 
 
@@ -25,10 +29,13 @@ class StampClock:
         known = [stamp - recorded for stamp, recorded in head if stamp > 0]
         self.offset_ns: int | None = int(np.median(known)) if known else None
         """Usual stamp minus time of recording; None = no stamp so far."""
+        self.was_set = False
+        """Whether the last stamp began another clock."""
         self._run, self._run_ns = 0, 0
 
     def is_sound(self, stamp_ns: int, recorded_ns: int) -> bool:
         """Whether a stamp is in its place; take them in order."""
+        self.was_set = False
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
@@ -37,9 +44,27 @@ class StampClock:
             self._run, self._run_ns = (self._run + 1 if again else 1), offset_ns
             if self._run < _CONFIRM:
                 return False
+            self.was_set = True
         self.offset_ns, self._run = offset_ns, 0
         return True
 
     def expected_ns(self, recorded_ns: int) -> int:
         """What the stamp of a message would be [ns]."""
         return recorded_ns + (self.offset_ns or 0)
+
+
+def strays(t_ns: Times) -> NDArray[np.bool_]:
+    """Which times are single ones of another time, far from their neighbors, (N,).
+
+    None if there are many: then the times are only out of order.
+
+    Args:
+        t_ns: Times in order of arrival [ns], (N,).
+    """
+    if len(t_ns) < _CONFIRM:
+        return np.zeros(len(t_ns), np.bool_)
+    t = t_ns.astype(np.float64)  # differences of damaged times may not fit into 64 bits
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(t, 2, mode="reflect"), 5)
+    step_ns = np.median(np.abs(np.diff(t)))
+    far = np.abs(t - np.median(around, axis=1)) > max(_OTHER_NS, 5.0 * step_ns)
+    return np.asarray(far & (np.count_nonzero(far) <= _STRAYS_RATIO * len(t_ns)))

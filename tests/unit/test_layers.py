@@ -81,7 +81,8 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},
     "recon4/evaluation": STAGE
     | {"recon4.mapping", "recon4.evaluation", "recon4.simulation", "recon4.recording.tables"}
-    | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "cloud_headers", "poses")},
+    | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "cloud_headers", "poses")}
+    | {"recon4.recording.report"},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},

@@ -5,7 +5,7 @@ from __future__ import annotations
 import zipfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
 from typing import IO, Any, BinaryIO, TypeVar
@@ -15,7 +15,10 @@ from numpy.typing import NDArray
 
 from recon4.bounded import check_file_size, lines_limited, open_regular
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
+from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import csv_header, csv_number, csv_separator, csv_time
+from recon4.recording.stamps import strays
 from recon4.store.arrays import ARRAY_HEADERS, DAMAGED, FREE_BYTES, MAX_RATIO
 
 TIME = "t_ns"
@@ -67,16 +70,25 @@ def estimate_rows(path: Path) -> int:
             raise CorruptFile(f"{path.name}: expected columns as arrays: {error}") from error
 
 
-def read_columns(path: Path, required: Sequence[str], optional: Sequence[str]) -> Iterator[Columns]:
+def read_columns(
+    path: Path,
+    required: Sequence[str],
+    optional: Sequence[str],
+    *,
+    report: ImportReport | None = None,
+) -> Iterator[Columns]:
     """Stream the rows of a table in blocks.
 
     Args:
         path: CSV with a header line, or NPZ with one array a column.
         required: Columns it must have; `TIME` among them.
         optional: Columns that are NaN where the file lacks them.
+        report: Gets the counts of rows, and of damaged lines of a CSV, which are dropped; None =
+            not wanted.
 
     Raises:
-        CorruptFile: Naming the line or array, what was expected and found.
+        CorruptFile: If an array is damaged, or too many lines are: naming the array or the first
+            line, what was expected and found.
         UnknownFormat: If a column is missing.
         EmptyRecording: If there is no row.
     """
@@ -91,9 +103,16 @@ def read_columns(path: Path, required: Sequence[str], optional: Sequence[str]) -
     with open_regular(path) as file:
         is_archive = file.read(2) == b"PK"
     rows = 0
-    for block in (_npz_blocks if is_archive else _csv_blocks)(path, wanted):
+    report = report or ImportReport()
+    blocks = _npz_blocks(path, wanted) if is_archive else _csv_blocks(path, wanted, report)
+    for block in blocks:
+        apart = strays(block[TIME])
+        if apart.any():
+            report.count("rows_wrong_time", int(np.count_nonzero(apart)))
+            block = {name: values[~apart] for name, values in block.items()}
         count = len(block[TIME])
         rows += count
+        report.count("rows", count)
         yield dict(block) | {name: np.full(count, np.nan) for name in absent}
     if not rows:
         raise EmptyRecording(f"{path.name}: no rows under the names of the columns")
@@ -195,22 +214,35 @@ def _values(column: _Column, count: int, where: str) -> NDArray[Any]:
 # -- CSV
 
 
-def _csv_blocks(path: Path, wanted: Sequence[str]) -> Iterator[Columns]:
+def _csv_blocks(path: Path, wanted: Sequence[str], report: ImportReport) -> Iterator[Columns]:
     with open_regular(path) as file:
         check_file_size(file, path, _MAX_CSV_BYTES)
-    lines = lines_limited(path, max_bytes=_MAX_CSV_BYTES, max_line_bytes=_MAX_LINE_BYTES)
+    damaged = DamagedLines(report, "rows_damaged")
+    lines = lines_limited(
+        path,
+        max_bytes=_MAX_CSV_BYTES,
+        max_line_bytes=_MAX_LINE_BYTES,
+        on_damaged=damaged.add,
+    )
     separator = csv_separator(next(lines, ""))
     header = csv_header(path)
     twice = sorted({name for name in wanted if header.count(name) > 1})
     if twice:
         raise UnknownFormat(f"{path.name}: line 1: expected each column once, got {twice} twice")
     numbered = ((k, line) for k, line in enumerate(lines, start=2) if line.strip(" \t\r\n;,"))
+    at = {name: header.index(name) for name in wanted}
+    rows = 0
     while block := list(islice(numbered, _BLOCK_ROWS)):
-        table = _CsvBlock(
-            path.name, block, [line.strip("\r\n").split(separator) for _, line in block]
-        )
-        table.check_width(len(header))
-        yield {name: table.column(name, header.index(name)) for name in wanted}
+        cells = [line.strip("\r\n").split(separator) for _, line in block]
+        table = _CsvBlock(path.name, [number for number, _ in block], cells, len(header))
+        try:
+            columns = table.columns(at)
+        except CorruptFile:
+            columns = table.sound_rows(at, damaged).columns(at)
+        rows += len(columns[TIME])
+        damaged.check(rows)
+        yield columns
+    damaged.finish(rows)
 
 
 @dataclass(frozen=True, slots=True)
@@ -219,20 +251,39 @@ class _CsvBlock:
 
     name: str
     """Of the file."""
-    lines: list[tuple[int, str]]
-    """With their numbers."""
+    numbers: list[int]
+    """Of the lines."""
     cells: list[list[str]]
+    width: int
+    """Number of cells that a line must have."""
 
-    def check_width(self, count: int) -> None:
-        """Refuse lines of another number of cells."""
-        for (number, _), row in zip(self.lines, self.cells, strict=True):
-            if len(row) != count:
+    def columns(self, at: Mapping[str, int]) -> Columns:
+        """Values of columns by name, from their places in a line.
+
+        Raises:
+            CorruptFile: Naming the first line that is damaged.
+        """
+        for number, row in zip(self.numbers, self.cells, strict=True):
+            if len(row) != self.width:
                 raise CorruptFile(
-                    f"{self.name}: line {number}: expected {count} cells, got {len(row)}"
+                    f"{self.name}: line {number}: expected {self.width} cells, got {len(row)}"
                 )
+        return {name: self._column(name, place) for name, place in at.items()}
 
-    def column(self, name: str, at: int) -> NDArray[Any]:
-        """Values of one column."""
+    def sound_rows(self, at: Mapping[str, int], damaged: DamagedLines) -> _CsvBlock:
+        """The block without its damaged lines."""
+        sound = []
+        for k, (number, cells) in enumerate(zip(self.numbers, self.cells, strict=True)):
+            try:
+                _CsvBlock(self.name, [number], [cells], self.width).columns(at)
+                sound.append(k)
+            except CorruptFile as error:
+                damaged.add(error)
+        return replace(
+            self, numbers=[self.numbers[k] for k in sound], cells=[self.cells[k] for k in sound]
+        )
+
+    def _column(self, name: str, at: int) -> NDArray[Any]:
         cells = [row[at] for row in self.cells]
         if name == TIME:
             return np.array(self._each(cells, csv_time), np.int64)
@@ -249,5 +300,5 @@ class _CsvBlock:
         """Parsed cell by cell, so that an error names the line."""
         return [
             parse(cell, f"{self.name}: line {number}")
-            for cell, (number, _) in zip(cells, self.lines, strict=True)
+            for cell, number in zip(cells, self.numbers, strict=True)
         ]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from array import array
 from collections.abc import Iterator
@@ -9,11 +10,15 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.bounded import lines_limited
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
+from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.report import ImportReport
+from recon4.recording.stamps import strays
 
 _SECONDS = re.compile(r"([-+]?)([0-9]{1,19})(?:\.([0-9]*))?")
 _ROTATION_TOLERANCE = 1e-2
@@ -35,32 +40,46 @@ _MAX_BYTES = 1 << 30
 _MAX_LINE_BYTES = 4096
 
 
-def read_tum(path: Path) -> Trajectory:
+def read_tum(path: Path, report: ImportReport | None = None) -> Trajectory:
     """Read lines of ``seconds x y z qx qy qz qw``; ``#`` starts a comment.
 
     A head line with the names of the columns, with or without ``#``, states their order. Times too
     large for seconds are milli-, micro- or nanoseconds. Times are read as text: a float64 cannot
     hold nanoseconds since 1970.
 
+    Args:
+        path: The file.
+        report: Gets the counts of poses and of damaged lines, which are dropped; None = not wanted.
+
     Raises:
-        CorruptFile: Naming the line and what is wrong with it; also for times that do not increase.
+        CorruptFile: If too many lines are damaged, naming the first and what is wrong with it; a
+            time that is not later than the one before is damage, too.
         EmptyRecording: If there is no pose.
     """
-    table = _Table.read(path, width=8, head=True)
-    values = table.values[:, _tum_order(path)]
-    unit_ns = _unit_ns(values[0, 0])
-    times = [_nanoseconds(text, unit_ns, table.where(row)) for row, text in enumerate(table.first)]
+    report = report or ImportReport()
+    damaged = DamagedLines(report, "poses_damaged")
+    table = _Table.read(path, damaged, width=8, head=True)
+    order = _tum_order(path)
+    unit_ns = _unit_ns(float(np.median(table.values[:, order[0]]))) if len(table.values) else 1
+    rows, times = [], []
+    for row, values in enumerate(table.values[:, order]):
+        where = table.where(row)
+        try:
+            _check_length(values[4:], where)
+            times.append(_nanoseconds(table.first[row], unit_ns, where))
+            rows.append(row)
+        except CorruptFile as error:
+            damaged.add(error)
     t_ns = np.array(times, np.int64)
-    backwards = np.flatnonzero(np.diff(t_ns) <= 0)
-    if len(backwards):
-        raise CorruptFile(f"{table.where(int(backwards[0]) + 1)}: times must increase")
-    norms = np.linalg.norm(values[:, 4:], axis=1)
-    bad = np.flatnonzero(np.abs(norms - 1.0) > _ROTATION_TOLERANCE)
-    if len(bad):
-        raise CorruptFile(
-            f"{table.where(int(bad[0]))}: a quaternion has length 1, got {norms[bad[0]]:.4g}"
-        )
-    return Trajectory(t_ns, SE3.from_quat(values[:, 4:], values[:, 1:4]))
+    kept = _in_order(t_ns)
+    for k in np.flatnonzero(~kept):
+        damaged.add(CorruptFile(f"{table.where(rows[k])}: times must increase"))
+    damaged.finish(int(np.count_nonzero(kept)))
+    report.count("poses", int(np.count_nonzero(kept)))
+    values = table.values[np.array(rows, np.intp)[kept]][:, order]
+    if not len(values):
+        raise EmptyRecording(f"{path.name}: no poses")
+    return Trajectory(t_ns[kept], SE3.from_quat(values[:, 4:], values[:, 1:4]))
 
 
 def tum_hint(trajectory: Trajectory) -> str:
@@ -91,28 +110,46 @@ def write_tum(path: Path, trajectory: Trajectory) -> None:
             file.write(f"{_seconds(t)} {place} {turn}\n")
 
 
-def read_kitti(path: Path, t_ns: Times) -> Trajectory:
+def read_kitti(path: Path, t_ns: Times, report: ImportReport | None = None) -> Trajectory:
     """Read lines of twelve numbers, the upper rows of 4x4 matrices.
 
     Args:
         path: The file.
         t_ns: The times that the file does not hold [ns], as many as lines.
+        report: As for `read_tum`.
 
     Raises:
-        CorruptFile: Naming the line and what is wrong with it.
+        CorruptFile: If too many lines are damaged, naming the first and what is wrong with it.
         EmptyRecording: If there is no pose.
     """
-    table = _Table.read(path, width=12)
-    values = table.values
-    if len(values) != len(t_ns):
-        raise CorruptFile(f"{path.name}: {len(t_ns)} poses expected, got {len(values)}")
-    matrices = values.reshape(-1, 3, 4)
+    report = report or ImportReport()
+    damaged = DamagedLines(report, "poses_damaged")
+    table = _Table.read(path, damaged, width=12)
+    if table.total != len(t_ns):
+        raise CorruptFile(f"{path.name}: {len(t_ns)} poses expected, got {table.total}")
+    matrices = table.values.reshape(-1, 3, 4)
     R = matrices[..., :3]
     off = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(1, 2))
-    bad = np.flatnonzero((off > _ROTATION_TOLERANCE) | (np.linalg.det(R) < 0.0))
-    if len(bad):
-        raise CorruptFile(f"{table.where(int(bad[0]))}: not a rotation")
-    return Trajectory(t_ns, SE3(R.copy(), matrices[..., 3].copy()))
+    sound = (off <= _ROTATION_TOLERANCE) & (np.linalg.det(R) > 0.0)
+    for row in np.flatnonzero(~sound):
+        damaged.add(CorruptFile(f"{table.where(int(row))}: not a rotation"))
+    damaged.finish(int(np.count_nonzero(sound)))
+    report.count("poses", int(np.count_nonzero(sound)))
+    times = t_ns[np.array(table.places, np.intp)[sound]]
+    return Trajectory(times, SE3(R[sound], matrices[sound, :, 3]))
+
+
+def _check_length(quaternion: Array, where: str) -> None:
+    norm = float(np.linalg.norm(quaternion))
+    if not abs(norm - 1.0) <= _ROTATION_TOLERANCE:
+        raise CorruptFile(f"{where}: a quaternion has length 1, got {norm:.4g}")
+
+
+def _in_order(t_ns: Times) -> NDArray[np.bool_]:
+    """Which times are later than all before them, without single ones far from their neighbors."""
+    kept = ~strays(t_ns)
+    before = np.concatenate([[np.iinfo(np.int64).min], np.where(kept, t_ns, -(2**63))[:-1]])
+    return np.asarray(kept & (t_ns > np.maximum.accumulate(before)))
 
 
 def write_kitti(path: Path, trajectory: Trajectory) -> None:
@@ -144,54 +181,65 @@ class _Table:
     """First word of each row, as text: a float64 cannot hold nanoseconds since 1970."""
     lines: array[int]
     """Line number of each row."""
+    places: array[int]
+    """Place of each row among all rows of the file, damaged ones too, from 0."""
+    total: int
+    """Number of all rows."""
     values: Array
     """(N, width), finite."""
 
     @staticmethod
-    def read(path: Path, *, width: int, head: bool = False) -> _Table:
+    def read(path: Path, damaged: DamagedLines, *, width: int, head: bool = False) -> _Table:
         """Rows of ``width`` numbers, separated by blanks or commas; ``#`` starts a comment.
 
         With ``head`` the first line may be names of columns.
 
         Raises:
-            CorruptFile: Naming the line, what was expected and what was found.
             EmptyRecording: If there is no row.
         """
         first: list[str] = []
-        lines, values = array("q"), array("d")
-        for number, cells in _cells(path):
+        lines, places, values = array("q"), array("q"), array("d")
+        for number, cells in _cells(path, damaged):
             if head and not first and _order_of(cells) is not None:
                 continue
             try:
-                if len(cells) != width or any("_" in cell for cell in cells):
-                    raise ValueError(f"{len(cells)} columns")
-                row = [float(cell) for cell in cells]
-            except ValueError as error:
-                raise CorruptFile(
-                    f"{path.name}: line {number}: expected {width} numbers, got {len(cells)}: "
-                    f"{' '.join(cells)[:80]!r}"
-                ) from error
+                values.extend(_numbers(cells, width, f"{path.name}: line {number}"))
+            except CorruptFile as error:
+                damaged.add(error)
+                continue
+            places.append(len(first) + damaged.number)
             first.append(cells[0])
             lines.append(number)
-            values.extend(row)
         if not first:
+            damaged.check(0)
             raise EmptyRecording(f"{path.name}: no poses")
-        table = _Table(path.name, first, lines, np.array(values).reshape(-1, width))
-        bad = np.flatnonzero(~np.all(np.isfinite(table.values), axis=1))
-        if len(bad):
-            raise CorruptFile(
-                f"{table.where(int(bad[0]))}: expected finite numbers, got one that is not"
-            )
-        return table
+        total = len(first) + damaged.number
+        return _Table(path.name, first, lines, places, total, np.array(values).reshape(-1, width))
 
     def where(self, row: int) -> str:
         """File and line of a row, for messages."""
         return f"{self.name}: line {self.lines[row]}"
 
 
-def _cells(path: Path) -> Iterator[tuple[int, list[str]]]:
+def _numbers(cells: list[str], width: int, where: str) -> list[float]:
+    try:
+        if len(cells) != width or any("_" in cell for cell in cells):
+            raise ValueError(f"{len(cells)} columns")
+        row = [float(cell) for cell in cells]
+    except ValueError as error:
+        raise CorruptFile(
+            f"{where}: expected {width} numbers, got {len(cells)}: {' '.join(cells)[:80]!r}"
+        ) from error
+    if not all(map(math.isfinite, row)):
+        raise CorruptFile(f"{where}: expected finite numbers, got one that is not")
+    return row
+
+
+def _cells(path: Path, damaged: DamagedLines) -> Iterator[tuple[int, list[str]]]:
     """Words of each line with its number, without comments and blank lines."""
-    lines = lines_limited(path, max_bytes=_MAX_BYTES, max_line_bytes=_MAX_LINE_BYTES)
+    lines = lines_limited(
+        path, max_bytes=_MAX_BYTES, max_line_bytes=_MAX_LINE_BYTES, on_damaged=damaged.add
+    )
     for number, line in enumerate(lines, start=1):
         cells = line.partition("#")[0].replace(",", " ").split()
         if cells:

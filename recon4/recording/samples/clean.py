@@ -15,6 +15,7 @@ from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured import imu_channels, with_forces, without_unmeasured
+from recon4.recording.stamps import strays
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
@@ -60,12 +61,14 @@ def clean_imu(
         offset_s: Added to their times [s].
         jumps_ns: How far the clock went back in the LiDARs' times: a jump of the IMU like one of
             these is the same jump, and is carried on by the same amount.
-        report: Gets the counts ``imu_nan``, ``imu_duplicate``, ``imu_unsorted``, ``imu_repeated``,
-            those of `with_forces`, and what was not measured (`imu_channels`).
+        report: Gets the counts ``imu_wrong_time``, ``imu_nan``, ``imu_duplicate``,
+            ``imu_unsorted``, ``imu_repeated``, those of `with_forces`, and what was not measured
+            (`imu_channels`).
 
     Raises:
         ConfigError: If the angular rates cannot be rad/s.
     """
+    imu = _without_strays(imu, "imu", report)
     channels = imu_channels(_carried_on(imu, jumps_ns, report))
     if channels.no_gyroscope:
         report.warn(f"the IMU has no gyroscope ({channels.no_gyroscope}): it is not used")
@@ -87,6 +90,7 @@ def clean_imu(
 
 def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> GnssSamples | None:
     """Sorted, unique and valid positions on the rig's clock; None when nothing is left."""
+    gnss = _without_strays(gnss, "gnss", report)
     place = np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad)
     place &= (np.abs(gnss.lat_rad) <= np.pi / 2) & (np.abs(gnss.lon_rad) <= 2 * np.pi)
     report.count("gnss_nan", int(np.count_nonzero(~place)))
@@ -124,6 +128,13 @@ def _build(record: Samples, column: Any) -> Samples:
 
 def _take(samples: Samples, rows: NDArray[Any]) -> Samples:
     return _build(samples, lambda name: getattr(samples, name)[rows])
+
+
+def _without_strays(samples: Samples, kind: str, report: ImportReport) -> Samples:
+    """The samples without single ones of another time."""
+    apart = strays(samples.t_ns)
+    report.count(f"{kind}_wrong_time", int(np.count_nonzero(apart)))
+    return _take(samples, ~apart) if apart.any() else samples
 
 
 def _sorted(samples: Samples, offset_s: float, kind: str, *, report: ImportReport) -> Samples:

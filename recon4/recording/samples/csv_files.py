@@ -6,6 +6,7 @@ import csv
 import math
 from array import array
 from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,7 @@ from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFo
 from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
 
@@ -30,15 +32,20 @@ MAX_BYTES = 1 << 30
 _MAX_LINE_BYTES = 16 * 1024
 
 
-def read_imu_csv(path: Path) -> ImuSamples:
+def read_imu_csv(path: Path, report: ImportReport | None = None) -> ImuSamples:
     """Read IMU samples; columns in any order, ``;`` and decimal commas welcome.
 
+    Args:
+        path: The file.
+        report: Gets the count of damaged lines, which are dropped; None = not wanted.
+
     Raises:
-        CorruptFile: Naming the line and column of what is no number.
+        CorruptFile: If too many lines are damaged, naming the first and what is no number in it.
         UnknownFormat: If a column is missing.
         EmptyRecording: If there is no line under the header.
     """
-    t_ns, columns = _read(path, IMU_HEADER)
+    damaged = DamagedLines(report or ImportReport(), "imu_lines_damaged")
+    t_ns, columns = _read(path, IMU_HEADER, damaged)
     gyro = np.column_stack([columns[name] for name in IMU_HEADER[1:4]])
     accel = np.column_stack([columns[name] for name in IMU_HEADER[4:]])
     return ImuSamples(t_ns, gyro, accel)
@@ -51,26 +58,21 @@ def read_gnss_csv(path: Path, report: ImportReport | None = None) -> GnssSamples
 
     Args:
         path: The file.
-        report: Gets the counts of heights of unknown kind; None = not wanted.
+        report: Gets the counts of damaged lines and of heights of unknown kind; None = not wanted.
 
     Raises:
         CorruptFile, UnknownFormat, EmptyRecording: As `read_imu_csv`.
     """
-    t_ns, columns = _read(path, (*GNSS_HEADER, *STATED_COLUMNS))
+    report = report or ImportReport()
+    damaged = DamagedLines(report, "gnss_lines_damaged")
+    t_ns, columns = _read(path, (*GNSS_HEADER, *STATED_COLUMNS), damaged)
     lat, lon = columns["lat_deg"], columns["lon_deg"]
-    outside = np.flatnonzero((np.abs(lat) > 90.0) | (np.abs(lon) > 360.0))
-    if len(outside):
-        row = int(outside[0])
-        raise CorruptFile(
-            f"{path.name}: sample {row + 1}: latitude and longitude must be in degrees, "
-            f"got {lat[row]:g}, {lon[row]:g}"
-        )
     quality = np.nan_to_num(columns["quality"], nan=float(GnssQuality.SINGLE))
     return GnssSamples(
         t_ns,
         np.deg2rad(lat),
         np.deg2rad(lon),
-        height_above_ellipsoid(columns, report or ImportReport()),
+        height_above_ellipsoid(columns, report),
         np.column_stack([columns[name] for name in GNSS_HEADER[4:7]]),
         np.clip(quality, 0, 255).astype(np.uint8),
         np.deg2rad(np.column_stack([columns[name] for name in GNSS_HEADER[8:]])),
@@ -94,23 +96,39 @@ def csv_separator(header: str) -> str:
     return next((sign for sign in _SEPARATORS if sign in header), ",")
 
 
-def _lines(path: Path, *, max_bytes: int = MAX_BYTES) -> Iterator[str]:
-    return lines_limited(path, max_bytes=max_bytes, max_line_bytes=_MAX_LINE_BYTES)
+def _lines(
+    path: Path, damaged: DamagedLines | None = None, *, max_bytes: int = MAX_BYTES
+) -> Iterator[str]:
+    return lines_limited(
+        path,
+        max_bytes=max_bytes,
+        max_line_bytes=_MAX_LINE_BYTES,
+        on_damaged=damaged.add if damaged else None,
+    )
 
 
-def _read(path: Path, known: tuple[str, ...]) -> tuple[Times, dict[str, Array]]:
+def _read(
+    path: Path, known: tuple[str, ...], damaged: DamagedLines
+) -> tuple[Times, dict[str, Array]]:
     """Times and columns; a column that is not in the file is NaN."""
-    lines = _lines(path)
-    first = next(lines, "")
+    first = next(_lines(path), "")
+    lines = islice(_lines(path, damaged), 1, None)
     header = _checked_header(first, known, path.name)
     at = [header.index(name) if name in header else -1 for name in known]
     times, values = array("q"), array("d")
-    for number, row in _rows(lines, csv_separator(first), path.name):
+    for number, line in enumerate(lines, start=2):
         where = f"{path.name}: line {number}"
-        if len(row) != len(header):
-            raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
-        times.append(csv_time(row[at[0]], where))
-        values.extend(csv_number(row[k], where) if k >= 0 else math.nan for k in at[1:])
+        try:
+            row = _cells(line, csv_separator(first), where)
+            if not any(row):
+                continue
+            t_ns, numbers = _sample(row, header, at, where=where)
+        except CorruptFile as error:
+            damaged.add(error)
+            continue
+        times.append(t_ns)
+        values.extend(numbers)
+    damaged.finish(len(times))
     if not times:
         raise EmptyRecording(f"{path.name}: no samples under the header")
     table = np.array(values, np.float64).reshape(len(times), -1)
@@ -132,15 +150,33 @@ def _checked_header(line: str, known: tuple[str, ...], name: str) -> list[str]:
     return header
 
 
-def _rows(lines: Iterator[str], separator: str, name: str) -> Iterator[tuple[int, list[str]]]:
-    """Cells of each line that is not blank, with its number; a sample never spans lines."""
-    for number, line in enumerate(lines, start=2):
-        try:
-            row = next(csv.reader([line.rstrip("\r\n")], delimiter=separator), [])
-        except csv.Error as error:
-            raise CorruptFile(f"{name}: line {number}: expected cells of a CSV: {error}") from error
-        if any(row):
-            yield number, row
+def _cells(line: str, separator: str, where: str) -> list[str]:
+    """Cells of a line; a sample never spans lines."""
+    try:
+        return next(csv.reader([line.rstrip("\r\n")], delimiter=separator), [])
+    except csv.Error as error:
+        raise CorruptFile(f"{where}: expected cells of a CSV: {error}") from error
+
+
+def _sample(
+    row: list[str], header: list[str], at: list[int], *, where: str
+) -> tuple[int, list[float]]:
+    """Time and numbers of a line whose columns stand at the places ``at``; -1 = not in the file."""
+    if len(row) != len(header):
+        raise CorruptFile(f"{where}: expected {len(header)} cells, got {len(row)}")
+    values = dict(zip(header, row, strict=True))
+    if "lat_deg" in values:
+        _check_place(values["lat_deg"], values["lon_deg"], where)
+    t_ns = csv_time(row[at[0]], where)
+    return t_ns, [csv_number(row[k], where) if k >= 0 else math.nan for k in at[1:]]
+
+
+def _check_place(latitude: str, longitude: str, where: str) -> None:
+    lat, lon = csv_number(latitude, where), csv_number(longitude, where)
+    if abs(lat) > 90.0 or abs(lon) > 360.0:
+        raise CorruptFile(
+            f"{where}: latitude and longitude must be in degrees, got {lat:g}, {lon:g}"
+        )
 
 
 def csv_time(text: str, where: str) -> int:

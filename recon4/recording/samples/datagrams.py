@@ -32,6 +32,18 @@ _GST_LASTS_NS = 3 * SECOND_NS
 _GNSS_KEYS = (*GNSS_HEADER, *STATED_COLUMNS)
 
 
+@dataclass(frozen=True, slots=True)
+class _Sample:
+    """A decoded sample."""
+
+    kind: str
+    """``imu`` or ``gnss``."""
+    t_ns: int
+    values: list[float]
+    lag_ns: int | None
+    """Time of arrival minus stamp [ns]; None = it has no stamp of its own."""
+
+
 @dataclass(slots=True)
 class SampleDecoder:
     """Converts datagrams of one recording to samples in order of time; counts the others."""
@@ -58,19 +70,49 @@ class SampleDecoder:
         times: dict[str, list[int]] = {"imu": [], "gnss": []}
         ahead_ns = self.report.utc_ahead_ns
         self.report.count("sample_datagrams", len(texts))
-        for arrival_ns, text in zip(t_arrival_ns, texts, strict=True):
-            for kind, t_ns, values in self._lines(arrival_ns + ahead_ns, text):
-                if t_ns <= self._last_ns.get(kind, -1):
-                    self.report.count("samples_out_of_order")
-                    continue
-                self._last_ns[kind] = t_ns
-                times[kind].append(t_ns)
-                rows[kind].append(values)
+        samples = [
+            sample
+            for arrival_ns, text in zip(t_arrival_ns, texts, strict=True)
+            for sample in self._lines(arrival_ns + ahead_ns, text)
+        ]
+        self._learn_clocks(samples)
+        for sample in samples:
+            if not self._is_of_the_clock(sample):
+                self.report.count("samples_damaged")
+            elif sample.t_ns <= self._last_ns.get(sample.kind, -1):
+                self.report.count("samples_out_of_order")
+            else:
+                self._last_ns[sample.kind] = sample.t_ns
+                times[sample.kind].append(sample.t_ns)
+                rows[sample.kind].append(sample.values)
         for kind in rows:
             self.report.count(f"{kind}_samples", len(rows[kind]))
         return _imu(times["imu"], rows["imu"]), _gnss(times["gnss"], rows["gnss"])
 
-    def _lines(self, arrival_ns: int, text: bytes) -> Iterator[tuple[str, int, list[float]]]:
+    def _learn_clocks(self, samples: list[_Sample]) -> None:
+        """Usual lag of the first stamps: the first one alone may be wrong."""
+        for kind in {sample.kind for sample in samples} - self._stamps.keys():
+            head = [
+                (sample.t_ns, sample.t_ns + sample.lag_ns)
+                for sample in samples
+                if sample.kind == kind and sample.lag_ns is not None
+            ]
+            if head:
+                self._stamps[kind] = StampClock(head[:3] if len(head) >= 3 else head[:1])
+
+    def _is_of_the_clock(self, sample: _Sample) -> bool:
+        """Whether the stamp of a sample is in its place among the others."""
+        if sample.lag_ns is None:
+            return True
+        clock = self._stamps[sample.kind]
+        if not clock.is_sound(sample.t_ns, sample.t_ns + sample.lag_ns):
+            return False
+        if clock.was_set:
+            self._last_ns.pop(sample.kind, None)
+        self.report.note_lag(sample.kind.upper(), sample.lag_ns)
+        return True
+
+    def _lines(self, arrival_ns: int, text: bytes) -> Iterator[_Sample]:
         for line in text.splitlines():
             line = line.strip(b"\0 \t")
             if line.startswith(b"$"):
@@ -78,7 +120,7 @@ class SampleDecoder:
             elif line:
                 yield from self._json(arrival_ns, line)
 
-    def _json(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:
+    def _json(self, arrival_ns: int, line: bytes) -> Iterator[_Sample]:
         try:
             record = json.loads(line)
             t_ns = int(record.get("t_ns", arrival_ns))
@@ -95,14 +137,9 @@ class SampleDecoder:
             columns = {name: np.array([x]) for name, x in zip(names[1:], values, strict=True)}
             values[2] = float(height_above_ellipsoid(columns, self.report)[0])
             values = values[: len(GNSS_HEADER) - 1]
-        if "t_ns" in record:
-            if not self._stamps.setdefault(kind, StampClock()).is_sound(t_ns, arrival_ns):
-                self.report.count("samples_damaged")
-                return
-            self.report.note_lag(kind.upper(), arrival_ns - t_ns)
-        yield kind, t_ns, values
+        yield _Sample(kind, t_ns, values, arrival_ns - t_ns if "t_ns" in record else None)
 
-    def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[tuple[str, int, list[float]]]:
+    def _nmea(self, arrival_ns: int, line: bytes) -> Iterator[_Sample]:
         if line[3:6] == b"GST":
             self._sd = arrival_ns, _gst(line)
             return
@@ -118,7 +155,8 @@ class SampleDecoder:
         fresh = arrival_ns - self._sd[0] < _GST_LASTS_NS
         sd = self._sd[1] if fresh else [math.nan] * 3
         place = [fix.lat_deg, fix.lon_deg, fix.height_m]
-        yield "gnss", t_ns, [*place, *sd, float(fix.quality), *([math.nan] * 3)]
+        values = [*place, *sd, float(fix.quality), *([math.nan] * 3)]
+        yield _Sample("gnss", t_ns, values, None)
 
 
 def _gst(line: bytes) -> list[float]:

@@ -112,7 +112,7 @@ def test_gnss_positions_are_read_in_radians(tmp_path):
 
 
 def test_a_latitude_that_is_none_is_refused(tmp_path):
-    with pytest.raises(CorruptFile, match="sample 1: latitude and longitude must be in degrees"):
+    with pytest.raises(CorruptFile, match="line 2: latitude and longitude must be in degrees"):
         read_gnss_csv(write(tmp_path / "g.csv", f"t_ns,lat_deg,lon_deg\n{T0},5551234.5,14\n"))
 
 

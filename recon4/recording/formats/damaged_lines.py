@@ -1,0 +1,55 @@
+"""Single damaged lines of a text file: dropped and counted, up to a limit."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.errors import CorruptFile, Recon4Error
+from recon4.recording.report import ImportReport
+
+MAX_RATIO = 0.05
+"""A file with more damaged lines than this is something else than it seems, and is refused."""
+
+
+@dataclass(slots=True)
+class DamagedLines:
+    """The damaged lines of one file."""
+
+    report: ImportReport
+    count: str
+    """Name under which they are counted."""
+    number: int = 0
+    first: str = ""
+    """The first one: file, line, what was expected and found."""
+
+    def add(self, error: Recon4Error) -> None:
+        """Drop a line."""
+        self.first = self.first or str(error)
+        self.number += 1
+
+    def check(self, sound: int) -> None:
+        """Refuse the file if too many of its lines are damaged.
+
+        Args:
+            sound: Number of the other lines so far.
+
+        Raises:
+            CorruptFile: With the first damaged line, and how many there are.
+        """
+        total = sound + self.number
+        if self.number > MAX_RATIO * total:
+            raise CorruptFile(
+                f"{self.first} ({self.number} of {total} lines are damaged; "
+                f"up to {100 * MAX_RATIO:.0f} % are dropped)"
+            )
+
+    def finish(self, sound: int) -> None:
+        """Check, and report what was dropped.
+
+        Raises:
+            CorruptFile: As `check`.
+        """
+        self.check(sound)
+        if self.number:
+            self.report.count(self.count, self.number)
+            self.report.details[self.count] = f"first: {self.first}"
