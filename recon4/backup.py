@@ -24,19 +24,16 @@ from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
 
-import msgspec
-
-from recon4.errors import ConfigError, StoreError
+from recon4.backup_listing import FORMAT, BackedUpFile, BackupListing, Entries, newest, read_list
+from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.progress import Progress, track
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
 from recon4.store.atomic import atomic_file, fsync, raise_if_full, write_json
 from recon4.store.hashing import hash_file, hash_json
-from recon4.store.json_files import read_object
 from recon4.store.project import is_project
 from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_text
 from recon4.store.sqlite_files import connect, connect_read_only
 
-FORMAT = 1
 SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls", "metrics.token", "backups/access-")
 """Beginnings of the names of files that are secret, or say whom the server trusts: keys, password
 hashes, sessions, the token of the metrics; also copies of them and damaged ones. Backed up and
@@ -44,35 +41,7 @@ restored only on request, so that a foreign backup makes no key and no token val
 _DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
 _TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
-_LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
 _MAX_TRIES = 5
-
-
-@dataclass(frozen=True, slots=True)
-class BackedUpFile:
-    """A file in the listing of a backup."""
-
-    bytes: int
-    sha256: str
-    mode: int
-    """Permissions."""
-
-
-Entries = dict[str, BackedUpFile]
-"""By relative name."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class BackupListing:
-    """The listing of a backup; its file also has the SHA-256 of these fields."""
-
-    format: int
-    made: str
-    """UTC, as in its name."""
-    with_keys: bool
-    left_out: list[str]
-    """Files that changed while they were copied."""
-    files: Entries
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,7 +105,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
 
     Raises:
         ConfigError: If ``root`` is not empty, or keys are requested and missing.
-        StoreError: If the backup is damaged, or the folder cannot be written.
+        StoreError: If the backup is damaged, or the folder cannot be written (`NoSpace`: full).
     """
     path = newest(backup)
     listing = read_list(path)
@@ -145,6 +114,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     if with_keys and not listing.with_keys:
         raise ConfigError(f"{path.name} was made without keys: leave out --with-keys")
     files = {n: e for n, e in listing.files.items() if with_keys or not _is_secret(n)}
+    _check_room(root, sum(entry.bytes for entry in files.values()))
     check_backup(path, progress)
     building = root.with_name(f".tmp-restore-{root.name}-{os.getpid()}")
     try:
@@ -161,39 +131,14 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     return len(files)
 
 
-def newest(backup: Path) -> Path:
-    """The listing at a path: the file itself, or the newest one in a folder.
-
-    Raises:
-        StoreError: If there is none.
-    """
-    if backup.is_file():
-        return backup
-    lists = sorted(p for p in backup.glob("*.json") if _LIST.fullmatch(p.name))
-    if not lists:
-        raise StoreError(f"{backup} holds no backup: expected files named by time, .json")
-    return lists[-1]
-
-
-def read_list(path: Path) -> BackupListing:
-    """Read the listing of a backup.
-
-    Raises:
-        StoreError: If it is damaged, has another format, or a name leads outside the backup.
-    """
-    record = read_object(path, max_bytes=1 << 30)
-    body = {name: value for name, value in record.items() if name != "sha256"}
-    if record.get("format") != FORMAT or record.get("sha256") != hash_json(body):
-        raise StoreError(f"{path} is not the listing of a backup, or was changed")
-    try:
-        listing = msgspec.convert(body, BackupListing)
-    except msgspec.ValidationError as error:
-        raise StoreError(f"{path} is not the listing of a backup: {error}") from error
-    for name in listing.files:
-        parts = PurePosixPath(name).parts
-        if name.startswith("/") or ".." in parts or not parts:
-            raise StoreError(f"{path}: the name {name[:100]!r} leads outside the backup")
-    return listing
+def _check_room(root: Path, needed: int) -> None:
+    """Refuse before terabytes are read that cannot be written, as of a sparse file."""
+    there = next(folder for folder in (root, *root.absolute().parents) if folder.is_dir())
+    free = shutil.disk_usage(there).free
+    if needed > free:
+        raise NoSpace(
+            f"{root}: the backup has {needed / 1e9:.1f} GB, the disk has {free / 1e9:.1f} GB free"
+        )
 
 
 def check_backup(path: Path, progress: Progress) -> None:
@@ -203,9 +148,11 @@ def check_backup(path: Path, progress: Progress) -> None:
         StoreError: If a file is missing or has other bytes.
     """
     objects = path.parent / "objects"
-    hashes = {entry.sha256 for entry in read_list(path).files.values()}
-    for sha256 in track(sorted(hashes), progress, what="compare", unit="files", total=len(hashes)):
+    sizes = {entry.sha256: entry.bytes for entry in read_list(path).files.values()}
+    for sha256 in track(sorted(sizes), progress, what="compare", unit="files", total=len(sizes)):
         place = _place(objects, sha256)
+        if place.is_file() and (found := place.stat().st_size) != sizes[sha256]:
+            raise StoreError(f"{place}: expected {sizes[sha256]} bytes, got {found}")
         got = hash_file(place) if place.is_file() else "no file"
         if got != sha256:
             raise StoreError(f"{place}: expected SHA-256 {sha256}, got {got}")
@@ -380,7 +327,12 @@ def _put(objects: Path, building: Path, name: str, *, entry: BackedUpFile) -> No
         shutil.copyfile(_place(objects, sha256), temporary)
         if (got := hash_file(temporary)) != sha256:
             raise StoreError(f"{name}: expected SHA-256 {sha256}, got {got}")
-        temporary.chmod(entry.mode & 0o777)
+        temporary.chmod(_restored_mode(name, entry.mode))
+
+
+def _restored_mode(name: str, mode: int) -> int:
+    """Permissions of a restored file: its owner reads it, others never write it, none runs it."""
+    return 0o400 | (mode & (0o600 if _is_secret(name) else 0o644))
 
 
 def to_json(found: BackedUp) -> dict[str, object]:

@@ -141,6 +141,7 @@ def add_job(new: NewJob, server: ServerParts, request: Request) -> JobView:
         project = new.project or server.projects.free_folder_name(
             new.title, server.jobs.has_project
         )
+        server.projects.refuse_reserved(project)
         if new.only_new:
             server.projects.refuse_taken(project)
         if new.clone_of and new.clone_of != project:

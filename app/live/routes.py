@@ -135,6 +135,8 @@ async def start_capture(
         file = await run_in_threadpool(server.projects.importable, new.rig)
         await check_rig_file(server.compute_pool, caller, file)
         rig = str(file)
+    if new.project:
+        await run_in_threadpool(server.projects.refuse_taken, new.project)
     project = new.project or await run_in_threadpool(
         server.projects.free_folder_name, new.place, server.jobs.has_project
     )

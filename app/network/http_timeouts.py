@@ -35,7 +35,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         self._timer: asyncio.TimerHandle | None = None
         self._in_head = True
         self._head_bytes = self._body_bytes = 0
-        self._reading_paused = False
+        self._reading_paused = self._head_too_long = False
 
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Start the deadline of the first head."""
@@ -66,6 +66,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         """Wait for the body."""
         size = sum(len(name) + len(value) for name, value in self.headers) + len(self.url)
         if size > MAX_HEAD_BYTES:
+            self._head_too_long = True
             raise ValueError("head too long")
         self._in_head = False
         self._head_bytes = self._body_bytes = 0
@@ -118,7 +119,10 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         )
 
     def send_400_response(self, msg: str) -> None:
-        """Respond to a message that is not HTTP, and count it."""
+        """Respond to a message that is not HTTP, or whose head is too long, and count it."""
+        if self._head_too_long:
+            self._reject(b"431 Request Header Fields Too Large", "head_too_long")
+            return
         self._table.counts.rejected["malformed"] += 1
         super().send_400_response(msg)
 

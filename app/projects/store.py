@@ -36,6 +36,8 @@ from recon4.store.ledger import FinishedStage as StageRow
 from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
 
+RESERVED = frozenset({"recordings", "rigs"})
+"""Folders of uploads and of rigs, beside those of projects."""
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 MAX_PROBLEM = 400
 """A longer description of a project's problem is cut [characters]."""
@@ -85,11 +87,21 @@ class ProjectStore:
         Raises:
             Conflict: If there is a project or another folder of that name.
         """
+        self.refuse_reserved(name)
         if (self._root / name).exists():
             raise Conflict(
                 f"there is a project or folder {name} already: choose another name, or run the "
                 "project again from its own page"
             )
+
+    def refuse_reserved(self, name: str) -> None:
+        """Check that a project of a name may exist; one of an earlier version may stay.
+
+        Raises:
+            Conflict: If the server itself uses the folder of that name.
+        """
+        if name in RESERVED and not is_project(self._root / name):
+            raise Conflict(f"{name} is a folder of the server: choose another name")
 
     def free_folder_name(self, title: str, is_promised: Callable[[str], bool]) -> str:
         """A folder name for a new project of this title.
@@ -99,7 +111,8 @@ class ProjectStore:
             is_promised: Whether a project that does not exist yet will have a name.
         """
         return free_folder_name(
-            title, lambda name: (self._root / name).exists() or is_promised(name)
+            title,
+            lambda name: name in RESERVED or (self._root / name).exists() or is_promised(name),
         )
 
     def result(self, project_id: str, name: str) -> Path:

@@ -113,6 +113,20 @@ def test_a_long_head_is_refused(server, sent):
     assert answer == b"" or answer.split()[1] in (b"400", b"431")
 
 
+@pytest.mark.parametrize("size", [60_000, 65_000, 66_000, 69_000, 75_000, 89_000, 120_000])
+@pytest.mark.parametrize("in_one", [True, False])
+def test_a_head_of_any_length_above_the_limit_gets_the_same_answer(server, size, in_one):
+    sent = head("GET", "/healthz", f"X: {'x' * (size - 100)}")
+    parts = [sent] if in_one else [sent[k : k + 1000] for k in range(0, len(sent), 1000)]
+    with opened(server) as connection:
+        with contextlib.suppress(OSError):
+            for part in parts:
+                connection.sendall(part)
+        answer = connection.recv(100)
+
+    assert answer.split()[1] == (b"200" if size < 1 << 16 else b"431")
+
+
 def test_an_event_stream_may_be_quiet_for_longer(server):
     with httpx.stream("GET", f"{server.url}/api/events", timeout=2.0) as stream:
         with contextlib.suppress(httpx.ReadTimeout):

@@ -139,3 +139,16 @@ def test_projects_that_the_server_cannot_name_are_announced(tmp_path, project):
     assert listed == ["fine"]
     assert "Brno, Veveří 2. patro, caf<U+DCE9> (2 in all)" in notice
     assert "rename the folder" in notice
+
+
+@pytest.mark.parametrize("name", ["rigs", "recordings"])
+def test_a_project_cannot_have_the_name_of_a_folder_of_the_server(tmp_path, name):
+    (tmp_path / "walk.pcap").write_bytes(b"")
+    with server_thread(tmp_path) as server:
+        recording = str(tmp_path / "walk.pcap")
+        job = server.post("/api/jobs", json={"project": name, "recordings": [recording]})
+        capture = server.post("/api/live", json={"project": name, "rig": "single-vlp16"})
+
+    for answer in (job, capture):
+        assert answer.status_code == 409
+        assert f"{name} is a folder of the server" in answer.json()["detail"]

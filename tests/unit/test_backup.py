@@ -7,7 +7,8 @@ import threading
 
 import pytest
 
-from recon4.backup import back_up, newest, read_list, restore
+from recon4.backup import back_up, restore
+from recon4.backup_listing import newest, read_list
 from recon4.cli.main import main
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Silent
