@@ -325,6 +325,8 @@ def _run(arguments: list[str]) -> tuple[int, str]:
         return _INTERRUPTED, str(stop)
     except Recon4Error as error:
         return 1, str(error)
+    except MemoryError as error:
+        return 1, f"not enough memory: a command may use 70 % of this computer's ({error})"
     except typer.TyperException as error:
         context = getattr(error, "ctx", None)
         command = context.command_path if context else "recon4"
