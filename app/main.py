@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import signal
+import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
 from functools import cache
@@ -64,6 +65,7 @@ from app.projects.thumbnail import Thumbnails
 from app.projects.trash import Trash
 from app.review import routes as review_routes
 from app.review.checks import ApprovalChecks
+from app.review.records import record_all
 from app.review.store import Reviews
 from app.rigs import routes as rig_routes
 from app.rigs.calibrations import Calibrations
@@ -81,7 +83,9 @@ from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
 from recon4 import __version__
 from recon4.errors import StoreError
+from recon4.review.newest_approval import judging_folders
 from recon4.review.trusted_keys import STATE, record_own_key
+from recon4.store.atomic import make_folders
 from recon4.verify import open_state, seal_state
 
 log = logging.getLogger(__name__)
@@ -207,6 +211,8 @@ async def _running(app: FastAPI, settings: ServerSettings) -> AsyncIterator[None
     make_state(settings)
     for problem in open_state(settings.state):
         log.error("%s: %s; recon4 verify %s lists all", STATE, problem, settings.root)
+    for folder in judging_folders(settings.state):  # before children that may read them
+        make_folders(folder, 0o700)
     record_own_key(settings.state)
     try:
         parts = app.state.parts = _open_parts(settings)
@@ -269,8 +275,17 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
 
 
 async def _maintain(parts: ServerParts) -> None:
-    copies = access_copies(parts.settings.state)
-    await maintain(parts.jobs, parts.uploads, parts.trash, slices=parts.slices, people=copies)
+    copies, settings = access_copies(parts.settings.state), parts.settings
+    await maintain(
+        (
+            lambda: record_all(settings.root, settings.state),
+            parts.jobs.back_up,
+            lambda: copies.make(renew=True),
+            lambda: parts.uploads.sweep(time.time()),
+            lambda: parts.trash.sweep(time.time()),
+            lambda: parts.slices.exports.sweep(time.time()),
+        )
+    )
 
 
 async def _close_parts(parts: ServerParts) -> None:

@@ -1,21 +1,16 @@
-"""Periodic maintenance: sweep uploads and trash, back up the queue, rotate logs."""
+"""Periodic maintenance: tasks of every hour, rotation of logs."""
 
 from __future__ import annotations
 
 import asyncio
 import logging
-import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
 from app.jobs.model import JobState
 from app.jobs.store import JobStore
 from app.live.current_capture import CurrentCapture
 from app.logs import rotate_grown
-from app.projects.trash import Trash
-from app.slices.store import Slices
-from app.state_copies import StateCopies
-from app.uploads.store import UploadStore
 
 log = logging.getLogger(__name__)
 
@@ -24,18 +19,10 @@ LOG_ROTATION_INTERVAL_S = 20.0
 """Interval of checking the logs of workers, viewers and captures [s]."""
 
 
-async def maintain(
-    jobs: JobStore, uploads: UploadStore, trash: Trash, *, slices: Slices, people: StateCopies
-) -> None:
-    """Sweep and back up every hour, until cancelled; a failure is logged and retried."""
+async def maintain(tasks: Sequence[Callable[[], object]]) -> None:
+    """Run the tasks every hour, until cancelled; a failure is logged and retried."""
     while True:
-        for task in (
-            jobs.back_up,
-            lambda: people.make(renew=True),
-            lambda: uploads.sweep(time.time()),
-            lambda: trash.sweep(time.time()),
-            lambda: slices.exports.sweep(time.time()),
-        ):
+        for task in tasks:
             try:
                 await asyncio.to_thread(task)
             except Exception:

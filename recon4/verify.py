@@ -10,6 +10,7 @@ from pathlib import Path
 from recon4.errors import Recon4Error, StoreError
 from recon4.progress import Progress
 from recon4.review.audit import audit_review
+from recon4.review.newest_approval import APPROVALS, accept_as_it_is
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
 from recon4.store.audit import audit, audit_seals
 from recon4.store.hashing import files_below
@@ -32,6 +33,7 @@ STATE_FILES = (
     "metrics.token",
     SIGNING_KEY,
     TRUSTED_KEYS,
+    APPROVALS,
     "tls",
     "uploads",
     "backups",
@@ -173,8 +175,13 @@ def _seals_hold(state: Path) -> bool:
     return True
 
 
-def accept(path: Path) -> None:
+def accept(path: Path) -> Path | None:
     """Seal the files of a project, or of a server's state, as they are now.
+
+    A project that is older than what its server approved is taken as it is.
+
+    Returns:
+        The state of the server if its record of that approval was changed.
 
     Raises:
         StoreError: If it is neither a project nor a folder of projects.
@@ -182,13 +189,14 @@ def accept(path: Path) -> None:
     if (path / STATE).is_dir() and not is_project(path):
         (path / STATE / SEALS).unlink(missing_ok=True)
         seal_state(path / STATE)
-        return
+        return None
     if not is_project(path):
         raise StoreError(f"{path} is not a recon4 project")
     (path / SEALS).unlink(missing_ok=True)
     slices = [f"slices/{name}" for name in files_below(path / "slices")]
     journal = ["decisions.sqlite"] if (path / "decisions.sqlite").exists() else []
     adopt(path, [*loose_files(path), *journal, *slices])
+    return accept_as_it_is(path)
 
 
 def _is_small_file(path: Path) -> bool:

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from app.jobs.compiling import compile_kernels_once
 from app.jobs.folder import JobFolder
-from recon4.review.trusted_keys import STATE, TRUSTED_KEYS
+from recon4.review.newest_approval import judging_folders
+from recon4.review.trusted_keys import STATE
 from recon4.sandbox import Confinement, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
@@ -42,7 +43,7 @@ def worker_policy(folder: JobFolder) -> Policy:
     times = [path.parent / "times.txt" for path in given if path.is_dir()]
     free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
     return Policy(
-        read=(*given, *times, project.parent / STATE / TRUSTED_KEYS),
+        read=(*given, *times, *judging_folders(project.parent / STATE)),
         write=(project, folder.path),
         temporary=folder.temporary,
         memory_bytes=limits.memory_bytes,

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from recon4.review.approved import VERSIONS
+from recon4.review.newest_approval import record_path
 from recon4.review.trusted_keys import STATE, TRUSTED_KEYS
 
 Stamp = tuple[int | None, ...]
@@ -18,9 +19,11 @@ def stamp_of(folder: Path) -> Stamp:
     The first three say when it was updated, the others whether its approval was.
     """
     names = ("project.json", "summary.json", "artifacts", "decisions.sqlite", VERSIONS)
-    trusted = folder.parent / STATE / TRUSTED_KEYS
+    state = folder.parent / STATE
+    judging = (state / TRUSTED_KEYS, record_path(state, folder.name))
     approvals = sorted(folder.glob(f"{VERSIONS}/*/approval.json"))
-    return tuple(_changed_ns(path) for path in (*(folder / n for n in names), trusted, *approvals))
+    paths = (*(folder / n for n in names), *judging, *approvals)
+    return tuple(_changed_ns(path) for path in paths)
 
 
 def _changed_ns(path: Path) -> int | None:

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Literal
 
 from app.errors import Conflict, NotFound
+from recon4.review.newest_approval import move_record, record_path
 from recon4.store.atomic import make_folders
 
 NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<timestamp>\d{8}T\d{12})")
@@ -52,6 +53,7 @@ class Trash:
         """
         root = root.resolve()
         self._folder = folder
+        self._state = folder.parent
         self._homes = {folder: root, folder / RECORDINGS: root / RECORDINGS}
         """Folder of the trash -> where its entries were."""
         self._kept_s = kept_s
@@ -61,6 +63,8 @@ class Trash:
         folder = next(kept for kept, home in self._homes.items() if home == deleted.parent)
         make_folders(folder)
         target = folder / f"{deleted.name}@{datetime.now(UTC).strftime(TIMESTAMP)}"
+        if folder == self._folder:  # first: a new project of that name has no record
+            move_record(self._state, deleted.name, target.name)
         deleted.rename(target)
         _fsync(folder)
         _fsync(self._homes[folder])
@@ -97,6 +101,8 @@ class Trash:
             )
         make_folders(home)
         path.rename(home / found.project)
+        if path.parent == self._folder:
+            move_record(self._state, path.name, found.project)
         _fsync(home)
         return found.project
 
@@ -126,6 +132,8 @@ class Trash:
     def _remove(self, path: Path) -> None:
         going = path.with_name(f".going-{secrets.token_hex(6)}")
         path.rename(going)
+        if path.parent == self._folder:
+            record_path(self._state, path.name).unlink(missing_ok=True)
         shutil.rmtree(going, ignore_errors=True)
 
     def _find(self, deleted_id: str) -> Path:

@@ -35,6 +35,7 @@ from app.review.model import (
     Step,
     SupersededEffect,
 )
+from app.review.records import record_signed
 from app.review.store import terms_of
 from recon4.model.plain import finite_or_none
 from recon4.model.usability import verdict_in
@@ -49,6 +50,7 @@ from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval
 from recon4.review.decisions import Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
+from recon4.review.newest_approval import judging_folders
 from recon4.review.pairs import (
     PairFacts,
     TrajectoryNodes,
@@ -61,7 +63,7 @@ from recon4.review.pairs import (
 from recon4.review.preview import Effect
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
-from recon4.review.trusted_keys import SIGNING_KEY, TRUSTED_KEYS, ensure_own_key
+from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
 
 T = TypeVar("T")
 
@@ -258,6 +260,7 @@ async def approve(
     except NotApprovable as error:
         raise Conflict(str(error)) from error
     await run_in_threadpool(make_read_only, approval)
+    await run_in_threadpool(record_signed, root, key.parent)
     what = f"{project_id} version {approval.version} {approval.hash}"
     await run_in_threadpool(audit, request, "approve", what)
     return await run_in_threadpool(_view, project_id, server, who)
@@ -285,7 +288,7 @@ async def _sign(
     await run_in_threadpool(ensure_own_key, key.parent)
     terms = Terms(
         person=signer["who"],
-        access=FileAccess(read=(key, key.with_name(TRUSTED_KEYS)), write=(root,)),
+        access=FileAccess(read=(key, *judging_folders(key.parent)), write=(root,)),
         limit_s=SIGNING_LIMIT_S,
     )
     seen = (asked.after_seq, asked.graph)

@@ -201,8 +201,8 @@ def verify(
     from recon4.verify import accept as seal_again
     from recon4.verify import verify as read_again
 
-    if accept:
-        seal_again(folder)
+    if accept and (state := seal_again(folder)):
+        _note_accepted(state, folder)
     confine_command(write=[folder])  # SQLite makes files beside what it reads
     with watcher() as progress:
         found = read_again(folder, progress)
@@ -223,6 +223,14 @@ def verify(
         write(f"{found.checked} checked, {len(found.damaged)} damaged{untrusted}")
     if found.damaged or found.untrusted:
         raise typer.Exit(1)
+
+
+def _note_accepted(state: Path, project: Path) -> None:
+    """Enter in the server's audit log that its record of the newest approval gave way."""
+    from app.cli.users import access_of, note
+
+    with access_of(state.parent) as access:
+        note(access, "accept project as it is", project.resolve().name)
 
 
 @app.command()

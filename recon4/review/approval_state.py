@@ -15,6 +15,7 @@ from recon4.names import LONGEST_NOTE, visible
 from recon4.review.approved import Approval, NotInJournal, approval_of
 from recon4.review.decisions import DecisionKind, fold
 from recon4.review.journal import JournalRow, read_rows
+from recon4.review.newest_approval import Older
 from recon4.review.stamp import Stamp
 from recon4.review.trusted_keys import UnknownSigner
 from recon4.store.project import read_artifacts
@@ -83,6 +84,8 @@ def approval_state(root: Path, keys: Mapping[str, str]) -> ApprovalState:
     except UnknownSigner as error:
         text = f"Signed by unknown key {error.key}: not counted as approved"
         return ApprovalState(kind=ApprovalKind.UNKNOWN_SIGNER, text=text, detail=str(error))
+    except Older as error:
+        return not_valid("Not approved: older than what this server approved", error)
     except NotInJournal as error:
         return not_valid("Not approved: an approval is missing in the journal", error)
     except StoreError as error:

@@ -11,6 +11,7 @@ from typing import Any
 from recon4.review.decisions import ApprovalFacts, DecisionKind
 from recon4.review.evidence import Evidence
 from recon4.review.journal import JournalRow, broken, read_rows
+from recon4.review.newest_approval import refuse_older
 from recon4.review.signature import fingerprint, has_valid_signature
 from recon4.review.stamp import Stamp
 from recon4.review.state import artifact_keys, read_summary
@@ -83,7 +84,8 @@ def approval_of(root: Path, keys: Mapping[str, str]) -> Approval | None:
 
     Raises:
         Altered: If its file or the journal was changed, its signer is not trusted here
-            (`UnknownSigner`), or an approval lacks its row in the journal (`NotInJournal`).
+            (`UnknownSigner`), an approval lacks its row in the journal (`NotInJournal`), or the
+            project is older than its server's record (`Older`).
         StoreError: If a file cannot be read.
     """
     wanted = hash_json(dict(keys))
@@ -112,6 +114,17 @@ def approval_of_map(root: Path, map_key: str) -> Approval | None:
     return None
 
 
+def newest_counts(root: Path) -> bool:
+    """Whether the newest approval in the journal is valid and its signer trusted.
+
+    Raises:
+        StoreError: If a file cannot be read, or an approval does not count.
+    """
+    rows = read_rows(root)
+    approving = [row for row in rows if row.kind == DecisionKind.APPROVE]
+    return bool(approving and _counted(root, rows, approving[-1]))
+
+
 def versions_without_row(root: Path, rows: Sequence[JournalRow]) -> list[str]:
     """Folders below ``versions/`` that no row of the journal names, except those set aside."""
     counted = {str(_facts(row).version) for row in rows if row.kind == DecisionKind.APPROVE}
@@ -125,8 +138,10 @@ def versions_without_row(root: Path, rows: Sequence[JournalRow]) -> list[str]:
 def _refuse_without_row(root: Path, rows: Sequence[JournalRow], keys: Mapping[str, str]) -> None:
     """Refuse a project with an approval that its journal does not have.
 
-    Its row was removed, or an older journal was put there, or it was interrupted before its row.
+    Its row was removed, or an older journal was put there, or it was interrupted before its row;
+    or the project as a whole is older than what its server recorded.
     """
+    refuse_older(root, rows)
     if surplus := versions_without_row(root, rows):
         raise NotInJournal(
             f"versions/{surplus[-1]} is in no row of the journal: the row was removed, the journal "

@@ -7,12 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from recon4.errors import StoreError
 from recon4.model.usability import Usability
 from recon4.names import visible
 from recon4.progress import Progress, track
 from recon4.review.approved import VERSIONS, Approval, read_approval, versions_without_row
 from recon4.review.decisions import DecisionKind
 from recon4.review.journal import broken, read_rows
+from recon4.review.newest_approval import refuse_older
 from recon4.review.trusted_keys import TrustedKey, UnknownSigner, trusted_for
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
@@ -66,6 +68,10 @@ def audit_review(root: Path, progress: Progress) -> ReviewAudit:
         "older one, or the approval was interrupted"
         for name in versions_without_row(root, rows)
     ]
+    try:
+        refuse_older(root, rows)
+    except StoreError as error:
+        damaged.append(str(error))
     return ReviewAudit(len(rows), tuple(approvals), tuple(damaged), tuple(untrusted))
 
 
