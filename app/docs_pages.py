@@ -22,6 +22,8 @@ PAGE = "shared/docs.html"
 """``{title}`` and ``{content}`` are filled in."""
 START = "tour"
 _NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
+_EMPTY_HEAD = re.compile(r"<thead>\s*<tr>\s*(?:<th>\s*</th>\s*)+</tr>\s*</thead>")
+"""Of a table that has no captions: Markdown cannot leave the line out."""
 _IMAGE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\.(png|webp)")
 
 
@@ -62,6 +64,9 @@ def docs_page(name: str) -> HTMLResponse:
 def rendered(markdown: str) -> str:
     """HTML of a page; raw HTML in it is kept, because it is ours."""
     body: str = MarkdownIt("commonmark", {"html": True}).enable("table").render(markdown)
+    body = _EMPTY_HEAD.sub("", body).replace("<th></th>", "<td></td>")
+    # What scrolls sideways can be reached with the keyboard, too.
+    body = re.sub(r"<(table|pre)>", r'<\1 tabindex="0">', body)
     return re.sub(r"<h([23])>(.*?)</h\1>", _with_anchor, body)
 
 

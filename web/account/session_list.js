@@ -22,7 +22,7 @@ export class SessionList extends HTMLElement {
   #body = make("tbody");
 
   connectedCallback() {
-    const titles = ["Person", "Device", "From", "Signed in", "Last seen", ""];
+    const titles = ["Person", "Device", "From", "Signed in", "Last seen", "Action"];
     const head = make("tr", {}, ...titles.map((text) => make("th", { scope: "col" }, text)));
     this.replaceChildren(
       this.#message,

@@ -1,0 +1,64 @@
+"""Every page, judged by axe-core: names of controls, structure, contrast."""
+
+from pathlib import Path
+
+import pytest
+
+from app.pages import WEB
+from tests.e2e.conftest import leave_out_viewer
+from tests.project_builder import build_project
+from tests.review_project import make
+from tests.service.running import SLOW, server_thread
+
+pytestmark = pytest.mark.e2e
+
+AXE = Path(__file__).parents[2] / "node_modules" / "axe-core" / "axe.min.js"
+RULES = ["wcag2a", "wcag2aa", "wcag21a", "wcag21aa", "best-practice"]
+PAGES = {
+    "/": "projects/index.html",
+    "/storage": "storage/storage.html",
+    "/rigs": "rigs/rigs.html",
+    "/people": "account/people.html",
+    "/phone": "account/phone.html",
+    "/live": "live/live.html",
+    "/api": "shared/api.html",
+    "/docs/recordings.md": "shared/docs.html",
+    "/projects/office/": "projects/project.html",
+    "/projects/office/review/": "review/review.html",
+    "/projects/office/slices/": "slices/slices.html",
+    "/nowhere": "shared/lost.html",
+}
+"""Path -> its file in `web/`."""
+ELSEWHERE = {"account/login.html", "account/account.html", "account/pair.html"}
+"""Pages of a server with login."""
+
+
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    make(root / "office")
+    build_project(root / "hall")
+    with server_thread(root, worker_module=SLOW) as running:
+        yield running
+
+
+@pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")
+@pytest.mark.parametrize("path", PAGES)
+def test_a_page_has_no_barrier_that_axe_finds(server, page, path):
+    leave_out_viewer(page)
+    page.expect_failed = True
+    page.goto(server.url + path)
+    page.wait_for_load_state("networkidle")
+    page.evaluate(AXE.read_text("utf-8"))
+
+    found = page.evaluate("(tags) => axe.run(document, { runOnly: tags, iframes: false })", RULES)[
+        "violations"
+    ]
+
+    assert [(one["id"], node["html"][:120]) for one in found for node in one["nodes"]] == []
+
+
+def test_every_page_is_judged():
+    files = {path.relative_to(WEB).as_posix() for path in WEB.rglob("*.html")}
+
+    assert files - {"shared/head.html"} == set(PAGES.values()) | ELSEWHERE
