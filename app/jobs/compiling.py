@@ -17,6 +17,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from app.jobs.folder import beat
 from recon4.sandbox.private_cache import is_compiled
 
 log = logging.getLogger("recon4.job")
@@ -45,7 +46,7 @@ def compile_kernels_once(heartbeat: Path) -> None:
     """Compile the kernels unless they are, or wait for who does; a failure is only logged.
 
     Args:
-        heartbeat: File that is touched meanwhile.
+        heartbeat: File that is renewed meanwhile.
     """
     if is_compiled():
         return
@@ -53,7 +54,7 @@ def compile_kernels_once(heartbeat: Path) -> None:
     child = _start()
     deadline_s = time.monotonic() + WITHIN_S
     while time.monotonic() < deadline_s:
-        heartbeat.touch()
+        beat(heartbeat)
         with contextlib.suppress(subprocess.TimeoutExpired):
             if child.wait(BEAT_EVERY_S):
                 break

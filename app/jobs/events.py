@@ -14,6 +14,7 @@ from pathlib import Path
 
 import msgspec
 
+from app.jobs.folder import beat
 from recon4.errors import Cancelled, StoreError
 from recon4.model.events import KINDS, Event, RunStarted, WorkProgress
 from recon4.model.plain import to_plain
@@ -32,7 +33,7 @@ MAX_BYTES = 4 << 20
 class EventWriter:
     """A `recon4.progress.Progress` that writes lines, and stops the run once a file appears.
 
-    It touches the heartbeat only when work advances, so that a worker whose work hangs is found.
+    It renews the heartbeat only when work advances, so that a worker whose work hangs is found.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -82,7 +83,7 @@ class EventWriter:
         if now_s >= self._beat_due_s:
             self._beat_due_s = now_s + EVERY_S
             with contextlib.suppress(OSError):  # the work itself reports a full disk
-                self._heartbeat.touch()
+                beat(self._heartbeat)
 
     def _report(self) -> None:
         now_s = time.monotonic()

@@ -3,7 +3,7 @@
 request.json    the job, written by the server before the worker starts
 lock            locked (flock) by the worker while it lives; the kernel releases it
 pid             the worker's process and group
-heartbeat       touched by the worker when its work advances
+heartbeat       written by the worker when its work advances
 cancel          created by the server: request to stop
 events.jsonl    progress (`app.jobs.events`), appended by the worker
 log.txt         output of the worker
@@ -195,6 +195,15 @@ class JobFolder:
             return ""
         kept = text.splitlines()[-lines:]
         return "\n".join(map(_printable, kept))
+
+
+def beat(heartbeat: Path) -> None:
+    """Renew the time of a heartbeat by writing it: a confined process may not set times.
+
+    Raises:
+        OSError: If it cannot be written.
+    """
+    heartbeat.write_bytes(b"\n")
 
 
 def _start(path: Path) -> bytes:

@@ -34,6 +34,7 @@ NUMBERS: dict[str, tuple[int | None, int | None]] = {
     "fsopen": (430, 430),
     "fspick": (433, 433),
     "fsetxattr": (190, 7),
+    "futimesat": (261, None),
     "init_module": (175, 105),
     "ioctl": (16, 29),
     "io_uring_enter": (426, 426),
@@ -103,6 +104,9 @@ NUMBERS: dict[str, tuple[int | None, int | None]] = {
     "umount2": (166, 39),
     "unshare": (272, 97),
     "userfaultfd": (323, 282),
+    "utime": (132, None),
+    "utimensat": (280, 88),
+    "utimes": (235, None),
     "vfork": (58, None),
     "vhangup": (153, 58),
     "adjtimex": (159, 171),
@@ -124,10 +128,10 @@ ALWAYS_REFUSED = (
     *("mount", "umount2", "pivot_root", "chroot", "move_mount", "open_tree", "fsopen", "fsconfig"),
     *("fsmount", "fspick", "mount_setattr", "setns", "unshare", "name_to_handle_at"),
     *("open_by_handle_at", "fanotify_init", "quotactl", "quotactl_fd", "swapon", "swapoff"),
-    # rights and owners of files, which Landlock does not look at
+    # rights, owners and times of files, which Landlock does not look at
     *("chmod", "fchmod", "fchmodat", "fchmodat2", "chown", "lchown", "fchown", "fchownat"),
     *("setxattr", "lsetxattr", "fsetxattr", "removexattr", "lremovexattr", "fremovexattr"),
-    "truncate",
+    *("utime", "utimes", "futimesat", "utimensat", "truncate"),
     # the kernel itself
     *("bpf", "perf_event_open", "userfaultfd", "io_uring_setup", "io_uring_enter"),
     *("io_uring_register", "keyctl", "add_key", "request_key", "kexec_load", "kexec_file_load"),

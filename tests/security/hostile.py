@@ -99,6 +99,8 @@ def deeds(facts: dict[str, Any]) -> dict[str, Callable[[], object]]:
         "remove another project": other.unlink,
         "truncate another project": lambda: os.truncate(other, 0),
         "open the key to all": lambda: key.chmod(0o777),
+        "change the times of the key": lambda: os.utime(key, (0, 0)),
+        "change the times of what it reads": lambda: touch_open(facts["kernel"]),
         "link to the key by name": lambda: (mine / "log.txt.link").symlink_to(key),
         "link to the key": lambda: os.link(key, mine / "hard"),
         "make a pipe the server would wait for": lambda: os.mkfifo(mine / "outcome.json.fifo"),
@@ -116,6 +118,13 @@ def deeds(facts: dict[str, Any]) -> dict[str, Callable[[], object]]:
         "io_uring": lambda: call(425, 8, ctypes.create_string_buffer(120)),
         "bpf": lambda: call(facts["bpf"], 0, ctypes.create_string_buffer(120), 120),
     }
+
+
+def touch_open(path: str) -> None:
+    """Set the times of a file, to what they are, by a descriptor that only reads."""
+    with open(path, "rb") as file:
+        times = os.stat(file.fileno())
+        os.utime(file.fileno(), ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
 def attempt(deed: Callable[[], object]) -> str:
