@@ -128,11 +128,14 @@ class SampleBatch:
 
 def stamp_clock(bag: Bag, topic: str) -> StampClock:
     """The clock of the stamps of a topic, from its first messages; without one, a new clock."""
-    if not topic:
-        return StampClock()
+    return StampClock(first_stamps(bag, topic) if topic else [])
+
+
+def first_stamps(bag: Bag, topic: str) -> list[tuple[int, int]]:
+    """Stamps and times of recording of the first messages of a topic [ns]."""
     messages = islice(bag.messages([topic]), _STAMPS_PROBED)
     found = ((message, bag.decode(message)) for message in messages)
-    return StampClock([(stamp_ns(m.header.stamp), at.t_ns) for at, m in found if m is not None])
+    return [(stamp_ns(m.header.stamp), at.t_ns) for at, m in found if m is not None]
 
 
 def stamp_ns(stamp: Any) -> int:

@@ -19,6 +19,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import (
     SampleBatch,
     cloud_table,
+    first_stamps,
     fix_row,
     join_fixes,
     join_poses,
@@ -150,12 +151,12 @@ class BagRecording:
                     report=self._report,
                     deskewed=self._settings.deskewed,
                 )
-                period = _period_ns(topic, bag.seconds)
+                head = first_stamps(bag, topic.name)
                 found[sensor.topic] = _Clouds(
                     clouds,
                     sensor.time_offset_s,
-                    period,
-                    stamps=stamp_clock(bag, topic.name),
+                    _period_ns(head),
+                    stamps=StampClock(head),
                     report=self._report,
                 )
         return found
@@ -228,10 +229,17 @@ def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
     return likely_model(int(payloads[0, 1205]), interval_s, int(payloads[0, 1204])) or "generic"
 
 
-def _period_ns(topic: BagTopic, seconds: float) -> int:
-    """Median time between messages [ns], at most a quarter of a second."""
-    period = seconds * 1e9 / max(1, topic.messages - 1)
-    return round(period) if 1e6 < period < 250e6 else _PERIOD_NS
+def _period_ns(head: Sequence[tuple[int, int]]) -> int:
+    """Median time between the first messages [ns], at most a quarter of a second.
+
+    Args:
+        head: Their stamps and times of recording [ns].
+    """
+    steps = np.abs(np.diff(np.array(head, np.float64).reshape(-1, 2), axis=0))
+    for period in np.median(steps, axis=0) if len(steps) else ():
+        if 1e6 < period < 250e6:
+            return round(float(period))
+    return _PERIOD_NS
 
 
 # -- LiDARs

@@ -42,6 +42,9 @@ LASER_SCAN = "sensor_msgs/msg/LaserScan"
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 """Of ROS 2 and late ROS 1, of early ROS 1."""
 TEXT = "std_msgs/msg/String"
+_MEASURED = frozenset({SCAN, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
+"""Types whose messages come when something is measured. With simulated time, messages that are sent
+once, such as static transforms, may be recorded at time 0."""
 
 _DEFINITIONS = {
     "velodyne_msgs/msg/VelodynePacket": "builtin_interfaces/Time stamp\nuint8[1206] data\n",
@@ -125,7 +128,7 @@ class Bag:
 
     @property
     def seconds(self) -> float:
-        """Time from the first to the last message [s]."""
+        """Time from the first measured message to the last one [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
     def messages(self, topics: Collection[str]) -> Iterator[BagMessage]:
@@ -268,6 +271,18 @@ class Bag:
             raise EmptyRecording(f"{names}: a bag without messages")
         self.t_first_ns = min(index.start_time for index in filled)
         self.t_last_ns = max(index.end_time for index in filled) - 1
+        first = self._first_measured()
+        self.t_first_ns = first.t_ns if first is not None else self.t_first_ns
+
+    def _first_measured(self) -> BagMessage | None:
+        report, self.report = self.report, ImportReport()  # damage is reported when it is read
+        try:
+            names = [topic.name for topic in self.topics if topic.type in _MEASURED]
+            return next(self.messages(names), None) if names else None
+        except CorruptFile:
+            return None
+        finally:
+            self.report = report
 
     # -- reading
 

@@ -1,0 +1,60 @@
+"""Times of bags: messages recorded at time 0, and the time between clouds."""
+
+import numpy as np
+import pytest
+
+from recon4.recording.bag_recording import BagRecording
+from recon4.recording.info import describe
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+from tests.builders import T0_NS, bag_path, room_cloud
+from tests.robot_bags import RobotBag
+
+STEP_NS = 100_000_000
+
+
+@pytest.fixture
+def plain():
+    """A revolution without times and rings."""
+    table = room_cloud()
+    return {name: table[name] for name in ("x", "y", "z", "intensity")}
+
+
+def opened(path):
+    report = ImportReport()
+    return BagRecording([path], None, settings=IngestSettings(), report=report), report
+
+
+@pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
+def test_transforms_recorded_at_time_zero_change_nothing(tmp_path, plain, kind):
+    path = bag_path(tmp_path, kind)
+    with RobotBag(path, kind) as bag:
+        bag.tf(("base_link", "os_lidar", (0, 0, 1, 0, 0, 0, 1)), t_ns=1)
+        for k in range(20):
+            bag.frame = "os_lidar"
+            bag.cloud("/points", T0_NS + k * STEP_NS, room_cloud())
+            bag.frame = "map"
+            bag.cloud("/registered", T0_NS + k * STEP_NS, plain)
+
+    found, report = opened(path)
+    info = describe(path)
+
+    assert [s.topic for s in found.rig.sensors] == ["/points"]
+    assert found.seconds == pytest.approx(2.0, abs=0.2)
+    assert [s.label for s in info.sensors] == ["/points"]
+    assert info.sensors[0].rate_hz == pytest.approx(10.0, rel=0.1)
+    assert not [text for text in report.warnings if "rig" in text]
+
+
+def test_the_time_between_clouds_is_that_of_most_of_them(tmp_path, plain):
+    path = bag_path(tmp_path, "db3")
+    with RobotBag(path, "db3") as bag:
+        bag.frame = "os_lidar"
+        for k in range(20):
+            bag.cloud("/points", T0_NS + k * STEP_NS + 2 * 10**9 * (k >= 10), plain)
+
+    found, _ = opened(path)
+    shots = [item for item in found.read() if hasattr(item, "ring")]
+
+    # Points without times are spread over one revolution: a pause of the LiDAR is none.
+    assert np.ptp(shots[0].t_ns) == pytest.approx(STEP_NS, rel=0.1)
