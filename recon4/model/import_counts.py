@@ -43,11 +43,11 @@ class CountWording:
     stated: bool = False
     """Whether the reader itself warns, with the place."""
     noun: str = ""
-    """What is counted, where there is no count `of`."""
+    """What is counted, where there is no count `of`; of a `READ`: what it is a part of."""
 
 
-def _read(text: str) -> CountWording:
-    return CountWording(CountKind.READ, text)
+def _read(text: str, *, noun: str = "") -> CountWording:
+    return CountWording(CountKind.READ, text, noun=noun)
 
 
 def _usual(of: str, text: str, *, noun: str = "") -> CountWording:
@@ -152,7 +152,7 @@ _MESSAGES = {
 }
 _SAMPLES = {
     "imu_samples": _read("IMU samples received"),
-    "imu_kept": _read("IMU samples used"),
+    "imu_kept": _read("IMU samples used", noun="IMU samples"),
     "imu_nan": _lost("imu_kept", "no numbers, dropped", apart=True),
     "imu_wrong_time": _lost("imu_kept", "a stamp of another time, dropped", apart=True),
     "imu_lines_damaged": _lost("imu_kept", "damaged lines of the file, dropped", apart=True),
@@ -166,7 +166,7 @@ _SAMPLES = {
     ),
     "imu_accel_scaled": _repaired("imu_kept", "accelerations in g, stored in m/s²"),
     "gnss_samples": _read("GNSS positions received"),
-    "gnss_kept": _read("GNSS positions used"),
+    "gnss_kept": _read("GNSS positions used", noun="GNSS positions"),
     "gnss_nan": _lost("gnss_kept", "no place on earth, dropped", apart=True),
     "gnss_at_zero": _lost("gnss_kept", "at latitude and longitude 0, dropped", apart=True),
     "gnss_constant": _lost("gnss_kept", "one position for all, dropped", apart=True, stated=True),
@@ -356,4 +356,6 @@ def _words(name: str) -> CountWording | None:
 
 
 def _noun(words: CountWording) -> str:
-    return COUNT_WORDINGS[words.of].text if words.of else words.noun
+    if not words.of:
+        return words.noun
+    return COUNT_WORDINGS[words.of].noun or COUNT_WORDINGS[words.of].text

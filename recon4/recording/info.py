@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from itertools import islice
 from pathlib import Path
 
@@ -41,6 +41,7 @@ from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
 from recon4.recording.open import Recording, frames_model, open_recording
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings
 
@@ -276,32 +277,33 @@ def _with_head(
     info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
 ) -> RecordingInfo:
     """Add the findings of opening the recording and reading its first second."""
-    rates: dict[int, float] = {}
-    has_imu = has_gnss = False
+    head = _Beginning()
     missing = list(info.missing)
     rig: Rig | None = None
     try:
         recording = open_recording([path], None, settings=settings, report=report)
         rig = recording.rig
-        rates, has_imu, has_gnss = _read_head(recording, whole=info.bytes <= WHOLE_BYTES)
-        is_same_clock(IMU_CLOCK, rig.imu_time_offset_s, report)
-        is_same_clock(GNSS_CLOCK, rig.gnss_time_offset_s, report)
+        whole = info.bytes <= WHOLE_BYTES
+        head = _read_head(recording, whole=whole)
+        _judge_samples(head, rig, whole=whole, report=report)
     except ConfigError as error:
         missing.append(f"rig: {error}")
     except RecordingError as error:
         missing.append(str(error))
     samples = [*info.samples]
     texts = " ".join(samples)
-    if has_imu and "IMU" not in texts:
+    if head.imu and "IMU" not in texts:
         samples.append("IMU in the position packets")
-    if rig is not None and not has_imu and "IMU" not in texts:
+    if rig is not None and not head.imu and "IMU" not in texts:
         missing.append("IMU (an IMU file can be given beside it)")
-    if not has_gnss and "GNSS" not in texts:
+    if not head.gnss and "GNSS" not in texts:
         missing.append("GNSS positions")
     sensors = info.sensors
     if rig is not None and len(sensors) == len(rig.sensors):
         sensors = tuple(
-            s if np.isfinite(s.rotation_hz) else replace(s, rotation_hz=rates.get(k, float("nan")))
+            s
+            if np.isfinite(s.rotation_hz)
+            else replace(s, rotation_hz=head.rotation_hz.get(k, float("nan")))
             for k, s in enumerate(sensors)
         )
     return replace(
@@ -316,19 +318,32 @@ def _with_head(
     )
 
 
-def _read_head(recording: Recording, *, whole: bool) -> tuple[dict[int, float], bool, bool]:
-    """Rotation rate of each sensor row; whether there are IMU samples and positions.
+@dataclass(slots=True)
+class _Beginning:
+    """What the first second of a recording holds, or all of a small one."""
+
+    rotation_hz: dict[int, float] = field(default_factory=dict)
+    """Of each sensor row [Hz]; NaN = not known."""
+    imu: list[ImuSamples] = field(default_factory=list)
+    gnss: list[GnssSamples] = field(default_factory=list)
+
+
+def _read_head(recording: Recording, *, whole: bool) -> _Beginning:
+    """Rotation rate of each sensor row, and the samples beside the points.
 
     Args:
         recording: Read up to its first second.
         whole: Read the rest too, for the counts of the report.
     """
     shots: dict[int, list[Shots]] = {}
-    has_imu = has_gnss = beyond = False
+    head = _Beginning()
+    beyond = False
     start_ns: int | None = None
     for number, item in enumerate(recording.read()):
-        has_imu |= isinstance(item, ImuSamples)
-        has_gnss |= isinstance(item, GnssSamples)
+        if isinstance(item, ImuSamples):
+            gather(head.imu, item)
+        if isinstance(item, GnssSamples):
+            gather(head.gnss, item)
         if isinstance(item, Shots) and len(item) and not beyond:
             shots.setdefault(item.sensor, []).append(item)
             start_ns = int(item.t_ns[0]) if start_ns is None else start_ns
@@ -337,10 +352,24 @@ def _read_head(recording: Recording, *, whole: bool) -> tuple[dict[int, float], 
         beyond |= isinstance(item, Multiframe) or number >= _HEAD_ITEMS
         if beyond and not whole:
             break
-    rates = {
-        row: rotation_rate(
-            np.concatenate([p.t_ns for p in parts]), np.concatenate([p.xyz for p in parts])
-        )
-        for row, parts in shots.items()
-    }
-    return rates, has_imu, has_gnss
+    for row, parts in shots.items():
+        t_ns, xyz = (np.concatenate([getattr(p, name) for p in parts]) for name in ("t_ns", "xyz"))
+        head.rotation_hz[row] = rotation_rate(t_ns, xyz)
+    return head
+
+
+def _judge_samples(head: _Beginning, rig: Rig, *, whole: bool, report: ImportReport) -> None:
+    """Say of IMU and GNSS what processing will: clock, unit, channels that were not measured.
+
+    A receiver may have no fix yet in the first second: only all positions are judged.
+    """
+    imu, gnss = join(head.imu), join(head.gnss) if whole else None
+    offset_s = rig.imu_time_offset_s
+    if is_same_clock(IMU_CLOCK, offset_s, report) and imu is not None:
+        try:
+            clean_imu(imu, offset_s=offset_s, jumps_ns=(), report=report)
+        except ConfigError as error:
+            report.warn(str(error))
+    offset_s = rig.gnss_time_offset_s
+    if is_same_clock(GNSS_CLOCK, offset_s, report) and gnss is not None:
+        clean_gnss(gnss, offset_s=offset_s, report=report)

@@ -93,19 +93,28 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     gnss = _without_strays(gnss, "gnss", report)
     place = np.isfinite(gnss.lat_rad) & np.isfinite(gnss.lon_rad)
     place &= (np.abs(gnss.lat_rad) <= np.pi / 2) & (np.abs(gnss.lon_rad) <= 2 * np.pi)
-    report.count("gnss_nan", int(np.count_nonzero(~place)))
-    invalid = place & (gnss.quality == GnssQuality.INVALID)
+    # Receivers without a fix write anything as their place: NaN, 0 or the last one.
+    invalid = gnss.quality == GnssQuality.INVALID
+    damaged = ~place & ~invalid
+    report.count("gnss_nan", int(np.count_nonzero(damaged)))
     report.count("gnss_no_fix", int(np.count_nonzero(invalid)))
     usable = without_unmeasured(_take(gnss, place & ~invalid), report)
     found = _sorted(usable, offset_s, "gnss", report=report)
     report.count("gnss_kept", len(found))
     if not len(found):
-        report.warn(
-            f"no usable GNSS position: of {len(gnss)}, {int(invalid.sum())} say that they are no "
-            f"fix and {int((~place).sum())} are no numbers"
-        )
+        report.warn(f"no usable GNSS position: {_why_none(gnss, damaged, invalid)}")
         return None
     return found
+
+
+def _why_none(gnss: GnssSamples, damaged: NDArray[np.bool_], invalid: NDArray[np.bool_]) -> str:
+    """Why no position of some is usable."""
+    counts = {
+        "say that they are no fix": int(invalid.sum()),
+        "are no place on earth": int(damaged.sum()),
+        "are at latitude and longitude 0 or never change": int((~damaged & ~invalid).sum()),
+    }
+    return f"of {len(gnss)}, " + " and ".join(f"{n} {why}" for why, n in counts.items() if n)
 
 
 def _by_channel(imu: ImuSamples, report: ImportReport) -> tuple[ImuSamples, ImuSamples]:

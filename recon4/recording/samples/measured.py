@@ -159,7 +159,8 @@ def _measured(values: Array, least: int) -> tuple[Array, str]:
     if _is_zero(finite):
         return nothing, "all its values are 0"
     axes = " and ".join(", ".join(constant).rsplit(", ", 1))
-    return nothing, f"its {axes} never change in {len(finite)} samples"
+    s, change = ("", "changes") if len(constant) == 1 else ("s", "change")
+    return nothing, f"its value{s} along {axes} never {change} in {len(finite)} samples"
 
 
 def _without_free_fall(accel: Array) -> Array:

@@ -6,7 +6,7 @@ import pytest
 from recon4.errors import UnknownFormat
 from recon4.recording.info import describe
 from recon4.recording.kinds import RecordingKind, recognize
-from tests.builders import write_room_bag
+from tests.builders import T0_NS, Bag, bag_path, noisy, room_cloud, write_room_bag
 from tests.unit.recording.ingested import frame_folder, imu_csv, run
 
 
@@ -75,3 +75,54 @@ def test_a_single_frame_has_no_rate(tmp_path):
     (sensor,) = describe(frame_folder(tmp_path / "f", ["0.pcd"])).sensors
 
     assert np.isnan(sensor.rate_hz)
+
+
+def _bag_with_imu(folder, gyro_scale=1.0, accel_scale=1.0, *, fix=(50.0, 14.0, 300.0), status=2):
+    """A second of clouds, of an IMU in motion and of positions; returns what info says."""
+    path = bag_path(folder, "db3")
+    with Bag(path, "db3") as bag:
+        for k in range(100):
+            t_ns = T0_NS + k * 10_000_000
+            if k % 10 == 0:
+                bag.cloud("/points", t_ns, room_cloud())
+                bag.fix("/fix", t_ns, fix[0] + 1e-7 * k, *fix[1:], status=status)
+            turns, forces = noisy((0.0, 0.3, 0.4), k), noisy((0.0, 0.0, 9.81), k)
+            gyro, accel = np.multiply(turns, gyro_scale), np.multiply(forces, accel_scale)
+            bag.imu("/imu", t_ns, gyro, accel)
+    return "\n".join(describe(path).lines())
+
+
+def test_info_of_good_samples_says_nothing_of_them(tmp_path):
+    text = _bag_with_imu(tmp_path)
+
+    assert "warning" not in text.split("lidar:")[0]
+    assert "acceler" not in text and "no usable" not in text and "lost" not in text
+
+
+@pytest.mark.parametrize(
+    ("scales", "said"),
+    [
+        ((1.0, 0.0), "the IMU has no accelerometer (all its values are 0)"),
+        ((0.0, 1.0), "the IMU has no gyroscope (all its values are 0)"),
+        ((57.3, 1.0), "are they in deg/s?"),
+        ((1.0, 1000.0), "expected about 9.8 m/s²"),
+        ((1.0, 1 / 9.81), "100 of 100 IMU samples: accelerations in g"),
+    ],
+)
+def test_info_says_what_of_an_imu_will_not_be_used(tmp_path, scales, said):
+    assert said in _bag_with_imu(tmp_path, *scales)
+
+
+@pytest.mark.parametrize(
+    ("fix", "status", "said"),
+    [
+        ((np.nan, np.nan, np.nan), -1, "no usable GNSS position: of 10, 10 say that they are no"),
+        ((np.nan, np.nan, np.nan), 0, "10 of 10 GNSS positions: no place on earth, dropped"),
+        ((50.0, 14.0, 300.0), -1, "no usable GNSS position: of 10, 10 say that they are no"),
+    ],
+)
+def test_info_says_that_no_position_can_be_used(tmp_path, fix, status, said):
+    text = _bag_with_imu(tmp_path, fix=fix, status=status)
+
+    assert said in text
+    assert ("lost" in text) == (status == 0)
