@@ -34,7 +34,7 @@ _TUM_NAMES = (
     *(tuple(form.format(a) for form in _TURN_NAMES) for a in "xyzw"),
 )
 """Names of the columns in a head line, in the order of the format."""
-_TURNED, _LEVEL = 0.5, 0.2
+_TURNED, _LEVEL, _NOT_TURNED = 0.5, 0.2, 0.9999
 """Components of quaternions that a walk changes by much, and hardly at all."""
 _MAX_BYTES = 1 << 30
 _MAX_LINE_BYTES = 4096
@@ -86,9 +86,12 @@ def tum_hint(trajectory: Trajectory) -> str:
     """A sentence if the quaternions of a file seem to be written with ``qw`` first; else empty.
 
     A walk turns about the vertical: of qx, qy, qz, qw the first two stay small. With ``qw`` first
-    the middle ones do, and the body seems to roll over.
+    the middle ones do, and the body seems to roll over. A LiDAR on its side really turns about its
+    x axis; its odometry starts at the identity, which it would not with ``qw`` first.
     """
     size = np.abs(trajectory.T_a_b.quat_xyzw())
+    if size[0, 3] > _NOT_TURNED:
+        return ""
     spread = np.ptp(size, axis=0)
     usual = np.median(size, axis=0)
     middle_small = max(usual[1], usual[2]) < _LEVEL

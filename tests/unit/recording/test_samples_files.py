@@ -319,6 +319,16 @@ def turning(count=60):
     return Trajectory(T0 + 100_000_000 * np.arange(count), SE3.stack(T))
 
 
+def test_odometry_of_a_lidar_that_lies_on_its_side_is_not_taken_for_qw_first():
+    on_side = SE3.from_rpy(0.0, np.pi / 2, 0.0, t=[0, 0, 0])
+    walk = turning()
+    turned = on_side.inverse() @ walk.T_a_b @ on_side
+    odometry = Trajectory(walk.t_ns, turned[0].inverse() @ turned)
+
+    assert np.ptp(np.abs(odometry.T_a_b.quat_xyzw()[:, 0])) > 0.9
+    assert tum_hint(odometry) == ""
+
+
 def test_quaternions_with_qw_first_are_noticed_without_a_head_line(tmp_path):
     write_tum(tmp_path / "t.tum", turning())
     rows = [row.split() for row in (tmp_path / "t.tum").read_text().splitlines()]
