@@ -70,7 +70,13 @@ def _remedy(streams: Sequence[Stream], why: str) -> str:
         "Or give a rig file (--rig FILE; --rig 4recon is the rig of the thesis) with their mounts "
         "in the body, x forward, y left, z up; a sensor that is not listed is not read:"
     )
-    lines += ['name = "my rig"', *(line for s in streams for line in _skeleton(s))]
+    ports = [stream.port for stream in streams]
+    lines.append('name = "my rig"')
+    for stream in streams:
+        name = stream.topic.strip("/").replace("/", "_") or f"lidar_{stream.port}"
+        if not stream.topic and ports.count(stream.port) > 1:
+            name = f"lidar_{stream.address}_{stream.port}"
+        lines += _skeleton(stream, name)
     return "\n".join(lines)
 
 
@@ -81,9 +87,8 @@ def _described(stream: Stream) -> str:
     )
 
 
-def _skeleton(stream: Stream) -> list[str]:
+def _skeleton(stream: Stream, name: str) -> list[str]:
     """The part of a rig file of a sensor; its mount is to be filled in."""
-    name = stream.topic.strip("/").replace("/", "_") or f"lidar_{stream.port}"
     lines = ["[[sensor]]", f"name = {json.dumps(name)}", f"model = {json.dumps(stream.model)}"]
     if stream.topic:
         lines.append(f"topic = {json.dumps(stream.topic)}")

@@ -59,19 +59,29 @@ class Kind:
     """What speaks against a topic."""
     value: Callable[[Contents], float] = _nothing
     """Ranks topics of equal faults."""
+    less: str = "as good"
+    """What a topic of equal faults and a lower value is."""
     rig_key: str = ""
     """Table of the rig file whose ``topic`` names it too; empty = none."""
     decisive: bool = True
     """Whether the map depends on it, so that a choice between equals is a warning."""
 
 
-IMU_KIND = Kind(type=IMU, label="IMU", setting="ingest.imu_topic", faults=imu_faults, rig_key="imu")
+IMU_KIND = Kind(
+    type=IMU,
+    label="IMU",
+    setting="ingest.imu_topic",
+    faults=imu_faults,
+    less="by frame and name not the IMU of the LiDAR",
+    rig_key="imu",
+)
 FIX_KIND = Kind(
     type=NAVSATFIX,
     label="GNSS",
     setting="ingest.gnss_topic",
     faults=fix_faults,
     value=fix_quality,
+    less="a lower status of its fixes",
     rig_key="gnss",
 )
 ODOMETRY_KIND = Kind(
@@ -87,6 +97,7 @@ LASER_KIND = Kind(
     setting="ingest.laser_topic",
     faults=laser_faults,
     value=_is_wide,
+    less="a narrower view",
 )
 
 
@@ -129,9 +140,11 @@ class _Candidate:
     def key(self) -> tuple[float, ...]:
         return (-sum(fault.weight for fault in self.faults), *self.rank)
 
-    @property
-    def text(self) -> str:
-        why = ", ".join(fault.text for fault in self.faults) or "as good, less near or fewer"
+    def text(self, best: _Candidate, kind: Kind) -> str:
+        """Its topic, and why it is not the best one."""
+        why = ", ".join(fault.text for fault in self.faults) or kind.less
+        if not self.faults and self.rank[:-1] == best.rank[:-1]:
+            why = "as good" + ", with fewer messages" * (self.rank[-1] < best.rank[-1])
         return f"{self.found.topic.name} ({why})"
 
 
@@ -255,7 +268,7 @@ def _say(
         return
     frame = best.found.frame
     text = f"{kind.label}: {best.found.topic.name}{f' (frame {frame})' * bool(frame)} is read, not "
-    text += ", ".join(one.text for one in others)
+    text += ", ".join(one.text(best, kind) for one in others)
     rivals = [one for one in others if one.key[:-1] == best.key[:-1] and one.found.frame != frame]
     if not rivals or not kind.decisive:
         report.derive(text)

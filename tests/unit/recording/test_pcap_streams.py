@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError, EmptyRecording
+from recon4.model.rig import parse_rig
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.capture import VelodynePcap
 from recon4.recording.velodyne.encode import PcapWriter, encode_position, rmc_sentence
@@ -126,6 +128,16 @@ def test_addresses_tell_two_sensors_on_one_port_apart(tmp_path):
     _, points, _, _ = read([path], two)
 
     assert points == {0: 40 * 384, 1: 30 * 384}
+
+
+def test_two_lidars_on_one_port_end_with_a_rig_to_paste(tmp_path):
+    path = capture(tmp_path / "two.pcap", (FIRST, 2368, spin(30)), (SECOND, 2368, spin(40)))
+
+    (text,) = (text for text in describe(path).missing if text.startswith("rig:"))
+    pasted = parse_rig(text[text.index('name = "my rig"') :], where="pasted")
+    _, points, _, _ = read([path], pasted)
+
+    assert points == {0: 30 * 384, 1: 40 * 384}
 
 
 def test_without_a_rig_each_data_stream_is_a_sensor(tmp_path):

@@ -137,6 +137,7 @@ def test_the_imu_of_the_lidar_is_preferred_to_a_faster_one(tmp_path):
 
     assert found.imu_topic == "/ouster/imu"
     assert report.warnings == []
+    assert any("/zed/imu (by frame and name not the IMU of" in text for text in report.derived)
 
 
 def test_a_choice_between_equals_is_a_warning_that_names_the_setting(tmp_path):
@@ -146,7 +147,7 @@ def test_a_choice_between_equals_is_a_warning_that_names_the_setting(tmp_path):
 
     (text,) = report.warnings
     assert "equally good; ingest.imu_topic or topic of [imu] in a rig file" in text
-    assert "/right/imu" in text
+    assert "/right/imu (as good):" in text
 
 
 def test_raw_and_filtered_samples_of_one_imu_are_no_warning(tmp_path):
