@@ -21,6 +21,8 @@ _MAX_BEAMS = 100_000
 _MAX_LINE_S = 10.0
 """A line or scan of longer duration has wrong times."""
 _LONGEST_M = 1e4
+_NARROWEST_RAD = 1e-3
+"""No laser sees less: a step between beams that gives less is none."""
 _ANGLE_MAX_STEPS = 1.5
 """Some drivers state the end of the last beam's place as the last angle, not its middle."""
 _MAX_ANGLE_RAD = 100.0
@@ -184,7 +186,8 @@ def _checked(scan: Any, report: ImportReport) -> tuple[NDArray[np.float32], floa
     if not 0 < len(ranges) <= _MAX_BEAMS:
         raise CorruptFile(f"a scan: expected 1 to {_MAX_BEAMS} ranges, got {len(ranges)}")
     first, step = float(scan.angle_min), float(scan.angle_increment)
-    if not np.all(np.isfinite([first, step])) or step == 0.0:
+    wide = abs(step) * (len(ranges) - 1) >= _NARROWEST_RAD or len(ranges) == 1
+    if not np.all(np.isfinite([first, step])) or step == 0.0 or not wide:
         raise CorruptFile(
             f"a scan: expected a first angle and a step between beams, got {first} and {step} rad"
         )

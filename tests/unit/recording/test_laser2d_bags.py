@@ -241,3 +241,12 @@ def test_beams_of_a_table_at_irregular_angles_are_kept_near_their_angles(tmp_pat
     assert np.array_equal(found.ranges(3)[seen], columns["range_m"].reshape(20, 450)[3])
     off_deg = np.rad2deg(found.angles_rad(3)[seen]) - angle[3]
     assert np.abs(off_deg).max() < 0.06
+
+
+@pytest.mark.parametrize("step_rad", [0.0, 1e-30, -1e-5, np.nan])
+def test_a_step_that_puts_all_beams_into_one_direction_is_refused(step_rad):
+    found, report = collected([message(angle_increment=step_rad), message()])
+
+    assert len(found) == 1
+    assert report.counts["scans_damaged"] == 1
+    assert "expected a first angle and a step between beams" in report.warnings[0]
