@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -58,20 +57,6 @@ class Finding:
 
     level: Level
     text: str
-
-
-_HEADLINES = {
-    Level.GOOD: "No problems found.",
-    Level.NOTE: "Usable; see the notes.",
-    Level.WARNING: "Check the warnings before you use this map.",
-    Level.BAD: "Do not use this map without checking the points below.",
-}
-
-
-def headline(findings: Sequence[Finding]) -> tuple[Level, str]:
-    """The worst level and one sentence for it."""
-    worst = max((finding.level for finding in findings), default=Level.NOTE)
-    return worst, _HEADLINES[worst]
 
 
 def find(facts: ReportFacts, results: Results, drift: DriftClosed | None) -> list[Finding]:

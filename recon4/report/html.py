@@ -21,7 +21,7 @@ from recon4.report.artifacts import Results, path_length_m
 from recon4.report.drift import DriftClosed
 from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
-from recon4.report.findings import headline
+from recon4.report.headline import HEADLINES, LEVELS
 from recon4.report.maps import map_chunks, rasterize
 from recon4.report.rig import origin_rows, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
@@ -48,7 +48,7 @@ def render(assessed: Assessment) -> str:
     facts, results, drift = assessed.facts, assessed.results, assessed.drift
     tiles = TileSet.open(facts.artifacts["map"]) if "map" in facts.artifacts else None
     rasters = rasterize(lambda: map_chunks(tiles)) if tiles is not None else []
-    level, verdict = headline(assessed.findings)
+    usability = assessed.verdict.usability
     page = (
         environment()
         .get_template("template.html.jinja")
@@ -58,8 +58,8 @@ def render(assessed: Assessment) -> str:
             results=results,
             findings=assessed.findings,
             approval=draft_block(),
-            level=level.name.lower(),
-            verdict=verdict,
+            level=LEVELS[usability],
+            verdict=HEADLINES[usability],
             key_figures=_key_figures(facts, results, drift, tiles=tiles),
             maps=chart_groups.map_figures(rasters),
             walk=chart_groups.trajectory_figures(results, drift, rasters),

@@ -13,25 +13,19 @@ from recon4.evaluation.table import number
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import MapVerdict, Usability
+from recon4.model.usability import MapVerdict
 from recon4.report.approval import draft_block
 from recon4.report.artifacts import path_length_m
 from recon4.report.chart_groups import ChartFigure, framed
 from recon4.report.edges import edge_paths, edge_rows
 from recon4.report.facts import StageTiming
 from recon4.report.figures import BLUE, ORANGE, Chart
+from recon4.report.headline import HEADLINES, LEVELS
 from recon4.report.html import changed_settings, environment
 from recon4.report.maps import ABOVE, ImageFrame
 from recon4.report.plan import PlanOverlay, PlanPath, plan_svg
 from recon4.settings import Settings
 from recon4.store.atomic import write_text
-
-_LEVELS = {Usability.GOOD: "good", Usability.CHECK: "warning", Usability.DO_NOT_USE: "bad"}
-_HEADLINES = {
-    Usability.GOOD: "No problems found.",
-    Usability.CHECK: "Check the points below before you use this map.",
-    Usability.DO_NOT_USE: "Do not use this map.",
-}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,8 +85,8 @@ def write_page_2d(path: Path, page: Page2d) -> None:
         .render(
             page=page,
             approval=draft_block(),
-            level=_LEVELS[verdict.usability],
-            headline=_HEADLINES[verdict.usability],
+            level=LEVELS[verdict.usability],
+            headline=HEADLINES[verdict.usability],
             # Warnings of the import are findings too; some of them led to the verdict.
             notes=[text for text in page.warnings if text not in verdict.reasons],
             maps=_maps(page),

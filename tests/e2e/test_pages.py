@@ -62,7 +62,7 @@ def test_the_list_shows_projects_with_state_and_thumbnail(finished, page, screen
     page.goto(finished.url)
 
     card = page.get_by_role("listitem").filter(has_text="office")
-    expect(card).to_contain_text("Finished")
+    expect(card).to_contain_text("No problem found in this map")
     expect(card.locator("img")).to_have_js_property("complete", True)
     expect(page.get_by_role("listitem").filter(has_text="half")).to_contain_text("Not finished")
     fits(page)

@@ -50,7 +50,7 @@ test("a project shows the state of its job while that matters", () => {
   assert.equal(stateOf({ finished: true }, view("running")), "running");
   assert.equal(stateOf({ finished: false }, view("succeeded")), "finished");
   assert.equal(stateOf({ finished: false }, undefined), "unfinished");
-  assert.equal(stateOf({ finished: true, usability: "good" }, undefined), "finished");
+  assert.equal(stateOf({ finished: true, usability: "good" }, undefined), "sound");
   assert.equal(stateOf({ finished: true, usability: "check" }, view("succeeded")), "check");
   const ruined = { finished: true, summary: { verdict: { usability: "do not use" } } };
   assert.equal(stateOf(ruined, undefined), "unusable");

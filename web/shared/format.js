@@ -40,8 +40,8 @@ export const STATES = {
   unfinished: { mark: "◌", word: "Not finished" },
 };
 
-/** The verdicts that must not look like "Finished". */
-const VERDICTS = { check: "check", "do not use": "unusable" };
+/** Verdict -> state of a finished project. */
+const VERDICTS = { good: "sound", check: "check", "do not use": "unusable" };
 
 /** State of a project: that of its unfinished job, else the verdict on its map, else its folder. */
 export function stateOf(project, view) {
