@@ -157,6 +157,7 @@ _SAMPLES = {
     "imu_wrong_time": _lost("imu_kept", "a stamp of another time, dropped", apart=True),
     "imu_lines_damaged": _lost("imu_kept", "damaged lines of the file, dropped", apart=True),
     "imu_duplicate": _lost("imu_kept", "the time of another, dropped", apart=True),
+    "imu_copies": _usual("", "copies of the one before, dropped", noun="IMU samples"),
     "imu_repeated": _lost("imu_kept", "repeated by the driver, dropped", apart=True, stated=True),
     "imu_unsorted": _repaired("imu_kept", "earlier than the one before, sorted"),
     "imu_jumps_back": _repaired("", "jumps back with the LiDARs", noun="times"),
@@ -174,6 +175,7 @@ _SAMPLES = {
     "gnss_wrong_time": _lost("gnss_kept", "a stamp of another time, dropped", apart=True),
     "gnss_lines_damaged": _lost("gnss_kept", "damaged lines of the file, dropped", apart=True),
     "gnss_duplicate": _lost("gnss_kept", "the time of another, dropped", apart=True),
+    "gnss_copies": _usual("", "copies of the one before, dropped", noun="GNSS positions"),
     "gnss_unsorted": _repaired("gnss_kept", "earlier than the one before, sorted"),
     "gnss_heights_unstated": _usual("", "with a height of unknown kind", noun="GNSS positions"),
     "gnss_heights_orthometric": _usual(

@@ -61,7 +61,7 @@ def clean_imu(
         offset_s: Added to their times [s].
         jumps_ns: How far the clock went back in the LiDARs' times: a jump of the IMU like one of
             these is the same jump, and is carried on by the same amount.
-        report: Gets the counts ``imu_wrong_time``, ``imu_nan``, ``imu_duplicate``,
+        report: Gets the counts ``imu_wrong_time``, ``imu_nan``, ``imu_duplicate``, ``imu_copies``,
             ``imu_unsorted``, ``imu_repeated``, those of `with_forces`, and what was not measured
             (`imu_channels`).
 
@@ -151,10 +151,25 @@ def _sorted(samples: Samples, offset_s: float, kind: str, *, report: ImportRepor
     report.count(f"{kind}_unsorted", int(np.count_nonzero(np.diff(t_ns) < 0)))
     order = np.argsort(t_ns, kind="stable")
     new = np.diff(t_ns[order], prepend=np.iinfo(np.int64).min) != 0 if len(order) else order > 0
-    report.count(f"{kind}_duplicate", len(order) - int(np.count_nonzero(new)))
+    copies = ~new & _equal_to_last(samples, order)
+    report.count(f"{kind}_copies", int(np.count_nonzero(copies)))
+    report.count(f"{kind}_duplicate", int(np.count_nonzero(~new & ~copies)))
     samples = _take(samples, order[new])
     shifted = samples.t_ns + round(offset_s * 1e9)
     return _build(samples, lambda n: shifted if n == "t_ns" else getattr(samples, n))
+
+
+def _equal_to_last(samples: Samples, order: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether each sample has the values of the one before it in order of time, (N,).
+
+    A receiver that repeats its last solution loses nothing.
+    """
+    equal = np.ones(len(order), np.bool_)
+    for field in fields(samples):
+        values = np.asarray(getattr(samples, field.name))[order]
+        same = np.isclose(values[1:], values[:-1], rtol=0.0, atol=0.0, equal_nan=True)
+        equal[1:] &= same if same.ndim == 1 else same.all(axis=1)
+    return equal
 
 
 def _carried_on(imu: ImuSamples, jumps_ns: Sequence[int], report: ImportReport) -> ImuSamples:

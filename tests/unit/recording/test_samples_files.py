@@ -134,7 +134,17 @@ def test_samples_are_sorted_and_unique():
     imu, report = cleaned(imu_of([30, 10, 20, 20, 40]))
 
     assert imu.t_ns.tolist() == [10, 20, 30, 40]
-    assert report.counts == {"imu_unsorted": 1, "imu_duplicate": 1, "imu_kept": 4}
+    assert report.counts == {"imu_unsorted": 1, "imu_copies": 1, "imu_kept": 4}
+
+
+def test_two_samples_of_one_time_that_differ_are_a_loss_and_copies_are_none():
+    imu = imu_of([10, 20, 20, 30, 30])
+    imu.gyro_rad_s[2] += 0.01
+
+    kept, report = cleaned(imu)
+
+    assert kept.t_ns.tolist() == [10, 20, 30]
+    assert report.counts == {"imu_duplicate": 1, "imu_copies": 1, "imu_kept": 3}
 
 
 def test_samples_that_are_no_numbers_are_dropped_and_counted():
