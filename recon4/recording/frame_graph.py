@@ -38,6 +38,17 @@ class StatedTransform:
         return f"{self.parent} -> {self.child} {mount_text(self.T_parent_child)} ({self.source})"
 
 
+@dataclass(frozen=True, slots=True)
+class MovingJoint:
+    """Two frames that move against each other during the recording."""
+
+    parent: str
+    child: str
+    tilt_rad: float
+    """Largest angle between the vertical at first and later, in the axes of the child [rad]."""
+    source: str
+
+
 class FrameGraph:
     """All frames that rigid transforms connect.
 
@@ -45,9 +56,12 @@ class FrameGraph:
     or of a second parent, is compared with it: `contradictions`.
     """
 
-    def __init__(self, stated: Iterable[StatedTransform]) -> None:
+    def __init__(
+        self, stated: Iterable[StatedTransform], moving: Iterable[MovingJoint] = ()
+    ) -> None:
         """Connect the frames; of several transforms between two frames the first is used."""
         self._stated = tuple(stated)
+        self._moving = {joint.child: joint for joint in moving}
         self._near: dict[str, list[tuple[str, int]]] = {}
         """Frame -> frames one transform away, with its row."""
         for row, one in enumerate(self._stated):
@@ -103,6 +117,19 @@ class FrameGraph:
             seen.add(above)
             at = above
         return at
+
+    def joints_above(self, frame: str) -> list[MovingJoint]:
+        """The joints that move between a frame and the robot, which may tilt as a whole."""
+        found, seen, at = [], {frame}, frame
+        while last_name(at) not in BODY_FRAMES:
+            joint = self._moving.get(at)
+            above = joint.parent if joint else self._parents.get(at, "")
+            if not above or above in seen or last_name(above) in WORLD_FRAMES:
+                break
+            found += [joint] if joint else []
+            seen.add(above)
+            at = above
+        return found
 
     def contradictions(self) -> list[StatedTransform]:
         """Transforms that differ from what the others say about the same two frames."""

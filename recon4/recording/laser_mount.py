@@ -89,6 +89,7 @@ def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -
     frame = mounts.frame_of(topic)
     if not mounts.any_stated:
         return None
+    _doubt_joints(mounts, frame, report)
     body = _body_of(mounts, frame)
     T_body_laser = mounts.graph.T_a_b(body, frame) if body else None
     if T_body_laser is None:
@@ -152,6 +153,18 @@ def _compare(by_rig: LaserMount, by_bag: LaserMount, report: ImportReport) -> No
             f"differs by {np.rad2deg(angle_rad):.0f}°; {by_rig.source}; {by_bag.source}; the rig "
             "file is used"
         )
+
+
+def _doubt_joints(mounts: Mounts, frame: str, report: ImportReport) -> None:
+    """Say which joints tilt the laser during the recording: a flat map assumes that none does."""
+    for joint in mounts.graph.joints_above(frame):
+        if joint.tilt_rad > _TILTED_RAD:
+            report.doubt(
+                f"the laser hangs on a joint that moves: {joint.parent} -> {joint.child} tilts by "
+                f"up to {np.rad2deg(joint.tilt_rad):.0f}° ({joint.source}), but a flat map takes "
+                "its plane as level all the time: distances may be too long, and floor or ceiling "
+                "in it"
+            )
 
 
 def _body_of(mounts: Mounts, frame: str) -> str:

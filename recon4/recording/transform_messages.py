@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from math import isfinite
+from math import acos, isfinite
 from typing import Any
 
 from recon4.errors import CorruptFile
@@ -20,6 +20,7 @@ from recon4.recording.formats.urdf import fixed_joints
 from recon4.recording.frame_graph import (
     WORLD_FRAMES,
     FrameGraph,
+    MovingJoint,
     StatedTransform,
     is_same,
     last_name,
@@ -54,7 +55,7 @@ def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameG
 
     Static transforms come first, then the fixed joints of a robot description, then those
     transforms of ``/tf`` that do not change. ``/tf`` is only read if the others do not connect all
-    frames.
+    frames with each other and with the robot.
 
     Args:
         bag: An open bag.
@@ -72,7 +73,7 @@ def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameG
             topic.name, _messages(bag, topic.name, most=MAX_DESCRIPTIONS, report=report)
         )
     graph = stated.graph()
-    if graph.connected(frames) or not moving:
+    if _is_complete(graph, frames) or not moving:
         return graph
     for name in moving:
         stated.add_constant(name, _messages(bag, name, most=MAX_MESSAGES, report=report))
@@ -82,6 +83,12 @@ def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameG
 def frame_name(raw: str) -> str:
     """The name of a frame; a slash at its front, as in ROS 1, means nothing."""
     return clean_name(raw.strip().lstrip("/"))
+
+
+def _is_complete(graph: FrameGraph, frames: Sequence[str]) -> bool:
+    """Whether the places of all frames on the robot are known."""
+    known = all(frame in graph and graph.body_of(frame) for frame in frames)
+    return known and graph.connected(frames)
 
 
 def _is_description(topic: BagTopic) -> bool:
@@ -107,6 +114,8 @@ class _Statement:
     count: int = 1
     differs: bool = False
     """Whether it is stated in different ways."""
+    tilt_rad: float = 0.0
+    """Largest angle between the vertical at first and later [rad]."""
 
 
 class _Statements:
@@ -115,12 +124,13 @@ class _Statements:
     def __init__(self, report: ImportReport) -> None:
         self._report = report
         self._stated: list[StatedTransform] = []
+        self._moving: list[MovingJoint] = []
         self._children: set[str] = set()
         """Frames with a static parent: what others state about them is not asked for."""
 
     def graph(self) -> FrameGraph:
         """The frames so far."""
-        return FrameGraph(self._stated)
+        return FrameGraph(self._stated, self._moving)
 
     def add_static(self, name: str, messages: Iterator[Any]) -> None:
         """Add static transforms; of several between two frames the last counts, as in tf2."""
@@ -131,10 +141,13 @@ class _Statements:
         self._children |= {child for _, child in found}
 
     def add_constant(self, name: str, messages: Iterator[Any]) -> None:
-        """Add the transforms of ``/tf`` that are the same all the time."""
+        """Add the transforms of ``/tf`` that never change, and the joints that move."""
         for pair, one in self._collect(name, messages, last=False).items():
-            is_pose = last_name(pair[0]) in WORLD_FRAMES or one.differs or one.count < 2
-            if not is_pose and pair[1] not in self._children:
+            if last_name(pair[0]) in WORLD_FRAMES or one.count < 2 or pair[1] in self._children:
+                continue
+            if one.differs:
+                self._moving.append(MovingJoint(*pair, one.tilt_rad, name))
+            else:
                 self._keep(pair, one, name)
 
     def add_description(self, name: str, messages: Iterator[Any]) -> None:
@@ -223,3 +236,17 @@ def _repeat(one: _Statement, numbers: _Numbers, *, last: bool) -> None:
         one.differs = not is_same(before, now)
     if last:
         one.numbers = numbers
+    else:
+        one.tilt_rad = max(one.tilt_rad, _tilt_rad(one.numbers, numbers))
+
+
+def _tilt_rad(first: _Numbers, now: _Numbers) -> float:
+    """Angle between the verticals of a parent, as two poses of its child see them [rad]."""
+    cosine = sum(a * b for a, b in zip(_vertical(first), _vertical(now), strict=True))
+    return acos(max(-1.0, min(1.0, cosine)))
+
+
+def _vertical(numbers: _Numbers) -> tuple[float, float, float]:
+    """The parent's z axis in the child: last row of the rotation matrix."""
+    x, y, z, w = numbers[3:]
+    return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)

@@ -121,6 +121,77 @@ def test_a_frame_that_the_transforms_do_not_know_is_said(tmp_path):
     assert report.warnings == []
 
 
+def joint_bag(folder, kind, *transforms):
+    """A level laser; ``/tf`` states transforms, each a parent, child and mount of the scan k."""
+    path = bag_path(folder, kind)
+    with RobotBag(path, kind) as bag:
+        bag.frame = "laser"
+        for k, laser in enumerate(ROBOT):
+            t_ns = T0_NS + k * STEP_NS
+            stated = [(parent, child, mounted_at(k)) for parent, child, mounted_at in transforms]
+            bag.tf(*stated, topic="/tf", t_ns=t_ns)
+            bag.laser("/scan", t_ns, cast(furnished_room(), laser, ANGLES, 30.0), angles=ANGLES)
+    return path
+
+
+@pytest.mark.parametrize("kind", ["bag1", "mcap"])
+def test_a_mount_that_only_tf_repeats_is_read(tmp_path, kind):
+    path = joint_bag(
+        tmp_path,
+        kind,
+        ("odom", "base_link", lambda k: mount(0.1 * k)),
+        ("base_link", "laser", lambda k: mount(z=0.3, roll=180)),
+    )
+
+    found, report = mounted(path)
+
+    assert found.mount is not None and found.mount.is_upside_down
+    assert "the laser is upside down" in said(report)
+    assert report.doubts == []
+
+
+@pytest.mark.parametrize("tf", ["directly", "by a part between"])
+def test_a_laser_that_tilts_on_a_joint_is_doubted(tmp_path, tf):
+    laser, axis = ("laser", "spare") if tf == "directly" else ("axis", "laser")
+    path = joint_bag(
+        tmp_path,
+        "bag1",
+        ("base_link", laser, lambda k: mount(pitch=40 * np.sin(k / 10))),
+        (laser, axis, lambda k: mount(0.1)),
+    )
+
+    _, report = mounted(path)
+
+    assert f"a joint that moves: base_link -> {laser} tilts by up to 40° (/tf)" in report.doubts[0]
+    assert report.doubts == report.warnings
+
+
+@pytest.mark.parametrize(
+    ("parent", "moved"),
+    [
+        ("base_link", lambda k: mount(yaw=3 * k)),
+        ("base_link", lambda k: mount(pitch=0.05 * k)),
+        ("map", lambda k: mount(0.1 * k, roll=10 * np.sin(k / 10))),
+    ],
+    ids=["turns level", "shakes a little", "pose in the world"],
+)
+def test_a_joint_that_keeps_the_laser_level_is_not_accused(tmp_path, parent, moved):
+    path = joint_bag(tmp_path, "bag1", (parent, "laser", moved))
+
+    assert mounted(path)[1].warnings == []
+
+
+def test_a_robot_that_tilts_as_a_whole_is_no_joint(tmp_path):
+    path = joint_bag(
+        tmp_path,
+        "bag1",
+        ("base_stabilized", "base_link", lambda k: mount(pitch=8 * np.sin(k / 10))),
+        ("base_link", "laser", lambda k: mount(z=0.3)),
+    )
+
+    assert mounted(path)[1].warnings == []
+
+
 def test_odometry_of_another_frame_of_the_robot_is_moved_from_there(tmp_path):
     path, _ = walk_bag(tmp_path, MOUNTS["rolled by 180"], child="laser")
 
