@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -24,6 +24,7 @@ from recon4.recording.velodyne.models import (
     velodyne_model,
 )
 from recon4.recording.velodyne.packet_filter import PacketOrder, Payloads, as_packets, sound_packets
+from recon4.recording.velodyne.packet_holes import PacketHoles
 from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock
 from recon4.settings import IngestSettings
 
@@ -175,7 +176,7 @@ class PacketDecoder:
         self._order = PacketOrder(round(settings.reorder_window_s * SECOND_NS), report)
         self._offset_ns = round(sensor.time_offset_s * SECOND_NS)
         self._product: int | None = None
-        self._interval = _Interval()
+        self._holes = PacketHoles()
 
     def push(self, t_arrival_ns: Times, payloads: Payloads) -> Shots:
         """Take packets in, give out the shots that are certain to be in order.
@@ -207,7 +208,9 @@ class PacketDecoder:
 
     def flush(self) -> Shots:
         """Give out what was held back."""
-        return self._shots(*self._order.flush())
+        shots = self._shots(*self._order.flush())
+        self._count_missing(self._holes.rest())
+        return shots
 
     @property
     def rotation_hz(self) -> float:
@@ -255,11 +258,10 @@ class PacketDecoder:
             return
         return_mode = int(payloads[0, -2])
         packet_s = self.model.packet_s(return_mode)
-        missing = self._interval.missing(t_ns, packet_s)
-        self._report.count("packets_missing", missing)
-        self._report.count(f"packets_missing_{self._sensor.name}", missing)
+        azimuth_cdeg = as_packets(payloads)["blocks"]["azimuth_cdeg"][:, 0].astype(np.int64)
+        self._count_missing(self._holes.missing(t_ns, azimuth_cdeg, packet_s))
         self.rotation.push(t_ns, payloads, packet_s)
-        usual_s = self._interval.usual_s()
+        usual_s = self._holes.usual_s()
         fits = models_of_interval(usual_s, return_mode) if usual_s else ()
         if fits and self.model.name not in fits:
             self._report.warn(
@@ -267,30 +269,6 @@ class PacketDecoder:
                 f"sends, but it is decoded as {self.model.name}"
             )
 
-
-@dataclass(slots=True)
-class _Interval:
-    """Time between packets: what is usual among the first ones, and the holes."""
-
-    _first: list[float] = field(default_factory=list)
-    _last_ns: int | None = None
-    _reported: bool = False
-
-    def missing(self, t_ns: Times, packet_s: float) -> int:
-        """How many packets seem to be missing, in pauses of less than a second."""
-        steps_s = np.diff(t_ns if self._last_ns is None else np.append(self._last_ns, t_ns)) / 1e9
-        self._last_ns = int(t_ns[-1])
-        if not self._reported:
-            self._first.extend(steps_s[:100].tolist())
-        hole = steps_s > 1.5 * packet_s
-        if not hole.any():
-            return 0
-        short = steps_s[hole & (steps_s < 1.0)]
-        return int(np.rint(short / packet_s - 1).sum())
-
-    def usual_s(self) -> float:
-        """Median of the first 100 or more steps [s], once; 0 before and after."""
-        if self._reported or len(self._first) < 100:
-            return 0.0
-        self._reported = True
-        return float(np.median(self._first))
+    def _count_missing(self, number: int) -> None:
+        self._report.count("packets_missing", number)
+        self._report.count(f"packets_missing_{self._sensor.name}", number)

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.packet_filter import PacketOrder
+from recon4.recording.velodyne.packet_filter import PacketOrder, as_packets
 from recon4.recording.velodyne.sensor_clock import SECOND_NS
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
@@ -117,6 +117,40 @@ def test_lost_packets_are_counted(clean):
 
     assert report.counts["packets_missing"] == 4
     assert sum(n for name, n in report.counts.items() if name.startswith("packets_missing_")) == 4
+
+
+def in_view(payloads, *, first_deg, last_deg):
+    """Rows of the packets that a sensor sends which is set to a field of view."""
+    azimuth = as_packets(payloads)["blocks"]["azimuth_cdeg"][:, 0] / 100.0
+    return np.flatnonzero((azimuth - first_deg) % 360 <= (last_deg - first_deg) % 360)
+
+
+@pytest.mark.parametrize("view", [(270, 90), (0, 330), (45, 60)])
+def test_a_field_of_view_is_no_loss_of_packets(clean, view):
+    t_ns, payloads, _ = clean
+    rows = in_view(payloads, first_deg=view[0], last_deg=view[1])
+
+    _, report = decode_all(t_ns[rows], payloads[rows])
+
+    assert report.counts["packets_missing"] == 0
+
+
+def test_losses_within_a_field_of_view_are_counted(clean):
+    t_ns, payloads, _ = clean
+    rows = in_view(payloads, first_deg=270, last_deg=90)
+    kept = np.delete(rows, [250, 251, 400])
+
+    _, report = decode_all(t_ns[kept], payloads[kept])
+
+    assert report.counts["packets_missing"] == 3
+
+
+def test_a_loss_of_every_other_packet_is_no_field_of_view(clean):
+    t_ns, payloads, _ = clean
+
+    _, report = decode_all(t_ns[::2], payloads[::2])
+
+    assert report.counts["packets_missing"] == len(t_ns) // 2 - 1
 
 
 def test_packets_of_another_length_are_dropped_and_counted():
