@@ -141,6 +141,7 @@ _MESSAGES = {
     ),
     "robot_descriptions_refused": _stated("not read", noun="descriptions of a robot (URDF)"),
     "clouds": _read("clouds"),
+    "clouds_duplicate": _repaired("clouds", "recorded twice, the copies dropped"),
     "clouds_wrong_times": CountWording(
         CountKind.REPLACED,
         "the times of their points make no sense, they are taken from the azimuth or the stamp",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 from itertools import islice
 from pathlib import Path
@@ -59,6 +60,8 @@ from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory
 
+_COPIES_WITHIN = 4
+"""Messages of a topic among which a copy of a cloud is looked for."""
 _PERIOD_NS = 100_000_000
 _PROBED_MESSAGES = 50
 """Messages of a topic that are decoded to detect its content."""
@@ -277,9 +280,13 @@ class _Clouds:
         self._decoder, self._period_ns, self._report = decoder, period_ns, report
         self._stamps = stamps
         self._offset_ns = round(offset_s * 1e9)
+        self._recent: deque[tuple[int, Any]] = deque(maxlen=_COPIES_WITHIN)
 
     def push(self, message: BagMessage, cloud: Any) -> Shots | None:
         t_ns = stamp_ns(cloud.header.stamp)
+        if self._is_copy(t_ns, cloud.data):
+            self._report.count("clouds_duplicate")
+            return None
         if not self._stamps.is_sound(t_ns, message.t_ns):
             self._report.count("stamps_missing" if t_ns <= 0 else "stamps_wrong")
             t_ns = self._stamps.expected_ns(message.t_ns)
@@ -294,3 +301,11 @@ class _Clouds:
 
     def flush(self) -> Shots:
         return self._decoder.nothing()
+
+    def _is_copy(self, t_ns: int, data: Any) -> bool:
+        """Whether a cloud was recorded before, as in bags that were merged."""
+        copy = t_ns > 0 and any(
+            t == t_ns and np.array_equal(other, data) for t, other in self._recent
+        )
+        self._recent.append((t_ns, data))
+        return copy

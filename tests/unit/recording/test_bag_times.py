@@ -58,3 +58,35 @@ def test_the_time_between_clouds_is_that_of_most_of_them(tmp_path, plain):
 
     # Points without times are spread over one revolution: a pause of the LiDAR is none.
     assert np.ptp(shots[0].t_ns) == pytest.approx(STEP_NS, rel=0.1)
+
+
+@pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
+def test_a_cloud_recorded_twice_is_used_once(tmp_path, plain, kind):
+    path = bag_path(tmp_path, kind)
+    with RobotBag(path, kind) as bag:
+        bag.frame = "os_lidar"
+        for k in (0, 1, 2, 1, 3, 3, 4):
+            bag.cloud("/points", T0_NS + k * STEP_NS, plain)
+
+    found, report = opened(path)
+    shots = [item for item in found.read() if hasattr(item, "ring") and len(item)]
+
+    assert sum(map(len, shots)) == 5 * len(plain["x"])
+    assert report.counts["clouds_duplicate"] == 2
+    assert "2 of 5 clouds: recorded twice, the copies dropped" in report.repaired()
+
+
+def test_parts_of_a_revolution_with_one_stamp_are_no_copies(tmp_path, plain):
+    path = bag_path(tmp_path, "db3")
+    half = len(plain["x"]) // 2
+    with RobotBag(path, "db3") as bag:
+        bag.frame = "os_lidar"
+        for k in range(5):
+            for part in (slice(None, half), slice(half, None)):
+                table = {name: column[part] for name, column in plain.items()}
+                bag.cloud("/points", T0_NS + k * STEP_NS, table)
+
+    found, report = opened(path)
+
+    assert sum(len(s) for s in found.read() if hasattr(s, "ring")) == 5 * len(plain["x"])
+    assert not report.counts["clouds_duplicate"]
