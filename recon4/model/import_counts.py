@@ -66,6 +66,7 @@ def _stated(text: str, *, noun: str) -> CountWording:
     return CountWording(CountKind.LOST, text, stated=True, noun=noun)
 
 
+_NO_STAMP = "without a stamp, the time of recording is used"
 _CAPTURES = {
     "records": _read("captured packets"),
     "records_not_udp": _usual("records", "no UDP over IPv4, not read"),
@@ -147,7 +148,7 @@ _MESSAGES = {
         "the times of their points make no sense, they are taken from the azimuth or the stamp",
         "clouds",
     ),
-    "stamps_missing": _repaired("clouds", "without a stamp, the time of recording is used"),
+    "stamps_missing": _repaired("clouds", _NO_STAMP),
     "stamps_wrong": _repaired("clouds", "a stamp of another time, the time of recording is used"),
     "remarks_more": _usual("", "left out here", noun="different remarks"),
 }
@@ -155,6 +156,7 @@ _SAMPLES = {
     "imu_samples": _read("IMU samples received"),
     "imu_kept": _read("IMU samples used", noun="IMU samples"),
     "imu_nan": _lost("imu_kept", "no numbers, dropped", apart=True),
+    "imu_without_stamp": _repaired("imu_kept", _NO_STAMP),
     "imu_wrong_time": _lost("imu_kept", "a stamp of another time, dropped", apart=True),
     "imu_lines_damaged": _lost("imu_kept", "damaged lines of the file, dropped", apart=True),
     "imu_duplicate": _lost("imu_kept", "the time of another, dropped", apart=True),
@@ -173,6 +175,7 @@ _SAMPLES = {
     "gnss_at_zero": _lost("gnss_kept", "at latitude and longitude 0, dropped", apart=True),
     "gnss_constant": _lost("gnss_kept", "one position for all, dropped", apart=True, stated=True),
     "gnss_no_fix": _usual("", "without a fix", noun="GNSS positions"),
+    "gnss_without_stamp": _repaired("gnss_kept", _NO_STAMP),
     "gnss_wrong_time": _lost("gnss_kept", "a stamp of another time, dropped", apart=True),
     "gnss_lines_damaged": _lost("gnss_kept", "damaged lines of the file, dropped", apart=True),
     "gnss_duplicate": _lost("gnss_kept", "the time of another, dropped", apart=True),
@@ -189,6 +192,7 @@ _SAMPLES = {
     "samples_out_of_order": _lost("sample_datagrams", "earlier than the one before, dropped"),
     "poses": _read("poses for comparison"),
     "poses_damaged": _lost("poses", "damaged lines of the file, dropped", apart=True),
+    "poses_without_stamp": _repaired("poses", _NO_STAMP),
     "poses_wrong_time": _lost("poses", "a stamp of another time, dropped", apart=True),
 }
 _SCANS = {

@@ -109,6 +109,7 @@ class SampleBatch:
         t_ns = stamp_ns(content.header.stamp)
         if t_ns <= 0 and self._stamps.offset_ns is None:
             t_ns = message.t_ns
+            self._report.count(f"{self._kind}_without_stamp")
         elif self._stamps.is_sound(t_ns, message.t_ns):
             self._report.note_lag(self._kind.upper(), message.t_ns - t_ns)
         else:

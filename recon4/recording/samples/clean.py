@@ -101,6 +101,8 @@ def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> G
     usable = without_unmeasured(_take(gnss, place & ~invalid), report)
     found = _sorted(usable, offset_s, "gnss", report=report)
     report.count("gnss_kept", len(found))
+    if len(found) and not np.isfinite(found.height_m).any():
+        report.derive("no GNSS position has a height: they cannot place the map")
     if not len(found):
         report.warn(f"no usable GNSS position: {_why_none(gnss, damaged, invalid)}")
         return None

@@ -126,3 +126,30 @@ def test_info_says_that_no_position_can_be_used(tmp_path, fix, status, said):
 
     assert said in text
     assert ("lost" in text) == (status == 0)
+
+
+def test_positions_without_heights_are_said_to_place_nothing(tmp_path):
+    text = _bag_with_imu(tmp_path, fix=(50.0, 14.0, np.nan))
+
+    assert "no GNSS position has a height: they cannot place the map" in text
+    assert "no GNSS position has a height" not in _bag_with_imu(tmp_path / "b", fix=(50, 14.0, 0.5))
+
+
+def test_samples_without_stamps_are_counted_as_repaired(tmp_path):
+    path = bag_path(tmp_path, "db3")
+    with Bag(path, "db3") as bag:
+        header = bag.header
+        for k in range(100):
+            t_ns = T0_NS + k * 10_000_000
+            bag.header = header
+            if k % 10 == 0:
+                bag.cloud("/points", t_ns, room_cloud())
+            bag.header = lambda t_ns, frame=None: header(0, frame)
+            bag.imu("/imu", t_ns, noisy((0.0, 0.3, 0.4), k), noisy((0.0, 0.0, 9.81), k))
+            if k % 10 == 0:
+                bag.fix("/fix", t_ns, 50.0 + 1e-7 * k, 14.0, 300.0)
+
+    repaired = describe(path).repaired
+
+    assert "100 of 100 IMU samples: without a stamp, the time of recording is used" in repaired
+    assert "10 of 10 GNSS positions: without a stamp, the time of recording is used" in repaired
