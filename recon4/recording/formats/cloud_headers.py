@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 
 import numpy as np
@@ -74,7 +75,7 @@ class CloudLayout:
 
 def is_ply(head: bytes) -> bool:
     """Whether the first bytes are those of a PLY file."""
-    return head[:4] in (b"ply\n", b"ply\r")
+    return re.match(rb"ply[ \t]*[\r\n]", head) is not None
 
 
 def is_pcd(head: bytes) -> bool:

@@ -20,6 +20,7 @@ from recon4.errors import CorruptFile, Recon4Error, RecordingError, UnknownForma
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
 from recon4.recording.formats.cloud_files import cloud_chunks, cloud_fields, cloud_rows
+from recon4.recording.formats.cloud_headers import is_ply
 from recon4.recording.formats.e57_xml import check_e57_xml
 from recon4.recording.formats.las_check import check_las
 from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
@@ -101,7 +102,7 @@ def _kind(head: bytes, path: Path) -> Literal["las", "e57", "table", "text", ""]
         return "las"
     if head[:8] == b"ASTM-E57":
         return "e57"
-    if head[:4] in (b"ply\n", b"ply\r") or b"\nDATA " in head:
+    if is_ply(head) or b"\nDATA " in head:
         return "table"
     return "text" if path.suffix.lower() in TEXT_SUFFIXES else ""
 
@@ -194,6 +195,8 @@ def _e57(path: Path) -> Iterator[Array]:
         file = pye57.E57(str(path))
         for index in range(file.scan_count):
             header = file.get_header(index)
+            if not header.point_count:
+                continue
             _refuse_promise(path, header.point_count)
             scan = file.read_scan(index, ignore_missing_fields=True, transform=True)
             columns = [scan[f"cartesian{axis}"] for axis in "XYZ"]

@@ -152,3 +152,13 @@ def test_a_compressed_file_of_a_real_recording_is_read(data):
 
     assert len(read["x"]) == 92677
     assert np.ptp(read["timestamp"]) == pytest.approx(0.1, abs=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["ply ascii", "ply little"])
+@pytest.mark.parametrize("first", [b"ply\r\n", b"ply \t \n"])
+def test_spaces_behind_the_first_word_of_a_ply_file_mean_nothing(kind, first, table, tmp_path):
+    path = WRITERS[kind](tmp_path / "cloud.ply", table)
+    path.write_bytes(first + path.read_bytes().removeprefix(b"ply\n"))
+
+    assert is_cloud_file(path)
+    np.testing.assert_array_equal(read_cloud(path)["x"], table["x"])

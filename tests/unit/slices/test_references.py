@@ -231,3 +231,8 @@ def test_a_free_cut_of_a_mesh_is_in_its_plane():
     lines = mesh_lines(BOX, plane)
 
     assert np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum() == pytest.approx(10.0)
+
+
+def test_an_e57_file_without_points_holds_no_points(data):
+    with pytest.raises(CorruptFile, match="holds no points"):
+        list(read_points(data("clouds/e57/empty_pc.e57")))
