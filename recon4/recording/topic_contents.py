@@ -18,7 +18,7 @@ _PROBED_MESSAGES = 200
 _PROBED_CLOUDS = 5
 """Clouds and scans of packets are large."""
 _PROBED_NS = 60_000_000_000
-"""From the start of the bag on; a topic that begins later is one that does not cover it."""
+"""From the first of their messages on; a topic that begins later does not cover the bag."""
 _COVERED = 0.8
 _SLOW_HZ = 50.0
 """A slower IMU does not follow the steps of a walker."""
@@ -76,8 +76,10 @@ def read_contents(bag: Bag, topics: Sequence[BagTopic]) -> dict[str, Contents]:
         t.name: min(t.messages, most.get(t.type, _PROBED_MESSAGES)) for t in topics if t.messages
     }
     found: dict[str, list[tuple[int, Any]]] = {t.name: [] for t in topics}
+    end_ns: int | None = None
     for message in bag.messages(list(waiting)):
-        if message.t_ns > bag.t_first_ns + _PROBED_NS:
+        end_ns = message.t_ns + _PROBED_NS if end_ns is None else end_ns
+        if message.t_ns > end_ns:
             break
         if waiting[message.topic] <= 0:
             continue

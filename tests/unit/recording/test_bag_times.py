@@ -90,3 +90,19 @@ def test_parts_of_a_revolution_with_one_stamp_are_no_copies(tmp_path, plain):
 
     assert sum(len(s) for s in found.read() if hasattr(s, "ring")) == 5 * len(plain["x"])
     assert not report.counts["clouds_duplicate"]
+
+
+def test_topics_recorded_by_another_clock_do_not_hide_the_clouds(tmp_path, plain):
+    path = bag_path(tmp_path, "db3")
+    with RobotBag(path, "db3") as bag:
+        for k in range(10):
+            t_ns = T0_NS + k * STEP_NS
+            bag.fix("/fix", t_ns - 3600 * 10**9, 50.0 + 1e-7 * k, 14.0, 300.0)
+            bag.frame = "os_lidar"
+            bag.cloud("/points", t_ns, plain)
+            bag.frame = "map"
+            bag.cloud("/registered", t_ns, plain)
+
+    found, _ = opened(path)
+
+    assert [sensor.topic for sensor in found.rig.sensors] == ["/points"]
