@@ -1,0 +1,1 @@
+"""Recordings drawn at random from what drivers in the field do, and what they must give."""
