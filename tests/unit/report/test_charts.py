@@ -7,9 +7,14 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from recon4.geometry.se3 import SE3
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.report.edges import edge_paths
 from recon4.report.figures import histogram, lines, thinned
 from recon4.report.maps import ABOVE, SIDE, MapChunk, ink_png, intensity_png, rasterize
-from recon4.report.plan import PlanOverlay, PlanPath, nice_step, plan_svg
+from recon4.report.plan import PlanOverlay, PlanPath, frame_around, nice_step, plan_svg
+
+NAMED = {"labels": ("x", "y")}
 
 
 def chunk(points: list[list[float]], intensity: float = 10.0) -> MapChunk:
@@ -115,6 +120,43 @@ def test_less_than_the_least_span_looks_like_nothing() -> None:
     assert "0.04" in wide
     assert "0.0003" not in wide
     assert "0.0003" in lines("height", series, labels=("t", "z"))
+
+
+def elements(svg: str) -> int:
+    return sum(1 for _ in ElementTree.fromstring(svg.replace("xlink:", "")).iter())
+
+
+def test_values_between_holes_are_dots_of_one_path() -> None:
+    t = np.arange(1400.0)
+    broken = np.where(t % 2 == 0, np.sin(t / 100), np.nan)
+
+    whole = lines("height", [("z", t, np.sin(t / 100), "#0072b2")], labels=("t", "z"))
+    dots = lines("height", [("z", t, broken, "#0072b2")], labels=("t", "z"))
+
+    assert elements(dots) < elements(whole) + 10
+    assert dots.count("M") > 700
+
+
+def test_charts_and_plan_of_a_large_graph_have_few_elements() -> None:
+    rng = np.random.default_rng(0)
+    count, nodes = 20_000, 5000
+    verdicts = rng.choice(np.array(list(Verdict), dtype=object), count)
+    edges = [
+        Edge(i=int(i), j=nodes - 1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=verdict)
+        for i, verdict in zip(rng.integers(0, nodes - 1, count), verdicts, strict=True)
+    ]
+    place = rng.uniform(0.0, 500.0, (nodes, 3))
+    T_map_body = SE3(np.tile(np.eye(3), (nodes, 1, 1)), place)
+    graph = PoseGraph(np.arange(nodes), np.arange(nodes) * 10**9, T_map_body, edges)
+    irregular = np.cumsum(rng.exponential(1.0, 20_000) ** 3)
+
+    drawn = [
+        plan_svg(None, ABOVE, frame_around(place, ABOVE), overlay=PlanOverlay(edge_paths(graph))),
+        histogram("e", [(v, rng.exponential(1.0, count), "#0072b2") for v in Verdict], **NAMED),
+        lines("span", [("n", irregular, irregular, "#0072b2")] * 3, **NAMED),
+    ]
+
+    assert [elements(svg) < 200 for svg in drawn] == [True] * 3, list(map(elements, drawn))
 
 
 def test_charts_take_the_color_of_the_page() -> None:
