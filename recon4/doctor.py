@@ -12,6 +12,7 @@ from pathlib import Path
 import recon4
 from recon4.errors import ConfigError
 from recon4.sandbox import Barrier, available_barriers
+from recon4.sandbox.private_cache import cache_in_use, planted
 
 _PACKAGES = (
     ("numpy", "numbers"),
@@ -88,10 +89,12 @@ def _barrier(barrier: Barrier) -> Check:
 
 
 def _kernel_cache() -> Check:
-    folder = Path(os.environ.get("NUMBA_CACHE_DIR", Path(__file__).parent / "kernels"))
-    writable = os.access(folder if folder.exists() else folder.parent, os.W_OK)
-    advice = "" if writable else "set NUMBA_CACHE_DIR to a writable folder, or each start compiles"
-    return Check("compiled loops kept", "yes" if writable else "no", writable, advice)
+    cache = cache_in_use()
+    if cache is None:
+        advice = "set NUMBA_CACHE_DIR to a writable folder, or each start compiles"
+        return Check("compiled loops kept", "no", ok=False, advice=advice)
+    why = planted(cache)
+    return Check("compiled loops kept", "unsafe" if why else "yes", not why, why)
 
 
 def _cores() -> int:

@@ -60,4 +60,6 @@ def _places() -> list[Path]:
     places = [_SHARED_TEMPORARY / name, Path("/tmp") / name]
     if session := os.environ.get("XDG_RUNTIME_DIR"):
         places.append(Path(session) / "recon4")
-    return [*places, Path.home() / ".cache" / "recon4-sockets"]
+    with contextlib.suppress(RuntimeError):  # a user without a home
+        places.append(Path.home() / ".cache" / "recon4-sockets")
+    return places

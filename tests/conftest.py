@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from playwright.sync_api import Browser
 
 ROOT = Path(__file__).parents[1]
+os.environ["PYTHONPATH"] = str(ROOT)  # children do not look into the working folder
 DATA = Path(os.environ.get("RECON4_DATA") or ROOT.parent / "shared" / "data")
 
 CAPTURE = "recording.pcap"

@@ -6,7 +6,6 @@ log; without it those of the person at this computer, for projects that lie belo
 
 from __future__ import annotations
 
-import getpass
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from app.cli.users import this_user
 from recon4.errors import ConfigError, StoreError
 from recon4.terminal import write
 
@@ -57,7 +57,7 @@ def add(
     from recon4.review.trusted_keys import add_key
 
     with _changing(root, "trust key") as change:
-        key = add_key(change.trusted, name, public_key, by=getpass.getuser())
+        key = add_key(change.trusted, name, public_key, by=this_user())
         change.what = f"{key.fingerprint} {key.name}"
     write(f"what {key.name} signs with the key {key.fingerprint} counts")
 
@@ -71,7 +71,7 @@ def remove(
     from recon4.review.trusted_keys import remove_key
 
     with _changing(root, "remove key") as change:
-        key = remove_key(change.trusted, wanted, by=getpass.getuser())
+        key = remove_key(change.trusted, wanted, by=this_user())
         change.what = f"{key.fingerprint} {key.name}"
     write(f"nothing signed with the key {key.fingerprint} ({key.name}) counts any more")
 
@@ -113,16 +113,23 @@ def _changing(root: Path | None, action: str) -> Iterator[_Change]:
     """Change the keys; of a server with an entry in its audit log."""
     change = _Change(_trusted(root))
     if root is None:
-        yield change
+        with _written(change):
+            yield change
         return
     from app.cli.users import access_of, note
     from recon4.review.trusted_keys import SIGNING_KEY, TRUSTED_KEYS
     from recon4.verify import state_change
 
-    try:
-        with state_change(change.trusted.folder, SIGNING_KEY, TRUSTED_KEYS):
-            yield change
-    except OSError as error:
-        raise StoreError(f"cannot write {change.trusted.folder}: {error.strerror}") from error
+    with _written(change), state_change(change.trusted.folder, SIGNING_KEY, TRUSTED_KEYS):
+        yield change
     with access_of(root) as access:
         note(access, action, change.what)
+
+
+@contextmanager
+def _written(change: _Change) -> Iterator[None]:
+    """Turn errors of the disk into ours."""
+    try:
+        yield
+    except OSError as error:
+        raise StoreError(f"cannot write {change.trusted.folder}: {error.strerror}") from error

@@ -6,6 +6,7 @@ They write to the same database as a running server; what they change counts the
 from __future__ import annotations
 
 import getpass
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -156,4 +157,12 @@ def _password() -> str:
 
 def note(access: Access, action: str, what: str) -> None:
     """Append what a person did at this computer to the audit log."""
-    access.log.add(getpass.getuser(), "this computer", action=action, what=what)
+    access.log.add(this_user(), "this computer", action=action, what=what)
+
+
+def this_user() -> str:
+    """Name of the user of this process; its number if it has no name, as in containers."""
+    try:
+        return getpass.getuser()
+    except (KeyError, OSError):
+        return f"user {os.getuid()}"

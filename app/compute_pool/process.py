@@ -63,7 +63,6 @@ class ChildProcess:
         """Start a child; it imports ``modules`` and waits for its first call."""
         scratch = scratch_of_all / secrets.token_hex(8)
         scratch.mkdir(mode=0o700, parents=True)
-        # -P: a module in the working folder is not imported in place of ours.
         command = [sys.executable, "-P", "-m", "app.compute_pool.child"]
         watched, held = os.pipe()
         try:

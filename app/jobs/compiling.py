@@ -65,5 +65,5 @@ def compile_kernels_once(heartbeat: Path) -> None:
 
 
 def _start() -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "recon4", "compile"]
+    command = [sys.executable, "-P", "-m", "recon4", "compile"]
     return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL)

@@ -285,7 +285,7 @@ def _spawn(worker: str, folder: Path, lock: int) -> subprocess.Popen[bytes]:
     """Start a worker that holds the lock from its start and survives the server."""
     with (folder / "log.txt").open("ab") as output:
         return subprocess.Popen(
-            [sys.executable, "-m", worker, str(folder)],
+            [sys.executable, "-P", "-m", worker, str(folder)],
             stdin=subprocess.DEVNULL,
             stdout=output,
             stderr=subprocess.STDOUT,

@@ -181,9 +181,19 @@ def only_one(settings: ServerSettings) -> Iterator[None]:
 
 
 def make_state(settings: ServerSettings) -> None:
-    """Create the folder of the server's own files, accessible to its user only."""
-    make_folders(settings.state, 0o700)
-    settings.state.chmod(0o700)
+    """Create the folder of the server's own files, accessible to its user only.
+
+    Raises:
+        StoreError: If it belongs to another user, or cannot be made.
+    """
+    try:
+        make_folders(settings.state, 0o700)
+        settings.state.chmod(0o700)
+    except OSError as error:
+        raise StoreError(
+            f"{settings.state} cannot be used: {error.strerror}; it is for the user who runs the "
+            "server"
+        ) from error
 
 
 @contextmanager

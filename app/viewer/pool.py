@@ -94,7 +94,7 @@ class ViewerPool:
         caches = await asyncio.to_thread(viewer_environment, scratch_of(self._state, project.name))
         with (self._logs / f"{project.name}.txt").open("ab") as log:
             process = await asyncio.create_subprocess_exec(
-                *(sys.executable, "-m", "app.viewer.process", str(project)),
+                *(sys.executable, "-P", "-m", "app.viewer.process", str(project)),
                 *(str(self._idle_s), str(self._points), str(self._jobs), str(socket)),
                 stdin=asyncio.subprocess.PIPE,  # its lifeline
                 stdout=asyncio.subprocess.PIPE,

@@ -95,7 +95,7 @@ def compile_first() -> None:
     if not _own_process or is_compiled():
         return
     sys.stderr.write("compiling the kernels: once after an installation, some minutes\n")
-    compiler = [sys.executable, "-m", "recon4", "compile"]
+    compiler = [sys.executable, "-P", "-m", "recon4", "compile"]
     if subprocess.run(compiler, stdout=subprocess.DEVNULL, check=False).returncode:
         sys.stderr.write("not compiled: this command compiles them for itself\n")
 

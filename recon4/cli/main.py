@@ -25,6 +25,7 @@ from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.evaluation import evaluation
 from recon4.cli.exports import exports
+from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
@@ -271,6 +272,8 @@ def _every_command(
     if context.invoked_subcommand is None:
         write(context.get_help())
         raise typer.Exit(2)
+    if context.invoked_subcommand != "doctor":  # it reports what is wrong
+        settle_kernel_cache()
     _sweep()
 
 

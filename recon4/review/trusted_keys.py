@@ -128,9 +128,13 @@ def trusted_for(project: Path) -> TrustedKeys:
 
 
 def personal_folder() -> Path:
-    """Folder of the keys of the person who runs this command."""
+    """Folder of the keys of the person who runs this command; it may not be there.
+
+    Of a user without a home it never is: the working folder is not searched for one.
+    """
     base = os.environ.get("XDG_CONFIG_HOME", "")
-    return (Path(base) if base.startswith("/") else Path.home() / ".config") / "recon4"
+    configuration = base if base.startswith("/") else os.path.expanduser("~/.config")
+    return Path("/", configuration, "recon4")
 
 
 def read_keys(folder: Path, *, server: bool) -> TrustedKeys:

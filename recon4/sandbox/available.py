@@ -26,8 +26,8 @@ def available_barriers() -> tuple[Barrier, ...]:
     ours = Path(__file__).resolve().parents[2]
     places = [str(ours), *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
     environment = {**allowed_environment(os.environ), **ONE_THREAD}
-    environment |= {"PYTHONPATH": os.pathsep.join(places), "PYTHONSAFEPATH": "1"}
-    command = [sys.executable, "-c", _TRY]
+    environment |= {"PYTHONPATH": os.pathsep.join(places)}
+    command = [sys.executable, "-P", "-c", _TRY]
     try:
         answer = subprocess.run(
             command, env=environment, capture_output=True, timeout=_WITHIN_S, check=True

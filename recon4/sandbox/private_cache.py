@@ -3,13 +3,14 @@
 Numba's cache is code that the next process loads (machine code and pickles), so a confined process
 must not write where others read. It has a private folder that begins with symbolic links to the
 compiled kernels and to matplotlib's list of fonts; what it makes itself lands beside them and goes
-with the folder.
+with the folder. Another user who may write a cache could plant code in it: such files are not used.
 """
 
 from __future__ import annotations
 
 import hashlib
 import os
+import stat
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
@@ -64,10 +65,43 @@ def _link(paths: Iterable[Path], folder: Path) -> None:
 
 
 def _files(folder: Path, *suffixes: str) -> list[Path]:
-    """Files of some suffixes in a folder; none when it is missing or another user's."""
+    """Files of some suffixes in a folder; none when it is missing or others may write it."""
     with suppress(OSError):
-        return [folder / name for name in os.listdir(folder) if name.endswith(suffixes)]
+        paths = [folder / name for name in os.listdir(folder) if name.endswith(suffixes)]
+        return [path for path in paths if not any(map(writable_by_others, (folder, path)))]
     return []
+
+
+def writable_by_others(path: Path) -> str:
+    """Why a cache may hold code of another user; empty if it may not, or does not exist.
+
+    Who owns recon4's own sources is trusted, and a group that is the user's own (the same number).
+    """
+    try:
+        found = path.stat()
+    except OSError:
+        return ""
+    user, mode = os.getuid(), stat.S_IMODE(found.st_mode)
+    if found.st_uid not in (0, user, KERNELS.stat().st_uid):
+        return f"it belongs to user {found.st_uid}, this is user {user}"
+    group = mode & stat.S_IWGRP and found.st_gid not in (0, user)
+    if group or mode & stat.S_IWOTH:
+        return f"its mode {stat.filemode(found.st_mode)} lets others write it"
+    return ""
+
+
+def planted(cache: Path) -> str:
+    """Why a folder of compiled kernels is not to be used; empty if it is safe.
+
+    Args:
+        cache: One of `shared_caches`.
+    """
+    names = sorted(os.listdir(cache)) if cache.is_dir() and os.access(cache, os.R_OK) else []
+    files = [cache / name for name in names if name.endswith((".nbi", ".nbc"))]
+    for path in (cache.parent, cache, *files):
+        if why := writable_by_others(path):
+            return f"{path}: {why}"
+    return ""
 
 
 def _font_lists() -> Iterator[Path]:
@@ -106,12 +140,25 @@ def shared_caches() -> Iterator[Path]:
     yield _user_caches() / "numba" / _numba_name(KERNELS)
 
 
+def cache_in_use() -> Path | None:
+    """The folder in which Numba keeps the kernels that this process compiles; None = none."""
+    return next((cache for cache in shared_caches() if _can_be_written(cache)), None)
+
+
+def _can_be_written(folder: Path) -> bool:
+    with suppress(OSError):
+        there = next(path for path in (folder, *folder.parents) if path.exists())
+        return there.is_dir() and os.access(there, os.W_OK | os.X_OK)
+    return False
+
+
 def _numba_name(folder: Path) -> str:
     """How Numba names the cache of a folder of sources."""
     return f"{folder.name}_{hashlib.sha1(str(folder).encode()).hexdigest()}"
 
 
 def _user_caches() -> Path:
+    """Of a user without a home a folder that does not exist, never one in the working folder."""
     if sys.platform == "darwin":
-        return Path("~/Library/Caches").expanduser()
-    return Path(os.environ.get("XDG_CACHE_HOME") or Path("~/.cache").expanduser())
+        return Path("/", os.path.expanduser("~/Library/Caches"))
+    return Path("/", os.environ.get("XDG_CACHE_HOME") or os.path.expanduser("~/.cache"))

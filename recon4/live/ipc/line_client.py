@@ -98,7 +98,7 @@ async def started(
     log_path = session.folder / f"{name}.txt"
     with log_path.open("ab") as log_file:
         process = await asyncio.create_subprocess_exec(
-            *(sys.executable, "-m", f"recon4.live.{name}.process", str(session.project)),
+            *(sys.executable, "-P", "-m", f"recon4.live.{name}.process", str(session.project)),
             stdin=asyncio.subprocess.DEVNULL,
             stdout=asyncio.subprocess.PIPE,
             stderr=log_file,

@@ -1,0 +1,31 @@
+"""Where the commands keep compiled kernels: code that the next process loads.
+
+A folder that others may write is refused: what they put there would run as this user. A user
+without a home, as services have, gets a private folder.
+"""
+
+from __future__ import annotations
+
+import os
+
+from recon4.errors import ConfigError
+from recon4.runtime_folder import private_folder, runtime_folder
+from recon4.sandbox.private_cache import cache_in_use, planted
+
+
+def settle_kernel_cache() -> None:
+    """Choose the folder before Numba is imported; children inherit it.
+
+    Raises:
+        ConfigError: If others may write it.
+        StoreError: If there is no place for one.
+    """
+    cache = cache_in_use()
+    if cache is None:
+        folder = private_folder(runtime_folder() / "kernels")
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    elif why := planted(cache):
+        raise ConfigError(
+            f"compiled kernels are code, and others may have put some there: {why}; remove the "
+            "folder, or name another one (NUMBA_CACHE_DIR)"
+        )
