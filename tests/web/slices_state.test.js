@@ -7,11 +7,20 @@ import {
   planeOf,
   distanceFrom,
   format,
+  imageSize,
   moved,
   normalFrom,
   normalOf,
   parse,
 } from "../../web/slices/state.js";
+
+test("an image has the pixels of the screen, but no more than the server draws", () => {
+  assert.deepEqual(imageSize(800, 600, 1), { width: 800, height: 600 });
+  assert.deepEqual(imageSize(800, 600, 3), { width: 1600, height: 1200 });
+  assert.deepEqual(imageSize(5000, 1250, 1), { width: 4096, height: 1024 });
+  assert.deepEqual(imageSize(2560, 1280, 2), { width: 4096, height: 2048 });
+  assert.deepEqual(imageSize(0, 4, 1), { width: 16, height: 16 });
+});
 
 test("an empty address is the usual horizontal cut", () => {
   const state = parse("");

@@ -109,6 +109,16 @@ export function moved(state, distance) {
   return { ...state, o: shift(state.o) };
 }
 
+const MOST_PX = 4096; // per side, as `MAX_SIDE_PX` of the server
+const LEAST_PX = 16;
+
+/** Pixels to request of an image shown at a size [CSS px]; a huge screen gets coarser ones. */
+export function imageSize(width, height, ratio) {
+  const scale = Math.min(2, ratio || 1, MOST_PX / Math.max(width, height, 1));
+  const [across, up] = [width, height].map((side) => Math.max(LEAST_PX, Math.round(side * scale)));
+  return { width: across, height: up };
+}
+
 /**
  * The state without the view: horizontal, vertical and free slices have different coordinates, so
  * the view of one is invalid in another.

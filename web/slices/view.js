@@ -6,6 +6,7 @@
 import { make } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar, roundStep } from "../shared/scale_bar.js";
+import { imageSize } from "./state.js";
 
 const EDGE = { left: 56, bottom: 26 };
 const FINEST_M = 0.0002;
@@ -65,11 +66,7 @@ export class SliceView extends HTMLElement {
   /** Size and window to request: pixels of the screen, and the window if one is chosen. */
   get wanted() {
     const { width, height } = this.#size();
-    const ratio = Math.min(2, devicePixelRatio || 1);
-    const ask = {
-      width: Math.max(16, Math.round(width * ratio)),
-      height: Math.max(16, Math.round(height * ratio)),
-    };
+    const ask = imageSize(width, height, devicePixelRatio);
     if (!this.#center) return ask;
     const [u, v] = this.#center;
     const [du, dv] = [(width * this.#metersPerPx) / 2, (height * this.#metersPerPx) / 2];
