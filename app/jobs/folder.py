@@ -122,11 +122,17 @@ class JobFolder:
         (self.path / "cancel").touch()
 
     def stop_requested_s(self) -> float | None:
-        """Seconds since the worker was requested to stop, None if it was not."""
+        """Seconds since the worker was requested to stop, None if it was not.
+
+        If the clock was set back meanwhile they count from now.
+        """
         try:
-            return time.time() - (self.path / "cancel").stat().st_mtime
+            since_s = time.time() - (self.path / "cancel").stat().st_mtime
         except FileNotFoundError:
             return None
+        if since_s < 0.0:
+            self.request_stop()
+        return max(0.0, since_s)
 
     def kill(self, sign: signal.Signals = signal.SIGKILL) -> None:
         """Send a signal to the worker and its children. Call only while `alive`."""

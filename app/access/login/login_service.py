@@ -26,6 +26,9 @@ WRONG = "wrong name or password"
 """The same message for a wrong name, a wrong password and a disabled account."""
 CONCURRENT_LOGINS = 2
 """Passwords verified at the same time; each takes 64 MiB."""
+WAITING_LOGINS = 8
+"""Logins of unknown browsers at the same time, so that a flood of them from many addresses takes no
+thread from other requests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +66,7 @@ class LoginService:
         self._backoff = LoginBackoff(clock=clock)
         self._addresses = TokenBuckets(burst=100, per_s=100 / 3600, clock=clock)
         self._verifying = threading.Semaphore(CONCURRENT_LOGINS)
+        self._waiting = threading.BoundedSemaphore(WAITING_LOGINS)
         self._setup_hash = ""
         self._setup_lock = threading.Lock()
 
@@ -80,14 +84,25 @@ class LoginService:
         """Verify a person's password; attempts are limited per person and address.
 
         A browser that signed in before is counted by itself: failed logins of others behind the
-        same address do not delay the owner.
+        same address do not delay the owner, nor does a flood of logins from many addresses.
 
         Raises:
             WrongPassword: If wrong name or password.
-            TooMany: If there were too many failures from that client.
+            TooMany: If there were too many failures from that client, or too many logins at once.
         """
-        place = network(caller.address)
         known = bool(caller.browser) and self._sessions.knows_browser(caller.browser, name)
+        if known:
+            self._prove(name, password, caller, known=True)
+            return
+        if not self._waiting.acquire(blocking=False):
+            raise TooMany("too many people sign in at once; try again", retry_after_s=2.0)
+        try:
+            self._prove(name, password, caller, known=False)
+        finally:
+            self._waiting.release()
+
+    def _prove(self, name: str, password: str, caller: LoginOrigin, *, known: bool) -> None:
+        place = network(caller.address)
         source = hash_of(caller.browser) if known else place
         wait_s = self._backoff.begin((lookup_key(name)[:64], source))
         if not wait_s and not known:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import hmac
+import math
 import secrets
 import threading
 import time
@@ -43,6 +44,8 @@ LIVES = {
 }
 PHONE_LIFE = Life(12 * HOUR_S, 12 * HOUR_S)
 """A phone stays in a pocket for hours of a walk."""
+CLOCK_STEP_S = 60.0
+"""A password given later than this from now was given before the clock was set back [s]."""
 CACHED_S = 2.0
 """Lifetime of a cached session: one ended by another process ends after that [s]."""
 NOTED_EVERY_S = 30.0
@@ -168,7 +171,8 @@ class Sessions:
 
     def age_s(self, session: Session) -> float:
         """Seconds since the password was last given."""
-        return max(0.0, self._clock() - session.proved_s)
+        age_s = self._clock() - session.proved_s
+        return max(0.0, age_s) if age_s > -CLOCK_STEP_S else math.inf
 
     def all(self, *, person: str | None = None) -> list[Session]:
         """Sessions that have not expired, the latest first; of one person, or of all."""
