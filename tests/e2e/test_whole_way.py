@@ -85,7 +85,7 @@ def upload(page, walk):
     expect(page.locator("recording-look")).to_contain_text("VLP-16")
     expect(page.locator("recording-look")).to_contain_text("imu.csv, next to it")
     expect(page.locator("recording-look")).not_to_contain_text("no rig given")
-    expect(page.get_by_label("Project name")).to_have_value("office-walk")
+    expect(page.get_by_label("Project name")).to_have_value("Office walk")
     expect(page.get_by_label("Preset")).to_have_value("indoor")
     expect(page.get_by_label("Rig").locator("option:checked")).to_have_text("rig.toml")
 
@@ -96,7 +96,7 @@ def start(page):
     group = page.locator("setting-editor .group").filter(has_text="The point map")
     group.get_by_label("voxel_m").fill(str(VOXEL_M))
     page.get_by_role("button", name="Start").click()
-    expect(page.get_by_role("heading", name="office-walk")).to_be_visible()
+    expect(page.get_by_role("heading", name="Office walk")).to_be_visible()
 
 
 def watch(page, screenshot):
@@ -199,7 +199,7 @@ def cut(page, screenshot):
     colors.select_option("normalized")
     expect(page.locator("#legend")).to_contain_text("ormalized")
     expect(page.locator("body.drawing")).to_have_count(0)
-    expect(facing).to_contain_text("Not approved")
+    expect(facing).to_contain_text("Draft: not approved")
     screenshot(page, "tour-slice")
     page.locator("summary").get_by_text("Double walls").click()
     page.get_by_role("button", name="Find double walls").click()
