@@ -24,6 +24,7 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
 CLOUD_SUFFIXES = (".pcd", ".ply", ".bin", SCAN_SUFFIX)
+_SHOWN_NAMES = 4
 _SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
 """Plausible intervals of frames [s]; outside them each frame counts as one revolution."""
 
@@ -84,7 +85,7 @@ def list_frames(path: Path) -> FrameFiles:
 
 def time_warnings(frames: FrameFiles) -> tuple[str, ...]:
     """What the operator must know of the times; the shape of the map depends on them."""
-    remarks = (frames.remark,) if frames.remark else ()
+    remarks = tuple(filter(None, (frames.remark, _several_sensors(frames))))
     if frames.times_from or len(frames.files) < 2:
         return remarks
     text = (
@@ -92,6 +93,21 @@ def time_warnings(frames: FrameFiles) -> tuple[str, ...]:
         " if that is; put a times.txt with one time a line [s] beside the files"
     )
     return (*remarks, text)
+
+
+def _several_sensors(frames: FrameFiles) -> str:
+    """A sentence if the names of the files seem to be those of several sensors; else empty."""
+    starts = {
+        re.split(r"\d", file.stem, maxsplit=1)[0].strip("-_. ").lower() for file in frames.files
+    }
+    if len(starts) < 2:
+        return ""
+    some = ", ".join(repr(name) for name in sorted(starts)[:_SHOWN_NAMES])
+    return (
+        f"the names of the files begin in {len(starts)} ways ({some}), as of several sensors or "
+        "clouds: they are read as what one sensor measured, one after the other; give a folder for "
+        "each sensor, and process one of them"
+    )
 
 
 def read_frames(

@@ -167,3 +167,14 @@ def test_names_are_sorted_by_their_numbers(tmp_path):
     names = [tmp_path / n for n in ("10.pcd", "8.pcd", "a2.pcd", "a10.pcd")]
 
     assert [p.name for p in sorted(names, key=natural)] == ["8.pcd", "10.pcd", "a2.pcd", "a10.pcd"]
+
+
+def test_names_of_several_sensors_in_one_folder_are_a_warning(tmp_path):
+    clock = "2022-02-15-17-36-04-"
+    mixed = [f"{n}-{clock}{k}{m}4.pcd" for k in (1, 2, 3) for m, n in enumerate(("left", "top"))]
+    one = [f"left-{clock}{k}14.pcd" for k in (1, 2, 3)]
+
+    found = describe(frame_folder(tmp_path / "mixed", mixed)).warnings
+    assert "begin in 2 ways ('left', 'top'), as of several sensors" in "\n".join(found)
+    found = describe(frame_folder(tmp_path / "one", one)).warnings
+    assert "as of several sensors" not in "\n".join(found)
