@@ -50,7 +50,7 @@ class BagPlan:
     """Clouds recorded behind the next one."""
     ahead_ns: int = 0
     """Clock of the recorder minus UTC."""
-    wild: set[int] = field(default_factory=set)
+    absurd: set[int] = field(default_factory=set)
     """Clouds with three points of absurd times."""
 
 
@@ -109,9 +109,9 @@ def _damage(draw: Draw, plan: BagPlan, variant: Variant, count: int) -> None:
         ("repeated", "written twice", 0.15),
         ("unstamped", "without stamps", 0.12),
         ("swapped", "out of order", 0.12),
-        ("wild", "with absurd times of points", 0.15),
+        ("absurd", "with absurd times of points", 0.15),
     ):
-        if draw.chance(chance) and (name != "wild" or plan.layout.time):
+        if draw.chance(chance) and (name != "absurd" or plan.layout.time):
             setattr(plan, name, set(draw.rows(len(inner), 2)))
             variant.say(f"clouds {what}")
 
@@ -175,7 +175,7 @@ def _clouds(draw, walk, plan, variant):
     for k, cloud in enumerate(walk.clouds):
         if k in plan.skipped:
             continue
-        variant.points += len(cloud.xyz) - 3 * (k in plan.wild)
+        variant.points += len(cloud.xyz) - 3 * (k in plan.absurd)
         late_ns = 130_000_000 * (k in plan.swapped)
         for part, t0_ns in _parts(_as_measured(cloud, plan.T_lidar_as_measured), plan.parts):
             at_end = plan.layout.time == "s before the stamp"
@@ -183,8 +183,8 @@ def _clouds(draw, walk, plan, variant):
             points = points_of(
                 part, plan.layout, stamp_ns=stamp_ns, t0_ns=cloud.t_ns + plan.offset_ns
             )
-            if k in plan.wild and t0_ns == cloud.t_ns:
-                _make_wild(points, plan.layout)
+            if k in plan.absurd and t0_ns == cloud.t_ns:
+                _make_absurd(points, plan.layout)
             recorded = t0_ns + TURN_NS // plan.parts + plan.late_ns + late_ns
             stamp_ns = 0 if k in plan.unstamped else stamp_ns
             for again in range(1 + (k in plan.repeated)):
@@ -218,7 +218,7 @@ def _parts(cloud: Cloud, count: int) -> list[tuple[Cloud, int]]:
     ]
 
 
-def _make_wild(points, layout):
+def _make_absurd(points, layout):
     name = next(n for n, _, _ in layout.fields if "time" in n or n in ("t", "t_us"))
     flat = points.reshape(-1)
     rows = np.flatnonzero(np.isfinite(flat["x"]))[[5, 50, 500]]
