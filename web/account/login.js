@@ -1,5 +1,6 @@
 // The login, and the first admin of a server without accounts.
 
+import { forgetFragment, pathInside, wholeUrl } from "../shared/address.js";
 import { isSignedIn, setUp, signIn } from "../shared/api.js";
 import { byId, fields, onSubmit, targetOf } from "../shared/dom.js";
 
@@ -8,14 +9,10 @@ const controls = fields(form);
 const go = byId("go", HTMLButtonElement);
 const given = new URLSearchParams(location.hash.slice(1));
 const setup = given.get("setup");
-history.replaceState(null, "", location.pathname); // the one-time link stays in no history
+forgetFragment();
 
 /** Where to go after the login: a page of this server and nothing else. */
-function next() {
-  const path = given.get("next") ?? "/";
-  const inside = new URL(path, location.origin);
-  return path.startsWith("/") && inside.origin === location.origin ? inside.pathname : "/";
-}
+const next = () => wholeUrl(pathInside(given.get("next") ?? "/"));
 
 function offerSetup() {
   document.title = "First admin · recon4";

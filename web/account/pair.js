@@ -1,5 +1,6 @@
 // The phone's side of pairing: uses the one-time link, or shows six digits and waits for approval.
 
+import { forgetFragment } from "../shared/address.js";
 import {
   requestPairing,
   claimPairing,
@@ -12,7 +13,7 @@ import { attempt, byId, fields, onSubmit } from "../shared/dom.js";
 const CLAIM_EVERY_MS = 2000;
 const AGAIN = "again"; // the session has ended
 const token = location.hash.slice(1);
-history.replaceState(null, "", location.pathname); // the one-time link stays in no history
+forgetFragment();
 
 async function useInvitation() {
   byId("ask").hidden = true;

@@ -1,5 +1,6 @@
 // The laptop's side of pairing: a QR code for one phone, or the digits a phone shows.
 
+import { wholeUrl } from "../shared/address.js";
 import { approvePhone, invitePhone, readPairing } from "../shared/api.js";
 import { attempt, byId, fields, make, onSubmit } from "../shared/dom.js";
 import "../shared/page_head.js";
@@ -88,6 +89,6 @@ if (pairing) {
   byId("without").hidden = pairing.login;
   byId("ways").hidden = !pairing.login;
   byId("fingerprint").textContent = pairing.fingerprint;
-  byId("pair-url").textContent = `${location.origin}/pair`;
+  byId("pair-url").textContent = wholeUrl("/pair");
   showRoles(pairing.roles);
 }

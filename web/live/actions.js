@@ -1,5 +1,6 @@
 // Buttons and dialogs of the operator's page: start, mark, pause, stop, make the map.
 
+import { keep, kept } from "../shared/address.js";
 import {
   markHere,
   projectUrl,
@@ -34,7 +35,7 @@ function dialog(id, act) {
 }
 
 const showStart = dialog("begin", ({ rig, preset, place }) => {
-  keep({ rig: rig.value, preset: preset.value });
+  keep(LAST, JSON.stringify({ rig: rig.value, preset: preset.value }));
   return startCapture({ rig: rig.value, preset: preset.value, place: place.value });
 });
 const showMark = dialog("note", (form) => {
@@ -49,8 +50,7 @@ let touched = 0; // time of the Mark button; the operator walks on while typing
 const LAST = "recon4.live.last";
 
 /** The last choices on this phone. */
-const keep = (chosen) => localStorage.setItem(LAST, JSON.stringify(chosen));
-const kept = () => JSON.parse(localStorage.getItem(LAST) ?? "{}");
+const lastChosen = () => JSON.parse(kept(LAST) ?? "{}");
 
 /** Fills a select and restores the last choice. */
 function offer(select, options, last) {
@@ -69,13 +69,13 @@ async function begin() {
       { value, disabled: problem !== "" },
       `${name}: ${problem || sensors.join(", ")}`,
     );
-  offer(form.rig, choices.rigs.map(rig), kept().rig);
+  offer(form.rig, choices.rigs.map(rig), lastChosen().rig);
   offer(
     form.preset,
     choices.presets.map((name) =>
       make("option", { value: name }, `${name}: ${choices.preset_texts[name]}`),
     ),
-    kept().preset,
+    lastChosen().preset,
   );
   const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
   form.place.value = `Walk ${now.slice(0, 16).replace("T", " ")}`;

@@ -1,5 +1,6 @@
 // The operator's page of a live capture: map, coverage, warnings, controls.
 
+import { keep, kept } from "../shared/address.js";
 import { readCurrentUser } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
 import { attempt, byId, targetOf } from "../shared/dom.js";
@@ -216,7 +217,7 @@ function toggleFollow() {
 
 function setSun(yes) {
   press("sun", document.body.classList.toggle("sun", yes));
-  localStorage.setItem(SUN, yes ? "1" : "");
+  keep(SUN, yes ? "1" : "");
   repaint();
 }
 
@@ -304,7 +305,7 @@ for (const bar of [byId("bottom"), document.querySelector(".top")])
 new ResizeObserver(() => (fitted && showWhole(), redraw())).observe(byId("map"));
 dark.addEventListener("change", repaint);
 setInterval(() => linked || drawTexts(), 1000); // updates the duration of a lost link
-if (localStorage.getItem(SUN)) setSun(true);
+if (kept(SUN)) setSun(true);
 
 me = (await attempt(byId("message"), readCurrentUser)) ?? null;
 drawTexts();

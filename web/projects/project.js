@@ -1,5 +1,6 @@
 // One project: the map, the figures, the results, the job.
 
+import { idHere } from "../shared/address.js";
 import {
   ApiError,
   fileUrl,
@@ -21,7 +22,7 @@ import "../shared/page_head.js";
 import "./project_tools.js";
 import "./rig_section.js";
 
-const id = decodeURIComponent(location.pathname.split("/")[2]);
+const id = idHere();
 const status = document.querySelector("job-status");
 const log = document.querySelector("job-log");
 const COMPARED_AGAIN_MS = 3000;

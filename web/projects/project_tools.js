@@ -1,5 +1,6 @@
 // <project-tools>: run a project again, rename it, delete it. <job-log>: the log of a job.
 
+import { at, idHere } from "../shared/address.js";
 import {
   deleteProject,
   listJobsOf,
@@ -14,7 +15,7 @@ import "./new_job.js";
 const MAX_LETTERS = 200_000;
 
 export class ProjectTools extends HTMLElement {
-  #id = decodeURIComponent(location.pathname.split("/")[2]);
+  #id = idHere();
   #again = make("details", {}, make("summary", {}, "Run again, with other settings"));
   #name = make("input", { name: "name", maxLength: 100, required: true, autocomplete: "off" });
   #message = make("p", { className: "error", role: "alert" });
@@ -72,7 +73,7 @@ export class ProjectTools extends HTMLElement {
     const close = () => this.#dialog.close();
     const go = async () => {
       close();
-      if (await attempt(this.#message, () => deleteProject(this.#id))) location.assign("/");
+      if (await attempt(this.#message, () => deleteProject(this.#id))) location.assign(at("/"));
     };
     this.#dialog.replaceChildren(
       make("h2", {}, `Delete ${this.#name.value || this.#id}?`),

@@ -1,5 +1,6 @@
 // <rig-section>: what the recording says of its rig, and what to do about it.
 
+import { idHere } from "../shared/address.js";
 import {
   addJob,
   listJobsOf,
@@ -19,7 +20,7 @@ const BEAM_HEADS = ["LiDAR and ring", "Range", "Elevation", "Azimuth"];
 const HEADS = ["Sensor", "Quantity", "Change ± σ", "Result"];
 
 export class RigSection extends HTMLElement {
-  #id = decodeURIComponent(location.pathname.split("/")[2]);
+  #id = idHere();
   #body = make("div");
   #message = make("p", { className: "error", role: "alert" });
   #dialog = make("dialog", { ariaLabel: "Save the calibrated rig" });

@@ -1,6 +1,7 @@
 // The review page: loop closures by influence, each looked at, decided or registered again; the map
 // is approved.
 
+import { idHere } from "../shared/address.js";
 import {
   alignPair,
   approveMap,
@@ -30,7 +31,7 @@ import "../shared/page_head.js";
 import "./queue.js";
 import "./view.js";
 
-const id = decodeURIComponent(location.pathname.split("/")[2]);
+const id = idHere();
 const queue = document.querySelector("review-queue");
 const view = document.querySelector("pair-view");
 const message = byId("message");

@@ -1,5 +1,6 @@
 // The buttons and keys of the review page: how each action is called.
 
+import { keep, kept } from "../shared/address.js";
 import { make } from "../shared/dom.js";
 import { listenToKeys } from "./keys.js";
 
@@ -43,8 +44,8 @@ export function makeTools(bar, queueBar, act) {
     placeholder: "Reason (optional)",
     ariaLabel: "Reason",
   });
-  const goOn = make("input", { type: "checkbox", checked: localStorage.getItem(GO_ON) === "yes" });
-  goOn.addEventListener("change", () => localStorage.setItem(GO_ON, goOn.checked ? "yes" : "no"));
+  const goOn = make("input", { type: "checkbox", checked: kept(GO_ON) === "yes" });
+  goOn.addEventListener("change", () => keep(GO_ON, goOn.checked ? "yes" : "no"));
   const text = make("span", {}, "Go on to the next pair after a decision");
   bar.append(
     make("div", { className: "row main" }, previous, reject, accept, next),

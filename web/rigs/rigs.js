@@ -1,5 +1,6 @@
 // The rig page: the list, one rig as a drawing and as numbers, its versions, editing.
 
+import { idHere } from "../shared/address.js";
 import {
   addRigVersion,
   checkRig,
@@ -119,8 +120,7 @@ async function show(version) {
 
 /** The rig that the address names, else the first. */
 function chosen() {
-  const [, , id] = location.pathname.split("/");
-  return id ? decodeURIComponent(id) : rigs[0].id;
+  return idHere() || rigs[0].id;
 }
 
 function edit() {

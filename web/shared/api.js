@@ -1,5 +1,6 @@
 // What the pages request of the server, one function for each operation.
 
+import { at, forgetKept, socketUrl } from "./address.js";
 import { ApiError, NO_RESPONSE, become, name, request, tus, urlOf } from "./http.js";
 
 export {
@@ -18,7 +19,10 @@ export const setUp = (token, who, password) =>
   become(request("POST /api/setup", { body: { token, name: who, password } }));
 export const signInAgain = (password) =>
   become(request("POST /api/login/again", { body: { password } }));
-export const signOut = () => request("POST /api/logout");
+export async function signOut() {
+  await request("POST /api/logout");
+  forgetKept();
+}
 export const changePassword = (old, fresh) =>
   become(request("POST /api/me/password", { body: { old, new: fresh } }));
 export const listMySessions = () => request("GET /api/me/sessions");
@@ -50,7 +54,7 @@ export const cancelJob = (job_id) =>
 export const retryJob = (job_id) => request("POST /api/jobs/{job_id}/retry", { path: { job_id } });
 export const readLog = (job_id, offset) =>
   request("GET /api/jobs/{job_id}/log/since", { path: { job_id }, query: { offset } });
-export const logUrl = (id) => `/api/jobs/${name(id)}/log/file`;
+export const logUrl = (id) => at(`/api/jobs/${name(id)}/log/file`);
 export const readJob = (job_id) => request("GET /api/jobs/{job_id}", { path: { job_id } });
 export const listJobsOf = (project_id) =>
   request("GET /api/projects/{project_id}/jobs", { path: { project_id } });
@@ -71,7 +75,7 @@ export const readStorage = () => request("GET /api/storage");
 export const deleteRecording = (name) =>
   request("DELETE /api/recordings/{name}", { path: { name } });
 export const readServer = () => request("GET /api/server");
-export const readOpenApi = async () => (await fetch("/openapi.json")).json();
+export const readOpenApi = async () => (await fetch(at("/openapi.json"))).json();
 
 // -- uploads: JSON for what is sent, tus 1.0 for the bytes
 
@@ -100,7 +104,7 @@ export async function createFile(upload, path, length, bytes, signal) {
     "Upload-Metadata": `upload ${base64(upload)},relativePath ${base64(path)}`,
     ...(await bytesHeaders(bytes)),
   };
-  const response = await tus("POST", "/api/uploads/files", { headers, body: bytes, signal });
+  const response = await tus("POST", at("/api/uploads/files"), { headers, body: bytes, signal });
   return {
     url: response.headers.get("Location"),
     offset: Number(response.headers.get("Upload-Offset")),
@@ -117,12 +121,12 @@ export async function sendBytes(url, offset, bytes, signal) {
 export const readOffset = async (url) =>
   Number((await tus("HEAD", url)).headers.get("Upload-Offset"));
 
-export const projectUrl = (id) => `/projects/${name(id)}/`;
-export const viewerUrl = (id) => `/projects/${name(id)}/viewer/`;
-export const reportUrl = (id) => `/api/projects/${name(id)}/report`;
+export const projectUrl = (id) => at(`/projects/${name(id)}/`);
+export const viewerUrl = (id) => at(`/projects/${name(id)}/viewer/`);
+export const reportUrl = (id) => at(`/api/projects/${name(id)}/report`);
 export const thumbnailUrl = (id, version) =>
-  `/api/projects/${name(id)}/thumbnail?v=${name(version)}`;
-export const fileUrl = (id, file) => `/api/projects/${name(id)}/files/${name(file)}`;
+  at(`/api/projects/${name(id)}/thumbnail?v=${name(version)}`);
+export const fileUrl = (id, file) => at(`/api/projects/${name(id)}/files/${name(file)}`);
 
 const RECONNECT_MS = 3000;
 
@@ -145,7 +149,7 @@ export function watchJobs(onJob, onLink) {
     if (view.job.finished) receive(view);
   };
   const connect = () => {
-    const source = new EventSource("/api/events");
+    const source = new EventSource(at("/api/events"));
     let givenUp = false;
     const reconnect = () => {
       if (givenUp) return;
@@ -261,9 +265,7 @@ export const markHere = (mark) => request("POST /api/live/marks", { body: mark }
 
 /** Opens the stream of a capture; `have` is what this page has, the server sends what is new. */
 export function openLiveStream(have, { onMessage, onPoints, onClose }) {
-  const socket = new WebSocket(
-    `${location.protocol.replace("http", "ws")}//${location.host}/api/live/stream`,
-  );
+  const socket = new WebSocket(socketUrl("/api/live/stream"));
   socket.binaryType = "arraybuffer";
   socket.addEventListener("open", () => socket.send(JSON.stringify({ have })));
   socket.addEventListener("message", ({ data }) =>
@@ -275,7 +277,7 @@ export function openLiveStream(have, { onMessage, onPoints, onClose }) {
 
 // -- slices
 
-const slices = (id) => `/api/projects/${name(id)}/slices`;
+const slices = (id) => at(`/api/projects/${name(id)}/slices`);
 const asQuery = (settings) => name(JSON.stringify(settings));
 
 export const readSliceFacts = (project_id, source = "") =>
@@ -344,8 +346,8 @@ export const readSurface = (project_id, point) =>
 
 // -- rigs
 
-export const rigUrl = (id) => `/rigs/${name(id)}/`;
-export const rigFileUrl = (id, number) => `/api/rigs/${name(id)}/versions/${number}/file`;
+export const rigUrl = (id) => at(`/rigs/${name(id)}/`);
+export const rigFileUrl = (id, number) => at(`/api/rigs/${name(id)}/versions/${number}/file`);
 export const listRigs = () => request("GET /api/rigs");
 export const listSensorModels = () => request("GET /api/sensor-models");
 export const readRig = (rig_id, version) =>

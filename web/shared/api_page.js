@@ -1,5 +1,6 @@
 // The API as a page, made from openapi.json: works without internet.
 
+import { wholeUrl } from "./address.js";
 import { readCurrentUser, readOpenApi } from "./api.js";
 import { attempt, byId, make } from "./dom.js";
 import { example, limits, typeText } from "../projects/schema.js";
@@ -108,7 +109,7 @@ function curl(path, method, operation, body) {
   if (body?.json)
     parts.push("-H 'Content-Type: application/json'", `-d '${JSON.stringify(body.json)}'`);
   if (body?.binary) parts.push(`-H 'Content-Type: ${body.binary}'`, "--data-binary @walk.pcap");
-  return `${parts.join(" ")} '${location.origin}${filled}${asked}'`;
+  return `${parts.join(" ")} '${wholeUrl(filled + asked)}'`;
 }
 
 function bodyOf({ requestBody }) {

@@ -1,5 +1,7 @@
 // Requests to the server: a typed one for each operation, and tus for the bytes of uploads.
 
+import { at, pathHere } from "./address.js";
+
 export const NO_RESPONSE = "The server does not answer. Is it still running?";
 
 export class ApiError extends Error {
@@ -66,7 +68,7 @@ export const name = encodeURIComponent;
 export function urlOf(template, path, query = {}) {
   const given = Object.entries(query).filter(([, value]) => value !== undefined);
   const search = given.map(([key, value]) => `${key}=${name(value)}`).join("&");
-  const url = template.replace(/\{(\w+)\}/g, (_, key) => name(path[key]));
+  const url = at(template.replace(/\{(\w+)\}/g, (_, key) => name(path[key])));
   return search ? `${url}?${search}` : url;
 }
 
@@ -80,10 +82,10 @@ export const readCurrentUser = (again = false) =>
   again ? request("GET /api/me") : (whoami ??= request("GET /api/me"));
 
 /** Whether this browser is signed in already; for the login page. */
-export const isSignedIn = async () => (await fetch("/api/me")).ok;
+export const isSignedIn = async () => (await fetch(at("/api/me"))).ok;
 
-export const LIVE_URL = "/live";
-const BEFORE_LOGIN = ["/login", "/pair"];
+export const LIVE_URL = at("/live");
+const BEFORE_LOGIN = [at("/login"), at("/pair")];
 
 /** Headers of a request that changes something; exported for requests made elsewhere. */
 export async function changeHeaders(method = "POST") {
@@ -96,7 +98,8 @@ function leaveForLogin() {
   if (BEFORE_LOGIN.includes(location.pathname)) return;
   // A phone may have no password; the pairing page offers both.
   const paired = location.pathname === LIVE_URL;
-  location.assign(paired ? "/pair#again" : `/login#next=${encodeURIComponent(location.pathname)}`);
+  const login = at(`/login#next=${encodeURIComponent(pathHere())}`);
+  location.assign(paired ? at("/pair#again") : login);
 }
 
 /** Keeps who is signed in from a response that contains it: the token has changed. */

@@ -1,5 +1,6 @@
 // <page-head>: the bar at the top of every page, with links to the other pages of a project.
 
+import { at, pathHere } from "./address.js";
 import { liveUrl, projectUrl, readCapture, readCurrentUser, signOut } from "./api.js";
 import { make } from "./dom.js";
 
@@ -15,12 +16,12 @@ export class PageHead extends HTMLElement {
   #account = make("span", { className: "account" });
 
   connectedCallback() {
-    const [, first, id, page = ""] = location.pathname.split("/");
+    const [, first, id, page = ""] = pathHere().split("/");
     const inProject = first === "projects" && id;
     this.className = "bar";
     this.setAttribute("role", "banner");
     this.replaceChildren(
-      make("a", { className: "brand", href: "/" }, "recon4"),
+      make("a", { className: "brand", href: at("/") }, "recon4"),
       ...(inProject ? [this.#way(), this.#tabs(decodeURIComponent(id), page)] : []),
       this.#link,
       this.#account,
@@ -42,15 +43,17 @@ export class PageHead extends HTMLElement {
     const link = (href, text) => make("a", { href }, text);
     this.#account.replaceChildren(
       ...(live ? [link(liveUrl, "Live")] : []),
-      link("/rigs", "Rigs"),
-      ...(may.includes("process") ? [link("/storage", "Storage"), link("/api", "API")] : []),
-      link("/docs/", "Help"),
-      ...(may.includes("administer") ? [link("/people", "People")] : []),
+      link(at("/rigs"), "Rigs"),
+      ...(may.includes("process")
+        ? [link(at("/storage"), "Storage"), link(at("/api"), "API")]
+        : []),
+      link(at("/docs/"), "Help"),
+      ...(may.includes("administer") ? [link(at("/people"), "People")] : []),
       ...(login
         ? [
             make(
               "a",
-              { className: "who", href: "/account", ariaLabel: `Account of ${name}, ${role}` },
+              { className: "who", href: at("/account"), ariaLabel: `Account of ${name}, ${role}` },
               make("b", {}, name),
               make("span", { className: "role" }, role),
             ),
@@ -63,7 +66,7 @@ export class PageHead extends HTMLElement {
   async #leave() {
     try {
       await signOut();
-      location.assign("/login");
+      location.assign(at("/login"));
     } catch (error) {
       this.#link.textContent = error.message;
     }
@@ -83,7 +86,7 @@ export class PageHead extends HTMLElement {
     return make(
       "nav",
       { ariaLabel: "Where you are", className: "way" },
-      make("a", { href: "/" }, "Projects"),
+      make("a", { href: at("/") }, "Projects"),
       make("span", { ariaHidden: "true" }, "/"),
       this.#name,
     );

@@ -1,6 +1,6 @@
 // What the slices page shows of a 2-D map, which is itself one slice.
 
-import { fileUrl } from "../shared/api.js";
+import { fileUrl, projectUrl } from "../shared/api.js";
 import { byId, fill, make } from "../shared/dom.js";
 
 /** Whether the map of a project is a 2-D one. */
@@ -24,7 +24,7 @@ export function showPlan(id, project) {
   });
   words.append(
     make("a", {
-      href: `/projects/${encodeURIComponent(id)}/`,
+      href: projectUrl(id),
       textContent: "The page Map shows places and distances.",
     }),
   );

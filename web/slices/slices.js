@@ -1,5 +1,6 @@
 // The page of slices: plane, display, findings. The address of the page is the state.
 
+import { idHere } from "../shared/address.js";
 import {
   aboveUrl,
   ApiError,
@@ -25,7 +26,7 @@ import "../shared/page_head.js";
 import "./above.js";
 import "./view.js";
 
-const id = decodeURIComponent(location.pathname.split("/")[2]);
+const id = idHere();
 const dark = matchMedia("(prefers-color-scheme: dark)");
 const above = make("slice-above");
 const first = make("slice-view");

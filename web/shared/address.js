@@ -1,0 +1,41 @@
+// Addresses of this server. It may be at a path of its host (https://example.org/recon4/), so no
+// other module writes an address that begins with a slash, or reads where it is from `location`.
+
+/** The path of this server, from where this module was loaded: "/", or as "/recon4/". */
+const BASE = new URL("../../", import.meta.url).pathname;
+
+/** The address of a path of this server: at("/api/me"). */
+export const at = (path) => BASE + path.slice(1);
+
+/** The path of this page as the server knows it: "/projects/office/". */
+export const pathHere = () => `/${location.pathname.slice(BASE.length)}`;
+
+/** The project or rig of this page: /projects/ID/…, /rigs/ID/; empty if it names none. */
+export const idHere = () => decodeURIComponent(pathHere().split("/")[2] ?? "");
+
+/** The whole address, to copy or to leave for: a path alone may name another host ("//…"). */
+export const wholeUrl = (path) => location.origin + at(path);
+
+export const socketUrl = (path) => wholeUrl(path).replace(/^http/, "ws");
+
+/** The same path if it is one of this server, else that of the first page. */
+export function pathInside(path) {
+  const url = new URL(path, location.origin);
+  return path.startsWith("/") && url.origin === location.origin ? url.pathname : "/";
+}
+
+/** Takes the fragment, a one-time link, out of the address: it stays in no history. */
+export const forgetFragment = () => history.replaceState(null, "", location.pathname);
+
+// -- what this browser keeps: other servers of the host keep theirs in the same storage
+
+const keyOf = (name) => BASE.slice(1) + name;
+
+export const kept = (name) => localStorage.getItem(keyOf(name));
+export const keep = (name, text) => localStorage.setItem(keyOf(name), text);
+
+/** Forgets all of it, for the next person at this browser. */
+export function forgetKept() {
+  const ours = Object.keys(localStorage).filter((key) => key.startsWith(keyOf("")));
+  for (const key of ours) localStorage.removeItem(key);
+}
