@@ -10,22 +10,18 @@ from typing import Any
 
 from fastapi import FastAPI
 
-from app.access.middleware.session import COOKIE, FORM_HEADER
+from app.access.middleware.session import FORM_HEADER, cookie_names
 from app.access.routes_check import declared
 
 INTRODUCTION = """The HTTP interface of the pages. The body of an error is `{"error", "detail"}`;
 `detail` is a text for users. `x-needs` of an operation names the permission it requires (empty =
 none). `docs/access.md` lists the permissions of each role, `/api/me` those of the caller."""
-SCHEMES = {
-    "session": {"type": "apiKey", "in": "cookie", "name": COOKIE},
-    "token": {
-        "type": "apiKey",
-        "in": "header",
-        "name": FORM_HEADER,
-        "description": "`token` of `/api/me` or of the login; required unless the method is GET",
-    },
+TOKEN_SCHEME = {
+    "type": "apiKey",
+    "in": "header",
+    "name": FORM_HEADER,
+    "description": "`token` of `/api/me` or of the login; required unless the method is GET",
 }
-"""Required with `--lan` only."""
 CLASS = re.compile(r"^class (?P<name>\w+).*\n(?P<body>(?:(?: {4}.*)?\n)+)", re.MULTILINE)
 FIELD = re.compile(
     r'^ {4}(?P<name>\w+): .*\n(?: {8}.*\n| {4}[)\]].*\n)* {4}"""(?P<text>(?:.|\n)*?)"""',
@@ -35,12 +31,22 @@ FIELD = re.compile(
 OUR_PROBLEM = {"application/json": {"schema": {"$ref": "#/components/schemas/ProblemDetail"}}}
 
 
-def description(app: FastAPI) -> dict[str, Any]:
-    """The OpenAPI description of an application, with the permission of each operation."""
+def description(app: FastAPI, prefix: str = "") -> dict[str, Any]:
+    """The OpenAPI description of an application, with the permission of each operation.
+
+    Args:
+        app: The application.
+        prefix: Path of the server on its host, as ``/recon4``; empty = none.
+    """
     described = app.openapi()  # cached by the framework: the changes below are idempotent
     described["info"]["description"] = INTRODUCTION
+    if prefix:
+        described["servers"] = [{"url": prefix}]
     parts = described["components"]
-    parts["securitySchemes"] = SCHEMES
+    parts["securitySchemes"] = {  # required with a login only
+        "session": {"type": "apiKey", "in": "cookie", "name": cookie_names(prefix).session},
+        "token": TOKEN_SCHEME,
+    }
     for name in ("HTTPValidationError", "ValidationError"):  # ours are problems like all others
         parts["schemas"].pop(name, None)
     _describe_fields(parts["schemas"])

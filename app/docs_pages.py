@@ -7,13 +7,13 @@ import re
 from functools import cache
 from pathlib import Path
 
-from fastapi import APIRouter, Depends
+from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, HTMLResponse
 from markdown_it import MarkdownIt
 
 from app.access.people import Permission, needs
 from app.errors import NotFound
-from app.pages import WEB, html_of
+from app.pages import WEB, page_response
 
 router = APIRouter(
     prefix="/docs", dependencies=[Depends(needs(Permission.LOOK))], include_in_schema=False
@@ -35,9 +35,9 @@ def folder() -> Path:
 
 
 @router.get("/")
-def docs_start() -> HTMLResponse:
+def docs_start(request: Request) -> HTMLResponse:
     """Show the first page of the documentation."""
-    return docs_page(START)
+    return docs_page(START, request)
 
 
 @router.get("/images/{name}")
@@ -50,15 +50,14 @@ def docs_image(name: str) -> FileResponse:
 
 
 @router.get("/{name}")
-def docs_page(name: str) -> HTMLResponse:
+def docs_page(name: str, request: Request) -> HTMLResponse:
     """Show a page of the documentation."""
     path = folder() / f"{name.removesuffix('.md')}.md"
     if not _NAME.fullmatch(name.removesuffix(".md")) or not path.is_file():
         raise NotFound(f"the documentation has no page {name[:64]!r}")
     text = path.read_text("utf-8")
     title = html.escape(text.split("\n", 1)[0].lstrip("# "))
-    page = html_of(PAGE).replace("{title}", title)
-    return HTMLResponse(page.replace("{content}", rendered(text)))
+    return page_response(PAGE, request, {"title": title, "content": rendered(text)})
 
 
 def rendered(markdown: str) -> str:

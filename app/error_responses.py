@@ -20,7 +20,8 @@ from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
 from app.errors import AppError
-from app.pages import html_of
+from app.network.behind import route_path
+from app.pages import page_response
 from recon4.errors import Recon4Error, UnknownFormat, WrongSettings
 
 log = logging.getLogger(__name__)
@@ -60,7 +61,7 @@ def install(app: FastAPI) -> None:
     @app.exception_handler(AppError)
     async def known(request: Request, error: AppError) -> Response:
         if _wants_page(request):
-            return _page(error.status, str(error), error.headers)
+            return _page(request, error.status, str(error), headers=error.headers)
         problem = ProblemDetail(error=type(error).__name__, detail=str(error))
         return _problem(error.status, problem, error.headers)
 
@@ -78,7 +79,7 @@ def install(app: FastAPI) -> None:
         status = HTTPStatus(error.status_code)
         message = FRAMEWORK_MESSAGES.get(status, str(error.detail))
         if _wants_page(request):
-            return _page(status, message, error.headers)
+            return _page(request, status, message, headers=error.headers)
         name = status.phrase.title().replace(" ", "")
         return _problem(status, ProblemDetail(error=name, detail=message), error.headers)
 
@@ -88,7 +89,7 @@ def install(app: FastAPI) -> None:
         log.error("error %s in %r", number, request.scope["path"], exc_info=error)
         message = f"internal error {number}: the server log has the cause under this number"
         if _wants_page(request):
-            return _page(500, message, HEADERS_OF_FAILURES)
+            return _page(request, 500, message, headers=HEADERS_OF_FAILURES)
         problem = ProblemDetail(error="InternalError", detail=message)
         return _problem(500, problem, HEADERS_OF_FAILURES)
 
@@ -112,14 +113,17 @@ def _field_message(problem: Mapping[str, Any]) -> str:
 def _wants_page(request: Request) -> bool:
     """Whether a browser requests a page."""
     accepts = "text/html" in request.headers.get("accept", "")
-    return request.method == "GET" and accepts and not request.scope["path"].startswith("/api/")
+    return request.method == "GET" and accepts and not route_path(request.scope).startswith("/api/")
 
 
-def _page(status: int, detail: str, headers: Mapping[str, str] | None) -> HTMLResponse:
+def _page(
+    request: Request, status: int, detail: str, *, headers: Mapping[str, str] | None
+) -> HTMLResponse:
     title = TITLES.get(status, "The request failed")
-    page = html_of(LOST).replace("{title}", title)
-    filled = page.replace("{detail}", html.escape(detail))
-    return HTMLResponse(filled, status_code=status, headers=dict(headers or {}))
+    page = page_response(LOST, request, {"title": title, "detail": html.escape(detail)})
+    page.status_code = status
+    page.headers.update(headers or {})
+    return page
 
 
 def _problem(

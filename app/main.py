@@ -11,7 +11,7 @@ from contextlib import asynccontextmanager
 from functools import cache
 from typing import Any
 
-from fastapi import APIRouter, Depends, FastAPI
+from fastapi import APIRouter, Depends, FastAPI, Request
 from fastapi.responses import HTMLResponse, JSONResponse
 from fastapi.staticfiles import StaticFiles
 from starlette.middleware.body_limit import RequestBodyLimitMiddleware
@@ -40,6 +40,7 @@ from app.live.current_capture import CurrentCapture
 from app.logs import Logs
 from app.maintenance import maintain, rotate_logs
 from app.metrics import Metrics, MetricsMiddleware
+from app.network.behind import ProxyMiddleware, prefix_of
 from app.network.connections import (
     ConnectionLimits,
     ConnectionTable,
@@ -123,10 +124,11 @@ def create_app(settings: ServerSettings) -> FastAPI:
         hosts=hosts_of(settings),
         local=None if settings.login else READER if settings.read_only else LOCAL,
         pinned=pinned,
-        behind=settings.behind,
     )
     metrics = app.state.metrics = Metrics(app.state.connections, app.state.logs)
     app.add_middleware(MetricsMiddleware, metrics=metrics.http)
+    if settings.behind is not None:
+        app.add_middleware(ProxyMiddleware, address=settings.behind)
     error_responses.install(app)
     app.mount("/web", StaticFiles(directory=WEB), name="web")
     _add_pages(app)
@@ -323,13 +325,13 @@ def _add_pages(app: FastAPI) -> None:
         return {"status": "ok", "version": __version__}
 
     @app.get("/openapi.json", include_in_schema=False, dependencies=REQUIRES_LOOK)
-    def openapi() -> JSONResponse:
-        return JSONResponse(description(app))
+    def openapi(request: Request) -> JSONResponse:
+        return JSONResponse(description(app, prefix_of(request.scope)))
 
     def page(path: str, file: str, who: list[Any]) -> None:
         @app.get(path, include_in_schema=False, dependencies=who, name=file)
-        def read() -> HTMLResponse:
-            return page_response(file)
+        def read(request: Request) -> HTMLResponse:
+            return page_response(file, request)
 
     page("/", "projects/index.html", REQUIRES_LOOK)
     page("/account", "account/account.html", REQUIRES_LOOK)
@@ -340,7 +342,7 @@ def _add_pages(app: FastAPI) -> None:
     page("/api", "shared/api.html", REQUIRES_LOOK)
 
     @app.get("/projects/{project_id}/", include_in_schema=False, dependencies=REQUIRES_LOOK)
-    def project(project_id: str, server: Server) -> HTMLResponse:
+    def project(project_id: str, request: Request, server: Server) -> HTMLResponse:
         if not server.jobs.of_project(project_id):
             server.projects.folder(project_id)  # a waiting job's project has no folder yet
-        return page_response("projects/project.html")
+        return page_response("projects/project.html", request)

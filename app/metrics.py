@@ -25,6 +25,7 @@ from app.deps import ServerParts
 from app.jobs.model import JobState
 from app.live.capture import Capture
 from app.logs import Logs
+from app.network.behind import route_path
 from app.network.connections import ConnectionTable, Phase
 from recon4 import __version__
 
@@ -141,7 +142,7 @@ class _Request:
         """Template of the route; known only after the application has matched it."""
         route = getattr(self._scope.get("route"), "path", None)
         if route is None:
-            return "/web" if self._scope["path"].startswith("/web/") else UNROUTED
+            return "/web" if route_path(self._scope).startswith("/web/") else UNROUTED
         return str(route)
 
     def _respond(self, status: int) -> None:

@@ -2,25 +2,43 @@
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
 from pathlib import Path
 
+from fastapi import Request
 from fastapi.responses import HTMLResponse
+
+from app.network.behind import prefix_of
 
 WEB = Path(__file__).parents[1] / "web"
 HEAD_HERE = "<!-- shared/head.html -->"
 """Stands in each page where the common elements of the heads belong."""
+_ADDRESS = re.compile(r"""(?<=\s)((?:href|src|action)=")(?=/)""")
+"""In front of each address of this server in a page; all of them begin with a slash."""
 
 
-def html_of(file: str) -> str:
+def html_of(file: str, prefix: str = "") -> str:
     """A page as HTML, with the shared head.
 
     Args:
         file: Path of the page, relative to `web/`.
+        prefix: Path of the server on its host, as ``/recon4``; it is put in front of all addresses.
     """
     head = (WEB / "shared" / "head.html").read_text("utf-8")
-    return (WEB / file).read_text("utf-8").replace(HEAD_HERE, head)
+    page = (WEB / file).read_text("utf-8").replace(HEAD_HERE, head)
+    return _ADDRESS.sub(rf"\g<1>{prefix}", page)
 
 
-def page_response(file: str) -> HTMLResponse:
-    """A page as the response to a request; `file` is relative to `web/`."""
-    return HTMLResponse(html_of(file))
+def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) -> HTMLResponse:
+    """A page as the response to a request.
+
+    Args:
+        file: Path of the page, relative to `web/`.
+        request: Its server may have a prefix.
+        fills: HTML for the places of the page: ``title`` for ``{title}``.
+    """
+    page = html_of(file, prefix_of(request.scope))
+    for place, content in fills.items():
+        page = page.replace(f"{{{place}}}", content)
+    return HTMLResponse(page)

@@ -60,7 +60,7 @@ def announce(server: httpx.Client, upload_id: str, name: str, size: int) -> str:
     headers = TUS | {"Upload-Length": str(size), "Upload-Metadata": metadata}
     made = server.post("/api/uploads/files", headers=headers)
     made.raise_for_status()
-    return str(made.headers["Location"])
+    return str(made.url.join(made.headers["Location"]))
 
 
 def send_bytes(server: httpx.Client, file: Path, url: str, size: int) -> None:

@@ -26,7 +26,7 @@ def serve(  # noqa: PLR0913 - what a server can be started with
     *,
     lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
     behind: Annotated[
-        str, typer.Option(help="Address of a reverse proxy with TLS, https://NAME/; with login.")
+        str, typer.Option(help="Address of a reverse proxy with TLS, https://NAME/PATH/; login.")
     ] = "",
     host: Annotated[str, typer.Option(help="Address to listen on; default by --lan.")] = "",
     port: Annotated[int, typer.Option(help="Port; 0 = any free one.")] = 8000,

@@ -97,8 +97,8 @@ class CaptureView(BaseModel):
 
 
 @page.get("/live", include_in_schema=False, dependencies=LOOK)
-def live_page() -> HTMLResponse:
-    return page_response("live/live.html")
+def live_page(request: Request) -> HTMLResponse:
+    return page_response("live/live.html", request)
 
 
 @router.get("", dependencies=LOOK, summary="State of the capture")

@@ -87,9 +87,9 @@ page = APIRouter()
 
 
 @page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
-def review_page(project_id: str, server: Server) -> HTMLResponse:
+def review_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
-    return page_response("review/review.html")
+    return page_response("review/review.html", request)
 
 
 @router.get("", dependencies=LOOK, summary="State of the review")

@@ -53,15 +53,15 @@ page = APIRouter()
 
 
 @page.get("/rigs", include_in_schema=False, dependencies=LOOK)
-def rigs_page() -> HTMLResponse:
-    return page_response("rigs/rigs.html")
+def rigs_page(request: Request) -> HTMLResponse:
+    return page_response("rigs/rigs.html", request)
 
 
 @page.get("/rigs/{rig_id}/", include_in_schema=False, dependencies=LOOK)
-def rig_page(rig_id: str, server: Server) -> HTMLResponse:
+def rig_page(rig_id: str, request: Request, server: Server) -> HTMLResponse:
     if rig_id not in rig_presets():
         server.rigs.versions(rig_id)  # raises if there is no such rig
-    return page_response("rigs/rigs.html")
+    return page_response("rigs/rigs.html", request)
 
 
 @router.get("/rigs", summary="Rigs")

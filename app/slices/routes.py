@@ -8,7 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Literal
 
-from fastapi import APIRouter, Depends, Response
+from fastapi import APIRouter, Depends, Request, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
@@ -59,9 +59,9 @@ page = APIRouter()
 
 
 @page.get("/projects/{project_id}/slices/", include_in_schema=False, dependencies=LOOK)
-def slices_page(project_id: str, server: Server) -> HTMLResponse:
+def slices_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
     server.projects.folder(project_id)
-    return page_response("slices/slices.html")
+    return page_response("slices/slices.html", request)
 
 
 @router.get("", summary="Facts about the map")

@@ -26,8 +26,8 @@ page = APIRouter()
 
 
 @page.get("/storage", include_in_schema=False, dependencies=PROCESS)
-def storage_page() -> HTMLResponse:
-    return page_response("storage/storage.html")
+def storage_page(request: Request) -> HTMLResponse:
+    return page_response("storage/storage.html", request)
 
 
 @router.get("/storage", summary="What takes space")

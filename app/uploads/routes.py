@@ -23,6 +23,7 @@ from app.deps import Server, ServerParts
 from app.error_responses import ProblemDetail
 from app.errors import AppError, BadRequest, Conflict
 from app.names import Name
+from app.network.behind import public_path
 from app.uploads import tus
 from app.uploads.model import Upload, UploadedFile
 from app.uploads.receive import receive
@@ -144,11 +145,13 @@ def read_upload(upload_id: str, server: Server) -> UploadView:
 
 
 @router.get("/{upload_id}/files", summary="Files of an upload")
-def list_files(upload_id: str, server: Server) -> list[FileView]:
+def list_files(upload_id: str, request: Request, server: Server) -> list[FileView]:
     """List the announced files with their offsets, to resume an upload."""
     upload = server.uploads.get(upload_id)
     return [
-        FileView(name=file.name, bytes=file.bytes, offset=file.offset, url=_url(upload, file))
+        FileView(
+            name=file.name, bytes=file.bytes, offset=file.offset, url=_url(request, upload, file)
+        )
         for file in upload.listed
     ]
 
@@ -225,7 +228,7 @@ async def create(request: Request, server: Server, who: Who) -> Response:
     upload, file = await asyncio.to_thread(
         _announce, server, tus.metadata(request.headers), length, by=who.name
     )
-    headers = {"Location": _url(upload, file)}
+    headers = {"Location": _url(request, upload, file)}
     if request.headers.get("content-type") == tus.CHUNK_TYPE and file.offset == 0:
         await _take(server, upload, file, request=request)
     await asyncio.to_thread(server.uploads.finish, upload)
@@ -313,8 +316,8 @@ def _offset_headers(server: ServerParts, upload: Upload, file: UploadedFile) -> 
     return headers
 
 
-def _url(upload: Upload, file: UploadedFile) -> str:
-    return f"{PREFIX}/{upload.id}-{file.number}"
+def _url(request: Request, upload: Upload, file: UploadedFile) -> str:
+    return public_path(request.scope, f"{PREFIX}/{upload.id}-{file.number}")
 
 
 def _view(server: ServerParts, upload: Upload) -> UploadView:

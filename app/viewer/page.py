@@ -12,6 +12,7 @@ from fastapi import APIRouter, Request
 from fastapi.responses import HTMLResponse, RedirectResponse, Response
 
 from app.deps import Server
+from app.network.behind import public_path
 from app.pages import WEB
 from app.projects.model import ProjectView
 from app.viewer.hotkeys import HOTKEYS
@@ -95,9 +96,8 @@ def viewer_page(project_id: str, request: Request, server: Server) -> Response:
     query is redirected.
     """
     project = server.projects.get(project_id)
-    path = request.scope["path"]
     if request.scope["query_string"]:
-        return RedirectResponse(path, status_code=307)
+        return RedirectResponse(request.scope["path"], status_code=307)
     policy = {"Content-Security-Policy": policy_for(request.headers["host"])}
     approval = server.checks.known(server.projects.folder(project.id), project.approval)
     page = with_shims(client(), replace(project, approval=approval))
@@ -111,9 +111,10 @@ def viewer_state(project_id: str, server: Server) -> dict[str, str]:
 
 
 @router.get("/projects/{project_id}/viewer", include_in_schema=False)
-def viewer_without_slash(project_id: str, server: Server) -> Response:
+def viewer_without_slash(project_id: str, request: Request, server: Server) -> Response:
     """Redirect to the page."""
-    return RedirectResponse(f"/projects/{server.projects.get(project_id).id}/viewer/")
+    path = f"/projects/{server.projects.get(project_id).id}/viewer/"
+    return RedirectResponse(public_path(request.scope, path))
 
 
 @cache

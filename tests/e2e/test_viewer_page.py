@@ -81,7 +81,7 @@ def test_a_click_or_tap_on_a_rejected_edge_shows_the_reason_and_links_its_review
     touch(viewer, look, on_screen(viewer, finished.root, middle))
 
     link = viewer.get_by_role("link", name="Open in review", include_hidden=True)
-    expect(link).to_have_attribute("href", f"/projects/office/review/?edge={edge.i}-{edge.j}")
+    expect(link).to_have_attribute("href", f"../../office/review/?edge={edge.i}-{edge.j}")
     expect(viewer.get_by_text("verification median > limit", exact=True)).to_be_attached()
     screenshot(viewer, "viewer-edge")
 

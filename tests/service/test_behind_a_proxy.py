@@ -1,14 +1,7 @@
-"""A server behind a real nginx that does TLS: the site of ``docs/server.md``."""
+"""A server behind a real nginx, with a host name of its own and below a path."""
 
 import asyncio
 import re
-import shutil
-import socket
-import ssl
-import subprocess
-from dataclasses import dataclass
-from pathlib import Path
-from unittest.mock import patch
 
 import httpx
 import pytest
@@ -17,107 +10,48 @@ from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
-from app.access.login import passwords
-from app.access.login.login_service import open_access
 from app.network.behind import public_address
-from app.network.certificate import made_certificate
 from app.settings import ServerSettings
 from recon4.errors import ConfigError
-from tests.project_builder import build_project
-from tests.service.running import ROOT, server_thread, wait_for
-from tests.service.secure import CHEAP, PASSWORD, ROLES
-
-NAME = "maps.example.org"
-NGINX = shutil.which("nginx") or "/usr/sbin/nginx"
-needs_nginx = pytest.mark.skipif(not Path(NGINX).exists(), reason="needs nginx (.ci/apt run test)")
-
-
-def free_port():
-    with socket.create_server(("127.0.0.1", 0)) as found:
-        return found.getsockname()[1]
-
-
-@dataclass
-class Site:
-    port: int
-    certificate: Path
-    root: Path
-    direct: str
-
-    @property
-    def origin(self):
-        return f"https://{NAME}:{self.port}"
-
-    def trust(self):
-        context = ssl.create_default_context(cafile=self.certificate)
-        context.check_hostname = False  # it is reached by address: nobody resolves the name
-        return context
-
-    def client(self, host=""):
-        headers = {"Host": host or f"{NAME}:{self.port}", "Origin": self.origin}
-        url = f"https://127.0.0.1:{self.port}"
-        return httpx.Client(base_url=url, headers=headers, verify=self.trust(), timeout=30)
-
-
-def site_of_the_documentation(port, upstream, certificate):
-    text = (ROOT / "docs" / "server.md").read_text("utf-8")
-    site = re.search(r"```nginx\n(.*?)```", text, re.DOTALL)[1]
-    changes = {
-        "443": f"127.0.0.1:{port}",
-        "/etc/ssl/maps.example.org.pem": str(certificate.chain),
-        "/etc/ssl/maps.example.org.key": str(certificate.key),
-        "http://127.0.0.1:8000": upstream,
-    }
-    for written, here in changes.items():
-        assert written in site
-        site = site.replace(written, here)
-    return site
+from tests.service.behind_nginx import behind_nginx, needs_nginx, sign_in
+from tests.service.secure import PASSWORD
 
 
 @pytest.fixture
 def site(tmp_path):
-    root = tmp_path / "root"
-    (root / ".recon4").mkdir(parents=True)
-    build_project(root / "office", points=2_000)
-    port = free_port()
-    certificate = made_certificate(tmp_path / "tls", frozenset({NAME}))
-    behind = public_address(f"https://{NAME}:{port}/")
-    with patch.object(passwords, "HASHER", CHEAP):
-        access = open_access(root / ".recon4", login=True)
-        for name, role in ROLES.items():
-            access.accounts.add(name, role, PASSWORD)
-        access.close()
-        with server_thread(root, behind=behind) as running:
-            (tmp_path / "nginx.conf").write_text(
-                f"daemon off; master_process off; pid {tmp_path}/pid; error_log stderr;\n"
-                "events {}\nhttp {\naccess_log off;\n"
-                + "".join(
-                    f"{kind}_temp_path {tmp_path}/{kind};\n"
-                    for kind in ("client_body", "proxy", "fastcgi", "uwsgi", "scgi")
-                )
-                + site_of_the_documentation(port, running.url, certificate)
-                + "}\n"
-            )
-            nginx = subprocess.Popen([NGINX, "-p", tmp_path, "-c", tmp_path / "nginx.conf"])
-            try:
-                found = Site(port, certificate.chain, root, running.url)
-                wait_for(lambda: answers(port) or nginx.poll() is not None, "nginx listens")
-                yield found
-            finally:
-                nginx.terminate()
-                nginx.wait(20)
+    with behind_nginx(tmp_path, "") as (found,):
+        yield found
 
 
-def answers(port):
-    with socket.socket() as caller:
-        return caller.connect_ex(("127.0.0.1", port)) == 0
+def cookies_of(client):
+    return "; ".join(f"{one.name}={one.value}" for one in client.cookies.jar)
 
 
-def sign_in(client, **headers):
-    answer = client.post("/api/login", json={"name": "anna", "password": PASSWORD}, headers=headers)
-    assert answer.status_code == 200, answer.text
-    client.headers["X-Recon4-Token"] = answer.json()["token"]
-    return answer
+def open_socket(site, path, *, cookies, origin="", **options):
+    return connect(
+        f"wss://{site.name}:{site.port}{site.prefix}{path}",
+        host="127.0.0.1",
+        port=site.port,
+        ssl=site.trust(),
+        server_hostname=site.name,
+        origin=origin or site.origin,
+        additional_headers={"Cookie": cookies},
+        compression=None,
+        max_size=None,
+        proxy=None,
+        **options,
+    )
+
+
+async def first_message(site, path, cookies, **options):
+    async with open_socket(site, path, cookies=cookies, **options) as stream:
+        if path.endswith("/stream"):
+            await stream.send("{}")
+        return await asyncio.wait_for(stream.recv(), 60)
+
+
+VISER = {"subprotocols": [Subprotocol(f"viser-v{viser.__version__}")]}
+VIEWER = "/projects/office/viewer"
 
 
 @needs_nginx
@@ -144,30 +78,13 @@ def test_people_sign_in_and_work_through_the_proxy(site):
 
 @needs_nginx
 def test_the_viewer_is_relayed_through_the_proxy_to_its_own_origin_only(site):
-    async def first_message(origin, cookies):
-        connection = connect(
-            f"wss://{NAME}:{site.port}/projects/office/viewer",
-            host="127.0.0.1",
-            port=site.port,
-            ssl=site.trust(),
-            server_hostname=NAME,
-            origin=origin,
-            additional_headers={"Cookie": cookies},
-            subprotocols=[Subprotocol(f"viser-v{viser.__version__}")],
-            compression=None,
-            max_size=None,
-            proxy=None,
-        )
-        async with connection as viewer:
-            return await asyncio.wait_for(viewer.recv(), 60)
-
     with site.client() as client:
         sign_in(client)
-        cookies = "; ".join(f"{name}={value}" for name, value in client.cookies.items())
+        cookies = cookies_of(client)
 
-    assert len(asyncio.run(first_message(site.origin, cookies))) > 0
+    assert len(asyncio.run(first_message(site, VIEWER, cookies, **VISER))) > 0
     with pytest.raises(InvalidStatus, match="403"):
-        asyncio.run(first_message("https://evil.example", cookies))
+        asyncio.run(first_message(site, VIEWER, cookies, origin="https://evil.example", **VISER))
 
 
 @needs_nginx
@@ -179,9 +96,79 @@ def test_other_hosts_are_refused_through_the_proxy_and_beside_it(site):
     assert httpx.get(f"{site.direct}/healthz").status_code == 400
 
 
+@needs_nginx
+@pytest.mark.parametrize("removed", [False, True], ids=["kept", "removed"])
+def test_everything_works_below_a_path_that_the_proxy_keeps_or_removes(tmp_path, removed):
+    with behind_nginx(tmp_path, "/maps/old", removed=removed) as (site,), site.client() as client:
+        page = {"Accept": "text/html"}
+        asked = client.get("/projects/office/?a=1", headers=page)
+        signed_in = sign_in(client)
+        moved = client.get("/projects/office/viewer", headers=page)
+        docs = client.get("/docs", headers=page)
+        invited = client.post("/api/pairing/invitations", json={"role": "viewer"}).json()
+        described = client.get("/openapi.json").json()
+        lost = client.get("/nothing", headers=page)
+        metrics = client.get("/metrics").text
+        socket = asyncio.run(first_message(site, "/api/live/stream", cookies_of(client)))
+        viewer = asyncio.run(first_message(site, VIEWER, cookies_of(client), **VISER))
+
+    assert asked.headers["location"] == "/maps/old/login#next=/projects/office/"
+    for line in signed_in.headers.get_list("set-cookie"):
+        assert re.match(r"__Secure-(sid|browser)-maps~old=", line)
+        assert all(part in line for part in ("Path=/maps/old/;", "Secure", "HttpOnly"))
+    assert moved.headers["location"] == "/maps/old/projects/office/viewer/"
+    assert docs.headers["location"] == f"{site.url}/docs/"
+    assert invited["links"][0]["url"].startswith(f"{site.url}/pair#")
+    assert described["servers"] == [{"url": "/maps/old"}]
+    assert described["components"]["securitySchemes"]["session"]["name"] == "__Secure-sid-maps~old"
+    assert lost.status_code == 404 and 'href="/maps/old/web/shared/base.css"' in lost.text
+    assert 'route="/api/login"' in metrics
+    assert len(socket) > 0 and len(viewer) > 0
+
+
+@needs_nginx
+def test_an_upload_through_the_proxy_goes_to_addresses_below_the_path(tmp_path):
+    tus = {"Tus-Resumable": "1.0.0", "Upload-Length": "4", "Upload-Metadata": "filename YS5iaW4="}
+    with behind_nginx(tmp_path, "/recon4") as (site,), site.client() as client:
+        sign_in(client)
+        made = client.post("/api/uploads/files", headers=tus)
+        upload = client.get("/api/uploads").json()[0]["id"]
+        (file,) = client.get(f"/api/uploads/{upload}/files").json()
+        there = made.url.join(made.headers["Location"])
+        chunk = {"Upload-Offset": "0", "Content-Type": "application/offset+octet-stream"}
+        sent = client.patch(there, headers={**tus, **chunk}, content=b"maps")
+        finished = client.get(f"/api/uploads/{upload}").json()["finished"]
+
+    assert made.headers["Location"] == file["url"] and file["url"].startswith("/recon4/api/")
+    assert sent.status_code == 204 and finished
+
+
+@needs_nginx
+def test_servers_on_paths_of_one_host_keep_their_sessions_apart(tmp_path):
+    prefixes = ("/maps", "/maps/old", "")
+    who = {"name": "anna", "password": PASSWORD}
+    with behind_nginx(tmp_path, *prefixes) as sites, sites[2].client() as browser:
+        tokens = [browser.post(f"{one}/api/login", json=who).json()["token"] for one in prefixes]
+        names = {cookie.name for cookie in browser.cookies.jar}
+        all_in = [browser.get(f"{one}/api/me").status_code for one in prefixes]
+        out = browser.post("/maps/api/logout", headers={"X-Recon4-Token": tokens[0]})
+        left = [browser.get(f"{one}/api/me").status_code for one in prefixes]
+
+    assert {"__Secure-sid-maps", "__Secure-sid-maps~old", "__Host-sid"} <= names
+    assert all_in == [200, 200, 200]
+    assert out.status_code == 204 and left == [401, 200, 200]
+    assert "Clear-Site-Data" not in out.headers  # it would clear what the others keep
+
+
 def scope(peer, forwarded=None, scheme="http"):
     headers = [(b"x-forwarded-for", one.encode()) for one in forwarded or ()]
-    return {"type": "http", "scheme": scheme, "client": (peer, 5000), "headers": headers}
+    return {
+        "type": "http",
+        "path": "/",
+        "scheme": scheme,
+        "client": (peer, 5000),
+        "headers": headers,
+    }
 
 
 @pytest.mark.parametrize(
@@ -210,7 +197,11 @@ def test_forwarded_addresses_count_from_the_proxy_only(peer, forwarded, seen):
         ("https://", "as https://maps.example.org/"),
         ("https://a:b@maps.example.org/", "as https://maps.example.org/"),
         ("https://maps.example.org:x/", "is no address"),
-        ("https://example.org/recon4/", "a host name of their own, not the path '/recon4/'"),
+        ("https://example.org/a%20b/", "letters A-Z, digits"),
+        ("https://example.org/a//b/", "between single slashes"),
+        ("https://example.org/a/../b/", "between single slashes"),
+        ("https://example.org/a~b/", "letters A-Z, digits"),
+        ("https://example.org/#maps", "as https://example.org/recon4/"),
     ],
 )
 def test_other_addresses_are_refused_with_what_to_do(url, said):

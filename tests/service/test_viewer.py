@@ -96,7 +96,7 @@ def test_a_click_on_an_edge_says_what_it_is_and_where_to_review_it(looking):
     looking.click((start + end) / 2.0 + away, -away)
     looking.until(lambda c: "verification median" in c.html() and "Open in review" in c.html())
 
-    assert 'href="/projects/office/review/?edge=' in looking.html()
+    assert 'href="../../office/review/?edge=' in looking.html()
     looking.until(lambda c: "/picked/edge" in c.nodes)
 
 

@@ -11,7 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from app.access.audit import address, audit
 from app.access.login.login_service import Access, LoginOrigin, LoginResult
 from app.access.login.sessions import BROWSER_KNOWN_S, LIVES, PHONE_LIFE, Session, form_token
-from app.access.middleware.session import BROWSER_COOKIE, COOKIE, cookie
+from app.access.middleware.session import CookieNames, cookie, cookie_names
 from app.access.pairing.grants import PairingGrant
 from app.access.people import (
     LOCAL,
@@ -26,6 +26,7 @@ from app.access.people import (
 from app.deps import Server
 from app.error_responses import ProblemDetail
 from app.errors import AppError, Conflict, TooMany
+from app.network.behind import prefix_of
 
 router = APIRouter(
     prefix="/api",
@@ -138,7 +139,7 @@ def login_again(
         _note_failure(access, request, session.person, error=error)
         raise
     token = access.sessions.prove(session.id)
-    _set_cookie(response, token, LIVES[session.role].whole_s)
+    _set_cookie(request, response, token, lasts_s=LIVES[session.role].whole_s)
     audit(request, "sign in again", session.id)
     return _me(access, session.person, role=session.role, token=token)
 
@@ -150,14 +151,18 @@ def logout(request: Request, response: Response, server: Server) -> None:
     session: Session = request.scope["state"]["session"]
     access.sessions.end(session.id)
     audit(request, "sign out", session.id)
-    response.delete_cookie(COOKIE, path="/", secure=True, httponly=True, samesite="strict")
-    response.headers["Clear-Site-Data"] = '"cache", "storage"'
+    names = _cookies(request)
+    response.delete_cookie(
+        names.session, path=names.path, secure=True, httponly=True, samesite="strict"
+    )
+    if not prefix_of(request.scope):  # it is about a whole host; the pages clear what they keep
+        response.headers["Clear-Site-Data"] = '"cache", "storage"'
 
 
 @router.get("/me", dependencies=[SIGNED_IN])
 def read_me(request: Request, who: Who, server: Server) -> Me:
     """The signed-in person, the person's permissions, and the token for changes."""
-    token = cookie(request.scope, COOKIE) if server.access.login else ""
+    token = cookie(request.scope, _cookies(request).session) if server.access.login else ""
     return _me(server.access, who.name, role=who.role, token=token)
 
 
@@ -205,7 +210,7 @@ def enter_paired(
         grant.person, address=caller.address, agent=caller.agent, phone_role=grant.role
     )
     access.log.add(grant.person, caller.address, action="pair phone", what=grant.role)
-    _set_cookie(response, token, PHONE_LIFE.whole_s)
+    _set_cookie(request, response, token, lasts_s=PHONE_LIFE.whole_s)
     return _me(access, grant.person, role=grant.role, token=token)
 
 
@@ -219,7 +224,7 @@ def _caller(request: Request) -> LoginOrigin:
     return LoginOrigin(
         address=address(request),
         agent=request.headers.get("user-agent", ""),
-        browser=cookie(request.scope, BROWSER_COOKIE)[:100],
+        browser=cookie(request.scope, _cookies(request).browser)[:100],
     )
 
 
@@ -232,12 +237,13 @@ def _start_session(
     if before is not None and access.sessions.alive(before.id):
         access.sessions.end(before.id)
     access.log.add(name, address(request), action="sign in", what=role)
-    _set_cookie(response, result.session, LIVES[role].whole_s)
+    _set_cookie(request, response, result.session, lasts_s=LIVES[role].whole_s)
+    names = _cookies(request)
     response.set_cookie(
-        BROWSER_COOKIE,
+        names.browser,
         result.browser,
         max_age=int(BROWSER_KNOWN_S),
-        path="/",
+        path=names.path,
         secure=True,
         httponly=True,
         samesite="strict",
@@ -245,12 +251,17 @@ def _start_session(
     return _me(access, name, role=role, token=result.session)
 
 
-def _set_cookie(response: Response, token: str, lasts_s: float) -> None:
+def _cookies(request: Request) -> CookieNames:
+    return cookie_names(prefix_of(request.scope))
+
+
+def _set_cookie(request: Request, response: Response, token: str, *, lasts_s: float) -> None:
+    names = _cookies(request)
     response.set_cookie(
-        COOKIE,
+        names.session,
         token,
         max_age=int(lasts_s),
-        path="/",
+        path=names.path,
         secure=True,
         httponly=True,
         samesite="strict",

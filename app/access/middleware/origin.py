@@ -1,4 +1,4 @@
-"""Checks of host names and origins, and security headers. Pure ASGI, the outermost middleware.
+"""Checks of host names and origins, and security headers. Pure ASGI, before the application.
 
 A page of another site in a user's browser can send requests here and open WebSockets. A name
 that points to this computer can even make them look same-site (DNS rebinding). So the host must be
@@ -17,7 +17,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from app.access.middleware.rejection import Rejection, note
 from app.access.middleware.session import SessionMiddleware
 from app.access.people import NOBODY, Person
-from app.network.behind import PublicAddress
+from app.network.behind import route_path
 
 SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
@@ -67,7 +67,6 @@ class OriginMiddleware:
         hosts: Hosts,
         local: Person | None,
         pinned: bool = False,
-        behind: PublicAddress | None = None,
     ) -> None:
         """Wrap an application.
 
@@ -76,20 +75,16 @@ class OriginMiddleware:
             hosts: Host names it accepts.
             local: Who every caller is; None = people sign in.
             pinned: Whether browsers may insist on TLS from now on.
-            behind: The proxy that requests come through; None = there is none.
         """
         self._app = app if local else SessionMiddleware(app)
         self._hosts = hosts
         self._local = local or NOBODY
-        self._behind = behind
         self._headers = HEADERS | (PINNED if pinned else {})
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         if scope["type"] not in ("http", "websocket"):
             await self._app(scope, receive, send)
             return
-        if self._behind is not None:
-            scope = self._behind.seen_through(scope)
         send = self._with_headers(scope, send)
         scope.setdefault("state", {}).update(person=self._local, signed_in_s=0.0)
         if (rejection := judge(scope, self._hosts)) is None:
@@ -99,7 +94,7 @@ class OriginMiddleware:
             await rejection.answer(scope, receive, send)
 
     def _with_headers(self, scope: Scope, send: Send) -> Send:
-        private = self._local is NOBODY and scope["path"].startswith("/api/")
+        private = self._local is NOBODY and route_path(scope).startswith("/api/")
         wanted = self._headers | (PRIVATE if private else {})
 
         async def send_with_headers(message: Message) -> None:
@@ -151,7 +146,7 @@ def _is_navigation(scope: Scope, headers: Headers) -> bool:
         return True
     link = headers.get("sec-fetch-mode") == "navigate"
     page = headers.get("sec-fetch-dest") == "document"
-    return link and page and not scope["path"].startswith("/api/")
+    return link and page and not route_path(scope).startswith("/api/")
 
 
 def hostname(host: str) -> str:

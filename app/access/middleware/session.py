@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import hmac
 import re
+from dataclasses import dataclass
 from urllib.parse import quote
 
 from starlette.datastructures import Headers
@@ -15,10 +16,8 @@ from app.access.login.login_service import Access
 from app.access.login.sessions import AuthenticatedSession, Session, form_token
 from app.access.middleware.rejection import Rejection, note
 from app.access.people import NOBODY
+from app.network.behind import prefix_of, public_path, route_path
 
-COOKIE = "__Host-sid"
-"""Browsers accept a ``__Host-`` cookie only over TLS, for this host alone and its root path."""
-BROWSER_COOKIE = "__Host-browser"
 FORM_HEADER = "X-Recon4-Token"
 
 PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
@@ -33,6 +32,32 @@ CANCEL_AGAIN_S = 1.0
 TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
 
 
+@dataclass(frozen=True, slots=True)
+class CookieNames:
+    """Cookies of this server; servers on other paths of the host have others."""
+
+    session: str
+    browser: str
+    path: str
+    """Path below which browsers send them."""
+
+
+def cookie_names(prefix: str) -> CookieNames:
+    """The cookies of a server.
+
+    Browsers accept a ``__Host-`` cookie only over TLS, for this host alone and its root path, a
+    ``__Secure-`` cookie only over TLS. Below a prefix the path alone is not enough: a server at
+    ``/maps/old/`` is sent the cookies of ``/maps/``, too.
+
+    Args:
+        prefix: As ``/recon4``; empty = the server has the host for itself.
+    """
+    if not prefix:
+        return CookieNames("__Host-sid", "__Host-browser", "/")
+    place = prefix[1:].replace("/", "~")
+    return CookieNames(f"__Secure-sid-{place}", f"__Secure-browser-{place}", f"{prefix}/")
+
+
 class SessionMiddleware:
     """Finds the session of each request; used where there is a login."""
 
@@ -45,7 +70,7 @@ class SessionMiddleware:
             await self._app(scope, receive, send)
             return
         access: Access = scope["app"].state.parts.access
-        token = cookie(scope, COOKIE)
+        token = cookie(scope, cookie_names(prefix_of(scope)).session)
         authenticated = await find(access, token)
         state = scope["state"]
         state.update(person=NOBODY, signed_in_s=float("inf"), session=None)
@@ -66,7 +91,7 @@ class SessionMiddleware:
             await SessionMonitor(access, authenticated.session, scope).run(self._app, receive, send)
 
     def _judge(self, scope: Scope, authenticated: AuthenticatedSession | None) -> Rejection | None:
-        path = scope["path"]
+        path = route_path(scope)
         if path.startswith(OPEN_FOLDER) or (authenticated is None and path in OPEN_PATHS):
             return None
         if authenticated is None:
@@ -176,5 +201,6 @@ def sign_in_first(scope: Scope) -> Rejection:
     if not page:
         return Rejection(401, "Unknown", "sign in first: POST /api/login")
     # A paired phone knows no password: the pairing page offers both.
-    there = "/pair" if scope["path"] == "/live" else f"/login#next={quote(scope['path'])}"
-    return Rejection(303, "Unknown", "sign in first", {"Location": there})
+    path = route_path(scope)
+    there = "/pair" if path == "/live" else f"/login#next={quote(path)}"
+    return Rejection(303, "Unknown", "sign in first", {"Location": public_path(scope, there)})

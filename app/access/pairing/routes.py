@@ -27,6 +27,7 @@ from app.deps import Server
 from app.error_responses import ProblemDetail
 from app.errors import AppError, Conflict, Refused
 from app.names import Name
+from app.network.behind import public_path
 from app.network.hosts import LOOPBACK, own_addresses
 from app.network.listen import presented_fingerprint
 
@@ -230,6 +231,7 @@ def is_served(address: ipaddress.IPv4Address | ipaddress.IPv6Address, listens_on
 def _link(host: str, request: Request, token: str) -> PairingLink:
     port = urlsplit(f"//{request.headers['host']}").port
     name = f"[{host}]" if ":" in host else host
-    url = f"{request.url.scheme}://{name}{f':{port}' if port else ''}/pair#{token}"
+    path = public_path(request.scope, "/pair")
+    url = f"{request.url.scheme}://{name}{f':{port}' if port else ''}{path}#{token}"
     code = segno.make_qr(url, error="m")
     return PairingLink(host=host, url=url, qr=code.svg_data_uri(scale=8, dark="#000", light="#fff"))

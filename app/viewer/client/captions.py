@@ -47,7 +47,8 @@ def edge_facts(table: EdgeTable, row: int, project: str) -> Facts:
         ("chi²", _number(edge.chi2)),
         ("Decided by", edge.decided_by),
     ]
-    link = f"/projects/{quote(project)}/review/?edge={edge.i}-{edge.j}"
+    # seen from the viewer's page: the server may have a prefix
+    link = f"../../{quote(project)}/review/?edge={edge.i}-{edge.j}"
     kept = tuple((label, value) for label, value in rows if value)
     return Facts(f"Edge {edge.i}\u2013{edge.j}", kept, ("Open in review", link))
 

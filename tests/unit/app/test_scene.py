@@ -221,7 +221,7 @@ def test_an_edge_picked_leads_to_its_review(content):
 
     facts = edge_facts(content.edges, row, "my office")
 
-    assert facts.link == ("Open in review", f"/projects/my%20office/review/?edge={edge.i}-{edge.j}")
+    assert facts.link == ("Open in review", f"../../my%20office/review/?edge={edge.i}-{edge.j}")
     assert ("Verdict", "rejected") in facts.rows
     assert ("Reason", str(edge.reason)) in facts.rows
     assert "Error" not in dict(facts.rows)
