@@ -88,7 +88,7 @@ def _write_scans(draw, bag, walk, variant):
         angles = first + step * np.arange(len(ranges))
         if upside_down:
             angles = -angles
-        ranges = np.where(np.isfinite(ranges), ranges * scale, none)
+        ranges = np.where(np.isfinite(ranges), ranges, none) * scale
         bag.frame = "laser"
         for copy in range(1 + (k in again)):
             stamp_ns = 0 if k in unstamped else t_ns
