@@ -7,7 +7,6 @@
 from __future__ import annotations
 
 import json
-import os
 import sqlite3
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -23,6 +22,7 @@ from recon4.store.seal import changing
 from recon4.store.sqlite_files import (
     connect,
     connect_to_read,
+    has_room_beside,
     make_durable,
     merge_log,
     sync_commits,
@@ -228,7 +228,7 @@ def _rows(db: sqlite3.Connection) -> list[JournalRow]:
 def _database(path: Path, *, write: bool = False) -> Iterator[sqlite3.Connection]:
     db: sqlite3.Connection | None = None
     try:
-        if not write and not os.access(path.parent, os.W_OK):
+        if not write and not has_room_beside(path):
             db = connect_to_read(path)
             yield db
             return

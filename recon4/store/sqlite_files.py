@@ -10,6 +10,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
+ROOM_BESIDE_BYTES = 64 << 10
+"""The index of a write-ahead log takes 32 KiB [bytes]."""
 BUSY_S = 10.0
 """Longest wait for another writer [s]."""
 
@@ -39,7 +41,7 @@ def connect_read_only(path: Path, *, immutable: bool = False) -> sqlite3.Connect
 
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
-    """Open an existing file to read, also where nothing can be written (read-only media).
+    """Open an existing file to read, also on read-only media and full disks.
 
     SQLite keeps files beside a file with a write-ahead log, even to read it. Where it cannot make
     them, the file is opened as immutable, or with its log as a copy in memory.
@@ -47,12 +49,20 @@ def connect_to_read(path: Path) -> sqlite3.Connection:
     Raises:
         sqlite3.Error: If it cannot be opened.
     """
-    if os.access(path.parent, os.W_OK):
+    if has_room_beside(path):
         return connect_read_only(path)
     log = path.with_name(f"{path.name}-wal")
     if not log.exists() or not log.stat().st_size:
         return connect_read_only(path, immutable=True)
     return _copy_with_log(path, log)
+
+
+def has_room_beside(path: Path) -> bool:
+    """Whether SQLite can make the files it keeps beside a file, even to read it."""
+    if not os.access(path.parent, os.W_OK):
+        return False
+    disk = os.statvfs(path.parent)
+    return disk.f_bavail * disk.f_frsize >= ROOM_BESIDE_BYTES
 
 
 def _copy_with_log(path: Path, log: Path) -> sqlite3.Connection:
