@@ -21,10 +21,8 @@ router = APIRouter(
 PAGE = "shared/docs.html"
 """``{title}`` and ``{content}`` are filled in."""
 START = "tour"
-_NAME = re.compile(r"[a-z0-9][a-z0-9-]*")
 _EMPTY_HEAD = re.compile(r"<thead>\s*<tr>\s*(?:<th>\s*</th>\s*)+</tr>\s*</thead>")
 """Of a table that has no captions: Markdown cannot leave the line out."""
-_IMAGE = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]*\.(png|webp)")
 
 
 @cache
@@ -32,6 +30,12 @@ def folder() -> Path:
     """The Markdown files: of an installed package inside of it, else of the checkout."""
     inside = WEB / "docs"
     return inside if inside.is_dir() else WEB.parent / "docs"
+
+
+@cache
+def _names(below: str, pattern: str) -> frozenset[str]:
+    """Names of the files; only these can be requested."""
+    return frozenset(path.name for path in (folder() / below).glob(pattern))
 
 
 @router.get("/")
@@ -44,7 +48,7 @@ def docs_start(request: Request) -> HTMLResponse:
 def docs_image(name: str) -> FileResponse:
     """Send an image of the documentation."""
     path = folder() / "images" / name
-    if not _IMAGE.fullmatch(name) or not path.is_file():
+    if name not in _names("images", "*.*"):
         raise NotFound(f"the documentation has no image {name[:64]!r}")
     return FileResponse(path)
 
@@ -53,7 +57,7 @@ def docs_image(name: str) -> FileResponse:
 def docs_page(name: str, request: Request) -> HTMLResponse:
     """Show a page of the documentation."""
     path = folder() / f"{name.removesuffix('.md')}.md"
-    if not _NAME.fullmatch(name.removesuffix(".md")) or not path.is_file():
+    if f"{name.removesuffix('.md')}.md" not in _names("", "*.md"):
         raise NotFound(f"the documentation has no page {name[:64]!r}")
     text = path.read_text("utf-8")
     title = html.escape(text.split("\n", 1)[0].lstrip("# "))

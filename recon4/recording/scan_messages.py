@@ -20,6 +20,8 @@ _SCANS_AT_ONCE = 250
 _MAX_BEAMS = 100_000
 _MAX_LINE_S = 10.0
 """A line or scan of longer duration has wrong times."""
+_OTHER_UNIT = 5.0
+"""Half of the ranges beyond this multiple of the longest range: they are no meters."""
 _LONGEST_M = 1e4
 _NARROWEST_RAD = 1e-3
 """No laser sees less: a step between beams that gives less is none."""
@@ -211,5 +213,8 @@ def _returns(scan: Any, ranges: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Shots that returned: within the sensor's limits (REP 117)."""
     low = max(float(scan.range_min), 1e-3) if np.isfinite(scan.range_min) else 1e-3
     high = float(scan.range_max) if scan.range_max > low else _LONGEST_M
+    measured = ranges[np.isfinite(ranges) & (ranges > low)]
+    if len(measured) and np.median(measured) > _OTHER_UNIT * high:
+        high = _LONGEST_M  # the ranges are of another unit than their limit: see `range_units`
     with np.errstate(invalid="ignore"):
         return np.asarray((ranges >= low) & (ranges <= min(high, _LONGEST_M)), dtype=np.bool_)
