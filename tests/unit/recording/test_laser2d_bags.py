@@ -1,5 +1,6 @@
 """Recordings with the scans of a 2-D laser and no LiDAR, whose angles may change."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -33,6 +34,18 @@ from tests.scan_captures import write_capture
 def scans():
     truth = np.stack([np.linspace(-2.0, 2.0, 20), np.zeros(20), np.zeros(20)], axis=1)
     return with_times(scanned(furnished_room(), truth, odometry=False).scans, 1e-4)
+
+
+def test_ranges_in_millimeters_below_a_limit_in_meters_are_converted(tmp_path, scans):
+    in_mm = replace(scans, range_m=scans.range_m * 1000.0)
+    with open_line_bag(tmp_path / "bag") as bag:
+        bag.scans("/scan", in_mm)
+    report = ImportReport()
+
+    read = read_laser2d([tmp_path / "bag"], report)
+
+    assert np.nanmax(np.abs(read.range_m - scans.range_m)) < 1e-3
+    assert any("taken as millimeters" in text for text in report.warnings)
 
 
 def test_the_scans_of_a_bag_are_read(tmp_path, scans):
