@@ -20,13 +20,13 @@ from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture
 
 def walk(path):
     imu = (
-        b'{"t_ns": %d, "gx_rad_s": 0.1, "gy_rad_s": 0, "gz_rad_s": 0.5%03d, '
-        b'"ax_m_s2": 0, "ay_m_s2": 0, "az_m_s2": 9.8}'
+        b'{"t_ns": %d, "gx_rad_s": 0.1%03d, "gy_rad_s": 0.0%03d, "gz_rad_s": 0.5%03d, '
+        b'"ax_m_s2": 0.0%03d, "ay_m_s2": 0.0%03d, "az_m_s2": 9.8%03d}'
     )
     t_ns, first = spin(3000)
     texts = np.zeros((len(t_ns) // 4, 150), np.uint8)
     for row, t in zip(texts, t_ns[::4].tolist(), strict=True):
-        line = imu % (t, t // 1000 % 1000)
+        line = imu % (t, *6 * (t // 1000 % 1000,))
         row[: len(line)] = np.frombuffer(line, np.uint8)
     return capture(
         path,

@@ -26,6 +26,7 @@ from recon4.model.serial_device import SerialDevice, parse_serial_device
 from recon4.processes import process_identity
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
+from tests.service.running import wait_for
 from tests.unit.live.recorder import recorder_of_a_terminal
 from tests.unit.live.recorder.recorder_process import recording
 
@@ -215,7 +216,7 @@ def test_the_opener_ends_with_a_recorder_that_was_killed(tmp_path):
     text, _ = process.communicate(timeout=60)  # the pipe closes when both have ended
 
     assert process.returncode == -signal.SIGKILL
-    assert not process_identity(int(text))
+    wait_for(lambda: not process_identity(int(text)), "the opener lives on")
 
 
 def rig_with(session, serial):
