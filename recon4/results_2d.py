@@ -39,7 +39,7 @@ from recon4.settings import values_by_group
 from recon4.slam2d.map_files import overview_name, read_overview
 from recon4.slam2d.stage import read_covariance
 from recon4.slam2d.steps import Steps2d
-from recon4.slam2d.verdict import Facts2d, judge
+from recon4.slam2d.verdict import Facts2d, judge, remarks
 from recon4.store.arrays import load_record, load_trajectory
 from recon4.store.atomic import copy_file, write_json
 from recon4.store.package_versions import versions
@@ -143,7 +143,7 @@ def _summary(root: Path, made: _Made, about: About) -> Summary2d:
         edges=facts.graph.verdict_counts(),
         grid=facts.map,
         verdict=made.verdict,
-        warnings=facts.scans.warnings,
+        warnings=(*facts.scans.warnings, *remarks(facts)),
         seconds=seconds_of(runs),
         peak_bytes=peak_bytes_of(runs),
         stages=tuple(StageSummary.of(run) for run in runs.values()),
@@ -200,7 +200,7 @@ def _page(made: _Made, about: About) -> Page2d:
         preset=about.project.preset,
         settings=about.settings,
         verdict=made.verdict,
-        warnings=facts.scans.warnings,
+        warnings=(*facts.scans.warnings, *remarks(facts)),
         figures=_key_figures(made),
         grid=GridImage(
             (folder["map_2d"] / f"{overview_name(folder['map_2d'])}.png").read_bytes(),

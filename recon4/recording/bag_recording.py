@@ -284,12 +284,12 @@ class _Clouds:
 
     def push(self, message: BagMessage, cloud: Any) -> Shots | None:
         t_ns = stamp_ns(cloud.header.stamp)
-        if self._is_copy(t_ns, cloud.data):
-            self._report.count("clouds_duplicate")
-            return None
         if not self._stamps.is_sound(t_ns, message.t_ns):
             self._report.count("stamps_missing" if t_ns <= 0 else "stamps_wrong")
             t_ns = self._stamps.expected_ns(message.t_ns)
+        elif self._is_copy(t_ns, cloud.data):
+            self._report.count("clouds_duplicate")
+            return None
         try:
             table = cloud_table(cloud)
             shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)

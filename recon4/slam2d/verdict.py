@@ -75,6 +75,21 @@ def _imported(notes: ImportNotes) -> Iterator[Finding2d]:
         yield (Usability.DO_NOT_USE if part.is_severe else Usability.CHECK), part.text
 
 
+def remarks(facts: Facts2d) -> tuple[str, ...]:
+    """What is said beside the verdict and does not lower it.
+
+    In a long 2-D walk few loop closures have an alternative path, and the map is right without.
+    """
+    verdicts = facts.graph.loop_verdicts()
+    unverified, accepted = verdicts[Verdict.UNVERIFIED], verdicts[Verdict.ACCEPTED]
+    if unverified <= accepted:
+        return ()
+    return (
+        f"{unverified} loop closures are unverified: they have no alternative path; "
+        f"{accepted} are accepted",
+    )
+
+
 def unobserved_stretches(steps: Steps2d, poses: Array) -> tuple[Unobserved, ...]:
     """Stretches of `WEAK_SECONDS` or more along which the laser hardly observes one direction."""
     t_s = (steps.t_ns - steps.t_ns[0]) / 1e9
@@ -192,13 +207,6 @@ def _consistency(facts: Facts2d) -> Iterator[Finding2d]:
             f"{crossing:.0%} of the beams cross walls of the map: places were mapped twice.",
         )
     loops = sum(edge.kind is EdgeKind.LOOP and edge.in_graph for edge in facts.graph.edges)
-    verdicts = facts.graph.loop_verdicts()
-    if verdicts[Verdict.UNVERIFIED] > verdicts[Verdict.ACCEPTED]:
-        yield (
-            Usability.CHECK,
-            f"{verdicts[Verdict.UNVERIFIED]} loop closures are unverified: they have no "
-            f"alternative path; {verdicts[Verdict.ACCEPTED]} are accepted.",
-        )
     if not loops and facts.path_length_m > _LONG_WALK_M:
         yield (
             Usability.CHECK,

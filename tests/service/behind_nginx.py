@@ -141,8 +141,9 @@ def _documented_site(sites: Sequence[Site], certificate: Certificate, *, removed
         "/etc/ssl/maps.example.org.key": str(certificate.key),
     }
     for written, here in changes.items():
-        assert written in site
-        site = site.replace(written, here)
+        whole = rf"(?<!\d){re.escape(written)}(?!\d)"  # 443 may be part of another port
+        site, replaced = re.subn(whole, here, site)
+        assert replaced, written
     return site
 
 
