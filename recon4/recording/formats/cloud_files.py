@@ -36,6 +36,8 @@ Table = dict[str, NDArray[Any]]
 MAX_FRAME_BYTES = 256 << 20
 """The points of a file that is read as a whole (one revolution, or a compressed block)."""
 _CHUNK_BYTES = 32 << 20
+_FIRST_BYTES, _MESH_HEADER_BYTES = 16, 4096
+"""What tells a PLY file, and a header with its number of faces."""
 _LZF_MOST = 100
 """LZF cannot expand by more than 88: a larger claim is damage, not data."""
 
@@ -54,9 +56,12 @@ def is_mesh(path: Path) -> bool:
     if not path.is_file():
         return False
     with path.open("rb") as file:
-        head = file.read(HEADER_BYTES)
+        head = file.read(_FIRST_BYTES)
+        if not is_ply(head):  # each of the thousands of clouds of a folder is asked
+            return False
+        head += file.read(_MESH_HEADER_BYTES)
     faces = re.search(rb"^element face (\d+)", head.split(b"end_header", 1)[0], re.MULTILINE)
-    return is_ply(head) and faces is not None and int(faces[1]) > 0
+    return faces is not None and int(faces[1]) > 0
 
 
 def read_cloud(path: Path) -> Table:
