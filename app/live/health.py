@@ -8,6 +8,7 @@ from recon4.live.findings import rates
 from recon4.live.mapper.notes import RECENT_S
 from recon4.live.newest import Newest
 from recon4.live.protocol import Notes
+from recon4.model.import_counts import FREE_CLOCK
 from recon4.model.rig import Rig, Sensor
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"
@@ -45,14 +46,16 @@ def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
     if notes is None or per_s <= 0.0:
         return LidarHealth(name, per_s, None, "")
     mine = [text for text in notes.warnings if text.startswith(f"{name}: ")]
+    free = f"{FREE_CLOCK}{name}" in notes.counts
     if sensor.kind != "lidar":  # its datagrams have no numbers
-        return LidarHealth(name, per_s, None, _clock(mine))
+        return LidarHealth(name, per_s, None, _clock(mine, free=free))
     missing = notes.recent.get(f"packets_missing_{name}", 0)
-    return LidarHealth(name, per_s, round(missing / (missing + RECENT_S * per_s), 3), _clock(mine))
+    lost = round(missing / (missing + RECENT_S * per_s), 3)
+    return LidarHealth(name, per_s, lost, _clock(mine, free=free))
 
 
-def _clock(warnings: list[str]) -> str:
+def _clock(warnings: list[str], *, free: bool) -> str:
     """State of the clock, from the warnings of `recon4.recording.velodyne.sensor_clock`."""
     if any("jumped by" in text for text in warnings):
         return JUMPED
-    return SHIFTED if any("no GPS drives it" in text for text in warnings) else IN_STEP
+    return SHIFTED if free else IN_STEP

@@ -12,6 +12,8 @@ from enum import StrEnum
 
 WARNED_RATIO = 0.01
 """From this ratio on a loss is a warning; smaller ones stand in `recon4 info` and the report."""
+FREE_CLOCK = "clock_runs_freely_"
+"""Count, followed by the name of a LiDAR whose stamps count from power-on."""
 
 
 class CountKind(StrEnum):
@@ -96,6 +98,7 @@ _PACKETS = {
     "positions": _read("position packets"),
     "positions_wrong_time": _lost("positions", "a time more than 1 s off, dropped"),
     "positions_out_of_order": _lost("positions", "earlier than the one before, dropped"),
+    FREE_CLOCK: _usual("", "run freely, shifted to the recorder's clock", noun="clocks"),
     "clock_jumps": _repaired("", "jumps, the times go on without them", noun="clocks"),
     "clock_jumps_back": _repaired("", "set back, the times go on", noun="clocks"),
 }

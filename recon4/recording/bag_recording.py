@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.assembler import moved
@@ -55,7 +55,8 @@ from recon4.recording.topic_choice import (
     require_topic,
 )
 from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.models import likely_model
+from recon4.recording.velodyne.models import likely_model, velodyne_model
+from recon4.recording.velodyne.sensor_clock import SensorClock
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory
@@ -145,8 +146,7 @@ class BagRecording:
         for row, sensor in enumerate(self.rig.sensors):
             topic = kinds.get(sensor.topic)
             if topic is not None and topic.type == SCAN:
-                decoder = PacketDecoder(row, sensor, settings=self._settings, report=self._report)
-                found[sensor.topic] = _Scans(decoder)
+                found[sensor.topic] = _Scans(self._packets(row, sensor))
             elif topic is not None:
                 clouds = CloudDecoder(
                     row,
@@ -163,6 +163,15 @@ class BagRecording:
                     report=self._report,
                 )
         return found
+
+    def _packets(self, row: int, sensor: Sensor) -> PacketDecoder:
+        clock = SensorClock(
+            sensor.name,
+            packet_s=velodyne_model(sensor.model).packet_s(0),
+            report=self._report,
+            alone=len(self.rig.sensors) == 1,
+        )
+        return PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
 
 
 def lidar_streams(

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from recon4.model.import_counts import FREE_CLOCK
 from recon4.recording.clock_names import described, known_offset_s
 from recon4.recording.report import ImportReport
 
@@ -16,6 +17,8 @@ _OTHER_S = 1.0
 """Clocks that differ by less may be messages that travel for longer [s]."""
 _STEADY_S = 0.5
 """Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
+_TRAVEL_S = 0.1
+"""Messages of sensors on one clock lag behind by amounts that differ by less [s]."""
 _LEAST = 3
 
 
@@ -47,6 +50,33 @@ def is_same_clock(what: str, rig_offset_s: float, report: ImportReport) -> bool:
         f"{about}{-exact_s:.3f} in the rig file"
     )
     return False
+
+
+def warn_of_free_clocks(report: ImportReport, *, imu_file: bool) -> None:
+    """Warn of a LiDAR without GPS if its IMU may be on another clock; call if there is an IMU.
+
+    Times of such a LiDAR are those of arrival at the recorder. An IMU of its own, or one whose
+    stamps lag behind like the LiDAR's, is on the same clock.
+
+    Args:
+        report: Has the lags and the count `FREE_CLOCK`, and receives the warning.
+        imu_file: Whether the samples are those of a file, which has no times of recording.
+    """
+    free = [name.removeprefix(FREE_CLOCK) for name in report.counts if name.startswith(FREE_CLOCK)]
+    if not free or (not imu_file and IMU_CLOCK not in report.lags_ns):
+        return
+    offset_s = float("nan") if imu_file else clock_offset_s(IMU_CLOCK, report)
+    if abs(offset_s) < _TRAVEL_S:
+        return
+    apart = (
+        "nothing says whether the IMU is on that clock"
+        if np.isnan(offset_s)
+        else f"the IMU's stamps are {described(offset_s)} ahead of it"
+    )
+    report.warn(
+        f"no GPS drives the clock of {', '.join(free)}, whose times are those of the recorder: "
+        f"{apart}. If points and IMU do not fit, give [imu] time_offset_s in the rig file"
+    )
 
 
 def _spread(lag_s: np.ndarray) -> float:

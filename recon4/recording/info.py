@@ -20,7 +20,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import cloud_table
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
-from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock
+from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
@@ -366,6 +366,8 @@ def _judge_samples(head: _Beginning, rig: Rig, *, whole: bool, report: ImportRep
     imu, gnss = join(head.imu), join(head.gnss) if whole else None
     offset_s = rig.imu_time_offset_s
     if is_same_clock(IMU_CLOCK, offset_s, report) and imu is not None:
+        if not offset_s:
+            warn_of_free_clocks(report, imu_file=False)
         try:
             clean_imu(imu, offset_s=offset_s, jumps_ns=(), report=report)
         except ConfigError as error:

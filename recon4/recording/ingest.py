@@ -22,7 +22,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
 from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock
+from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
 from recon4.recording.clock_names import described, known_offset_s, offset_name
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
@@ -250,6 +250,8 @@ def _imu(
     offset_s = rig.imu_time_offset_s
     if not given.imu and not is_same_clock(IMU_CLOCK, offset_s, report):
         return None
+    if not offset_s:
+        warn_of_free_clocks(report, imu_file=bool(given.imu))
     clean = clean_imu(samples, offset_s=offset_s, jumps_ns=written.jumps_ns, report=report)
     return _covering(clean, written.span, bool(given.imu), report=report)
 

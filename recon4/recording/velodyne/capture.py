@@ -211,6 +211,7 @@ class VelodynePcap:
             packet_s=velodyne_model(sensor.model).packet_s(streams[0].return_mode),
             report=self._report,
             utc_offset_ns=streams[0].utc_offset_ns,
+            alone=len(self.rig.sensors) == 1,
         )
         data = PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
         positions = PositionDecoder(sensor, clock=clock, report=self._report)

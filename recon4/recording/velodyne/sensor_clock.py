@@ -48,8 +48,10 @@ class SensorClock:
       the recorder's clock within half a second keeps its own time;
     - any other sensor runs freely, its stamps count from when it was switched on: they are
       shifted to the recorder's clock, by the packet that traveled fastest, and the shift follows
-      the drift of the two clocks from one 10 s to the next. The report says so. Where GPS drives
-      another sensor, the recorder's clock counts as corrected by it.
+      the drift of the two clocks from one 10 s to the next. Where GPS drives another sensor, the
+      recorder's clock counts as corrected by it. The report says so: as a note of
+      the only LiDAR, whose own time is all that the points need; as a warning where the points of
+      several LiDARs must fit.
 
     A jump of either clock (GPS lock won, recorder's clock set) leaves the output continuous, is
     counted (``clock_jumps``) and warned of. Single packets off by more than a second are dropped.
@@ -62,6 +64,7 @@ class SensorClock:
         packet_s: float,
         report: ImportReport,
         utc_offset_ns: int | None = None,
+        alone: bool = True,
     ) -> None:
         """Prepare.
 
@@ -70,9 +73,10 @@ class SensorClock:
             packet_s: Time from the first shot of a packet to when it is sent [s].
             report: Where jumps and derived times are noted.
             utc_offset_ns: UTC minus time of arrival [ns] when GPS is known to drive the sensor.
+            alone: Whether it is the only LiDAR.
         """
         self.utc_offset_ns = utc_offset_ns
-        self._name = name
+        self._name, self._alone = name, alone
         self._report = report
         self._packet_ns = round(packet_s * SECOND_NS)
         self._offset_ns: int | None = None
@@ -193,15 +197,20 @@ class SensorClock:
             self._free_running, self._base_ns = True, known
             behind = usual - offset - around[np.abs(around - usual) < _JUMP_NS]
             self._shift_ns = int(np.min(behind)) - self._packet_ns + known
-            self._report.warn(
-                f"{self._name}: its clock is {offset / SECOND_NS:+.3f} s off the recorder's and no "
-                "GPS drives it: its times are shifted to the recorder's clock"
-            )
+            self._say_free_running(offset)
         self._offset_ns = offset
         first = int(nearest_hour(t_us[:1], t_arrival_ns[:1] + offset)[0])
         self._since_ns, self._last = first, (int(t_arrival_ns[0]), first)
         self._report_ahead()
         return offset
+
+    def _say_free_running(self, offset_ns: int) -> None:
+        self._report.count(f"clock_runs_freely_{self._name}")
+        say = self._report.derive if self._alone else self._report.warn
+        say(
+            f"{self._name}: its clock is {offset_ns / SECOND_NS:+.3f} s off the recorder's and no "
+            "GPS drives it: its times are shifted to the recorder's clock"
+        )
 
     def _odd(
         self, t_us: NDArray[np.integer], t_sensor: Times, deviation: Times

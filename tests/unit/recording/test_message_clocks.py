@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.recording.clock_compare import clock_offset_s
+from recon4.recording.clock_compare import clock_offset_s, warn_of_free_clocks
 from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
 from recon4.recording.stamps import StampClock
@@ -158,3 +158,36 @@ def test_clocks_are_compared_by_when_messages_were_recorded():
 
     assert clock_offset_s("IMU", report) == pytest.approx(18.1)
     assert np.isnan(clock_offset_s("GNSS", report))
+
+
+@pytest.mark.parametrize(
+    ("imu_lag_ns", "imu_file", "warned"),
+    [
+        (2_000_000, False, ""),
+        (-400_000_000, False, "stamps are +0.401 s ahead"),
+        (None, False, ""),
+        (None, True, "nothing says whether the IMU is on that clock"),
+    ],
+)
+def test_a_lidar_without_gps_is_warned_of_where_its_imu_may_be_on_another_clock(
+    imu_lag_ns, imu_file, warned
+):
+    report = ImportReport()
+    report.count("clock_runs_freely_lidar")
+    for _ in range(5):
+        report.note_lag("LiDAR", 1_000_000)
+        if imu_lag_ns is not None:
+            report.note_lag("IMU", imu_lag_ns)
+
+    warn_of_free_clocks(report, imu_file=imu_file)
+
+    assert len(report.warnings) == bool(warned)
+    assert warned in "".join(report.warnings)
+
+
+def test_a_lidar_with_gps_and_an_imu_file_are_not_warned_of():
+    report = ImportReport()
+
+    warn_of_free_clocks(report, imu_file=True)
+
+    assert report.warnings == []
