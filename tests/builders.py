@@ -309,9 +309,9 @@ def storage_file(path: Path) -> Path:
     return next(f for f in path.iterdir() if f.suffix in (".db3", ".mcap"))
 
 
-def write_room_bag(folder: Path, kind: str, *, seconds=1.0, topics=("/velodyne_packets",)):
-    """A bag with packets, IMU at 100 Hz, positions at 5 Hz and poses at 10 Hz."""
-    t_ns, payloads = room_packets(seconds=seconds)
+def write_room_bag(folder: Path, kind: str, *, topics=("/velodyne_packets",), **options):
+    """A bag with packets (`room_packets`), IMU at 100 Hz, positions at 5 Hz and poses at 10 Hz."""
+    t_ns, payloads = room_packets(**options)
     path = bag_path(folder, kind)
     with Bag(path, kind) as bag:
         for first in range(0, len(t_ns), 75):

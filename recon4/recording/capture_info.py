@@ -10,7 +10,7 @@ from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import pcap_files
 from recon4.recording.scan_capture import ScanStreams, scan_streams
 from recon4.recording.velodyne.models import RETURN_MODES
-from recon4.recording.velodyne.streams import PacketStream, scan_pcap
+from recon4.recording.velodyne.streams import PacketStream, require_one_capture, scan_pcap
 
 WHOLE_BYTES = 64 << 20
 """Files up to this size are read completely."""
@@ -28,6 +28,7 @@ def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
         RecordingError: If they cannot be read.
     """
     files = pcap_files(path)
+    require_one_capture(files)
     most = _WHOLE_PACKETS if info.bytes <= WHOLE_BYTES else _HEAD_PACKETS
     streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
     names = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}

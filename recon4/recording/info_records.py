@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from datetime import UTC, datetime, timedelta
 
 import numpy as np
 
 from recon4.recording.assembly.assembler import TimeGap
+from recon4.recording.formats.file_times import utc
 
 _EARLIEST_NS = 300_000_000 * 1_000_000_000
 """Times before 1979 do not count from 1970."""
-_LATEST_NS = 253_402_300_800 * 1_000_000_000
-"""Start of the year 10000."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,14 +87,6 @@ class RecordingInfo:
         lines += [f"repaired  {text}" for text in self.repaired]
         lines += [f"warning   {text}" for text in self.warnings]
         return lines
-
-
-def utc(t_ns: int) -> str:
-    """A time as text, to the millisecond; beyond the year 9999 in seconds."""
-    if not 0 <= t_ns < _LATEST_NS:
-        return f"{t_ns / 1e9:.3f} s since 1970"
-    time = datetime(1970, 1, 1, tzinfo=UTC) + timedelta(milliseconds=t_ns // 1_000_000)
-    return time.strftime("%Y-%m-%d %H:%M:%S.%f")[:-3]
 
 
 def _sensor_lines(sensor: SensorInfo, about: str) -> list[str]:

@@ -26,6 +26,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
 from recon4.recording.scan_messages import ScanCollector
 from recon4.recording.topic_choice import LASER_KIND, ODOMETRY_KIND, Named, choose_topic
+from recon4.recording.velodyne.streams import require_one_capture
 from recon4.settings import IngestSettings
 
 Rows = NDArray[np.intp]
@@ -90,6 +91,7 @@ def read_laser_recording(
         return LaserRecording(in_meters(read_laser_table(paths[0], report), report))
     if recognize(paths[0]) is RecordingKind.PCAP:
         files = [file for path in paths for file in pcap_files(path)]
+        require_one_capture(files)
         return LaserRecording(in_meters(read_scan_captures(files, report), report))
     scans, mount = _of_bags(paths, settings or IngestSettings(), report=report)
     return LaserRecording(in_meters(scans, report), mount, of_robot=True)

@@ -42,7 +42,7 @@ from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.scan_capture import ScanCapture, scan_streams
 from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
 from recon4.recording.velodyne.position_packets import PositionSamples
-from recon4.recording.velodyne.streams import PacketStream
+from recon4.recording.velodyne.streams import PacketStream, require_one_capture
 from recon4.settings import IngestSettings
 
 Item = Shots | Multiframe | ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans
@@ -91,6 +91,7 @@ def open_recording(
             report.derive(text)
     if kind is RecordingKind.PCAP:
         files = [f for path in paths for f in pcap_files(path)]
+        require_one_capture(files)
         scanning = _scan_rig(files, rig, report)
         if scanning is not None:
             scans = ScanCapture(files, scanning, report=report, open_file=open_file)

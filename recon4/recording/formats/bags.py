@@ -20,6 +20,7 @@ from recon4.recording.formats import db3
 from recon4.recording.formats.bag1 import Bag1, is_bag1
 from recon4.recording.formats.bag_folder import BagMetadata, read_metadata
 from recon4.recording.formats.chunks import BagIndex, RawMessage
+from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.limits import (
     MAX_MESSAGE_BYTES,
     MAX_RATIO,
@@ -102,6 +103,8 @@ class Bag:
         """Receives damage; may be replaced while the bag is open."""
         self._stack = ExitStack()
         self._sources: list[StorageFile] = []
+        self._origins: list[Path] = []
+        """Of each source: its file, or the folder whose description names it."""
         self._compressed_messages = False
         self.ros1 = False
         self.topics: tuple[BagTopic, ...] = ()
@@ -113,6 +116,7 @@ class Bag:
         Raises:
             CorruptFile: If a file is no bag, or not a message of it is left.
             EmptyRecording: If there are no messages.
+            UnknownFormat: If the files are of several walks.
         """
         try:
             for path in self._paths:
@@ -169,11 +173,12 @@ class Bag:
 
     def _open_folder(self, path: Path) -> None:
         """The files that the description lists; without one, all storage files."""
+        before, described = len(self._sources), True
         try:
             metadata = read_metadata(path)
         except CorruptFile as error:
             self.report.warn(f"{path.name}: {error}; its files are read one by one")
-            metadata = BagMetadata(_storage_files(path, error), "", 0)
+            metadata, described = BagMetadata(_storage_files(path, error), "", 0), False
         missing = [file.name for file in metadata.files if not file.is_file()]
         if missing:
             self.report.outcome = "lossy"
@@ -198,6 +203,8 @@ class Bag:
                 self.report.outcome = "lossy"
                 self.report.count("files_damaged")
                 self.report.warn(f"{path.name}: a file is left out: {error}")
+        if described:
+            self._origins[before:] = [path] * (len(self._sources) - before)
         self._compare(path, metadata.messages)
 
     def _compare(self, path: Path, expected: int) -> None:
@@ -226,6 +233,7 @@ class Bag:
             self._sources.append(database)
         else:
             self._sources.append(self._mcap(self._stack.enter_context(RecordFile(path))))
+        self._origins.append(path)
 
     def _bag1(self, file: RecordFile) -> StorageFile:
         try:
@@ -266,6 +274,13 @@ class Bag:
                 counts[key] = counts.get(key, 0) + topic.msgcount
         self.topics = tuple(BagTopic(n, t, c) for (n, t), c in sorted(counts.items()))
         filled = [s.index for s in self._sources if s.index.message_count]
+        require_one_walk(
+            [
+                FileTimes(path, one.index.start_time, one.index.end_time)
+                for path, one in zip(self._origins, self._sources, strict=True)
+                if one.index.message_count
+            ]
+        )
         if not filled:
             names = ", ".join(path.name for path in self._paths)
             raise EmptyRecording(f"{names}: a bag without messages")

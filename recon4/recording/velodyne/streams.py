@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from numpy.typing import NDArray
 from recon4.errors import EmptyRecording
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
+from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -39,6 +42,8 @@ _CONTENTS = {
 }
 _SAMPLES_TRIED = 20
 _SIZES_NAMED = 3
+_TIMED_PACKETS = 1000
+"""Datagrams from which the times of a file are estimated."""
 MAX_STREAMS = 256
 """Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
 
@@ -127,6 +132,22 @@ def scan_pcap(
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "position"}
     return [_with_utc(stream, offsets.get(stream.source)) for stream in streams]
+
+
+def require_one_capture(files: Sequence[Path]) -> None:
+    """Check that capture files were recorded one soon after the other, or at the same time.
+
+    Raises:
+        RecordingError: If a file cannot be read.
+        UnknownFormat: If they were not; each is a candidate.
+    """
+    times = []
+    for file in files if len(files) > 1 else ():
+        with suppress(EmptyRecording):
+            streams = scan_pcap(file, max_packets=_TIMED_PACKETS)
+            starts, ends = ([getattr(s, t) for s in streams] for t in ("t_first_ns", "t_end_ns"))
+            times.append(FileTimes(file, min(starts), max(ends)))
+    require_one_walk(times)
 
 
 def unread_text(report: ImportReport) -> str:
