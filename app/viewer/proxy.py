@@ -1,8 +1,9 @@
-"""Relays a browser's WebSocket to the project's viewer; only known message types pass.
+"""Relays a browser's WebSocket to the project's viewer; only checked messages pass.
 
 viser has no login, and executes messages such as "open a public tunnel". So it listens on a private
 Unix socket and is reached only through this relay, after `OriginMiddleware` has checked host and
-origin.
+origin. What passes (`app.viewer.browser_messages`) changes only the sender's own view, so everybody
+who may look may send it.
 """
 
 from __future__ import annotations
@@ -13,48 +14,20 @@ import logging
 import time
 from pathlib import Path
 
-import msgspec.msgpack
 from fastapi import APIRouter, WebSocket, WebSocketDisconnect
 from websockets.asyncio.client import ClientConnection, unix_connect
 from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from websockets.typing import Subprotocol
 
-from app.access.people import Permission, person
 from app.deps import parts
 from app.errors import AppError, TooMany, ViewerFailed
 from app.network.streams import TOO_MANY
+from app.viewer.browser_messages import RefusedMessage, checked
 from app.viewer.pool import ViewerPool
 
 router = APIRouter()
 log = logging.getLogger(__name__)
 
-LOOKING = frozenset(
-    {
-        "ViewerCameraMessage",
-        "ScenePointerMessage",
-        "SceneNodeClickMessage",
-        "GuiUpdateMessage",
-        "GuiButtonHoldMessage",
-        "GuiFormSubmitMessage",
-        "GuiFormDirtyMessage",
-        "GuiCloseModalMessage",
-        "CommandTriggerMessage",
-        "LocalStorageGetItemResponseMessage",
-    }
-)
-"""Messages of people who may look: they change only that person's own view."""
-REVIEWING = frozenset(
-    {
-        "SceneNodeDragMessage",
-        "TransformControlsUpdateMessage",
-        "TransformControlsDragStartMessage",
-        "TransformControlsDragEndMessage",
-    }
-)
-"""Messages that move objects: of people who may review."""
-
-MAX_MESSAGE_BYTES = 1 << 16
-"""Longer messages from a browser are dropped."""
 MESSAGES_A_SECOND = 120.0
 """Most messages read from a browser per second; a moving camera sends 60 per second."""
 BURST = 240
@@ -71,7 +44,6 @@ STALLED = 4408
 async def relay(browser: WebSocket, project_id: str) -> None:
     """Connect a browser to the viewer of a project."""
     server = parts(browser)
-    who = person(browser)
     offered = [Subprotocol(name) for name in browser.scope["subprotocols"]]
     try:
         with server.viewers.sockets.place(browser):
@@ -79,7 +51,7 @@ async def relay(browser: WebSocket, project_id: str) -> None:
             viewer = await _viewer(server.viewers, folder, offered)
             try:
                 await browser.accept(subprotocol=viewer.subprotocol)
-                await _pump(browser, viewer, may_review=who.may(Permission.REVIEW))
+                await _pump(browser, viewer)
             finally:
                 await viewer.close()
     except TooMany as error:
@@ -112,10 +84,10 @@ async def _viewer(
     raise ViewerFailed(f"the viewer of {project.name} ends as soon as it starts")
 
 
-async def _pump(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:
+async def _pump(browser: WebSocket, viewer: ClientConnection) -> None:
     """Relay messages in both directions until one side closes; then close the other."""
     directions = {
-        asyncio.create_task(_from_browser(browser, viewer, may_review=may_review)),
+        asyncio.create_task(_from_browser(browser, viewer)),
         asyncio.create_task(_to_browser(browser, viewer)),
     }
     try:
@@ -128,18 +100,40 @@ async def _pump(browser: WebSocket, viewer: ClientConnection, *, may_review: boo
         await asyncio.gather(*directions, return_exceptions=True)
 
 
-async def _from_browser(browser: WebSocket, viewer: ClientConnection, *, may_review: bool) -> None:
-    rate = Rate(MESSAGES_A_SECOND, BURST)
-    while (message := await browser.receive())["type"] == "websocket.receive":
-        data = message.get("bytes")
-        if data is None or not passes(data, may_review=may_review):
-            continue
-        if (wait_s := rate.wait_s(time.monotonic())) > 0.0:
-            await asyncio.sleep(wait_s)  # unread messages then delay their sender only
-        try:
+async def _from_browser(browser: WebSocket, viewer: ClientConnection) -> None:
+    rate, dropped = Rate(MESSAGES_A_SECOND, BURST), Dropped()
+    try:
+        while (message := await browser.receive())["type"] == "websocket.receive":
+            if (wait_s := rate.wait_s(time.monotonic())) > 0.0:
+                await asyncio.sleep(wait_s)  # unread messages then delay their sender only
+            try:
+                data = checked(message.get("bytes") or b"")
+            except RefusedMessage as error:
+                dropped.add(error)
+                continue
             await viewer.send(data)
-        except ConnectionClosed:
-            return
+    except ConnectionClosed:
+        return
+    finally:
+        dropped.report()
+
+
+class Dropped:
+    """Counts the dropped messages of one browser; logs the first, and at the end how many more."""
+
+    def __init__(self) -> None:
+        self._count = 0
+
+    def add(self, error: RefusedMessage) -> None:
+        """Count a message."""
+        self._count += 1
+        if self._count == 1:
+            log.warning("dropped a message from a browser: %r", str(error))
+
+    def report(self) -> None:
+        """Log how many more there were."""
+        if self._count > 1:
+            log.warning("dropped %d more messages from that browser", self._count - 1)
 
 
 async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
@@ -175,24 +169,3 @@ class Rate:
         self._at_s = now_s
         self._tokens = min(self._tokens + since_s * self._a_second, self._burst) - 1.0
         return max(-self._tokens / self._a_second, 0.0)
-
-
-def passes(data: bytes, *, may_review: bool) -> bool:
-    """Whether a browser's message may reach viser, which reads it with the same decoder."""
-    if len(data) > MAX_MESSAGE_BYTES:
-        log.warning("dropped a message of %d bytes from a browser", len(data))
-        return False
-    try:
-        message = msgspec.msgpack.decode(data)
-    except (msgspec.DecodeError, RecursionError):
-        return False
-    kind = message.get("type") if isinstance(message, dict) else None
-    if not isinstance(kind, str) or not allowed(kind, may_review):
-        log.warning("dropped a message of kind %.40r from a browser", kind)
-        return False
-    return True
-
-
-def allowed(message_type: str, may_review: bool) -> bool:
-    """Whether a person may send messages of a type; sharing, uploads and unknown ones never."""
-    return message_type in LOOKING or (may_review and message_type in REVIEWING)

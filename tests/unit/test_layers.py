@@ -118,6 +118,7 @@ ONLY_HERE = {
     "viser": {
         "app/viewer/client/show.py",
         "app/viewer/client/panels.py",
+        "app/viewer/client/widget_values.py",
         "app/viewer/unix_socket.py",
     },
     "matplotlib": {

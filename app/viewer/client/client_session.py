@@ -1,13 +1,16 @@
 """One client: a thread that keeps the client's screen up to date.
 
 Every event (the camera moves, a setting changes, a stage ends) only wakes the thread, which then
-reads the newest state: the latest request wins, and requests do not queue up.
+reads the newest state: the latest request wins, and requests do not queue up. Clicks and keys are
+kept in order, the newest few: a client that sends thousands delays nobody else, because viser's own
+threads, which all clients have in common, only take notice of them.
 """
 
 from __future__ import annotations
 
 import logging
 import threading
+from collections import deque
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, get_args
@@ -21,6 +24,7 @@ from app.viewer.client.pointer_tools import PointerTools
 from app.viewer.client.show import Screen
 from app.viewer.client.view import ViewState, view_from_json
 from app.viewer.cloud.detail import Detail
+from app.viewer.cloud.pick import Ray
 from app.viewer.scene.build import Content, bounds, describe
 from app.viewer.scene.nodes import Node, PointsNode
 from app.viewer.scene.source import ProjectSource
@@ -33,6 +37,8 @@ KEPT_VIEW_TIMEOUT_S = 1.0
 """Longest wait for the view that the browser kept [s]."""
 PLAY_S = 0.2
 """Time each multiframe is shown during playback [s]."""
+KEPT_ACTIONS = 16
+"""Clicks and keys that wait for the thread; of more the oldest are dropped."""
 
 
 class ClientSession:
@@ -48,6 +54,7 @@ class ClientSession:
         self._view, self._shown, self._kept = ViewState(), ViewState(), ViewState()
         self._content = Content()
         self._playing = False
+        self._actions: deque[Callable[[], None]] = deque(maxlen=KEPT_ACTIONS)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -64,13 +71,13 @@ class ClientSession:
         kept, answer_s = self._screen.kept_view(KEPT_VIEW_TIMEOUT_S)
         self._budget.began(answer_s)
         self._view = self._kept = view_from_json(kept) or ViewState()
-        self._panel = Panel(self._screen.gui, PanelCallbacks(self._change, self._command))
+        self._panel = Panel(self._screen.gui, PanelCallbacks(self._change, self._press))
         self._pointer = PointerTools(
             self._source, self._screen, self._panel, project=self._project, change=self._change
         )
         self._detail = Detail(self._screen, newer=self._wake.is_set, over=self._over.wait)
         self._screen.on_camera(self._wake.set)
-        self._screen.on_click(lambda ray: self._pointer.click(ray, self._view))
+        self._screen.on_click(self._click)
         self._wake.set()
         while not self._over.is_set():
             self._wake.wait(PLAY_S if self._playing else None)
@@ -78,6 +85,8 @@ class ClientSession:
                 self._next_multiframe()
             self._wake.clear()
             try:
+                while self._actions:
+                    self._actions.popleft()()
                 self._pass()
             except Recon4Error as error:
                 log.warning("%s", error)
@@ -124,6 +133,14 @@ class ClientSession:
             self._view = update(self._view)
         self._wake.set()
 
+    def _click(self, ray: Ray) -> None:
+        self._actions.append(lambda: self._pointer.click(ray, self._view))
+        self._wake.set()
+
+    def _press(self, name: str) -> None:
+        self._actions.append(lambda: self._command(name))
+        self._wake.set()
+
     def _next_multiframe(self) -> None:
         frames = self._content.multiframes
         if frames is not None:
@@ -141,14 +158,12 @@ class ClientSession:
                 self._playing = not self._playing
                 if self._playing and self._view.points == "map":
                     self._change(lambda view: replace(view, points="map and multiframe"))
-                self._wake.set()
             case "fit" | "above" | "south" | "east":
                 self._screen.look_at(bounds(self._content), DIRECTIONS[name])
             case "narrow":
                 self._screen.toggle_narrow()
             case _:
                 self._pointer.command(name, self._view)
-                self._wake.set()
 
 
 DIRECTIONS = {

@@ -1,4 +1,7 @@
-"""The control panel: widgets change an immutable `ViewState`. With `show` the only viser module."""
+"""The control panel: widgets change an immutable `ViewState`.
+
+With `show` and `widget_values` the only viser modules.
+"""
 
 from __future__ import annotations
 
@@ -12,6 +15,7 @@ from app.viewer.client.captions import Facts
 from app.viewer.client.legend import Legend
 from app.viewer.client.legend_html import counted, facts_html, legend_html
 from app.viewer.client.view import EdgeColor, Points, ViewState
+from app.viewer.client.widget_values import only_fitting_values
 from app.viewer.cloud.palette import Palette, Range
 from app.viewer.hotkeys import HOTKEYS
 from app.viewer.scene.build import Content
@@ -45,6 +49,7 @@ class Panel:
 
     def __init__(self, gui: viser.GuiApi, callbacks: PanelCallbacks) -> None:
         self._gui, self._callbacks = gui, callbacks
+        only_fitting_values(gui)
         self._legend = gui.add_html("", order=0.0)
         self._picked = gui.add_html("", order=0.5)
         self._widgets: dict[str, Any] = {}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import threading
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -31,7 +30,7 @@ PICKED_COLOR = (255, 255, 255)
 
 
 class PointerTools:
-    """Picking and measuring of one client. Clicks come from viser's threads; a lock orders them."""
+    """Picking and measuring of one client, in its thread."""
 
     def __init__(
         self,
@@ -44,7 +43,6 @@ class PointerTools:
     ) -> None:
         self._source, self._screen, self._panel = source, screen, panel
         self._project, self._change = project, change
-        self._one = threading.Lock()
         self._measuring = False
         self._first: Position | None = None
         self._last: Position | None = None
@@ -74,14 +72,12 @@ class PointerTools:
 
     def click(self, ray: Ray, view: ViewState) -> None:
         """Handle a click or tap on the scene."""
-        with self._one:
-            ray = replace(ray, point_m=view.point_size_m)
-            if self._measuring:
-                self._measure(ray, view)
-            elif not (self._picked_edge(ray, view) or self._picked_gnss(ray, view)):
-                self._pick_point(ray, view)
-            self._news = True
-        self._change(lambda view: view)
+        ray = replace(ray, point_m=view.point_size_m)
+        if self._measuring:
+            self._measure(ray, view)
+        elif not (self._picked_edge(ray, view) or self._picked_gnss(ray, view)):
+            self._pick_point(ray, view)
+        self._news = True
 
     def command(self, name: str, view: ViewState) -> None:
         """Handle a button or a key."""

@@ -88,8 +88,8 @@ class Screen:
             np.array(camera.position),
             matrix_from_quat(np.roll(camera.wxyz, -1)),
             float(camera.fov),
-            int(camera.image_width),
-            int(camera.image_height),
+            max(int(camera.image_width), 1),  # 0 in a hidden frame
+            max(int(camera.image_height), 1),
         )
 
     def on_camera(self, moved: Callable[[], None]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
@@ -38,6 +37,8 @@ EdgeColor = Literal["verdict", "error / limit", "chi²"]
 
 Position = tuple[float, float, float]
 MAX_MEASUREMENTS = 200
+MAX_NUMBER = 1e12
+"""Largest coordinate or end of a range: differences and squares of such numbers are finite."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -98,7 +99,7 @@ def view_from_json(text: str | None) -> ViewState | None:
     try:
         record = json.loads(text or "")
         return _view(record)
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
+    except (ValueError, TypeError, KeyError, AttributeError, OverflowError, RecursionError):
         return None
 
 
@@ -138,6 +139,6 @@ def _one_of(value: Any, known: tuple[Any, ...]) -> Any:
 
 def _number(value: Any) -> float:
     number = float(value)
-    if not math.isfinite(number):
-        raise ValueError("not a finite number")
+    if not abs(number) <= MAX_NUMBER:
+        raise ValueError(f"expected a number up to {MAX_NUMBER:g}, got {number:g}")
     return number
