@@ -176,6 +176,8 @@ class Bag:
 
     def __init__(self, path: Path, kind: str) -> None:
         self.frame = "x"
+        self.recorded_ns = 0
+        """Time of recording of the next messages [ns]; 0 = their stamps."""
         self.ros1 = kind == "bag1"
         self.store = get_typestore(Stores.ROS1_NOETIC if self.ros1 else Stores.ROS2_HUMBLE)
         header = "std_msgs/Header header\n"
@@ -204,6 +206,7 @@ class Bag:
         if topic not in self.connections:
             self.connections[topic] = self.writer.add_connection(topic, kind, typestore=self.store)
         encode = self.store.serialize_ros1 if self.ros1 else self.store.serialize_cdr
+        t_ns = self.recorded_ns or t_ns
         self.writer.write(self.connections[topic], t_ns, bytes(encode(message, kind)))
 
     def make(self, kind, **fields):

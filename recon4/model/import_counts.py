@@ -146,6 +146,7 @@ _MESSAGES = {
     "robot_descriptions_refused": _stated("not read", noun="descriptions of a robot (URDF)"),
     "clouds": _read("clouds"),
     "clouds_duplicate": _repaired("clouds", "recorded twice, the copies dropped"),
+    "clouds_late": _lost("clouds", "recorded after many later ones, left out", apart=True),
     "clouds_wrong_times": CountWording(
         CountKind.REPLACED,
         "the times of their points make no sense, they are taken from the azimuth or the stamp",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -42,6 +42,7 @@ from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
+from recon4.recording.stamp_order import StampOrder
 from recon4.recording.stamps import StampClock
 from recon4.recording.topic_choice import (
     FIX_KIND,
@@ -128,15 +129,11 @@ class BagRecording:
             if content is None:
                 continue
             if message.topic in lidars:
-                shots = lidars[message.topic].push(message, content)
-                if shots is not None and len(shots):
-                    self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
-                    yield shots
+                yield from lidars[message.topic].push(message, content)
             else:
                 yield from samples[message.topic].push(message, content)
         for lidar in lidars.values():
-            if len(shots := lidar.flush()):
-                yield shots
+            yield from lidar.flush()
         for batch in samples.values():
             yield from batch.flush()
 
@@ -146,7 +143,7 @@ class BagRecording:
         for row, sensor in enumerate(self.rig.sensors):
             topic = kinds.get(sensor.topic)
             if topic is not None and topic.type == SCAN:
-                found[sensor.topic] = _Scans(self._packets(row, sensor))
+                found[sensor.topic] = _Scans(self._packets(row, sensor), self._report)
             elif topic is not None:
                 clouds = CloudDecoder(
                     row,
@@ -260,22 +257,26 @@ def _period_ns(head: Sequence[tuple[int, int]]) -> int:
 class _Scans:
     """Decodes messages of raw packets."""
 
-    def __init__(self, decoder: PacketDecoder) -> None:
-        self._decoder = decoder
+    def __init__(self, decoder: PacketDecoder, report: ImportReport) -> None:
+        self._decoder, self._report = decoder, report
 
-    def push(self, message: BagMessage, scan: Any) -> Shots | None:
+    def push(self, message: BagMessage, scan: Any) -> Iterator[Shots]:
         if not scan.packets:
-            return None
+            return
         payloads = np.stack([packet.data for packet in scan.packets])
         t_ns = np.array([stamp_ns(packet.stamp) for packet in scan.packets], np.int64)
-        return self._decoder.push(np.where(t_ns > 0, t_ns, message.t_ns), payloads)
+        shots = self._decoder.push(np.where(t_ns > 0, t_ns, message.t_ns), payloads)
+        if len(shots):
+            self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
+            yield shots
 
-    def flush(self) -> Shots:
-        return self._decoder.flush()
+    def flush(self) -> Iterator[Shots]:
+        if len(shots := self._decoder.flush()):
+            yield shots
 
 
 class _Clouds:
-    """Decodes messages of points."""
+    """Decodes messages of points, in the order of their stamps."""
 
     def __init__(
         self,
@@ -290,26 +291,34 @@ class _Clouds:
         self._stamps = stamps
         self._offset_ns = round(offset_s * 1e9)
         self._recent: deque[tuple[int, Any]] = deque(maxlen=_COPIES_WITHIN)
+        self._order: StampOrder[tuple[BagMessage, Any]] = StampOrder()
 
-    def push(self, message: BagMessage, cloud: Any) -> Shots | None:
+    def push(self, message: BagMessage, cloud: Any) -> Iterator[Shots]:
         t_ns = stamp_ns(cloud.header.stamp)
         if not self._stamps.is_sound(t_ns, message.t_ns):
             self._report.count("stamps_missing" if t_ns <= 0 else "stamps_wrong")
             t_ns = self._stamps.expected_ns(message.t_ns)
         elif self._is_copy(t_ns, cloud.data):
             self._report.count("clouds_duplicate")
-            return None
-        try:
-            table = cloud_table(cloud)
-            shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
-        except CorruptFile as error:
-            self._report.count("messages_corrupt")
-            self._report.warn(f"{message.topic}: left out: {error}")
-            return None
-        return moved(shots, self._offset_ns)
+            return
+        yield from self._decoded(self._order.push(t_ns, (message, cloud)))
 
-    def flush(self) -> Shots:
-        return self._decoder.nothing()
+    def flush(self) -> Iterator[Shots]:
+        yield from self._decoded(self._order.flush())
+        self._report.count("clouds_late", self._order.too_late)
+
+    def _decoded(self, clouds: Iterable[tuple[int, tuple[BagMessage, Any]]]) -> Iterator[Shots]:
+        for t_ns, (message, cloud) in clouds:
+            try:
+                table = cloud_table(cloud)
+                shots = self._decoder.decode(table, t_ns=t_ns, period_ns=self._period_ns)
+            except CorruptFile as error:
+                self._report.count("messages_corrupt")
+                self._report.warn(f"{message.topic}: left out: {error}")
+                continue
+            if len(shots := moved(shots, self._offset_ns)):
+                self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
+                yield shots
 
     def _is_copy(self, t_ns: int, data: Any) -> bool:
         """Whether a cloud was recorded before, as in bags that were merged."""

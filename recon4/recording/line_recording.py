@@ -26,6 +26,7 @@ from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.range_units import LaserUnit, line_factor
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
+from recon4.recording.stamp_order import StampOrder
 from recon4.recording.stamps import StampClock
 from recon4.recording.topic_choice import choose_imu, imu_batches, named_imu
 from recon4.recording.transform_messages import has_frames
@@ -238,6 +239,7 @@ class LineAssembly:
         self._sensor = rig.sensors[row]
         self._offset_ns = round(1e9 * self._sensor.time_offset_s)
         self._clouds = CloudDecoder(row, self._sensor, report=report)
+        self._order: StampOrder[Shots] = StampOrder()
         self._waiting: list[Shots] = []
         self._done: list[tuple[Shots, float]] = []
         self._scale = 0.0
@@ -248,12 +250,12 @@ class LineAssembly:
     def push(self, message: BagMessage, content: Any) -> Iterator[LineItem]:
         """Add a line of a bag; returns those that are complete, in batches."""
         shots = self._shots(message, content)
-        if shots is None:
+        if shots is None or not len(shots):
             self._report.count("lines_empty")
             return
-        if len(shots):
-            self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
-        yield from self.push_shots(shots)
+        self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
+        for _, ordered in self._order.push(int(shots.t_ns[0]), shots):
+            yield from self.push_shots(ordered)
 
     def push_shots(self, shots: Shots) -> Iterator[LineItem]:
         """Add the returns of a line, in the x-z plane of the head, in order of time."""
@@ -273,6 +275,9 @@ class LineAssembly:
 
     def flush(self) -> Iterator[LineItem]:
         """The remaining lines."""
+        for _, shots in self._order.flush():
+            yield from self.push_shots(shots)
+        self._report.count("lines_out_of_order", self._order.too_late)
         self._turn(self._last_ns, final=True)
         yield from self.deliver()
         self._count_missing()

@@ -14,6 +14,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.bags import BagMessage
 from recon4.recording.report import ImportReport
+from recon4.recording.stamp_order import StampOrder
 from recon4.recording.stamps import StampClock
 
 _SCANS_AT_ONCE = 250
@@ -98,18 +99,20 @@ class ScanCollector:
         self._stamps = stamps or StampClock()
         self._offset_ns, self._report = offset_ns, report
         self._exact = exact_angles
+        self._order: StampOrder[tuple[str, Any]] = StampOrder()
         self._scans: list[_Collected] = []
         self._last_ns = -1
         self._last_ranges = np.zeros(0, np.float32)
 
     def push(self, message: BagMessage, scan: Any) -> Iterator[LaserScans]:
-        """Add a message; returns scans in batches."""
+        """Add a message, in the order of recording; returns scans in batches."""
         stamp = scan.header.stamp
         t_ns = int(stamp.sec) * 1_000_000_000 + int(stamp.nanosec)
         if not self._stamps.is_sound(t_ns, message.t_ns):
             self._report.count("scans_wrong_time")
             t_ns = self._stamps.expected_ns(message.t_ns)
-        yield from self.add(scan, t_ns, where=message.topic)
+        for stamp_ns, (topic, one) in self._order.push(t_ns, (message.topic, scan)):
+            yield from self.add(one, stamp_ns, where=topic)
 
     def add(
         self, scan: Any, t_ns: int, *, where: str, odometry: Sequence[float] | None = None
@@ -149,7 +152,7 @@ class ScanCollector:
         self._report.count("scans_without_returns", int(not seen.any()))
         self._report.count("scans")
         if len(self._scans) >= _SCANS_AT_ONCE:
-            yield from self.flush()
+            yield from self.deliver()
 
     def _reason(self, t_ns: int, ranges: NDArray[np.float32]) -> str:
         """Why a scan that is not later than the last one is left out."""
@@ -159,7 +162,14 @@ class ScanCollector:
         return "scans_repeated" if repeated else "scans_duplicate"
 
     def flush(self) -> Iterator[LaserScans]:
-        """The remaining scans."""
+        """The remaining scans, at the end."""
+        for stamp_ns, (topic, scan) in self._order.flush():
+            yield from self.add(scan, stamp_ns, where=topic)
+        self._report.count("scans_out_of_order", self._order.too_late)
+        yield from self.deliver()
+
+    def deliver(self) -> Iterator[LaserScans]:
+        """The scans added so far."""
         scans, self._scans = self._scans, []
         if not scans:
             return
