@@ -55,7 +55,7 @@ def _map(context: StageContext, *, scans: Path, odometry: Path, graph: Path) -> 
     return build_map(artifacts, context.out, settings=context.settings, progress=context.progress)
 
 
-SCANS_2D = Stage("scans_2d", 9, ("ingest",), _scans, Scan2dFigures)
+SCANS_2D = Stage("scans_2d", 10, ("ingest",), _scans, Scan2dFigures)
 ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d", "hector"), _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 1, ("slam2d", "loops2d"), _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 2, ("slam2d", "grid2d"), _map, Map2dFigures)

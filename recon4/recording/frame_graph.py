@@ -82,6 +82,16 @@ class FrameGraph:
     def __len__(self) -> int:
         return len(self._near)
 
+    def meant_by(self, frame: str) -> list[str]:
+        """The frame itself, or else those that differ from it by a prefix alone; none = unknown.
+
+        Drivers and `robot_state_publisher` add the name of a robot (``tf_prefix``, namespaces), not
+        always both of them.
+        """
+        if frame in self or not frame:
+            return [frame] * (frame in self)
+        return sorted(one for one in self._near if last_name(one) == last_name(frame))
+
     def connected(self, frames: Sequence[str]) -> bool:
         """Whether the transforms between all of these frames are known."""
         if len(set(frames)) <= 1:

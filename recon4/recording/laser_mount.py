@@ -98,8 +98,8 @@ def mount_of_bag(bag: Bag, topic: str, odometry: str, *, report: ImportReport) -
             f"{frame or '(no name)'} is mounted on the robot: it is taken as level and upright"
         )
         return None
-    moving = _child_frame(bag, odometry) if odometry else ""
-    T_odometry_laser = mounts.graph.T_a_b(moving, frame) if moving else None
+    moving = mounts.graph.meant_by(_child_frame(bag, odometry) if odometry else "")
+    T_odometry_laser = mounts.graph.T_a_b(moving[0], frame) if len(moving) == 1 else None
     return LaserMount(
         T_body_laser,
         T_body_laser if T_odometry_laser is None else T_odometry_laser,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import combinations, islice
@@ -24,6 +25,7 @@ from recon4.recording.rig_choice import Stream, single_rig
 from recon4.recording.transform_messages import frame_name, has_frames, read_frames
 
 _PROBED_MESSAGES = 50
+_NAMES_LISTED = 5
 _FARTHEST_M = 20.0
 """Sensors of one rig are not farther apart [m]."""
 
@@ -69,7 +71,7 @@ def read_mounts(bag: Bag, topics: Sequence[str], report: ImportReport) -> Mounts
     if not has_frames(bag.topics):
         return Mounts(FrameGraph(()), frames, any_stated=False)
     graph = read_frames(bag, list(frames.values()), report)
-    mounts = Mounts(graph, frames, any_stated=True)
+    mounts = Mounts(graph, _without_prefixes(frames, graph, report), any_stated=True)
     _warn_disputed(mounts, report)
     return mounts
 
@@ -80,6 +82,30 @@ def _frame_of(bag: Bag, topic: str) -> str:
         if content is not None:
             return frame_name(content.header.frame_id)
     return ""
+
+
+def _without_prefixes(
+    frames: Mapping[str, str], graph: FrameGraph, report: ImportReport
+) -> dict[str, str]:
+    """The frames of topics as the transforms name them, where that is certain."""
+    meant = {frame: graph.meant_by(frame) for frame in frames.values()}
+    claimed = Counter(names[0] for names in meant.values() if len(names) == 1)
+    named = {}
+    for topic, frame in frames.items():
+        names = meant[frame]
+        named[topic] = frame
+        if not names or names == [frame]:
+            continue
+        if len(names) == 1 and claimed[names[0]] == 1:
+            named[topic] = names[0]
+            report.derive(f"{topic}: its frame {frame} is {names[0]} of the transforms")
+        else:
+            of = "one of" if len(names) > 1 else "also that of another sensor:"
+            report.derive(
+                f"{topic}: which frame of the transforms its frame {frame} is, is not certain: "
+                f"{of} {', '.join(names[:_NAMES_LISTED])}"
+            )
+    return named
 
 
 def _warn_disputed(mounts: Mounts, report: ImportReport) -> None:

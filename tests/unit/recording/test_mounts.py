@@ -52,6 +52,37 @@ def rig_of(T_body_imu=None, T_body_other=None, **fields):
 # -- one LiDAR
 
 
+@pytest.mark.parametrize("prefixed", ["robot1/{}", "/robot1/{}", "a/b/{}"])
+@pytest.mark.parametrize("of_messages", [True, False])
+def test_a_prefix_of_frames_alone_makes_no_other_frame(tmp_path, prefixed, of_messages):
+    lidar, imu = (prefixed.format(name) for name in ("os_lidar", "os_imu"))
+    transforms = OUSTER
+    if not of_messages:
+        transforms = [(prefixed.format(a), prefixed.format(b), T) for a, b, T in OUSTER]
+        lidar, imu = "os_lidar", "os_imu"
+
+    rig, report = opened(write_walk(tmp_path, transforms, lidars=(lidar,), imu=imu))
+
+    assert_mount(rig.T_body_imu, OUSTER[0][2].inverse() @ IMU_MOUNT)
+    assert "its frame" in said(report)
+
+
+def test_a_frame_that_may_be_one_of_several_is_said_and_not_used(tmp_path):
+    transforms = [(f"{r}/os_sensor", f"{r}/{b}", T) for r in "ab" for _, b, T in OUSTER]
+
+    rig, report = opened(write_walk(tmp_path, transforms, imu="os_imu"))
+
+    assert_mount(rig.T_body_imu, SE3.identity())
+    assert "is not certain: one of a/os_lidar, b/os_lidar" in said(report)
+
+
+def test_two_lidars_that_mean_one_frame_are_not_put_at_one_place(tmp_path):
+    path = write_walk(tmp_path, OUSTER, lidars=("a/os_lidar", "b/os_lidar"))
+
+    with pytest.raises(ConfigError, match="do not connect their frames"):
+        opened(path)
+
+
 @pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
 def test_the_mount_of_the_imu_comes_from_the_transforms(tmp_path, kind):
     rig, report = opened(write_walk(tmp_path, OUSTER, kind=kind, imu="os_imu"))
