@@ -68,9 +68,9 @@ def still_served(client: ViserClient, size_m: float = 0.15) -> bool:
 def assert_nobody_noticed(house: House, other: ViserClient, process: int, before: str) -> None:
     assert viewer_process(house.root) == process
     assert "Traceback" not in house.log()[len(before) :], house.log()[len(before) :]
-    told = other.bytes
+    received = other.bytes
     other.rest(quiet_s=0.2)
-    assert other.bytes == told
+    assert other.bytes == received
     other.set("Point size", 0.02)
     assert still_served(other, 0.1)
 
