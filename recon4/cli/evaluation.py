@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterator
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -173,9 +173,10 @@ def _against_truth(
 
 def _relation_errors(result: Path, relations: Path) -> RelationErrors:
     from recon4.evaluation.relations import read_relations, relation_errors
-    from recon4.evaluation.trajectories import find_trajectory
+    from recon4.evaluation.trajectories import trajectory_with_hints
 
-    return relation_errors(find_trajectory(result), read_relations(relations))
+    walk, hints = trajectory_with_hints(result)
+    return replace(relation_errors(walk, read_relations(relations)), hints=hints)
 
 
 def _write_report(project: Path, found: Evaluation, path: Path) -> None:

@@ -23,13 +23,11 @@ from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
 from recon4.evaluation.sharpness import Sharpness, around, draw_places, sharpness, thin
 from recon4.evaluation.slices import RelativeError, relative_error, spread_slices
 from recon4.evaluation.text import evaluation_text
-from recon4.evaluation.trajectories import find_trajectory
+from recon4.evaluation.trajectories import trajectory_with_hints
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.frames import Frames
 from recon4.model.plain import finite_or_none
 from recon4.model.trajectory import Trajectory
-from recon4.recording.formats.poses import tum_hint
-from recon4.recording.report import ImportReport
 
 _EVERY = 10
 """Of the multiframes, every tenth is placed by the estimate and by the truth."""
@@ -121,7 +119,7 @@ def evaluate(
         OutOfRange: If the truth covers fewer than two poses.
         Recon4Error: If a file cannot be read.
     """
-    (estimate, hints), (true, more) = map(_with_hints, (project_or_trajectory, truth))
+    (estimate, hints), (true, more) = map(trajectory_with_hints, (project_or_trajectory, truth))
     pairs = pair_poses(at_frames(estimate), true)
     aligned = absolute_error(pairs)
     floor = relative = as_measured = None
@@ -149,14 +147,6 @@ def evaluate(
         quality=map_quality(chunks.delivered) if chunks is not None else None,
         hints=hints + more,
     )
-
-
-def _with_hints(path: Path) -> tuple[Trajectory, tuple[str, ...]]:
-    """A trajectory, and what the reader of the figures must know of its file."""
-    report = ImportReport()
-    walk = find_trajectory(path, report)
-    hints = [*report.lost(), tum_hint(walk)]
-    return walk, tuple(f"{path.name}: {hint}" for hint in hints if hint)
 
 
 def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajectory:

@@ -51,6 +51,8 @@ class RelationErrors:
     rotation_mean_rad: float
     rotation_sd_rad: float
     rotation_largest_rad: float
+    hints: tuple[str, ...] = ()
+    """What the reader of the figures must know of the trajectory's file."""
 
 
 def read_relations(path: Path) -> ReferenceRelations:

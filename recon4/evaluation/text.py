@@ -75,6 +75,7 @@ def relations_text(found: RelationErrors) -> str:
         ),
     ]
     head = f"{found.relations} relations compared, {found.outside} outside of the trajectory"
+    head = "\n".join([head, *(f"Warning: {hint}" for hint in found.hints)])
     return head + "\n" + text_table(("Relative error", "mean", "deviation", "largest"), rows)
 
 

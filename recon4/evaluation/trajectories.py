@@ -6,7 +6,7 @@ from pathlib import Path
 
 from recon4.errors import UnknownFormat
 from recon4.model.trajectory import Trajectory
-from recon4.recording.formats.poses import read_tum
+from recon4.recording.formats.poses import read_tum, tum_hint
 from recon4.recording.report import ImportReport
 from recon4.store.arrays import load_trajectory
 
@@ -31,3 +31,11 @@ def find_trajectory(path: Path, report: ImportReport | None = None) -> Trajector
     if file.suffix in {".tum", ".txt"}:
         return read_tum(file, report)
     raise UnknownFormat(f"{file.name}: expected a trajectory as .tum, .txt or .npz")
+
+
+def trajectory_with_hints(path: Path) -> tuple[Trajectory, tuple[str, ...]]:
+    """A trajectory, and what the reader of the figures must know of its file."""
+    report = ImportReport()
+    walk = find_trajectory(path, report)
+    hints = [*report.lost(), tum_hint(walk)]
+    return walk, tuple(f"{path.name}: {hint}" for hint in hints if hint)

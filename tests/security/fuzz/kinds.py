@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import re
 import struct
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sized
 from functools import cache, partial
 from pathlib import Path
 
@@ -19,7 +19,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig
 from recon4.pose_graph.files import load_graph
 from recon4.recording.folders import list_frames, read_frames
-from recon4.recording.formats.poses import read_kitti, read_tum
+from recon4.recording.formats.poses import read_kitti
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
@@ -84,15 +84,15 @@ def _control(path: Path) -> Reading:
     return Reading(len(found.points), salvaged=bool(found.skipped))
 
 
-def _tum(path: Path) -> Reading:
+def _lines(read: Callable[[Path, ImportReport], Sized], path: Path) -> Reading:
+    """A table whose reader drops single damaged lines and counts them."""
     _info(path)
-    count = len(find_trajectory(path))
-    return Reading(min(count, len(read_tum(path))))
+    report = ImportReport()
+    return Reading(len(read(path, report)), salvaged=bool(report.lost()))
 
 
-def _kitti(path: Path) -> Reading:
-    _info(path)
-    return Reading(len(read_kitti(path, np.arange(25, dtype=np.int64))))
+def _kitti(path: Path, report: ImportReport) -> Sized:
+    return read_kitti(path, np.arange(25, dtype=np.int64), report)
 
 
 def _rig(path: Path) -> Reading:
@@ -208,14 +208,14 @@ _ALL = (
         name="csv-imu",
         file_name="imu.csv",
         seeds=tables.imu_csv,
-        read=partial(_samples, read_imu_csv),
+        read=partial(_lines, read_imu_csv),
         knows_end=False,
     ),
     Kind(
         name="csv-gnss",
         file_name="gnss.csv",
         seeds=tables.gnss_csv,
-        read=partial(_samples, read_gnss_csv),
+        read=partial(_lines, read_gnss_csv),
         knows_end=False,
     ),
     Kind(
@@ -233,8 +233,14 @@ _ALL = (
         knows_end=False,
     ),
     Kind(name="toml", file_name="rig.toml", seeds=tables.rig_toml, read=_rig, knows_end=False),
-    Kind(name="tum", file_name="a.tum", seeds=tables.tum, read=_tum, knows_end=False),
-    Kind(name="kitti", file_name="poses.txt", seeds=tables.kitti, read=_kitti),
+    Kind(
+        name="tum",
+        file_name="a.tum",
+        seeds=tables.tum,
+        read=partial(_lines, find_trajectory),
+        knows_end=False,
+    ),
+    Kind(name="kitti", file_name="poses.txt", seeds=tables.kitti, read=partial(_lines, _kitti)),
     Kind(
         name="npz-trajectory",
         file_name="trajectory.npz",

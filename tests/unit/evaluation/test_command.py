@@ -106,3 +106,17 @@ def test_the_report_is_written_again_with_the_evaluation(tmp_path, capsys):
 
 def test_a_report_needs_a_truth(tmp_path, capsys):
     assert main(["evaluate", str(tmp_path), "--patch", "1", "--report", "r.html"]) == 2
+
+
+def test_damaged_lines_of_a_trajectory_are_said_beside_its_relations(tmp_path, capsys):
+    lines = [f"{k}.0 {k}.0 0 0 0 0 0 1\n" for k in range(40)]
+    lines[5] = "5.0 5.0 0\n"
+    (tmp_path / "walk.tum").write_text("".join(lines))
+    (tmp_path / "true.relations").write_text("0.0 30.0 30.0 0 0 0 0 0\n")
+    command = ["evaluate", str(tmp_path / "walk.tum"), "--truth", str(tmp_path / "true.relations")]
+
+    assert main(command) == 0
+    assert "Warning: walk.tum: 1 of 40 poses" in capsys.readouterr().out
+
+    assert main([*command, "--json"]) == 0
+    assert "walk.tum: 1 " in json.loads(capsys.readouterr().out)["relations"]["hints"][0]
