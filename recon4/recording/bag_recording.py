@@ -30,6 +30,7 @@ from recon4.recording.bag_messages import (
 )
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
+from recon4.recording.driver_topics import no_lidar_text, unread_text
 from recon4.recording.formats.bags import (
     CLOUD,
     SCAN,
@@ -67,7 +68,6 @@ _COPIES_WITHIN = 4
 _PERIOD_NS = 100_000_000
 _PROBED_MESSAGES = 50
 """Messages of a topic that are decoded to detect its content."""
-_NAMES_LISTED = 20
 
 
 class BagRecording:
@@ -101,9 +101,7 @@ class BagRecording:
             self.odometry_topic = choose_topic(bag, by_setting, ODOMETRY_KIND, report=report)
             mounts = read_mounts(bag, [*lidars, self.imu_topic, self.fix_topic], report)
         if not self.streams:
-            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[:_NAMES_LISTED])
-            names += " …" * (len(self.topics) > _NAMES_LISTED)
-            raise EmptyRecording(f"{paths[0].name}: no LiDAR data; topics: {names}")
+            raise EmptyRecording(no_lidar_text(paths[0].name, self.topics))
         samples = SampleTopics(self.imu_topic, self.fix_topic)
         self.rig = mounted_rig(rig, self.streams, samples, mounts=mounts, report=report)
 
@@ -199,6 +197,9 @@ def lidar_streams(
     by_rig = {sensor.topic for sensor in rig.sensors} if rig is not None else set()
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
     used = [one for one in found if not one.why_not]
+    if unread := unread_text(bag.topics):
+        no_lidar = all(one.is_camera for one in used)
+        (report.warn if no_lidar else report.derive)(unread)
     if len(used) < len(found):
         names = ", ".join(one.topic.name for one in used)
         others = ", ".join(f"{one.topic.name} ({one.why_not})" for one in found if one.why_not)

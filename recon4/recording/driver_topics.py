@@ -1,0 +1,55 @@
+"""Topics of LiDARs in messages of their own drivers, which are not read, and what to do instead."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from recon4.recording.formats.bags import CLOUD, LASER_SCAN, SCAN, BagTopic
+
+_BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
+_REMEDIES = (
+    (("livox",), "set xfer_format to 0 in the driver's launch file: it then publishes PointCloud2"),
+    (("ouster", "os_ros"), _BY_REPLAY),
+    (("pandar", "hesai"), _BY_REPLAY),
+    (("rslidar", "robosense"), _BY_REPLAY),
+    (("sick_scan", "cepton", "innovusion", "seyond", "blickfeld"), _BY_REPLAY),
+    (("sensor_msgs/msg/pointcloud",), "convert it to PointCloud2 with point_cloud_converter"),
+)
+"""Beginnings of names of types, and what gives a topic that is read."""
+_NOT_LIDARS = ("imu", "info", "status", "diagnos", "string", "metadata", "laserscan")
+_NAMES_LISTED = 20
+
+
+def driver_topics(topics: Sequence[BagTopic]) -> list[tuple[BagTopic, str]]:
+    """Topics of LiDARs that are not read, each with its remedy."""
+    found = []
+    for topic in topics:
+        kind = topic.type.lower()
+        if not topic.messages or topic.type in (CLOUD, SCAN):
+            continue
+        remedy = next((text for starts, text in _REMEDIES if kind.startswith(starts)), "")
+        if remedy and not any(word in kind for word in _NOT_LIDARS):
+            found.append((topic, remedy))
+    return found
+
+
+def unread_text(topics: Sequence[BagTopic]) -> str:
+    """A sentence for each LiDAR in messages of its driver; empty = there is none."""
+    return "; ".join(
+        f"{topic.name} is of a LiDAR, but {short_type(topic.type)} is not read: {remedy}"
+        for topic, remedy in driver_topics(topics)
+    )
+
+
+def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
+    """Why a bag has no LiDAR data that is read: what there is, what is read, what to do."""
+    listed = ", ".join(f"{t.name} ({t.type})" for t in topics[:_NAMES_LISTED])
+    listed += " …" * (len(topics) > _NAMES_LISTED)
+    kinds = ", ".join(short_type(kind) for kind in (CLOUD, SCAN, LASER_SCAN))
+    why = unread_text(topics) or f"read are {kinds}"
+    return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
+
+
+def short_type(kind: str) -> str:
+    """``sensor_msgs/PointCloud2`` for ``sensor_msgs/msg/PointCloud2``."""
+    return kind.replace("/msg/", "/")
