@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.errors import RecordingError
 from recon4.recording.bag_messages import cloud_table
@@ -20,6 +22,8 @@ _COLORS = ("rgb", "rgba", "bgr", "r", "red")
 _INTENSITIES = ("intensity", "reflectivity", "signal", "i")
 _FEWER = 0.9
 _SAME_STAMPS = 0.5
+_SAME_STEP_M, _SAME_STEPS = 2e-3, 0.99
+"""Steps from point to point of a copied cloud are the same, also when it was turned [m]."""
 _ROBOT_FRAMES = {*BODY_FRAMES, "body", "base", "vehicle"}
 
 
@@ -32,11 +36,21 @@ class CloudTopic:
     points: int
     """Usual number of points."""
     fields: frozenset[str]
-    stamps: frozenset[int]
-    """Of the first messages [ns]."""
+    clouds: Mapping[int, NDArray[np.float64]]
+    """Stamp of the first messages [ns] -> their finite points [m], (N, 3)."""
     is_camera: bool = False
     why_not: str = ""
     """Empty = it is read."""
+
+    @property
+    def stamps(self) -> Set[int]:
+        """Of the first messages [ns]."""
+        return self.clouds.keys()
+
+    @property
+    def is_placed(self) -> bool:
+        """Whether a program has placed the points in a map, by the name of their frame."""
+        return last_name(self.frame) in WORLD_FRAMES
 
     @property
     def detail(self) -> int:
@@ -62,7 +76,7 @@ def judged_clouds(bag: Bag, clouds: Sequence[BagTopic], keep: Collection[str]) -
         reasons = {}
     return [
         CloudTopic(
-            one.topic, one.frame, one.points, one.fields, one.stamps, one.is_camera,
+            one.topic, one.frame, one.points, one.fields, one.clouds, one.is_camera,
             reasons.get(one.topic.name, ""),
         )
         for one in found
@@ -77,7 +91,7 @@ def _described(found: Contents) -> CloudTopic:
         frame=found.frame,
         points=int(np.median(counts)) if counts else 0,
         fields=names,
-        stamps=frozenset(found.t_ns),
+        clouds={t: _points(m) for t, m in zip(found.t_ns, found.messages, strict=True)},
         is_camera=_is_camera(found, names),
     )
 
@@ -90,21 +104,57 @@ def _why_not(one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[st
     in_detail = [o.topic.name for o in better if o.detail > one.detail]
     if one.is_camera:
         return "of a depth camera: a narrow view without rings and times of points"
-    if last_name(one.frame) in WORLD_FRAMES or one.frame in fixed:
+    if one.is_placed or _is_in_frame_of_poses(one, better, fixed):
         return f"in the fixed frame {one.frame}: points that a program has placed"
     if in_detail and last_name(one.frame) in _ROBOT_FRAMES:
         return f"in the frame of the robot, {one.frame}, with less detail than {in_detail[0]}"
     for other in better:
-        if other.frame == one.frame and _is_copy(one, other):
+        if other.frame == one.frame and _has_less(one, other):
             return f"a copy of {other.topic.name} with less in it"
+        if _has_same_points(one, other) and _rank(one) < _rank(other):
+            return f"a copy of {other.topic.name}"
     return ""
 
 
-def _is_copy(one: CloudTopic, other: CloudTopic) -> bool:
+def _is_in_frame_of_poses(
+    one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[str]
+) -> bool:
+    """Whether the frame of odometry is that of a map: drivers also write that of the sensor.
+
+    Then a cloud as measured is there too, in a frame of its own and with no less detail.
+    """
+    measured = [o for o in others if not o.is_placed and o.frame not in fixed]
+    return one.frame in fixed and any(o.detail >= one.detail for o in measured)
+
+
+def _has_less(one: CloudTopic, other: CloudTopic) -> bool:
     """Whether a cloud is made of another one: the same stamps, and less detail or fewer points."""
     same = len(one.stamps & other.stamps) >= _SAME_STAMPS * min(len(one.stamps), len(other.stamps))
     less = (one.detail, one.points) < (other.detail, _FEWER * other.points)
     return same and less and one.detail <= other.detail
+
+
+def _has_same_points(one: CloudTopic, other: CloudTopic) -> bool:
+    """Whether a cloud is another one again: relayed, sent more rarely, or turned to another frame.
+
+    The same numbers in another frame are no copy: nothing has turned them.
+    """
+    for t_ns in one.stamps & other.stamps:
+        a, b = one.clouds[t_ns], other.clouds[t_ns]
+        if len(a) == len(b) > 1 and (one.frame == other.frame or not np.array_equal(a, b)):
+            return bool(np.mean(np.abs(_steps_m(a) - _steps_m(b)) < _SAME_STEP_M) >= _SAME_STEPS)
+    return False
+
+
+def _steps_m(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Distance from each point to the next [m], (N - 1,)."""
+    return np.asarray(np.linalg.norm(np.diff(points, axis=0), axis=1))
+
+
+def _rank(one: CloudTopic) -> tuple[object, ...]:
+    """Which of equal clouds is read: one of a sensor's own frame, then the one with the most."""
+    own = not one.is_placed and last_name(one.frame) not in _ROBOT_FRAMES
+    return own, one.detail, one.topic.messages, -len(one.topic.name), one.topic.name
 
 
 def _is_camera(found: Contents, fields: Collection[str]) -> bool:
@@ -120,14 +170,8 @@ def _is_camera(found: Contents, fields: Collection[str]) -> bool:
 
 def _is_narrow(found: Contents) -> bool:
     for message in found.messages:
-        try:
-            table = cloud_table(message)
-        except RecordingError:
-            continue
-        if not {"x", "y", "z"} <= set(table):
-            continue
-        p = np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
-        p = p[np.isfinite(p).all(axis=1) & p.any(axis=1)]
+        p = _points(message)
+        p = p[p.any(axis=1)]
         if not len(p):
             continue
         rays = p / np.linalg.norm(p, axis=1, keepdims=True)
@@ -135,6 +179,18 @@ def _is_narrow(found: Contents) -> bool:
         cosine = rays @ middle / max(float(np.linalg.norm(middle)), 1e-9)
         return bool(np.percentile(cosine, 5) > np.cos(_WIDEST_CAMERA_RAD))
     return False
+
+
+def _points(message: Any) -> NDArray[np.float64]:
+    """The finite points of a cloud [m], (N, 3); none of one that cannot be read."""
+    try:
+        table = cloud_table(message)
+    except RecordingError:
+        return np.zeros((0, 3))
+    if not {"x", "y", "z"} <= set(table):
+        return np.zeros((0, 3))
+    p = np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
+    return p[np.isfinite(p).all(axis=1)]
 
 
 def is_cloud(topic: BagTopic) -> bool:

@@ -1,0 +1,165 @@
+"""What one LiDAR measured is read once, and LiDARs that cannot be read are named."""
+
+import numpy as np
+import pytest
+from rosbags.typesys import get_types_from_msg
+
+from recon4.errors import ConfigError, EmptyRecording
+from recon4.recording.bag_recording import BagRecording
+from recon4.recording.info import describe
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+from tests.builders import T0_NS, bag_path, noisy, room_cloud
+from tests.robot_bags import RobotBag, mount
+
+STEP_NS = 100_000_000
+CLOUDS = 12
+
+
+def write(folder, *sources, transforms=()):
+    path = bag_path(folder, "mcap")
+    with RobotBag(path, "mcap") as bag:
+        if transforms:
+            bag.tf(*transforms)
+        for k in range(CLOUDS):
+            for source in sources:
+                source(bag, T0_NS + k * STEP_NS, k)
+    return path
+
+
+def measured(k, *, turned=None):
+    """The cloud of a LiDAR at a time: other numbers each time, as noise makes them."""
+    table = room_cloud(start_turn=0.01 * k)
+    if turned is not None:
+        xyz = np.column_stack([table[axis] for axis in "xyz"]) @ turned.R.T + turned.t
+        table |= dict(zip("xyz", xyz.astype(np.float32).T, strict=True))
+    return table
+
+
+def lidar(topic="/points", frame="os_lidar", *, every=1, turned=None):
+    def add(bag, t_ns, k):
+        if k % every == 0:
+            bag.frame = frame
+            bag.cloud(topic, t_ns, measured(k, turned=turned))
+
+    return add
+
+
+def opened(path):
+    report = ImportReport()
+    return BagRecording([path], None, settings=IngestSettings(), report=report), report
+
+
+def read_topics(path):
+    return [sensor.topic for sensor in opened(path)[0].rig.sensors]
+
+
+@pytest.mark.parametrize("every", [1, 2, 10])
+def test_a_relayed_or_throttled_lidar_is_read_once(tmp_path, every):
+    path = write(tmp_path, lidar("/a/points", every=every), lidar("/points"))
+
+    found, report = opened(path)
+
+    assert [sensor.topic for sensor in found.rig.sensors] == ["/points"]
+    assert any("/a/points (a copy of /points)" in text for text in report.derived)
+
+
+def test_a_lidar_in_the_frame_of_the_robot_again_is_read_once_as_measured(tmp_path):
+    T_base_lidar = mount(0.1, 0.0, 0.5, pitch=20.0)
+    path = write(
+        tmp_path,
+        lidar("/base_points", "base_link", turned=T_base_lidar),
+        lidar("/velodyne_points", "velodyne"),
+        transforms=[("base_link", "velodyne", T_base_lidar)],
+    )
+
+    assert read_topics(path) == ["/velodyne_points"]
+
+
+def test_two_lidars_with_common_stamps_are_both_there(tmp_path):
+    other = mount(0.5, 0.3, 0.0)
+
+    def rear(bag, t_ns, k):
+        bag.frame = "rear"
+        bag.cloud("/rear/points", t_ns, measured(k + 40, turned=other))
+
+    with pytest.raises(ConfigError, match="2 LiDARs and no rig"):
+        opened(write(tmp_path, lidar("/front/points", "front"), rear))
+
+
+def test_odometry_in_the_frame_of_the_lidar_makes_no_map_of_it(tmp_path):
+    def odometry(bag, t_ns, k):
+        bag.frame = "os_lidar"
+        bag.odometry("/odom", t_ns, 0.1 * k)
+
+    def registered(bag, t_ns, k):
+        bag.frame = "map"
+        table = room_cloud(start_turn=0.3)
+        bag.cloud("/cloud_registered", t_ns, {axis: table[axis][:3000] for axis in "xyz"})
+
+    assert read_topics(write(tmp_path, lidar(), odometry, registered)) == ["/points"]
+
+
+# -- messages of drivers
+
+
+def driver(kind, topic="/livox/lidar"):
+    def add(bag, t_ns, k):
+        if kind not in bag.store.types:
+            bag.store.register(get_types_from_msg("uint8[] buf\n", kind))
+        bag.write(topic, kind, t_ns, bag.make(kind, buf=np.zeros(9, np.uint8)))
+
+    return add
+
+
+def imu(bag, t_ns, k):
+    bag.imu("/imu", t_ns, *(noisy((0.0, 0.0, z), k) for z in (0.0, 9.81)))
+
+
+@pytest.mark.parametrize(
+    ("kind", "remedy"),
+    [
+        ("livox_ros_driver2/msg/CustomMsg", "set xfer_format to 0"),
+        ("ouster_sensor_msgs/msg/PacketMsg", "play the bag back through the driver"),
+        ("pandar_msgs/msg/PandarScan", "play the bag back through the driver"),
+        ("rslidar_msg/msg/RslidarPacket", "play the bag back through the driver"),
+    ],
+)
+def test_a_lidar_in_messages_of_its_driver_is_named_with_the_remedy(tmp_path, kind, remedy):
+    path = write(tmp_path, driver(kind), imu)
+
+    with pytest.raises(EmptyRecording) as error:
+        opened(path)
+
+    for text in (str(error.value), *describe(path).warnings):
+        assert f"/livox/lidar is of a LiDAR, but {kind.replace('/msg/', '/')} is not read" in text
+        assert remedy in text
+        assert "PointCloud2" in text
+
+
+def test_a_bag_without_any_lidar_says_which_topics_are_read(tmp_path):
+    with pytest.raises(EmptyRecording) as error:
+        opened(write(tmp_path, imu))
+
+    assert "topics: /imu (sensor_msgs/msg/Imu); read are sensor_msgs/PointCloud2" in str(
+        error.value
+    )
+
+
+def test_a_depth_camera_beside_a_lidar_that_is_not_read_is_a_warning(tmp_path):
+    def camera(bag, t_ns, k):
+        v, u = np.mgrid[-20:20, -30:30] / 40.0
+        axes = {"x": 2.0 * u, "y": 2.0 * v, "z": np.full(u.shape, 2.0), "rgb": np.zeros(u.shape)}
+        bag.frame = "camera_depth_optical_frame"
+        table = {name: axis.astype(np.float32).ravel() for name, axis in axes.items()}
+        bag.cloud("/camera/points", t_ns, table)
+
+    kind = "livox_ros_driver/msg/CustomMsg"
+
+    _, beside_camera = opened(write(tmp_path, driver(kind), camera))
+    (tmp_path / "b").mkdir()
+    _, beside_lidar = opened(write(tmp_path / "b", driver(kind), lidar()))
+
+    assert any("/livox/lidar is of a LiDAR" in text for text in beside_camera.warnings)
+    assert not any("is of a LiDAR" in text for text in beside_lidar.warnings)
+    assert any("/livox/lidar is of a LiDAR" in text for text in beside_lidar.derived)
