@@ -107,7 +107,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
         ConfigError: If ``root`` is not empty, or keys are requested and missing.
         StoreError: If the backup is damaged, or the folder cannot be written (`NoSpace`: full).
     """
-    path = newest(backup)
+    path, root = newest(backup), root.resolve()
     listing = read_list(path)
     if root.exists() and any(root.iterdir()):
         raise ConfigError(f"{root} is not empty: a backup is restored into an empty folder")
@@ -116,8 +116,10 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     files = {n: e for n, e in listing.files.items() if with_keys or not _is_secret(n)}
     _check_room(root, sum(entry.bytes for entry in files.values()))
     check_backup(path, progress)
-    building = root.with_name(f".tmp-restore-{root.name}-{os.getpid()}")
+    # A name that nobody can guess: in a folder that others may write, a link could wait there.
+    building = root.with_name(f".tmp-restore-{root.name}-{secrets.token_hex(8)}")
     try:
+        building.mkdir(parents=True)
         for name, entry in track(files.items(), progress, what="restore", unit="files"):
             _put(path.parent / "objects", building, name, entry=entry)
         if root.exists():
@@ -189,8 +191,11 @@ def _is_beside(name: str) -> bool:
 
 
 def _is_secret(name: str) -> bool:
-    """Whether it belongs to `SECRETS`, of whatever server below the root."""
-    parts = PurePosixPath(name).parts
+    """Whether it belongs to `SECRETS`, of whatever server below the root.
+
+    A disk may ignore the case of letters, and dots and blanks at the end of a name.
+    """
+    parts = [part.casefold().rstrip(" .") for part in PurePosixPath(name).parts]
     below = ("/".join(parts[k + 1 :]) for k, part in enumerate(parts) if part == STATE)
     return any(rest.startswith(SECRETS) for rest in below)
 
@@ -323,6 +328,8 @@ def _write_list(out: Path, files: Entries, left_out: list[str], *, with_keys: bo
 def _put(objects: Path, building: Path, name: str, *, entry: BackedUpFile) -> None:
     target, sha256 = building / name, entry.sha256
     target.parent.mkdir(parents=True, exist_ok=True)
+    if target.exists():
+        raise StoreError(f"{name[:100]!r} is there already: the disk takes two names as equal")
     with atomic_file(target) as temporary:
         shutil.copyfile(_place(objects, sha256), temporary)
         if (got := hash_file(temporary)) != sha256:

@@ -13,6 +13,8 @@ from recon4.store.hashing import hash_json
 from recon4.store.json_files import read_object
 
 FORMAT = 1
+MAX_PARTS = 100
+"""Most folders in a name; projects and recordings have fewer than ten."""
 _LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
 
 
@@ -82,5 +84,9 @@ def _check_entry(path: Path, name: str, entry: BackedUpFile) -> None:
         raise StoreError(f"{path}: the name {name[:100]!r} leads outside the backup")
     if "\0" in name or inside.as_posix() != name:
         raise StoreError(f"{path}: {name[:100]!r} is no name of a file")
+    if len(inside.parts) > MAX_PARTS:
+        raise StoreError(
+            f"{path}: {name[:100]!r}: expected at most {MAX_PARTS} folders, got {len(inside.parts)}"
+        )
     if entry.bytes < 0:
         raise StoreError(f"{path}: {name[:100]} has {entry.bytes} bytes")
