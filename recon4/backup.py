@@ -116,7 +116,7 @@ def restore(backup: Path, root: Path, *, with_keys: bool, progress: Progress) ->
     files = {n: e for n, e in listing.files.items() if with_keys or not _is_secret(n)}
     _check_room(root, sum(entry.bytes for entry in files.values()))
     check_backup(path, progress)
-    # A name that nobody can guess: in a folder that others may write, a link could wait there.
+    # A name that nobody knows before: in a folder that others may write, a link could wait there.
     building = root.with_name(f".tmp-restore-{root.name}-{secrets.token_hex(8)}")
     try:
         building.mkdir(parents=True)

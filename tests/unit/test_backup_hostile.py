@@ -187,7 +187,7 @@ def test_one_object_listed_a_million_times_is_refused_before_it_is_copied(tmp_pa
     [("a", "a/b"), ("a/b", "a"), ("x" * 300,), ("a/" * 1500 + "b",), ("a/" * 60 + "b", "a")],
 )
 def test_names_that_no_folder_can_hold_are_refused_and_nothing_is_left(tmp_path, names):
-    made(tmp_path / "backup", dict.fromkeys(names, {}))
+    made(tmp_path / "backup", {name: {} for name in names})
 
     assert refused(tmp_path / "backup", tmp_path / "new")
 
