@@ -172,7 +172,8 @@ _SAMPLES = {
     "imu_accel_missing": _lost(
         "imu_kept", "without an acceleration for too long, dropped", apart=True, stated=True
     ),
-    "imu_accel_scaled": _repaired("imu_kept", "accelerations in g, stored in m/s²"),
+    "imu_accel_scaled": _repaired("imu_kept", "accelerations in another unit, stored in m/s²"),
+    "imu_gyro_scaled": _repaired("imu_kept", "angular rates in deg/s, stored in rad/s"),
     "gnss_samples": _read("GNSS positions received"),
     "gnss_kept": _read("GNSS positions used", noun="GNSS positions"),
     "gnss_nan": _lost("gnss_kept", "no place on earth, dropped", apart=True),

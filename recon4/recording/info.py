@@ -285,7 +285,7 @@ def _with_head(
         rig = recording.rig
         whole = info.bytes <= WHOLE_BYTES
         head = _read_head(recording, whole=whole)
-        _judge_samples(head, rig, whole=whole, report=report)
+        _judge_samples(head, rig, settings, whole=whole, report=report)
     except ConfigError as error:
         missing.append(f"rig: {error}")
     except RecordingError as error:
@@ -358,7 +358,9 @@ def _read_head(recording: Recording, *, whole: bool) -> _Beginning:
     return head
 
 
-def _judge_samples(head: _Beginning, rig: Rig, *, whole: bool, report: ImportReport) -> None:
+def _judge_samples(
+    head: _Beginning, rig: Rig, settings: IngestSettings, *, whole: bool, report: ImportReport
+) -> None:
     """Say of IMU and GNSS what processing will: clock, unit, channels that were not measured.
 
     A receiver may have no fix yet in the first second: only all positions are judged.
@@ -368,10 +370,8 @@ def _judge_samples(head: _Beginning, rig: Rig, *, whole: bool, report: ImportRep
     if is_same_clock(IMU_CLOCK, offset_s, report) and imu is not None:
         if not offset_s:
             warn_of_free_clocks(report, imu_file=False)
-        try:
-            clean_imu(imu, offset_s=offset_s, jumps_ns=(), report=report)
-        except ConfigError as error:
-            report.warn(str(error))
+        unit = settings.imu_gyro_unit
+        clean_imu(imu, offset_s=offset_s, jumps_ns=(), report=report, gyro_unit=unit)
     offset_s = rig.gnss_time_offset_s
     if is_same_clock(GNSS_CLOCK, offset_s, report) and gnss is not None:
         clean_gnss(gnss, offset_s=offset_s, report=report)

@@ -32,6 +32,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.samples.heights import compare_heights
+from recon4.recording.samples.units import GyroUnit
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.store.frames import FrameWriter
@@ -55,15 +56,19 @@ class _Samples:
     imu: list[ImuSamples] = field(default_factory=list)
     gnss: list[GnssSamples] = field(default_factory=list)
     poses: list[Trajectory] = field(default_factory=list)
+    gyro_unit: GyroUnit = "auto"
 
     @classmethod
-    def of_files(cls, sources: Sources, out: Path, report: ImportReport) -> _Samples:
+    def of_files(
+        cls, sources: Sources, out: Path, *, settings: IngestSettings, report: ImportReport
+    ) -> _Samples:
         """Those of the CSV files."""
         imu, gnss = sources.imu, sources.gnss
         return cls(
             LineStoreWriter(out),
             imu=[read_imu_csv(imu, report)] if imu else [],
             gnss=[read_gnss_csv(gnss, report)] if gnss else [],
+            gyro_unit=settings.imu_gyro_unit,
         )
 
     def keep(self, item: ImuSamples | GnssSamples | Trajectory | LineScans | LaserScans) -> None:
@@ -158,7 +163,7 @@ def ingest(
     report = (live := live or LiveSource()).report
     sources = _sort_out(sources)
     paths = sources.recordings
-    given = _Samples.of_files(sources, out, report)
+    given = _Samples.of_files(sources, out, settings=settings, report=report)
     recording = open_recording(
         paths, sources.rig, settings=settings, report=report, open_file=live.open_file
     )
@@ -252,7 +257,13 @@ def _imu(
         return None
     if not offset_s:
         warn_of_free_clocks(report, imu_file=bool(given.imu))
-    clean = clean_imu(samples, offset_s=offset_s, jumps_ns=written.jumps_ns, report=report)
+    clean = clean_imu(
+        samples,
+        offset_s=offset_s,
+        jumps_ns=written.jumps_ns,
+        report=report,
+        gyro_unit=given.gyro_unit,
+    )
     return _covering(clean, written.span, bool(given.imu), report=report)
 
 

@@ -12,6 +12,7 @@ from recon4.model.samples import ImuSamples
 from recon4.recording.bag_messages import imu_row, pose_row, stamp_ns
 from recon4.recording.formats.bags import CLOUD, SCAN, Bag, BagTopic
 from recon4.recording.samples.measured import imu_channels
+from recon4.recording.samples.units import FASTEST_RAD_S
 from recon4.recording.transform_messages import frame_name
 
 _PROBED_MESSAGES = 200
@@ -22,7 +23,6 @@ _PROBED_NS = 60_000_000_000
 _COVERED = 0.8
 _SLOW_HZ = 50.0
 """A slower IMU does not follow the steps of a walker."""
-_FASTEST_RAD_S = 12.0
 _GRAVITY = ((7.0, 13.0), (0.8, 1.25))
 """Median lengths of accelerations in m/s² and in g."""
 _WIDE_DEG = 90.0
@@ -113,8 +113,8 @@ def imu_faults(found: Contents) -> list[Fault]:
     out = []
     if channels.no_gyroscope:
         out.append(Fault(4.0, "no gyroscope"))
-    elif float(np.nanpercentile(_lengths(channels.imu.gyro_rad_s), 90)) > _FASTEST_RAD_S:
-        out.append(Fault(4.0, "angular rates that are not rad/s"))
+    elif float(np.nanpercentile(_lengths(channels.imu.gyro_rad_s), 90)) > FASTEST_RAD_S:
+        out.append(Fault(1.0, "angular rates that are not in rad/s"))
     if channels.no_accelerometer:
         out.append(Fault(2.0, "no accelerometer"))
     else:

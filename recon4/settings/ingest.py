@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from recon4.settings.require import require
 
@@ -27,6 +28,8 @@ class IngestSettings:
 
     lidar_topic: str = ""
     """Topic of the only LiDAR of a bag that is read. Empty = chosen by content, or by the rig."""
+    imu_gyro_unit: Literal["auto", "rad_s", "deg_s"] = "auto"
+    """Unit of the angular rates of the IMU in the recording: rad/s or deg/s. auto = by content."""
     imu_topic: str = ""
     """Topic of the IMU in a bag. Empty = that of the rig file, else chosen by content."""
     gnss_topic: str = ""

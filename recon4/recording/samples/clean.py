@@ -9,26 +9,26 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
+from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured import imu_channels, with_forces, without_unmeasured
+from recon4.recording.samples.units import GyroUnit, in_m_s2, in_rad_s
 from recon4.recording.stamps import strays
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
-_FASTEST_RAD_S = 12.0
-"""Largest sustained turn rate (690 deg/s); beyond it the unit is wrong."""
 _LEAST_REPEATED, _MOVING_RAD_S = 10, 0.1
 """Noise changes each sample of a sensor that works. A few equal ones are those of a slower sensor;
 at rest they do no harm."""
 _LEAST_STUCK = 50
 """The same of accelerations alone, which some drivers repeat for a faster gyroscope."""
-_GRAVITY_M_S2 = (7.0, 13.0)
-_CONSTANT = 0.5
 _BY_FLOOR = "the map is leveled by its floor"
+_FORCES_ALONE = (
+    f". Its accelerations alone are not used either: without the turns of the body they do not "
+    f"tell gravity from the motion; {_BY_FLOOR}"
+)
 
 
 def join(parts: Sequence[Samples]) -> Samples | None:
@@ -52,7 +52,12 @@ def gather(parts: list[Samples], item: Samples) -> None:
 
 
 def clean_imu(
-    imu: ImuSamples, *, offset_s: float, jumps_ns: Sequence[int], report: ImportReport
+    imu: ImuSamples,
+    *,
+    offset_s: float,
+    jumps_ns: Sequence[int],
+    report: ImportReport,
+    gyro_unit: GyroUnit = "auto",
 ) -> ImuSamples | None:
     """Sorted, unique and finite samples on the rig's clock; None when nothing is left.
 
@@ -63,15 +68,14 @@ def clean_imu(
             these is the same jump, and is carried on by the same amount.
         report: Gets the counts ``imu_wrong_time``, ``imu_nan``, ``imu_duplicate``, ``imu_copies``,
             ``imu_unsorted``, ``imu_repeated``, those of `with_forces`, and what was not measured
-            (`imu_channels`).
-
-    Raises:
-        ConfigError: If the angular rates cannot be rad/s.
+            (`imu_channels`) or in which unit (`in_rad_s`, `in_m_s2`).
+        gyro_unit: Of the angular rates.
     """
     imu = _without_strays(imu, "imu", report)
     channels = imu_channels(_carried_on(imu, jumps_ns, report))
     if channels.no_gyroscope:
-        report.warn(f"the IMU has no gyroscope ({channels.no_gyroscope}): it is not used")
+        rest = "" if channels.no_accelerometer else _FORCES_ALONE
+        report.warn(f"the IMU has no gyroscope ({channels.no_gyroscope}): it is not used{rest}")
         return None
     turns, alone = _by_channel(channels.imu, report)
     imu = _sorted(turns, offset_s, "imu", report=report)
@@ -84,8 +88,8 @@ def clean_imu(
     if not len(imu):
         report.warn("no usable IMU sample")
         return None
-    _check_rates(imu)
-    return _check_gravity(imu, report)
+    scaled = in_rad_s(imu, gyro_unit, report)
+    return None if scaled is None else in_m_s2(scaled, report)
 
 
 def clean_gnss(gnss: GnssSamples, *, offset_s: float, report: ImportReport) -> GnssSamples | None:
@@ -219,34 +223,3 @@ def _repeated_in_motion(values: Array, imu: ImuSamples, *, least: int) -> list[N
     rows = np.flatnonzero(same & moving) + 1
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
     return [run for run in runs if len(run) >= least]
-
-
-def _check_rates(imu: ImuSamples) -> None:
-    speed = np.linalg.norm(imu.gyro_rad_s, axis=1)
-    high = float(np.percentile(speed, 90))
-    if high > _FASTEST_RAD_S:
-        raise ConfigError(
-            f"IMU: angular rates must be in rad/s; a tenth of them is above {high:.1f}, "
-            f"which would be {np.rad2deg(high):.0f} deg/s: are they in deg/s?"
-        )
-
-
-def _check_gravity(imu: ImuSamples, report: ImportReport) -> ImuSamples:
-    accel = imu.accel_m_s2
-    accel = accel[np.isfinite(accel).all(axis=1)]
-    if not len(accel):
-        return imu
-    usual = float(np.median(np.linalg.norm(accel, axis=1)))
-    if _GRAVITY_M_S2[0] < usual < _GRAVITY_M_S2[1]:
-        return imu
-    # The vertical stays up in a body: of a walker's motion alone nothing is left on average.
-    constant = float(np.linalg.norm(accel.mean(axis=0)))
-    if 0.8 < usual < 1.25 and constant > _CONSTANT * usual:
-        report.count("imu_accel_scaled", len(accel))
-        report.derive("accelerometer was in g (median length near 1), stored in m/s²")
-        return ImuSamples(imu.t_ns, imu.gyro_rad_s, imu.accel_m_s2 * STANDARD_GRAVITY_M_S2)
-    report.warn(
-        f"accelerometer: median length {usual:.3g}, expected about 9.8 m/s² (gravity included): it "
-        f"counts as not measured, {_BY_FLOOR}"
-    )
-    return ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))

@@ -90,13 +90,11 @@ def test_a_rig_that_cannot_be_read_is_one_line(pcap, refuse, tmp_path, content, 
     assert expected in refuse(pcap, "--rig", path)
 
 
-def test_angular_rates_in_degrees_are_refused_with_the_unit(pcap, refuse, tmp_path):
-    imu = write_imu(tmp_path / "imu.csv", gyro=(0.0, 3.0, 45.0))
+def test_angular_rates_in_degrees_are_converted_and_said(pcap, process, tmp_path):
+    summary = process(pcap, "--imu", write_imu(tmp_path / "imu.csv", gyro=(0.0, 3.0, 45.0)))
 
-    said = refuse(pcap, "--imu", imu)
-
-    assert "rad/s" in said
-    assert "deg/s" in said
+    assert counts(tmp_path)["imu_gyro_scaled"] == 100
+    assert "are in deg/s, stored in rad/s" in summary["report"]
 
 
 def test_accelerations_in_g_are_scaled_with_a_warning(pcap, process, tmp_path):

@@ -104,9 +104,9 @@ def test_info_of_good_samples_says_nothing_of_them(tmp_path):
     [
         ((1.0, 0.0), "the IMU has no accelerometer (all its values are 0)"),
         ((0.0, 1.0), "the IMU has no gyroscope (all its values are 0)"),
-        ((57.3, 1.0), "are they in deg/s?"),
-        ((1.0, 1000.0), "expected about 9.8 m/s²"),
-        ((1.0, 1 / 9.81), "100 of 100 IMU samples: accelerations in g"),
+        ((57.3, 1.0), "100 of 100 IMU samples: angular rates in deg/s, stored in rad/s"),
+        ((1.0, 3.0), "expected about 9.8 m/s²"),
+        ((1.0, 1 / 9.81), "100 of 100 IMU samples: accelerations in another unit"),
     ],
 )
 def test_info_says_what_of_an_imu_will_not_be_used(tmp_path, scales, said):

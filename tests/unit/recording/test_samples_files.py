@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.errors import ConfigError, CorruptFile, EmptyRecording, UnknownFormat
+from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.evaluation.evaluate import evaluate
 from recon4.evaluation.text import evaluation_text
 from recon4.geometry.se3 import SE3
@@ -201,11 +201,6 @@ def test_an_accelerometer_in_g_is_scaled_and_said():
     assert imu.accel_m_s2[0, 2] == pytest.approx(9.80665)
     assert report.counts["imu_accel_scaled"] == 5
     assert any("in g" in text for text in report.derived)
-
-
-def test_rates_in_degrees_are_refused():
-    with pytest.raises(ConfigError, match="are they in deg/s"):
-        cleaned(imu_of(range(5), gyro=40.0))
 
 
 def test_the_offset_is_added():
