@@ -184,9 +184,9 @@ class CloudDecoder:
         azimuth = np.arctan2(xyz[:, 1], xyz[:, 0])
         key, full_turn = find_field(table, TIME_FIELDS), _covers_turn(azimuth)
         self.absolute, everyone = False, np.ones(len(xyz), np.bool_)
-        if self._deskewed:
+        if self._deskewed or not len(xyz):
             return np.full(len(xyz), t_ns, np.int64), everyone
-        if key and len(xyz):
+        if key:
             found = self._clock.times(
                 key, table[key], t_ns=t_ns, period_ns=period_ns, full_turn=full_turn
             )

@@ -211,3 +211,15 @@ def test_the_model_is_known_by_its_beams():
     rng = np.random.default_rng(2)
     noise = {axis: rng.normal(size=5000) for axis in "xyz"}
     assert model_of_points(noise) == "generic"
+
+
+@pytest.mark.parametrize("value", [0.0, np.nan])
+def test_a_cloud_without_points_does_not_accuse_the_times_of_the_others(value):
+    table = room_cloud()
+    table |= {axis: np.full(len(table["x"]), value, np.float32) for axis in "xyz"}
+
+    shots, report = decode(table)
+
+    assert len(shots) == 0
+    assert report.warnings == []
+    assert report.counts["points_invalid"] == len(table["x"])
