@@ -30,6 +30,8 @@ _SEPARATORS = ";\t,"
 MAX_BYTES = 1 << 30
 """About ten million samples: an IMU of 400 Hz for seven hours."""
 _MAX_LINE_BYTES = 16 * 1024
+_SHOWN = 300
+"""Characters of a header that is shown in an error."""
 
 
 def read_imu_csv(path: Path, report: ImportReport | None = None) -> ImuSamples:
@@ -142,7 +144,8 @@ def _checked_header(line: str, known: tuple[str, ...], name: str) -> list[str]:
     missing = [column for column in known if column not in header and column not in _OPTIONAL]
     if missing:
         raise UnknownFormat(
-            f"{name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}"
+            f"{name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}; "
+            f"got {line.strip()[:_SHOWN]}"
         )
     twice = sorted({column for column in known if header.count(column) > 1})
     if twice:
