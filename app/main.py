@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import asyncio
 import logging
-import signal
 import time
 from collections.abc import AsyncIterator, Callable
 from contextlib import asynccontextmanager
@@ -86,6 +85,7 @@ from recon4 import __version__
 from recon4.errors import StoreError
 from recon4.review.newest_approval import judging_folders
 from recon4.review.trusted_keys import STATE, record_own_key
+from recon4.stopping import StopSignals
 from recon4.store.atomic import make_folders
 from recon4.verify import open_state, seal_state
 
@@ -169,14 +169,16 @@ def _routes() -> list[BaseRoute]:
 
 def serve(
     settings: ServerSettings,
+    stop: StopSignals,
     *,
     open_project: str | None = None,
     on_ready: Callable[[str, list[str]], None] = lambda url, notes: None,
 ) -> None:
-    """Run the server until it is interrupted.
+    """Run the server until a signal requests its end.
 
     Args:
         settings: Where and how.
+        stop: Catches the signals.
         open_project: The project whose page the URL leads to; None = the list.
         on_ready: Called once, as soon as the server listens, with the URL and the startup notice:
             other URLs, the certificate's fingerprint, how to create the first admin.
@@ -200,8 +202,7 @@ def serve(
             on_ready(best + path, [*read_only, *notice])
 
         server = AnnouncingServer(uvicorn_config(app, certificate), ready)
-        # uvicorn shuts down in order, then raises the signal again: by then all is done
-        signal.signal(signal.SIGTERM, lambda *_: None)
+        stop.request(server.end)
         logs: Logs = app.state.logs
         with logs.installed():
             asyncio.run(server.serve([listener]))

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import signal
 import sys
 import webbrowser
-from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from recon4.errors import ConfigError
+from recon4.stopping import StopSignals
 from recon4.terminal import write
 
 if TYPE_CHECKING:
@@ -22,6 +21,7 @@ server = typer.Typer()
 
 @server.command()
 def serve(  # noqa: PLR0913 - what a server can be started with
+    context: typer.Context,
     root: Annotated[Path, typer.Argument(help="Folder that holds project folders.")] = Path(),
     *,
     lan: Annotated[bool, typer.Option("--lan", help="For others: TLS and login together.")] = False,
@@ -64,11 +64,12 @@ def serve(  # noqa: PLR0913 - what a server can be started with
         )
     except ConfigError as error:
         raise typer.BadParameter(str(error)) from error
-    _serve(chosen, show=show)
+    _serve(chosen, context.find_object(StopSignals), show=show)
 
 
 @server.command()
 def demo(
+    context: typer.Context,
     *,
     out: Annotated[Path, typer.Option(help="Folder for the recording and the project.")] = Path(
         "demo"
@@ -100,10 +101,16 @@ def demo(
 
         recordings = recording_folders_from_environment()
         chosen = ServerSettings(root=out, port=port, recording_folders=recordings)
-        _serve(chosen, open_project=project.name)
+        _serve(chosen, context.find_object(StopSignals), open_project=project.name)
 
 
-def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: bool = False) -> None:
+def _serve(
+    chosen: ServerSettings,
+    stop: StopSignals | None,
+    *,
+    open_project: str | None = None,
+    show: bool = False,
+) -> None:
     from app.jobs.compiling import compiling_beside
     from app.main import serve as run
 
@@ -113,7 +120,6 @@ def _serve(chosen: ServerSettings, *, open_project: str | None = None, show: boo
         if show:
             webbrowser.open(url)
 
-    # The server has signal handlers of its own: it stops in order and ends with code 0.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
-    with suppress(KeyboardInterrupt), compiling_beside():
-        run(chosen, open_project=open_project, on_ready=ready)
+    assert stop is not None
+    with compiling_beside():
+        run(chosen, stop, open_project=open_project, on_ready=ready)

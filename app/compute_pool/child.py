@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import importlib
 import os
-import signal
 import sys
 import traceback
 from pathlib import Path
@@ -30,6 +29,7 @@ from app.compute_pool.messages import (
 from recon4.errors import Recon4Error
 from recon4.processes import die_with_parent
 from recon4.sandbox.private_cache import use_private_cache
+from recon4.stopping import leave_terminal_to_parent
 
 BACKGROUND_NICE = 10
 
@@ -39,7 +39,7 @@ def main(arguments: list[str]) -> None:
     scratch, lifeline, *rest = arguments
     die_with_parent(int(lifeline))
     kernels = use_private_cache(Path(scratch) / "kernels")
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's
+    leave_terminal_to_parent()
     if "--background" in rest:
         os.nice(BACKGROUND_NICE)
     # Output of a library must not mix with our messages.

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import signal
 
+from recon4.stopping import SIGNALS
+
 REASONS = {
     signal.SIGKILL: "was killed from outside; often the memory of the computer was not enough",
     signal.SIGSEGV: "crashed in native code (segmentation fault)",
@@ -13,12 +15,15 @@ REASONS = {
     signal.SIGILL: "needs a processor with more instructions (illegal instruction)",
     signal.SIGTERM: "was ended from outside",
 }
+_STOPPED = {128 + number: -number for number in SIGNALS}
+"""Exit code of a worker that a signal stopped in order -> what the kernel reports of a signal."""
 
 
 def exit_reason(code: int | None) -> str:
     """How a worker ended, from its exit code; None = no server saw it end."""
     if code is None:
         return "died while no server watched"
+    code = _STOPPED.get(code, code)
     if code >= 0:
         return f"ended without a result (exit code {code})"
     try:

@@ -19,6 +19,7 @@ from app.jobs.space import refuse_if_full
 from recon4.errors import Cancelled, ConfigError, NoSpace, Recon4Error, RecordingError
 from recon4.progress import Progress
 from recon4.sandbox import Policy
+from recon4.stopping import end_process
 from recon4.store.atomic import raise_if_full
 from recon4.store.project import Project, discard_unbegun, is_project
 
@@ -32,8 +33,11 @@ OUT_OF_MEMORY = (
 Work = Callable[[JobFolder, Progress], None]
 
 
-def main(path: Path, work: Work, policy_of: Callable[[JobFolder], Policy] = worker_policy) -> None:
-    """Run the job of a folder, confined to a policy, and write its outcome."""
+def main(path: Path, work: Work, policy_of: Callable[[JobFolder], Policy] = worker_policy) -> int:
+    """Run the job of a folder, confined to a policy, and write its outcome; returns 0.
+
+    A signal breaks it off without an outcome: the job goes on in the next worker.
+    """
     folder = JobFolder(path)
     (path / "pid").write_text(str(os.getpid()))
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(message)s", datefmt="%H:%M:%S")
@@ -41,6 +45,7 @@ def main(path: Path, work: Work, policy_of: Callable[[JobFolder], Policy] = work
     outcome = run(folder, work)
     folder.finish(outcome)
     log.info("%s %s", outcome.state, outcome.note)
+    return 0
 
 
 def run(folder: JobFolder, work: Work) -> Outcome:
@@ -125,4 +130,4 @@ def _full(error: Exception, path: Path) -> str | None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), process)
+    end_process(lambda _: main(Path(sys.argv[1]), process))

@@ -45,6 +45,15 @@ class AnnouncingServer(uvicorn.Server):
         self._table = connections_of(config)
         self._state = getattr(config.app, "state", None)
 
+    def end(self) -> None:
+        """Request the end: everything is shut down in order. Callable from a signal handler."""
+        self.should_exit = True
+
+    @contextmanager
+    def capture_signals(self) -> Iterator[None]:
+        """Leave signals to `recon4.stopping`: uvicorn raises them again when it has ended."""
+        yield
+
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
         """Start, accept connections, then call ``ready``.
 
@@ -65,7 +74,8 @@ class AnnouncingServer(uvicorn.Server):
             acceptor.start()
             self.servers.append(acceptor)  # type: ignore[arg-type]  # closed and waited for
         self.started = True
-        self._ready()
+        if not self.should_exit:
+            self._ready()
 
     async def shutdown(self, sockets: list[socket.socket] | None = None) -> None:
         """End; connections that are still open after the graceful time are aborted."""

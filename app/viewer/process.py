@@ -9,9 +9,10 @@ from __future__ import annotations
 
 import logging
 import shutil
-import signal
 import sys
 import threading
+from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +25,7 @@ from recon4.processes import die_with_parent
 from recon4.sandbox import Network, Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import cached_elsewhere
+from recon4.stopping import StopSignals, end_process, leave_terminal_to_parent
 
 MEMORY_FRACTION = 0.7
 LOOK_EVERY_S = 0.5
@@ -67,34 +69,43 @@ class ClientSessions:
             session.refresh()
 
 
-def main(project: Path, idle_s: float, *, points: int, jobs: Path, socket: Path) -> None:
-    """Serve one project until it has been idle for some time.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Viewing:
+    """What a viewer process is started with."""
 
-    Args:
-        project: Its folder; the folder's name is its id.
-        idle_s: End after this long without a client [s].
-        points: Most points sent to one client.
-        jobs: Folder of the folders of all jobs.
-        socket: Path of the Unix socket to listen on.
-    """
+    project: Path
+    """Folder of the project; its name is the project's id."""
+    idle_s: float
+    """End after this long without a client [s]."""
+    points: int
+    """Most points sent to one client."""
+    jobs: Path
+    """Folder of the folders of all jobs."""
+    socket: Path
+    """Unix socket to listen on."""
+
+
+def main(viewing: Viewing, stop: StopSignals) -> int:
+    """Serve one project until a signal, or until it has been idle for some time; returns 0."""
+    project, jobs, socket = viewing.project, viewing.jobs, viewing.socket
     answer, sys.stdout = sys.stdout, sys.stderr  # viser prints to it
     logging.basicConfig(level=logging.WARNING, format="%(asctime)s %(name)s %(message)s")
     scratch = scratch_of(jobs.parent, project.name)
     confine(viewer_policy(project, jobs, scratch, socket=socket.parent))
     over = threading.Event()
-    signal.signal(signal.SIGTERM, lambda *_: over.set())
-    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C in the terminal is the server's to handle
+    stop.request(over.set)
     threading.Thread(target=table, args=("viridis",), daemon=True).start()  # slow the first time
     source = ProjectSource(project, jobs)
-    sessions = ClientSessions(source, project.name, points)
+    sessions = ClientSessions(source, project.name, viewing.points)
     viewer = Viewer(socket, on_client=sessions.take, on_leave=sessions.leave)
     answer.write("ready\n")
     answer.flush()
-    while not over.wait(LOOK_EVERY_S) and viewer.idle_s < idle_s:
+    while not over.wait(LOOK_EVERY_S) and viewer.idle_s < viewing.idle_s:
         if source.changed():
             sessions.refresh()
     viewer.stop()
     shutil.rmtree(scratch, ignore_errors=True)
+    return 0
 
 
 def viewer_policy(project: Path, jobs: Path, scratch: Path, *, socket: Path) -> Policy:
@@ -110,10 +121,12 @@ def viewer_policy(project: Path, jobs: Path, scratch: Path, *, socket: Path) -> 
 
 if __name__ == "__main__":
     die_with_parent(sys.stdin.fileno())
-    main(
-        Path(sys.argv[1]),
-        float(sys.argv[2]),
+    leave_terminal_to_parent()
+    viewing = Viewing(
+        project=Path(sys.argv[1]),
+        idle_s=float(sys.argv[2]),
         points=int(sys.argv[3]),
         jobs=Path(sys.argv[4]),
         socket=Path(sys.argv[5]),
     )
+    end_process(partial(main, viewing))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,6 +11,7 @@ import typer
 
 if TYPE_CHECKING:
     from recon4.live.newest import Newest
+    from recon4.model.rig import Rig
 
 live = typer.Typer()
 
@@ -63,6 +65,7 @@ def replay(
 
 @live.command()
 def record(
+    context: typer.Context,
     out: Annotated[Path, typer.Argument(help="New project folder.")],
     *,
     rig: Annotated[str, typer.Option(help="Rig preset or .toml: sensors, ports, addresses.")],
@@ -77,32 +80,29 @@ def record(
 ) -> None:
     """Record sensors and map during the walk; the project exists from the start."""
     import asyncio
-    import time
 
-    from recon4.live.findings import findings
-    from recon4.live.headless import Headless, progress_line
-    from recon4.live.project_files import begin
+    from recon4.live.headless import Headless
+    from recon4.live.project_files import begin, discard
+    from recon4.live.session import CaptureSession
     from recon4.model.rig import load_rig
     from recon4.settings import preset as preset_named
+    from recon4.stopping import StoppedBySignal, StopSignals
 
     loaded = load_rig(rig)
     preset_named(preset)
-    session = begin(out, loaded, preset=preset, address=address, speed=speed)
-    _write(f"recording to {session.capture} (Ctrl-C stops)")
-    began_s, reported = time.monotonic(), set[str]()
-
-    def send(newest: Newest, problem: str) -> None:
-        _write(progress_line(newest, began_s))
-        found = {one.text for one in findings(loaded, newest, problem)}
-        for text in sorted(found - reported):
-            _write(f"  ! {text}")
-        reported.clear()
-        reported.update(found)
+    stop = context.find_object(StopSignals)
+    assert stop is not None
 
     async def run() -> Newest:
-        return await Headless(session, send=send).run(seconds)
+        return await Headless(session, send=_reporter(loaded)).run(seconds, stop)
 
-    ended = asyncio.run(run())
+    try:
+        session = begin(out, loaded, preset=preset, address=address, speed=speed)
+        _write(f"recording to {session.capture} (Ctrl-C stops)")
+        ended = asyncio.run(run())
+    except StoppedBySignal:
+        discard(CaptureSession(project=out))  # nothing was recorded yet
+        raise
     _write(_outcome(ended, of_scans=all(one.kind == "laser2d" for one in loaded.sensors)))
     if ended.stopped is not None and ended.stopped.why != "stopped":
         _write(f"recording ended by itself: {ended.stopped.why}")
@@ -110,6 +110,26 @@ def record(
     _write(f"next: recon4 process {session.capture} --rig {recordings / 'rig.toml'} --out {out}")
     if ended.done is None or ended.done.problem:
         raise typer.Exit(1)
+
+
+def _reporter(rig: Rig) -> Callable[[Newest, str], None]:
+    """Writes a line of progress, and each finding when it is new."""
+    import time
+
+    from recon4.live.findings import findings
+    from recon4.live.headless import progress_line
+
+    began_s, reported = time.monotonic(), set[str]()
+
+    def send(newest: Newest, problem: str) -> None:
+        _write(progress_line(newest, began_s))
+        found = {one.text for one in findings(rig, newest, problem)}
+        for text in sorted(found - reported):
+            _write(f"  ! {text}")
+        reported.clear()
+        reported.update(found)
+
+    return send
 
 
 def _outcome(ended: Newest, *, of_scans: bool) -> str:

@@ -1,7 +1,7 @@
 """The command line: ``recon4 COMMAND --help``.
 
-Exit codes: 0 done, 1 a known error (reported in one line), 2 wrong usage, 128 + n stopped by
-signal n (130 Ctrl-C, 143 SIGTERM).
+Exit codes: 0 done, 1 a known error (reported in one line), 2 wrong usage, 128 + n broken off by
+signal n (130 Ctrl-C, 143 SIGTERM). A signal is how a server and a recording are ended: 0.
 """
 
 from __future__ import annotations
@@ -314,22 +314,24 @@ def run(arguments: list[str], stop: StopSignals) -> int:
             name, "1"
         )  # small matrices: more threads only get in each other's way
     try:
-        code, complaint = _run(arguments)
+        code, complaint = _run(arguments, stop)
     except BaseException:
-        if stop.received is None:
+        if not stop.broke_off:
             raise
-    if stop.received is not None:  # whatever else was raised comes from that
+    if stop.broke_off:  # whatever else was raised comes from that
         stop.say("; the same command goes on after the last finished stage" * _resumes(arguments))
         return stop.exit_code
     if complaint:
         _complain(complaint)
+    stop.say()
     return code
 
 
-def _run(arguments: list[str]) -> tuple[int, str]:
-    """Exit code and what to complain of."""
+def _run(arguments: list[str], stop: StopSignals) -> tuple[int, str]:
+    """Exit code and what to complain of; `stop` is the ``obj`` of the commands' contexts."""
     try:
-        return int(app(args=arguments, prog_name="recon4", standalone_mode=False) or 0), ""
+        code = app(args=arguments, prog_name="recon4", standalone_mode=False, obj=stop)
+        return int(code or 0), ""
     except typer.Abort:
         return _INTERRUPTED, ""
     except Cancelled as stop:

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import asyncio
-import signal
 import time
 from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from recon4.errors import ConfigError
 from recon4.live.ipc.line_client import linked, started
 from recon4.live.newest import Newest
 from recon4.live.project_files import discard
 from recon4.live.session import CaptureSession
+from recon4.stopping import StopSignals
 
 REPORT_EVERY_S = 2.0
 _MAPPER_STARTS = 3
@@ -34,8 +35,8 @@ class Headless:
         self._problem = ""
         self._stopping = asyncio.Event()
 
-    async def run(self, seconds: float | None) -> Newest:
-        """Record until SIGINT, SIGTERM, the end of the time limit or the end of the recorder.
+    async def run(self, seconds: float | None, stop: StopSignals) -> Newest:
+        """Record until a signal, the end of the time limit or the end of the recorder.
 
         Returns:
             The newest messages, including ``done`` of the mapper.
@@ -43,14 +44,13 @@ class Headless:
         Raises:
             ConfigError: If a process cannot start; the text is its last log line.
         """
+        loop = asyncio.get_running_loop()
+        stop.request(partial(loop.call_soon_threadsafe, self._stopping.set))
         try:
             recorder = await started(self._session, "recorder")
         except ConfigError:
             discard(self._session)
             raise
-        loop = asyncio.get_running_loop()
-        for sign in (signal.SIGTERM, signal.SIGINT):
-            loop.add_signal_handler(sign, self._stopping.set)
         stopping = asyncio.create_task(self._stop_after(seconds, recorder))
         reporting = asyncio.create_task(self._report_periodically())
         receiving = asyncio.create_task(self._receive("recorder"))

@@ -8,6 +8,7 @@ from pathlib import Path
 from app.jobs.folder import JobFolder
 from app.jobs.worker import main
 from recon4.progress import Progress
+from recon4.stopping import end_process
 from tests.project_builder import build_project
 
 
@@ -19,4 +20,4 @@ def work(folder: JobFolder, progress: Progress) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), work)
+    end_process(lambda _: main(Path(sys.argv[1]), work))

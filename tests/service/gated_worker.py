@@ -15,6 +15,7 @@ from app.jobs.worker import main, process
 from recon4.model.events import Event, StageChanged
 from recon4.progress import Progress
 from recon4.sandbox import Policy
+from recon4.stopping import end_process
 
 AT_GATE = "waiting at the gate"
 
@@ -58,4 +59,4 @@ def policy(folder: JobFolder) -> Policy:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), work, policy)
+    end_process(lambda _: main(Path(sys.argv[1]), work, policy))

@@ -31,6 +31,7 @@ from app.network.listen import (
     uvicorn_config,
 )
 from app.settings import ServerSettings, recording_folders_from_environment
+from recon4.stopping import StopSignals, end_process
 
 ROOT = Path(__file__).parents[2]
 SLOW = "tests.service.slow_worker"
@@ -184,7 +185,7 @@ def ran(recording: Path) -> list[str]:
     return (recording / "ran").read_text().split()
 
 
-if __name__ == "__main__":
+def _serve(stop: StopSignals) -> int:
     serve(
         ServerSettings(
             root=Path(sys.argv[1]),
@@ -193,5 +194,11 @@ if __name__ == "__main__":
             worker_module=sys.argv[2],
             sensor_bind_address=sys.argv[3],
         ),
+        stop,
         on_ready=lambda url, notes: sys.stdout.write(url + "\n") and sys.stdout.flush(),
     )
+    return 0
+
+
+if __name__ == "__main__":
+    end_process(_serve)

@@ -23,6 +23,7 @@ from recon4.errors import EmptyRecording
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.settings import Settings
+from recon4.stopping import end_process
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 
@@ -131,4 +132,4 @@ def policy(folder: JobFolder) -> Policy:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), work, policy)
+    end_process(lambda _: main(Path(sys.argv[1]), work, policy))

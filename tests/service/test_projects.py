@@ -10,6 +10,7 @@ from app.main import serve
 from app.network.listen import listening
 from app.settings import ServerSettings
 from recon4.errors import StoreError
+from recon4.stopping import StopSignals
 from recon4.store.atomic import write_json
 from recon4.store.seal import changing
 from tests.project_builder import build_project
@@ -144,7 +145,7 @@ def test_two_servers_do_not_share_a_folder(tmp_path):
         assert httpx.get(f"{server.url}/healthz").status_code == 200
 
         with pytest.raises(StoreError, match="another server runs"):
-            serve(ServerSettings(root=tmp_path, port=0))
+            serve(ServerSettings(root=tmp_path, port=0), StopSignals())
 
 
 def test_answers_are_not_held_back_by_the_network(tmp_path):
@@ -156,4 +157,5 @@ def test_answers_are_not_held_back_by_the_network(tmp_path):
 def test_a_port_in_use_is_reported(tmp_path):
     with server_thread(tmp_path) as server, pytest.raises(StoreError, match="is in use"):
         (tmp_path / "other").mkdir()
-        serve(ServerSettings(root=tmp_path / "other", port=int(server.url.rsplit(":", 1)[1])))
+        port = int(server.url.rsplit(":", 1)[1])
+        serve(ServerSettings(root=tmp_path / "other", port=port), StopSignals())

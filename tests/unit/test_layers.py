@@ -39,7 +39,7 @@ MAY_IMPORT = {
     "recon4/recording": STAGE | {"recon4.recording"},
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.runtime_folder"}
-    | {"recon4.processes"}
+    | {"recon4.processes", "recon4.stopping"}
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
     | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
     | {"recon4.recording.formats.pcap"}

@@ -11,12 +11,12 @@ from __future__ import annotations
 import asyncio
 import logging
 import shutil
-import signal
 import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -44,9 +44,12 @@ from recon4.recording.ingest import LiveSource, ingest
 from recon4.recording.scan_capture import ScanCapture
 from recon4.recording.sources import Sources
 from recon4.settings import Settings, preset
+from recon4.stopping import StopSignals, end_process
 from recon4.store.atomic import write_json
 
 log = logging.getLogger(__name__)
+
+STOPPED = Done(frames=0, problem="the mapper was stopped by a signal")
 
 
 class Mapper:
@@ -77,19 +80,19 @@ class Mapper:
             return ScanFollower(ScanMap(rig, settings), rig, latency)
         return LidarFollower(LiveMap(rig, settings, scratch=self._session.folder), rig, latency)
 
-    async def run(self, on_ready: Callable[[], None]) -> int:
+    async def run(self, on_ready: Callable[[], None], stop: StopSignals) -> int:
         """Map until the recorder has ended; returns the exit code."""
+        stop.request(partial(self._loop.call_soon_threadsafe, self._abort))
         await self._lines.listen(self._session.socket("mapper"))
-        for number in (signal.SIGTERM, signal.SIGINT):
-            self._loop.add_signal_handler(number, self._abort)
         following = asyncio.create_task(self._follow())
         await asyncio.to_thread(warm_up, self._rig, self._settings)
         on_ready()
         try:
             outcome = await asyncio.to_thread(self._read)
         except (Recon4Error, OSError) as error:
-            log.exception("mapping ended")
-            outcome = Done(frames=0, problem=str(error))
+            outcome = STOPPED if self._aborted else Done(frames=0, problem=str(error))
+            if not self._aborted:
+                log.exception("mapping ended")
         following.cancel()
         await asyncio.gather(following, return_exceptions=True)
         self._lines.send(outcome)
@@ -143,7 +146,7 @@ class Mapper:
         self._publish(self._follower.flush())
         self._report_notes(every_s=0.0)
         if self._aborted:
-            return Done(frames=0, problem="the mapper was stopped by a signal")
+            return STOPPED
         began_s = time.monotonic()
         if self._has_frames:
             frames = finish(self._session, out, self._settings)
@@ -207,7 +210,7 @@ class Mapper:
         return [*snapshot.messages(), *self._newest_pose, self._newest_notes]
 
 
-def main(project: Path) -> int:
+def main(project: Path, stop: StopSignals) -> int:
     """Map the capture of a project; print ``ready`` once the socket is open."""
     logging.basicConfig(level=logging.INFO, format="%(asctime)s %(name)s %(message)s")
 
@@ -216,7 +219,7 @@ def main(project: Path) -> int:
         sys.stdout.flush()
 
     async def run() -> int:
-        return await Mapper(session).run(report_ready)
+        return await Mapper(session).run(report_ready, stop)
 
     try:
         session = load_session(project)
@@ -230,4 +233,4 @@ def main(project: Path) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    end_process(partial(main, Path(sys.argv[1])))

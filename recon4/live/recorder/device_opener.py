@@ -17,6 +17,7 @@ from pathlib import Path
 from recon4.errors import Recon4Error
 from recon4.live.recorder.serial_port import DRIVERS, TERMINALS
 from recon4.sandbox import Policy, confine
+from recon4.stopping import SIGNALS
 
 _MAX_WORDS = 1000
 
@@ -63,7 +64,7 @@ class DeviceOpener:
 
 def _serve(connection: socket.socket, open_device: Callable[[], int]) -> None:
     # Ctrl-C reaches all processes of a terminal; the recorder ends this one when it is done.
-    for number in (signal.SIGINT, signal.SIGTERM):
+    for number in SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     confine(Policy(read=(DRIVERS, TERMINALS, Path("/sys/devices")), write=(Path("/dev"),)))
     while connection.recv(16):

@@ -1,8 +1,9 @@
 """The recorder: a process that writes every datagram to the disk and does nothing else.
 
 ``python -m recon4.live.recorder.process PROJECT`` listens on the ports of the rig until it
-receives ``stop`` or SIGTERM. It exchanges JSON lines over a Unix socket (`CaptureSession.socket`):
-the messages of `RecorderMessage` to its clients, each `Request` from them.
+receives ``stop``, SIGTERM, SIGINT or SIGHUP. It exchanges JSON lines over a Unix socket
+(`CaptureSession.socket`): the messages of `RecorderMessage` to its clients, each `Request` from
+them.
 """
 
 from __future__ import annotations
@@ -11,13 +12,13 @@ import asyncio
 import errno
 import json
 import os
-import signal
 import sys
 import time
 from collections import Counter
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -50,6 +51,7 @@ from recon4.model.rig import Rig, load_rig
 from recon4.model.serial_device import SerialDevice, parse_serial_device
 from recon4.recording.velodyne.models import DATA_SIZE
 from recon4.sandbox import refuse_new_sockets, restart_with_one_thread
+from recon4.stopping import StopSignals, end_process
 from recon4.store.atomic import write_json
 
 STATUS_EVERY_S = 0.5
@@ -111,10 +113,9 @@ class Recorder:
         rig = self._rig
         return SerialLine(rig.gnss_serial, opener, port=rig.gnss_port, take=take)
 
-    async def run(self, on_ready: Callable[[], None]) -> None:
+    async def run(self, on_ready: Callable[[], None], stop: StopSignals) -> None:
         """Record until a request or signal to stop."""
-        for number in (signal.SIGTERM, signal.SIGINT):
-            self._loop.add_signal_handler(number, self._over.set)
+        stop.request(partial(self._loop.call_soon_threadsafe, self._over.set))
         await self._lines.listen(self._session.socket("recorder"))
         for port in self._ports:
             self._loop.add_reader(port.socket, self._receive, port)
@@ -252,11 +253,17 @@ def _append(path: Path, line: str) -> None:
         os.close(file)
 
 
-def main(project: Path, *, open_device: Callable[[SerialDevice], int] = open_serial_device) -> int:
+def main(
+    project: Path,
+    stop: StopSignals,
+    *,
+    open_device: Callable[[SerialDevice], int] = open_serial_device,
+) -> int:
     """Record a prepared session; print ``ready`` once the ports are open.
 
     Args:
         project: Its folder.
+        stop: Catches the signals.
         open_device: Opens the serial line of a GNSS receiver.
     """
 
@@ -266,7 +273,7 @@ def main(project: Path, *, open_device: Callable[[SerialDevice], int] = open_ser
         sys.stdout.flush()
 
     async def run(opener: DeviceOpener | None) -> None:
-        await Recorder(session, rig, opener=opener).run(report_ready)
+        await Recorder(session, rig, opener=opener).run(report_ready, stop)
 
     session = load_session(project)
     try:
@@ -290,4 +297,4 @@ def _device_opener(rig: Rig, open_device: Callable[[SerialDevice], int]) -> Devi
 
 
 if __name__ == "__main__":
-    sys.exit(main(Path(sys.argv[1])))
+    end_process(partial(main, Path(sys.argv[1])))

@@ -9,10 +9,15 @@ from pathlib import Path
 
 from recon4.live.recorder.process import main
 from recon4.live.recorder.serial_port import open_line
+from recon4.stopping import end_process
 
 RECEIVER = "receiver"
 
 if __name__ == "__main__":
     project = Path(sys.argv[1])
     terminal = (project / RECEIVER).read_text()
-    sys.exit(main(project, open_device=lambda device: open_line(terminal, device.baud)))
+    end_process(
+        lambda stop: main(
+            project, stop, open_device=lambda device: open_line(terminal, device.baud)
+        )
+    )
