@@ -147,7 +147,7 @@ class BagRecording:
                     row,
                     sensor,
                     report=self._report,
-                    deskewed=self._settings.deskewed,
+                    settings=self._settings,
                 )
                 head = first_stamps(bag, topic.name)
                 found[sensor.topic] = _Clouds(

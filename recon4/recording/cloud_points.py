@@ -18,6 +18,7 @@ from recon4.recording.formats.cloud_files import Table
 from recon4.recording.point_times import PointClock
 from recon4.recording.report import ImportReport
 from recon4.recording.velodyne.models import MODELS
+from recon4.settings import IngestSettings
 
 TIME_FIELDS = ("t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "t_us")
 RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")
@@ -35,6 +36,9 @@ def find_field(names: Any, aliases: tuple[str, ...]) -> str:
     return next((alias for alias in aliases if alias in names), "")
 
 
+_DEFAULTS = IngestSettings()
+
+
 class CloudDecoder:
     """Converts the clouds of one sensor to shots; detected units apply to all clouds."""
 
@@ -45,7 +49,7 @@ class CloudDecoder:
         *,
         report: ImportReport,
         points_lead: bool = False,
-        deskewed: bool = False,
+        settings: IngestSettings = _DEFAULTS,
     ) -> None:
         """Prepare.
 
@@ -55,12 +59,12 @@ class CloudDecoder:
             report: Receives what was detected.
             points_lead: Absolute times of points count, however far they are from the stamps
                 (file names in local time); otherwise the stamps do (one clock for a whole bag).
-            deskewed: Without the motion of the sensor inside: all points are of the stamp.
+            settings: Unit of the points, and whether the motion of the sensor is inside.
         """
         self._row, self._report = sensor_row, report
         self._name, self._model = sensor.name, sensor.model
         self._clock = PointClock(sensor.name, report, points_lead=points_lead)
-        self._deskewed = deskewed
+        self._deskewed, self._unit_m = settings.deskewed, settings.points_unit_m
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False
         """Whether the points of the last cloud had absolute times."""
@@ -77,7 +81,7 @@ class CloudDecoder:
             UnknownFormat: If there is no x, y or z.
             CorruptFile: If a field is not numeric.
         """
-        xyz = _xyz(table, self._name)
+        xyz = _xyz(table, self._name) * np.float32(self._unit_m)
         valid = np.flatnonzero(np.all(np.isfinite(xyz), axis=1) & np.any(xyz != 0.0, axis=1))
         self._report.count("points_invalid", len(xyz) - len(valid))
         table = {key: column[valid] for key, column in table.items()}
@@ -195,8 +199,9 @@ class CloudDecoder:
                 return found.t_ns, found.kept
         elif not full_turn:
             self._report.warn(
-                f"{self._name}: no time per point, all points at the stamp; without a warning with "
-                "the setting ingest.deskewed"
+                f"{self._name}: the points have no times: all of a cloud are taken as measured at "
+                "its stamp, which is wrong while the sensor moves. If the clouds are undistorted "
+                "already or the sensor stood still, say so with ingest.deskewed=true"
             )
         if not full_turn:
             return np.full(len(xyz), t_ns, np.int64), everyone
@@ -206,8 +211,8 @@ class CloudDecoder:
             self._report.derive(text)
         else:
             self._report.warn(
-                f"{text}; clouds without the motion of the sensor inside need the setting "
-                "ingest.deskewed"
+                f"{text}. If the clouds are undistorted already or the sensor stood still, say so "
+                "with ingest.deskewed=true"
             )
         since_ns = np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
         return t_ns + since_ns, everyone

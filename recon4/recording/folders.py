@@ -120,8 +120,8 @@ def read_frames(
     Raises:
         RecordingError: If not one of the files can be read.
     """
-    static = settings.deskewed or frames.are_static
-    decoder = CloudDecoder(0, sensor, report=report, points_lead=True, deskewed=static)
+    read_as = replace(settings, deskewed=True) if frames.are_static else settings
+    decoder = CloudDecoder(0, sensor, report=report, points_lead=True, settings=read_as)
     for text in time_warnings(frames):
         report.warn(text)
     frame_id, last_ns, failed = 0, None, None

@@ -14,7 +14,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
-from recon4.recording.assembly.assembler import TimeGap
+from recon4.recording.assembly.assembler import TimeGap, drop_invalid
 from recon4.recording.assembly.rotation import rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import cloud_table
@@ -284,7 +284,9 @@ def _with_head(
         recording = open_recording([path], None, settings=settings, report=report)
         rig = recording.rig
         whole = info.bytes <= WHOLE_BYTES
-        head = _read_head(recording, whole=whole)
+        head = _read_head(recording, settings, whole=whole, report=report)
+        if whole and not head.points:
+            report.warn(report.why_no_points())
         _judge_samples(head, rig, settings, whole=whole, report=report)
     except ConfigError as error:
         missing.append(f"rig: {error}")
@@ -326,14 +328,20 @@ class _Beginning:
     """Of each sensor row [Hz]; NaN = not known."""
     imu: list[ImuSamples] = field(default_factory=list)
     gnss: list[GnssSamples] = field(default_factory=list)
+    points: int = 0
+    """Within the limits of the range."""
 
 
-def _read_head(recording: Recording, *, whole: bool) -> _Beginning:
+def _read_head(
+    recording: Recording, settings: IngestSettings, *, whole: bool, report: ImportReport
+) -> _Beginning:
     """Rotation rate of each sensor row, and the samples beside the points.
 
     Args:
         recording: Read up to its first second.
+        settings: Limits of the range.
         whole: Read the rest too, for the counts of the report.
+        report: Receives the counts of points that are not usable.
     """
     shots: dict[int, list[Shots]] = {}
     head = _Beginning()
@@ -344,6 +352,7 @@ def _read_head(recording: Recording, *, whole: bool) -> _Beginning:
             gather(head.imu, item)
         if isinstance(item, GnssSamples):
             gather(head.gnss, item)
+        head.points += _usable_points(item, settings, report)
         if isinstance(item, Shots) and len(item) and not beyond:
             shots.setdefault(item.sensor, []).append(item)
             start_ns = int(item.t_ns[0]) if start_ns is None else start_ns
@@ -356,6 +365,12 @@ def _read_head(recording: Recording, *, whole: bool) -> _Beginning:
         t_ns, xyz = (np.concatenate([getattr(p, name) for p in parts]) for name in ("t_ns", "xyz"))
         head.rotation_hz[row] = rotation_rate(t_ns, xyz)
     return head
+
+
+def _usable_points(item: object, settings: IngestSettings, report: ImportReport) -> int:
+    if isinstance(item, Shots):
+        return len(drop_invalid(item, settings=settings, report=report))
+    return len(item.xyz) if isinstance(item, Multiframe) else 0
 
 
 def _judge_samples(

@@ -175,7 +175,7 @@ def ingest(
         receivers = _Receivers(writer, found, live.watch)
         written = _write_frames(recording, assembler, receivers, progress=progress)
         if not written.duration_ns:
-            raise _without_points(paths[0], report)
+            raise EmptyRecording(f"{paths[0].name}: {report.why_no_points()}")
         imu = _imu(given, found, recording.rig, written=written, report=report)
         gnss = _gnss(given, found, recording.rig, written=written, report=report)
         _write_poses(out, found.poses, report)
@@ -187,11 +187,6 @@ def ingest(
         writer.add(imu=imu, gnss=gnss, report=about)
     for text in report.warnings:
         progress.event(Warned(text=text))
-
-
-def _without_points(path: Path, report: ImportReport) -> EmptyRecording:
-    counted = "; ".join(report.text(name) for name in sorted(report.counts))
-    return EmptyRecording(f"{path.name}: no usable points ({counted or 'nothing read'})")
 
 
 def _sort_out(sources: Sources) -> Sources:

@@ -80,6 +80,11 @@ class ImportReport:
     def _losses(self) -> list[Loss]:
         return losses(self.counts, self.details) + replaced(self.counts, self.details)
 
+    def why_no_points(self) -> str:
+        """That there is no usable point, with all that was counted."""
+        counted = "; ".join(self.text(name) for name in sorted(self.counts))
+        return f"no usable points ({counted or 'nothing read'})"
+
     def repaired(self) -> list[str]:
         """All counts of repaired data, in words."""
         return repairs(self.counts)

@@ -23,8 +23,10 @@ class IngestSettings:
     gap_s: float = 0.2
     """A jump of the clock larger than this is reported as a gap [s]."""
     deskewed: bool = False
-    """The clouds are undistorted already: all points are of the cloud's stamp. For terrestrial
-    laser scans, and for clouds that another program has deskewed."""
+    """The clouds are undistorted already, or the sensor stood still: all points are taken as
+    measured at the cloud's stamp. For terrestrial laser scans and clouds of other programs."""
+    points_unit_m: float = 1.0
+    """Unit of the points of clouds [m]: 0.001 if they are in millimeters."""
 
     lidar_topic: str = ""
     """Topic of the only LiDAR of a bag that is read. Empty = chosen by content, or by the rig."""
@@ -41,6 +43,11 @@ class IngestSettings:
 
     def __post_init__(self) -> None:
         require(0.0 <= self.rate_hz <= 100.0, "rate_hz must be 0 to 100", self.rate_hz)
+        require(
+            1e-6 <= self.points_unit_m <= 1e3,
+            "points_unit_m must be 1e-6 to 1000",
+            self.points_unit_m,
+        )
         require(
             0.0 <= self.min_range_m < self.max_range_m,
             "min_range_m must be below max_range_m",

@@ -14,6 +14,7 @@ from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig
 from recon4.recording.assembly.rotation import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.extent import extent_text
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
@@ -318,8 +319,17 @@ def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport
     report.count("points_invalid", int(np.count_nonzero(bad)))
     report.count("points_near", int(np.count_nonzero(near)))
     report.count("points_far", int(np.count_nonzero(far)))
+    if np.count_nonzero(far) > len(shots) // 2 and "points_far" not in report.details:
+        _say_extent(shots.xyz[far], settings.max_range_m, report)
     drop = bad | near | far
     return _rows(shots, ~drop) if drop.any() else shots
+
+
+def _say_extent(xyz: NDArray[np.float32], max_range_m: float, report: ImportReport) -> None:
+    """Say once where points are of which most are too far: the unit or the origin may be wrong."""
+    text = extent_text(xyz.astype(np.float64))
+    report.details["points_far"] = text
+    report.warn(f"most points of a cloud are farther than {max_range_m:g} m: {text}")
 
 
 def _runs(shots: Shots, gap_ns: int) -> list[Shots]:

@@ -1,0 +1,43 @@
+"""Where the points of a cloud are that are farther away than a LiDAR measures, and why."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+
+_MIDDLE = (5.0, 95.0)
+"""Percentiles of the coordinates: single damaged points do not count."""
+_OUTSIDE = 3.0
+"""An origin that is farther from the middle of the points than this multiple of their extent is
+that of a coordinate system, not of a sensor."""
+_MILLIMETERS_M = 1000.0
+"""No LiDAR of a backpack measures half of its points farther away [m]."""
+
+
+def extent_text(xyz: Array) -> str:
+    """Extent of points, (N, 3) with N > 0, what it looks like, and the remedy."""
+    low, high = np.percentile(xyz, _MIDDLE, axis=0)
+    extent = ", ".join(
+        f"{axis} {a:.0f} … {b:.0f}" for axis, a, b in zip("xyz", low, high, strict=True)
+    )
+    return f"{extent}: {_looks_like(xyz, low, high)}"
+
+
+def _looks_like(xyz: Array, low: Array, high: Array) -> str:
+    middle, size = np.linalg.norm((low + high) / 2.0), float(np.max(high - low))
+    usual = float(np.median(np.linalg.norm(xyz, axis=1)))
+    if middle > _OUTSIDE * size:
+        return (
+            "coordinates of a map or of the earth, not a scan with the sensor at the origin. A "
+            "finished map is no recording; give it as a reference"
+        )
+    if usual > _MILLIMETERS_M:
+        return (
+            f"half of them are farther than {usual:.0f} m. If they are in millimeters, give "
+            "ingest.points_unit_m=0.001; a map whose origin is no sensor is no recording"
+        )
+    return (
+        f"half of them are farther than {usual:.0f} m. If the sensor measures that far, give a "
+        "larger ingest.max_range_m"
+    )
