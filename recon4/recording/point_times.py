@@ -36,6 +36,8 @@ _MOST_DAMAGED = 0.2
 """With a larger ratio of damaged times the field is not used."""
 _REVOLUTIONS = 2.0
 """Times farther from the others are damaged."""
+_PART_RATIO = (0.2, 1.5)
+"""Duration of a cloud that is part of a revolution, from and to, in those from cloud to cloud."""
 _STEPS = 50.0
 """A revolution is resolved in at least this many steps, or the times are too coarse."""
 
@@ -94,6 +96,8 @@ class PointClock:
         """
         self._name, self._report, self._points_lead = name, report, points_lead
         self._noted = False
+        self._known_unit = 0.0
+        """Of the clouds before, for those with few points [ns]; 0 = not known yet."""
 
     def times(
         self, key: str, values: Values, *, t_ns: int, period_ns: int, full_turn: bool
@@ -117,7 +121,7 @@ class PointClock:
             raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
         try:
             numbers = _numbers(values)
-            unit = _unit(numbers, t_ns, period_ns, full_turn=full_turn)
+            unit = self._unit(numbers, t_ns, period_ns, full_turn=full_turn)
             revolution_ns = _revolution_ns(numbers, unit, period_ns, full_turn=full_turn)
             return self._placed(numbers, unit, t_ns, revolution_ns=revolution_ns)
         except _UnusableTimes as reason:
@@ -126,6 +130,30 @@ class PointClock:
                 "clouds_wrong_times", f"{self._name}, {key!r}: {reason}"
             )
             return None
+
+    def _unit(self, numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool) -> float:
+        """Nanoseconds of one unit.
+
+        Raises:
+            _UnusableTimes: If none is plausible.
+        """
+        if full_turn and numbers.span == 0.0:
+            raise _UnusableTimes(f"all points of a revolution have the time {numbers.middle:g}")
+        by_span = _unit_of_turn(numbers) if full_turn else _unit_of_part(numbers, period_ns)
+        unit = _unit_of_clock(numbers, t_ns, period_ns) or _unit_of_dates(numbers) or by_span
+        self._known_unit = unit or self._known_unit
+        if not unit and not full_turn:
+            unit = self._known_unit or _unit_of_few(numbers)
+        if not unit:
+            raise _UnusableTimes(
+                f"from first to last point {numbers.span:g}, no revolution in any unit"
+            )
+        # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
+        if full_turn and numbers.span * unit < 1e9 * _TURN_S[0]:
+            raise _UnusableTimes(
+                f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
+            )
+        return unit
 
     def _placed(
         self, numbers: _Numbers, unit: float, t_ns: int, *, revolution_ns: float
@@ -257,28 +285,6 @@ def _cycles_ns(numbers: _Numbers, unit: float) -> Cycles:
     return (*(() if numbers.wraps else (0,)), *longer, _HOUR_NS)
 
 
-def _unit(numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool) -> float:
-    """Nanoseconds of one unit.
-
-    Raises:
-        _UnusableTimes: If none is plausible.
-    """
-    if full_turn and numbers.span == 0.0:
-        raise _UnusableTimes(f"all points of a revolution have the time {numbers.middle:g}")
-    unit = _unit_of_clock(numbers, t_ns, period_ns) or _unit_of_dates(numbers)
-    unit = unit or _unit_of_span(numbers, full_turn=full_turn)
-    if not unit:
-        raise _UnusableTimes(
-            f"from first to last point {numbers.span:g}, no revolution in any unit"
-        )
-    # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
-    if full_turn and numbers.span * unit < 1e9 * _TURN_S[0]:
-        raise _UnusableTimes(
-            f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
-        )
-    return unit
-
-
 def _unit_of_clock(numbers: _Numbers, t_ns: int, period_ns: int) -> float:
     """The unit in which the values are times of the stamp's own clock; 0 = none."""
     near_ns = _REVOLUTIONS * max(period_ns, _PART_NS)
@@ -294,13 +300,34 @@ def _unit_of_dates(numbers: _Numbers) -> float:
     return unit if numbers.wide or unit == 1.0 else 0.0
 
 
-def _unit_of_span(numbers: _Numbers, *, full_turn: bool) -> float:
+def _unit_of_turn(numbers: _Numbers) -> float:
+    """The unit in which the times of a whole revolution take as long as one; 0 = none."""
     if numbers.is_fraction:
-        return next((unit for most, unit in _FLOAT_UNITS if numbers.span <= most), 0.0)
-    if not full_turn:
-        return 1.0
+        return _unit_of_few(numbers)
     seconds = ((unit, numbers.span * unit * 1e-9) for unit in _UNITS_NS[:3])
     return next((unit for unit, s in seconds if _TURN_S[0] <= s <= _TURN_S[1]), 0.0)
+
+
+def _unit_of_part(numbers: _Numbers, period_ns: int) -> float:
+    """The unit in which the times fit the time from cloud to cloud; 0 = none, as of few points.
+
+    They may be relative to the stamp or to the start of the revolution.
+    """
+    least_ns = _PART_RATIO[0] * period_ns
+    most_ns = _PART_RATIO[1] * max(period_ns, _PART_NS)
+    units = _UNITS_NS if numbers.is_fraction else _UNITS_NS[:3]
+    for extent in (abs(numbers.middle) + numbers.span / 2.0, numbers.span):
+        for unit in units:
+            if least_ns <= extent * unit <= most_ns:
+                return unit
+    return 0.0
+
+
+def _unit_of_few(numbers: _Numbers) -> float:
+    """The usual unit of times of which nothing else is known; 0 = none."""
+    if not numbers.is_fraction:
+        return 1.0
+    return next((unit for most, unit in _FLOAT_UNITS if numbers.span <= most), 0.0)
 
 
 def _revolution_ns(numbers: _Numbers, unit: float, period_ns: int, *, full_turn: bool) -> float:

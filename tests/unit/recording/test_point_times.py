@@ -5,7 +5,10 @@ import pytest
 
 from recon4.model.import_counts import WARNED_RATIO
 from recon4.recording.clock_names import described, known_offset_s
-from tests.builders import T0_NS
+from recon4.recording.cloud_points import CloudDecoder
+from recon4.recording.report import ImportReport
+from tests.builders import T0_NS, room_cloud
+from tests.unit.recording.packet_builders import sensor
 from tests.unit.recording.test_cloud_points import REL_NS, decode, with_field
 
 HOUR_NS = 3_600_000_000_000
@@ -170,3 +173,39 @@ def test_offsets_have_names():
     assert described(-18.012) == "-18.012 s (GPS time against UTC)"
     assert described(7200.1).endswith("(whole hours, as of a time zone)")
     assert described(3.25) == "+3.250 s"
+
+
+PART_NS = 25_000_000
+UNITS = {"ns": 1.0, "us": 1e3, "ms": 1e6, "s": 1e9}
+
+
+def part(first, last):
+    """The points between two times of a revolution [ns], with these times."""
+    rows = (first <= REL_NS) & (last > REL_NS)
+    table = {name: column[rows] for name, column in room_cloud().items()}
+    return table, REL_NS[rows]
+
+
+@pytest.mark.parametrize("few_first", [False, True])
+@pytest.mark.parametrize("from_start", [False, True], ids=["of the message", "of the revolution"])
+@pytest.mark.parametrize(
+    ("unit", "kind"),
+    [("ns", "u4"), ("us", "u4"), ("us", "i4"), ("us", "f4"), ("ms", "f4"), ("s", "f4")],
+)
+def test_times_of_a_part_of_a_revolution_are_in_the_unit_that_fits_it(
+    unit, kind, from_start, few_first
+):
+    report = ImportReport()
+    decoder = CloudDecoder(0, sensor(model="generic"), report=report)
+    sizes = [2_000_000, PART_NS] if few_first else [PART_NS, 300_000]
+    for k, size_ns in enumerate(sizes):
+        start_ns = k * PART_NS
+        table, since_ns = part(start_ns + PART_NS - size_ns, start_ns + PART_NS)
+        stamp_ns = 0 if from_start else start_ns
+        table["time"] = ((since_ns - stamp_ns) / UNITS[unit]).astype(kind)
+
+        shots = decoder.decode(table, t_ns=T0_NS + stamp_ns, period_ns=PART_NS)
+
+        np.testing.assert_allclose(shots.t_ns - T0_NS, np.sort(since_ns), atol=5000)
+    assert report.warnings == []
+    assert not report.counts["clouds_wrong_times"]
