@@ -102,7 +102,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
         samples=info.samples,
         derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
         missing=tuple(text for text in info.missing if not _is_in(text, suited)),
-        warnings=(*info.warnings, *_gap_warning(len(info.gaps))),
+        warnings=(*info.warnings, *_gap_warnings([gap.seconds for gap in info.gaps])),
         project=_project_name(path),
         preset="outdoor" if located else "indoor",
         rig=suited.get("rig", ""),
@@ -145,8 +145,11 @@ def _is_detected_rig(text: str, beside: dict[str, str]) -> bool:
     return "rig" in beside and text.startswith("no rig given")
 
 
-def _gap_warning(gaps: int) -> tuple[str, ...]:
-    return (f"{gaps} gaps in the data",) if gaps else ()
+def _gap_warnings(seconds: list[float]) -> list[str]:
+    """Sentences about gaps, which are negative where a clock goes back."""
+    back = sum(length < 0 for length in seconds)
+    texts = [f"{len(seconds) - back} gaps in the data"] * (len(seconds) > back)
+    return [*texts, *[f"the clock goes back {back} times"] * (back > 0)]
 
 
 def _project_name(path: Path) -> str:

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from recon4.errors import ConfigError, RecordingError
-from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
-from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
-from recon4.recording.assembly.assembler import TimeGap, drop_invalid
-from recon4.recording.assembly.rotation import rotation_rate
-from recon4.recording.assembly.shots import Shots
+from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.bag_messages import cloud_table
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
-from recon4.recording.clock_compare import GNSS_CLOCK, IMU_CLOCK, is_same_clock, warn_of_free_clocks
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
+from recon4.recording.info_head import RecordingHead, judge_samples, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
     BAGS,
@@ -39,18 +35,15 @@ from recon4.recording.laser2d import is_laser2d, read_laser_recording
 from recon4.recording.laser_mount import mounted_scans
 from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
-from recon4.recording.open import Recording, frames_model, open_recording
+from recon4.recording.nearby_samples import samples_beside
+from recon4.recording.open import frames_model, open_recording
 from recon4.recording.report import ImportReport
-from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings
 
 _PROBED_MESSAGES = 50
-_HEAD_ITEMS = 40
 _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
-
-_HEAD_NS = 1_000_000_000
 
 
 def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
@@ -277,17 +270,17 @@ def _with_head(
     info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
 ) -> RecordingInfo:
     """Add the findings of opening the recording and reading its first second."""
-    head = _Beginning()
+    head = RecordingHead()
     missing = list(info.missing)
     rig: Rig | None = None
     try:
         recording = open_recording([path], None, settings=settings, report=report)
         rig = recording.rig
         whole = info.bytes <= WHOLE_BYTES
-        head = _read_head(recording, settings, whole=whole, report=report)
+        head = read_head(recording, settings, whole=whole, report=report)
         if whole and not head.points:
             report.warn(report.why_no_points())
-        _judge_samples(head, rig, settings, whole=whole, report=report)
+        judge_samples(head, rig, settings, whole=whole, report=report)
     except ConfigError as error:
         missing.append(f"rig: {error}")
     except RecordingError as error:
@@ -297,9 +290,11 @@ def _with_head(
     if head.imu and "IMU" not in texts:
         samples.append("IMU in the position packets")
     if rig is not None and not head.imu and "IMU" not in texts:
-        missing.append("IMU (an IMU file can be given beside it)")
+        beside = samples_beside(path, RecordingKind.IMU_CSV)
+        missing.append(f"IMU ({beside or 'an IMU file can be given beside it'})")
     if not head.gnss and "GNSS" not in texts:
-        missing.append("GNSS positions")
+        beside = samples_beside(path, RecordingKind.GNSS_CSV)
+        missing.append("GNSS positions" + f" ({beside})" * bool(beside))
     sensors = info.sensors
     if rig is not None and len(sensors) == len(rig.sensors):
         sensors = tuple(
@@ -308,9 +303,11 @@ def _with_head(
             else replace(s, rotation_hz=head.rotation_hz.get(k, float("nan")))
             for k, s in enumerate(sensors)
         )
+    report.count("clock_jumps_back", len(head.jumps))
     return replace(
         info,
         sensors=sensors,
+        gaps=(*info.gaps, *head.jumps),
         samples=tuple(samples),
         missing=tuple(missing),
         derived=tuple(report.derived),
@@ -318,75 +315,3 @@ def _with_head(
         repaired=tuple(report.repaired()),
         warnings=tuple(report.warnings),
     )
-
-
-@dataclass(slots=True)
-class _Beginning:
-    """What the first second of a recording holds, or all of a small one."""
-
-    rotation_hz: dict[int, float] = field(default_factory=dict)
-    """Of each sensor row [Hz]; NaN = not known."""
-    imu: list[ImuSamples] = field(default_factory=list)
-    gnss: list[GnssSamples] = field(default_factory=list)
-    points: int = 0
-    """Within the limits of the range."""
-
-
-def _read_head(
-    recording: Recording, settings: IngestSettings, *, whole: bool, report: ImportReport
-) -> _Beginning:
-    """Rotation rate of each sensor row, and the samples beside the points.
-
-    Args:
-        recording: Read up to its first second.
-        settings: Limits of the range.
-        whole: Read the rest too, for the counts of the report.
-        report: Receives the counts of points that are not usable.
-    """
-    shots: dict[int, list[Shots]] = {}
-    head = _Beginning()
-    beyond = False
-    start_ns: int | None = None
-    for number, item in enumerate(recording.read()):
-        if isinstance(item, ImuSamples):
-            gather(head.imu, item)
-        if isinstance(item, GnssSamples):
-            gather(head.gnss, item)
-        head.points += _usable_points(item, settings, report)
-        if isinstance(item, Shots) and len(item) and not beyond:
-            shots.setdefault(item.sensor, []).append(item)
-            start_ns = int(item.t_ns[0]) if start_ns is None else start_ns
-            everyone = len(shots) == len(recording.rig.sensors)
-            beyond = everyone and int(item.t_ns[-1]) - start_ns > _HEAD_NS
-        beyond |= isinstance(item, Multiframe) or number >= _HEAD_ITEMS
-        if beyond and not whole:
-            break
-    for row, parts in shots.items():
-        t_ns, xyz = (np.concatenate([getattr(p, name) for p in parts]) for name in ("t_ns", "xyz"))
-        head.rotation_hz[row] = rotation_rate(t_ns, xyz)
-    return head
-
-
-def _usable_points(item: object, settings: IngestSettings, report: ImportReport) -> int:
-    if isinstance(item, Shots):
-        return len(drop_invalid(item, settings=settings, report=report))
-    return len(item.xyz) if isinstance(item, Multiframe) else 0
-
-
-def _judge_samples(
-    head: _Beginning, rig: Rig, settings: IngestSettings, *, whole: bool, report: ImportReport
-) -> None:
-    """Say of IMU and GNSS what processing will: clock, unit, channels that were not measured.
-
-    A receiver may have no fix yet in the first second: only all positions are judged.
-    """
-    imu, gnss = join(head.imu), join(head.gnss) if whole else None
-    offset_s = rig.imu_time_offset_s
-    if is_same_clock(IMU_CLOCK, offset_s, report) and imu is not None:
-        if not offset_s:
-            warn_of_free_clocks(report, imu_file=False)
-        unit = settings.imu_gyro_unit
-        clean_imu(imu, offset_s=offset_s, jumps_ns=(), report=report, gyro_unit=unit)
-    offset_s = rig.gnss_time_offset_s
-    if is_same_clock(GNSS_CLOCK, offset_s, report) and gnss is not None:
-        clean_gnss(gnss, offset_s=offset_s, report=report)

@@ -78,7 +78,10 @@ class RecordingInfo:
         lines += [f"not read  {text}" for text in self.unread]
         for gap in self.gaps[:10]:
             since_s = (gap.t_ns - self.t_first_ns) / 1e9
-            lines.append(f"gap       {gap.sensor}: {gap.seconds:.3f} s at {since_s:.2f} s")
+            what = "" if gap.seconds > 0 else "the clock goes back by "
+            lines.append(
+                f"gap       {gap.sensor}: {what}{abs(gap.seconds):.3f} s at {since_s:.2f} s"
+            )
         if len(self.gaps) > 10:
             lines.append(f"gap       … {len(self.gaps)} in all")
         lines += [f"derived   {text}" for text in self.derived]

@@ -33,6 +33,13 @@ def unread_samples(sources: Sources) -> list[str]:
     return texts
 
 
+def samples_beside(recording: Path, kind: RecordingKind) -> str:
+    """What to do with samples of a kind beside a recording; empty = there are none."""
+    option = {RecordingKind.IMU_CSV: "--imu", RecordingKind.GNSS_CSV: "--gnss"}[kind]
+    file = _nearby([recording], kind)
+    return f"{file.name} beside it has them, give it with {option} {file.name}" if file else ""
+
+
 def _nearby(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:
     """The first CSV file of a kind in the folders of the recordings."""
     folders = {path if path.is_dir() else path.parent for path in recordings}

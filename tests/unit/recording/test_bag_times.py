@@ -106,3 +106,27 @@ def test_topics_recorded_by_another_clock_do_not_hide_the_clouds(tmp_path, plain
     found, _ = opened(path)
 
     assert [sensor.topic for sensor in found.rig.sensors] == ["/points"]
+
+
+@pytest.mark.parametrize("kind", ["bag1", "mcap"])
+def test_info_says_where_a_clock_goes_back(tmp_path, kind):
+    path = bag_path(tmp_path, kind)
+    with RobotBag(path, kind) as bag:
+        for k in range(40):
+            bag.recorded_ns = T0_NS + k * STEP_NS
+            bag.cloud("/points", T0_NS + (k - 8 * (k >= 20)) * STEP_NS, room_cloud())
+
+    text = "\n".join(describe(path).lines())
+
+    assert "lidar: the clock goes back by 0.8" in text
+    assert "at 2.00 s" in text
+    assert "repaired  1 clocks: set back, the times go on" in text
+
+
+def test_info_of_a_steady_clock_says_nothing_of_it(tmp_path):
+    path = bag_path(tmp_path, "mcap")
+    with RobotBag(path, "mcap") as bag:
+        for k in range(20):
+            bag.cloud("/points", T0_NS + k * STEP_NS, room_cloud())
+
+    assert "goes back" not in "\n".join(describe(path).lines())

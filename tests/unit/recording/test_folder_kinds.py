@@ -117,3 +117,12 @@ def test_samples_beside_a_recording_that_nobody_named_are_mentioned(tmp_path):
     assert f"--imu {imu}" in text
     assert unread_samples(Sources((cloud,), imu=imu)) == []
     assert unread_samples(Sources((cloud, imu))) == []
+
+
+def test_info_names_samples_that_lie_beside_a_recording(tmp_path, pcap):
+    (tmp_path / "walk.pcap").write_bytes(pcap.read_bytes())
+    imu_csv(tmp_path / "imu.csv")
+
+    for given in (tmp_path, tmp_path / "walk.pcap"):
+        missing = describe(given).missing
+        assert "IMU (imu.csv beside it has them, give it with --imu imu.csv)" in missing
