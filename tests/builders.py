@@ -258,7 +258,7 @@ class Bag:
         )
         self.write(topic, "sensor_msgs/msg/NavSatFix", int(t_ns), message)
 
-    def odometry(self, topic, t_ns, x):
+    def odometry(self, topic, t_ns, x, *, child="body"):
         point = self.make("geometry_msgs/msg/Point", x=x, y=0.0, z=0.0)
         turn = self.make("geometry_msgs/msg/Quaternion", x=0.0, y=0.0, z=0.0, w=1.0)
         vector = self.make("geometry_msgs/msg/Vector3", x=0.0, y=0.0, z=0.0)
@@ -268,7 +268,7 @@ class Bag:
         message = self.make(
             "nav_msgs/msg/Odometry",
             header=self.header(t_ns),
-            child_frame_id="body",
+            child_frame_id=child,
             pose=self.make("geometry_msgs/msg/PoseWithCovariance", pose=pose, covariance=zeros),
             twist=self.make("geometry_msgs/msg/TwistWithCovariance", twist=twist, covariance=zeros),
         )

@@ -12,9 +12,11 @@ from numpy.typing import NDArray
 from recon4.errors import RecordingError
 from recon4.recording.bag_messages import cloud_table
 from recon4.recording.cloud_points import RING_FIELDS, TIME_FIELDS, find_field
-from recon4.recording.formats.bags import CLOUD, ODOMETRY, Bag, BagTopic
+from recon4.recording.formats.bags import CLOUD, IMU, ODOMETRY, Bag, BagTopic
 from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
+from recon4.recording.report import ImportReport
 from recon4.recording.topic_contents import Contents, read_contents
+from recon4.recording.transform_messages import frame_name, has_frames, read_frames
 
 _WIDEST_CAMERA_RAD = np.deg2rad(65.0)
 """Half of the widest view of a depth camera."""
@@ -66,10 +68,9 @@ def judged_clouds(bag: Bag, clouds: Sequence[BagTopic], keep: Collection[str]) -
         clouds: Its topics of clouds; the only one is read, whatever it is.
         keep: Topics that a rig file names: they are read.
     """
-    odometry = [t for t in bag.topics if t.type == ODOMETRY]
-    contents = read_contents(bag, [*clouds, *odometry])
-    fixed = {contents.pop(t.name).frame for t in odometry} - {""}
+    contents = read_contents(bag, clouds)
     found = [_described(one) for one in contents.values()]
+    fixed = _frames_of_poses(bag, {one.frame for one in found}) if len(found) > 1 else set()
     reasons = {one.topic.name: _why_not(one, found, fixed) for one in found}
     reasons |= dict.fromkeys(keep, "")
     if not any(not reasons[one.topic.name] for one in found):
@@ -81,6 +82,25 @@ def judged_clouds(bag: Bag, clouds: Sequence[BagTopic], keep: Collection[str]) -
         )
         for one in found
     ]  # fmt: skip
+
+
+def _frames_of_poses(bag: Bag, frames: Collection[str]) -> set[str]:
+    """Those of some frames in which odometry states poses, and which are no part of the robot.
+
+    Some drivers write the frame of the sensor where that of the map belongs: it is the frame of the
+    body too, or of an IMU, or fixed to the robot.
+    """
+    types = (ODOMETRY, IMU)
+    contents = read_contents(bag, [t for t in bag.topics if t.type in types])
+    poses = [one for one in contents.values() if one.topic.type == ODOMETRY and one.messages]
+    parts = {one.frame for one in contents.values() if one.topic.type == IMU}
+    bodies = {one.topic.name: frame_name(one.messages[0].child_frame_id) for one in poses}
+    stated = {one.frame for one in poses if bodies[one.topic.name] not in ("", one.frame)}
+    fixed = (stated & set(frames)) - parts - {""}
+    if not fixed or not has_frames(bag.topics):
+        return fixed
+    graph = read_frames(bag, sorted(fixed), ImportReport())
+    return {frame for frame in fixed if frame not in graph or not graph.body_of(frame)}
 
 
 def _described(found: Contents) -> CloudTopic:
@@ -119,10 +139,7 @@ def _why_not(one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[st
 def _is_in_frame_of_poses(
     one: CloudTopic, others: Sequence[CloudTopic], fixed: Collection[str]
 ) -> bool:
-    """Whether the frame of odometry is that of a map: drivers also write that of the sensor.
-
-    Then a cloud as measured is there too, in a frame of its own and with no less detail.
-    """
+    """Whether odometry states poses in the frame of a cloud, and another one is as measured."""
     measured = [o for o in others if not o.is_placed and o.frame not in fixed]
     return one.frame in fixed and any(o.detail >= one.detail for o in measured)
 

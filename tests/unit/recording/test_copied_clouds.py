@@ -87,17 +87,49 @@ def test_two_lidars_with_common_stamps_are_both_there(tmp_path):
         opened(write(tmp_path, lidar("/front/points", "front"), rear))
 
 
-def test_odometry_in_the_frame_of_the_lidar_makes_no_map_of_it(tmp_path):
+def registered(bag, t_ns, k):
+    bag.frame = "map"
+    table = room_cloud(start_turn=0.3)
+    bag.cloud("/cloud_registered", t_ns, {axis: table[axis][:3000] for axis in "xyz"})
+
+
+@pytest.mark.parametrize("child", ["", "os_lidar", "body"])
+def test_odometry_in_the_frame_of_the_only_lidar_makes_no_map_of_it(tmp_path, child):
     def odometry(bag, t_ns, k):
         bag.frame = "os_lidar"
-        bag.odometry("/odom", t_ns, 0.1 * k)
-
-    def registered(bag, t_ns, k):
-        bag.frame = "map"
-        table = room_cloud(start_turn=0.3)
-        bag.cloud("/cloud_registered", t_ns, {axis: table[axis][:3000] for axis in "xyz"})
+        bag.odometry("/odom", t_ns, 0.1 * k, child=child)
 
     assert read_topics(write(tmp_path, lidar(), odometry, registered)) == ["/points"]
+
+
+@pytest.mark.parametrize("why", ["no body", "IMU", "tf"])
+def test_odometry_in_the_frame_of_a_lidar_takes_it_for_no_map_beside_another(tmp_path, why):
+    other = mount(0.5, 0.3, 0.0)
+
+    def odometry(bag, t_ns, k):
+        bag.frame = "front"
+        bag.odometry("/odom", t_ns, 0.1 * k, child="" if why == "no body" else "body")
+        if why == "IMU":
+            imu(bag, t_ns, k)
+
+    def rear(bag, t_ns, k):
+        bag.frame = "rear"
+        bag.cloud("/rear/points", t_ns, measured(k + 40, turned=other))
+
+    transforms = [("base_link", "front", mount(0.0, 0.0, 1.0)), ("base_link", "rear", other)]
+    path = write(
+        tmp_path,
+        lidar("/front/points", "front"),
+        rear,
+        odometry,
+        transforms=transforms if why == "tf" else (),
+    )
+
+    if why == "tf":
+        assert set(read_topics(path)) == {"/front/points", "/rear/points"}
+    else:
+        with pytest.raises(ConfigError, match="2 LiDARs and no rig"):
+            opened(path)
 
 
 # -- messages of drivers
