@@ -38,8 +38,9 @@ class UnusedPart:
     def text(self) -> str:
         """One sentence: how many of how many, and why."""
         because = "; ".join(f"{loss.number}: {wording(loss.name)[0].text}" for loss in self.reasons)
+        words = COUNT_WORDINGS[self.name]
         return (
-            f"{self.number} of {self.total} {COUNT_WORDINGS[self.name].text} are not used "
+            f"{self.number} of {self.total} {words.noun or words.text} are not used "
             f"({100.0 * self.number / self.total:.0f} %): {because}."
         )
 

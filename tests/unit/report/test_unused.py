@@ -28,6 +28,12 @@ def test_all_reasons_count_together_and_are_named():
     )
 
 
+def test_what_is_counted_where_it_is_used_has_its_plain_name():
+    (part,) = unused_parts({"gnss_kept": 15, "gnss_nan": 10})
+
+    assert part.text.startswith("10 of 25 GNSS positions are not used (40 %): ")
+
+
 @pytest.mark.parametrize(
     ("counts", "expected"),
     [
