@@ -84,8 +84,8 @@ def process_2d(
         ]
         project.describe(preset=preset, rig="", inputs=inputs)
         runner = StageRunner(project, settings, progress)
-        mount = stages_2d.mount_input(sources.rig)
-        run_stages_2d(runner, recordings, mount=mount, decided=read_decided(out))
+        laser = stages_2d.laser_input(sources.rig)
+        run_stages_2d(runner, recordings, laser=laser, decided=read_decided(out))
         about = About(ProjectDescription.read(out), settings)
         return publish_2d(out, runner.runs, about, progress=progress)
 
@@ -113,11 +113,11 @@ def remake_2d(out: Path, *, progress: Progress) -> Summary2d:
 
 
 def run_stages_2d(
-    runner: StageRunner, recordings: Input, *, mount: Input | None, decided: Decided
+    runner: StageRunner, recordings: Input, *, laser: Input | None, decided: Decided
 ) -> None:
     """Every stage in order; each is skipped when its artifact is there."""
     run = runner.run
-    scans = run(stages_2d.SCANS_2D, recordings=recordings, mount=mount)
+    scans = run(stages_2d.SCANS_2D, recordings=recordings, laser=laser)
     odometry = run(stages_2d.ODOMETRY_2D, scans=scans)
     searched = run(stages_2d.GRAPH_2D, scans=scans, odometry=odometry)
     graph = run(stages.VERIFICATION, graph=searched)

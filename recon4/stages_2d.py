@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from recon4.geometry.se3 import SE3
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, Sensor
 from recon4.store.hashing import hash_json
 from recon4.store.stage import Input, Stage, StageContext
 
 
 def _scans(
-    context: StageContext, *, recordings: tuple[Path, ...], mount: SE3 | None
+    context: StageContext, *, recordings: tuple[Path, ...], laser: Sensor | None
 ) -> Scan2dFigures:
     from recon4.slam2d.stage import import_scans
 
@@ -20,18 +19,18 @@ def _scans(
         recordings,
         context.out,
         settings=context.settings.ingest,
-        T_body_laser=mount,
+        laser=laser,
         progress=context.progress,
     )
 
 
-def mount_input(rig: Rig | None) -> Input | None:
-    """The mount of the 2-D laser of a rig file, an input of `SCANS_2D`; None = there is none."""
+def laser_input(rig: Rig | None) -> Input | None:
+    """The 2-D laser of a rig file, an input of `SCANS_2D`; None = there is none."""
     row = None if rig is None else rig.row_of("laser2d")
     if rig is None or row is None:
         return None
-    T_body_laser = rig.sensors[row].T_body_sensor
-    return Input(hash_json(T_body_laser.matrix().tolist()), T_body_laser)
+    laser = rig.sensors[row]
+    return Input(hash_json([laser.T_body_sensor.matrix().tolist(), laser.topic]), laser)
 
 
 def _odometry(context: StageContext, *, scans: Path) -> Odometry2dFigures:
@@ -55,7 +54,7 @@ def _map(context: StageContext, *, scans: Path, odometry: Path, graph: Path) -> 
     return build_map(artifacts, context.out, settings=context.settings, progress=context.progress)
 
 
-SCANS_2D = Stage("scans_2d", 10, ("ingest",), _scans, Scan2dFigures)
+SCANS_2D = Stage("scans_2d", 11, ("ingest",), _scans, Scan2dFigures)
 ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d", "hector"), _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 1, ("slam2d", "loops2d"), _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 2, ("slam2d", "grid2d"), _map, Map2dFigures)

@@ -126,6 +126,6 @@ def finish_scans(session: CaptureSession, settings: Settings) -> int:
         }
         project.describe(preset=session.preset, rig="", inputs=[about])
         runner = StageRunner(project, settings, progress)
-        mount = stages_2d.mount_input(load_rig(session.rig))
-        runner.run(stages_2d.SCANS_2D, recordings=recordings, mount=mount)
+        laser = stages_2d.laser_input(load_rig(session.rig))
+        runner.run(stages_2d.SCANS_2D, recordings=recordings, laser=laser)
         return figures_of(runner.runs, stages_2d.SCANS_2D).scans

@@ -67,7 +67,11 @@ def read_laser2d(
 
 
 def read_laser_recording(
-    paths: Sequence[Path], report: ImportReport, *, settings: IngestSettings | None = None
+    paths: Sequence[Path],
+    report: ImportReport,
+    *,
+    settings: IngestSettings | None = None,
+    topic: str = "",
 ) -> LaserRecording:
     """Read the scans of a recording, and how the laser is mounted; repairs are counted.
 
@@ -75,6 +79,7 @@ def read_laser_recording(
         paths: A CARMEN log, or bags or capture files that belong together.
         report: Receives counts, repairs and warnings.
         settings: Name the topics of a bag; None = chosen by content.
+        topic: Of the laser in a bag by a rig file, if no setting names one; empty = by content.
 
     Raises:
         RecordingError: If it cannot be read or has no scan.
@@ -93,7 +98,9 @@ def read_laser_recording(
         files = [file for path in paths for file in pcap_files(path)]
         require_one_capture(files)
         return LaserRecording(in_meters(read_scan_captures(files, report), report))
-    scans, mount = _of_bags(paths, settings or IngestSettings(), report=report)
+    settings = settings or IngestSettings()
+    named = Named(settings.laser_topic, topic), Named(settings.odometry_topic)
+    scans, mount = _of_bags(paths, named, report=report)
     return LaserRecording(in_meters(scans, report), mount, of_robot=True)
 
 
@@ -183,14 +190,14 @@ def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
 
 
 def _of_bags(
-    paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
+    paths: Sequence[Path], named: tuple[Named, Named], *, report: ImportReport
 ) -> tuple[LaserScans, LaserMount | None]:
+    """Scans and mount of a laser, by what names the topics of laser and odometry."""
     files = [file for path in paths for file in bag_paths(path)]
     poses = SampleBatch(pose_row, join_poses, report)
     parts: list[LaserScans] = []
     walks: list[Trajectory] = []
     with Bag(files, report) as bag:
-        named = Named(settings.laser_topic), Named(settings.odometry_topic)
         topic = choose_topic(bag, named[0], LASER_KIND, report=report)
         odometry = choose_topic(bag, named[1], ODOMETRY_KIND, report=report)
         collector = ScanCollector(0, report, stamps=stamp_clock(bag, topic))
@@ -207,7 +214,10 @@ def _of_bags(
     parts += collector.flush()
     walks += poses.flush()
     if not parts:
-        raise EmptyRecording(f"{paths[0].name}: no scan of {topic or 'a 2-D laser'} can be read")
+        why = "" if topic else "".join(f"; {text}" for text in report.warnings)
+        raise EmptyRecording(
+            f"{paths[0].name}: no scan of {topic or 'a 2-D laser'} can be read{why}"
+        )
     out_of_order = report.counts["scans_out_of_order"]
     if out_of_order:
         report.warn(f"{topic}: {out_of_order} scans earlier than the one before are left out")

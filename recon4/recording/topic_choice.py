@@ -98,6 +98,7 @@ LASER_KIND = Kind(
     faults=laser_faults,
     value=_is_wide,
     less="a narrower view",
+    rig_key="[sensor]",
 )
 
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from recon4.errors import EmptyRecording
 from recon4.geometry.se2 import to_se3, transform
-from recon4.geometry.se3 import SE3, Array
+from recon4.geometry.se3 import Array
 from recon4.model.events import Warned
 from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.laser_scans import LaserScans
+from recon4.model.rig import Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.progress import Progress
@@ -45,7 +46,7 @@ def import_scans(
     out: Path,
     *,
     settings: IngestSettings,
-    T_body_laser: SE3 | None = None,
+    laser: Sensor | None = None,
     progress: Progress,
 ) -> Scan2dFigures:
     """Read a recording of a 2-D laser into a folder; the scans as seen from above.
@@ -54,7 +55,7 @@ def import_scans(
         recordings: A CARMEN log, or bags.
         out: Receives the scans and ``report.json``.
         settings: Name the topics of a bag.
-        T_body_laser: Mount of the laser by a rig file; None = as the recording states.
+        laser: The laser of a rig file, with its mount and topic; None = as the recording states.
         progress: Receives the warnings.
 
     Raises:
@@ -62,10 +63,10 @@ def import_scans(
     """
     report = ImportReport()
     progress.start("Reading", len(recordings), "files")
-    by_rig = mount_of_rig(T_body_laser) if T_body_laser is not None else None
-    mounted = mounted_scans(
-        read_laser_recording(recordings, report, settings=settings), by_rig, report=report
-    )
+    by_rig = mount_of_rig(laser.T_body_sensor) if laser is not None else None
+    topic = laser.topic if laser is not None else ""
+    recording = read_laser_recording(recordings, report, settings=settings, topic=topic)
+    mounted = mounted_scans(recording, by_rig, report=report)
     scans = _in_true_order(mounted, report)
     _report_gaps(scans, report)
     report.warn_of_losses()

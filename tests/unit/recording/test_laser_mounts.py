@@ -1,5 +1,7 @@
 """2-D lasers that are mounted upside down, tilted or aside, by tf or by a rig file."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -24,6 +26,9 @@ ANGLES = np.deg2rad(np.linspace(-130.0, 140.0, 181))
 STEP_NS = 100_000_000
 ROBOT = np.stack([np.linspace(-1.0, 1.0, 60), np.zeros(60), np.linspace(0.0, 2.0, 60)], axis=1)
 """Poses of the robot."""
+
+
+LASER = Sensor(name="laser", model="generic", kind="laser2d", T_body_sensor=mount())
 
 
 def walk_bag(folder, T_base_laser, *, odometry=True, tf=True, kind="db3", **frames):
@@ -250,7 +255,7 @@ def test_odometry_that_turns_against_the_stated_mount_is_a_contradiction(tmp_pat
         [path],
         tmp_path / "out",
         settings=IngestSettings(),
-        T_body_laser=wrong,
+        laser=replace(LASER, T_body_sensor=wrong),
         progress=Silent(),
     )
 
