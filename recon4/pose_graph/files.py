@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,6 +22,8 @@ _NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "ch
 _COUNTS = ("iterations", "paths")
 _TEXTS = ("kind", "verdict", "reason", "decided_by")
 _NODES = ("frame_ids", "t_ns", "node_R", "node_t")
+_BLOCK = 1024
+"""Edges that are written at a time."""
 _EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged")
 
 
@@ -93,15 +96,25 @@ def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
 
 
 def write_edges_json(path: Path, graph: PoseGraph) -> None:
-    """Write every registered pair as JSON, one line per pair; an unknown number is ``null``."""
-    lines = ",\n".join(json.dumps(asdict(edge_record(graph, edge))) for edge in graph.edges)
+    """Write every registered pair as JSON, one line per pair; an unknown number is ``null``.
+
+    Written in blocks: the memory does not grow with the number of pairs.
+    """
     head = json.dumps(
         {
             "convention": "T_a_b maps points of node b into node a; metres; quaternion x y z w",
             "nodes": len(graph),
         }
     )
-    path.write_text(f'{head[:-1]}, "edges": [\n{lines}\n]}}\n', "utf-8")
+    with path.open("w", encoding="utf-8") as file:
+        file.write(f'{head[:-1]}, "edges": [\n')
+        between = ""
+        for start in range(0, len(graph.edges), _BLOCK):
+            records = _records(graph, graph.edges[start : start + _BLOCK])
+            file.write(between)
+            file.write(",\n".join(json.dumps(msgspec.to_builtins(one)) for one in records))
+            between = ",\n"
+        file.write("\n]}\n")
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,25 +150,29 @@ class EdgeRecord:
     decided_by: str
 
 
-def edge_record(graph: PoseGraph, edge: Edge) -> EdgeRecord:
-    """One edge as in ``edges.json``."""
-    i, j = edge.i, edge.j
-    return EdgeRecord(
-        nodes=(i, j),
-        frames=(int(graph.frame_ids[i]), int(graph.frame_ids[j])),
-        t_ns=(int(graph.t_ns[i]), int(graph.t_ns[j])),
-        T_a_b=PoseRecord(edge.T_i_j.t.tolist(), edge.T_i_j.quat_xyzw().tolist()),
-        kind=str(edge.kind),
-        verdict=str(edge.verdict),
-        reason=str(edge.reason),
-        overlap=finite_or_none(edge.overlap),
-        error_m=finite_or_none(edge.error_m),
-        limit_m=finite_or_none(edge.limit_m),
-        degeneracy=finite_or_none(edge.degeneracy),
-        converged=edge.converged,
-        iterations=edge.iterations,
-        verification_m=finite_or_none(edge.verification_m),
-        paths=edge.paths,
-        chi2=finite_or_none(edge.chi2),
-        decided_by=edge.decided_by,
-    )
+def _records(graph: PoseGraph, edges: Sequence[Edge]) -> Iterator[EdgeRecord]:
+    """Edges as in ``edges.json``."""
+    T_i_j = SE3.stack(edge.T_i_j for edge in edges)
+    poses = zip(T_i_j.t.tolist(), T_i_j.quat_xyzw().tolist(), strict=True)
+    frame_ids, t_ns = graph.frame_ids, graph.t_ns
+    for edge, pose in zip(edges, poses, strict=True):
+        i, j = edge.i, edge.j
+        yield EdgeRecord(
+            nodes=(i, j),
+            frames=(int(frame_ids[i]), int(frame_ids[j])),
+            t_ns=(int(t_ns[i]), int(t_ns[j])),
+            T_a_b=PoseRecord(*pose),
+            kind=str(edge.kind),
+            verdict=str(edge.verdict),
+            reason=str(edge.reason),
+            overlap=finite_or_none(edge.overlap),
+            error_m=finite_or_none(edge.error_m),
+            limit_m=finite_or_none(edge.limit_m),
+            degeneracy=finite_or_none(edge.degeneracy),
+            converged=edge.converged,
+            iterations=edge.iterations,
+            verification_m=finite_or_none(edge.verification_m),
+            paths=edge.paths,
+            chi2=finite_or_none(edge.chi2),
+            decided_by=edge.decided_by,
+        )

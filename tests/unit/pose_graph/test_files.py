@@ -1,4 +1,5 @@
 import json
+import tracemalloc
 from dataclasses import fields
 from pathlib import Path
 
@@ -10,7 +11,7 @@ from hypothesis import strategies as st
 from recon4.errors import CorruptFile, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
-from recon4.pose_graph.files import load_graph, save_graph
+from recon4.pose_graph.files import load_graph, save_graph, write_edges_json
 from recon4.pose_graph.g2o import write_g2o
 from recon4.pose_graph.relations import squared_residuals
 from tests.benchmarks.false_loops import office_graph
@@ -189,3 +190,20 @@ def test_an_edge_from_a_later_to_an_earlier_node_is_reversed(tmp_path: Path) -> 
     expected = SE3.from_rpy(0, 0, -1.4, t=[-1.0, 0.5, 0.0]).inverse()
     np.testing.assert_allclose(edge.T_i_j.matrix(), expected.matrix(), atol=1e-12)
     assert np.linalg.eigvalsh(edge.information)[0] > 0.0
+
+
+def test_the_json_of_many_pairs_is_written_in_blocks_that_fit_together(tmp_path: Path) -> None:
+    few = sample()
+    graph = few.with_edges(few.edges * (12_000 // len(few.edges)))
+    tracemalloc.start()
+    write_edges_json(tmp_path / "edges.json", graph)
+    _, peak_bytes = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    write_edges_json(tmp_path / "few.json", few)
+
+    size_bytes = (tmp_path / "edges.json").stat().st_size
+    assert size_bytes > 5e6
+    assert peak_bytes < 0.6 * size_bytes
+    records = json.loads((tmp_path / "edges.json").read_text("utf-8"))["edges"]
+    once = json.loads((tmp_path / "few.json").read_text("utf-8"))["edges"]
+    assert records == once * (12_000 // len(once))
