@@ -109,8 +109,7 @@ def write_csv(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
 def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool = False) -> int:
     """Write points as DXF R2010 in meters: one layer per slice, one point per cm² of the slice.
 
-    ezdxf writes the skeleton of the file; the points are streamed into it, so memory does not
-    depend on their number.
+    ezdxf writes the skeleton of the file; the points are written into it after they were counted.
 
     Args:
         chosen: The points; layers are named by number and position of the slices.
@@ -122,29 +121,44 @@ def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool
         How many points were written.
 
     Raises:
-        ConfigError: If there are too many.
+        ConfigError: If there are more than `MAX_DXF_POINTS`; before anything is written.
         StoreError: If the file cannot be written.
     """
     layers = [layer_name(k, plane) for k, plane in enumerate(chosen.planes, start=1)]
+    drawn = _drawn(chosen, frame, flat=flat)
     before, after, owner = _dxf_frame(layers)
-    count = 0
+    handle = _FIRST_HANDLE
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
         file.write(before)
-        for number, part, p_map in chosen.parts([], cell_m=_DXF_CELL_M):
-            if flat:
-                p = part.uvd * [1.0, 1.0, 0.0]
-            else:
-                p = frame.to_crs(p_map) if frame.to_crs else p_map
-            count += len(p)
-            if count > MAX_DXF_POINTS:
-                raise ConfigError(
-                    f"DXF: expected at most {MAX_DXF_POINTS} points, got more; "
-                    "use a thinner slice or a smaller window, or export LAZ"
-                )
-            first = _FIRST_HANDLE + count - len(p)
-            file.writelines(_dxf_points(p, layers[number - 1], owner=owner, handle=first))
+        for number, p in drawn:
+            file.writelines(_dxf_points(p, layers[number - 1], owner=owner, handle=handle))
+            handle += len(p)
         file.write(after)
-    return count
+    return handle - _FIRST_HANDLE
+
+
+def _drawn(chosen: SliceSelection, frame: MapFrame, *, flat: bool) -> list[tuple[int, Array]]:
+    """Number of the slice and coordinates of the points of a DXF, all counted.
+
+    Raises:
+        ConfigError: If there are too many; none are kept while the rest is counted.
+    """
+    kept: list[tuple[int, Array]] = []
+    count = 0
+    for number, part, p_map in chosen.parts([], cell_m=_DXF_CELL_M):
+        count += len(part)
+        if count > MAX_DXF_POINTS:
+            kept.clear()
+        elif flat:
+            kept.append((number, part.uvd * [1.0, 1.0, 0.0]))
+        else:
+            kept.append((number, frame.to_crs(p_map) if frame.to_crs else p_map))
+    if count > MAX_DXF_POINTS:
+        raise ConfigError(
+            f"DXF: expected at most {MAX_DXF_POINTS} points (one per cm² of each slice), got "
+            f"{count}: export a smaller part or fewer slices, use a thinner slice, or export LAZ"
+        )
+    return kept
 
 
 def layer_name(number: int, plane: SlicePlane) -> str:
@@ -240,7 +254,7 @@ def _refuse_bent(drawn: SliceImage, frame: MapFrame, middle: Array) -> None:
     if worst > max(0.5 * drawn.paper.pixel_m, 0.005):
         raise GeoreferenceError(
             f"GeoTIFF: the image is too large, its corners would be off by {worst:.3f} m in "
-            f"{frame.crs}; export a smaller window"
+            f"{frame.crs}; export a smaller part"
         )
 
 

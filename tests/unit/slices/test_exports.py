@@ -15,6 +15,7 @@ import rasterio.transform
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.recording.formats.scratch import sweep_scratch
+from recon4.slices import export
 from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
 from recon4.slices.frames import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
@@ -171,7 +172,7 @@ def test_an_image_too_large_for_one_transformation_is_rejected(tiles, tmp_path):
     small = draw(tiles, CUT, RasterGrid(SliceWindow(-40e3, -40e3, 40e3, 40e3), 100.0))
     object.__setattr__(small.paper, "pixel_m", 0.01)
 
-    with pytest.raises(GeoreferenceError, match="smaller window"):
+    with pytest.raises(GeoreferenceError, match="smaller part"):
         write_geotiff(small, tmp_path / "s.tif", frame=PLACED, rgba=drawn.rgba(drawn.span, "light"))
 
 
@@ -251,3 +252,19 @@ def test_the_foot_on_the_surface_is_found(tiles):
     assert foot.p_map == pytest.approx([1.0, 2.0, 1.0], abs=0.008)
     assert np.abs(foot.normal) == pytest.approx([1.0, 0.0, 0.0], abs=0.05)
     assert nearest_surface(tiles, np.array([3.0, 2.0, 1.0])) is None
+
+
+def test_a_dxf_of_too_many_points_is_refused_with_their_number_before_it_is_written(
+    tiles, tmp_path, monkeypatch
+):
+    plane = CUT.repeated(3, spacing_m=0.3)
+    count = write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL)
+    monkeypatch.setattr(export, "MAX_DXF_POINTS", count)
+    assert write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL) == count
+    monkeypatch.setattr(export, "MAX_DXF_POINTS", count // 2)
+    monkeypatch.setattr(export, "atomic_file", None)  # nothing may be begun
+
+    with pytest.raises(ConfigError, match=f"at most {count // 2} points .* got {count}: .* LAZ"):
+        write_dxf(SliceSelection(tiles, plane), tmp_path / "t.dxf", frame=LOCAL)
+
+    assert not (tmp_path / "t.dxf").exists()
