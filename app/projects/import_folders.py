@@ -52,7 +52,8 @@ class ImportFolders:
         if not self._within(real):
             folders = ", ".join(str(folder) for folder in self._folders)
             raise Refused(
-                f"recordings may only lie in {folders}; name more folders in RECON4_RECORDINGS"
+                f"recordings may only lie in {folders}: move it there or upload it; who starts the "
+                "server may name more folders in the environment variable RECON4_RECORDINGS"
             )
         if not self._visible(real):
             raise Refused(

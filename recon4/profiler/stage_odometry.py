@@ -172,8 +172,8 @@ def _profiler_remarks(
     if change is not None and change.is_wrong:
         found.append(
             "the map is sharper with the profiler mounted otherwise than the rig file says: "
-            f"{change.describe()} of the body, against the 2-D laser; calibrate with recon4 "
-            "calibrate --method entropy"
+            f"{change.describe()} of the body, against the 2-D laser; calibrate with the command "
+            "recon4 calibrate --method entropy"
         )
     return tuple(found)
 

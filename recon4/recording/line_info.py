@@ -115,7 +115,7 @@ def _absent(tables: LineTables, has_head: bool) -> tuple[str, ...]:
         "angles of the head (column head_deg; or head_rate_deg_s in the rig file)": not has_head,
     }
     found = tuple(text for text, is_absent in absent.items() if is_absent)
-    return (*found, "rig: a rig file with a sensor of kind profiler (--rig)")
+    return (*found, "rig: one with a sensor of kind profiler (page: field Rig; command: --rig)")
 
 
 def _profiler(name: str, seen: _Seen, part: float) -> SensorInfo:

@@ -81,8 +81,8 @@ class LineTableRecording:
         row = None if rig is None else rig.row_of("profiler")
         if rig is None or row is None:
             raise ConfigError(
-                f"{name}: line scans need a rig file with a sensor of kind profiler (--rig): "
-                "tables do not say where the sensors are mounted"
+                f"{name}: line scans need a rig with a sensor of kind profiler (page: field Rig; "
+                "command: --rig): tables do not say where the sensors are mounted"
             )
         sensor = rig.sensors[row]
         if "head_deg" not in column_names(tables.lines) and not sensor.head_rate_rad_s:

@@ -28,7 +28,8 @@ def unread_samples(sources: Sources) -> list[str]:
         file = None if given else _nearby(sources.recordings, kind)
         if file and file not in sources.recordings:
             texts.append(
-                f"{file} lies beside the recording and is not read: give it with {option} {file}"
+                f"{file} lies beside the recording and is not read: give it (page: IMU and GNSS "
+                f"files; command: {option} {file})"
             )
     return texts
 

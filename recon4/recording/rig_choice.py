@@ -65,10 +65,14 @@ def _remedy(streams: Sequence[Stream], why: str) -> str:
     ]
     lines += [f"  {_described(stream)}" for stream in streams]
     if streams[0].topic:
-        lines.append(f"Read one of them with: --set ingest.lidar_topic={streams[0].topic}")
+        lines.append(
+            f"Read one of them: set lidar_topic of ingest to {streams[0].topic} (page: All "
+            f"settings; command: --set ingest.lidar_topic={streams[0].topic})"
+        )
     lines.append(
-        "Or give a rig file (--rig FILE; --rig 4recon is the rig of the thesis) with their mounts "
-        "in the body, x forward, y left, z up; a sensor that is not listed is not read:"
+        "Or give a rig (page: Rigs, then the field Rig; command: --rig FILE; 4recon is the rig of "
+        "the thesis) with their mounts in the body, x forward, y left, z up; a sensor that is not "
+        "listed is not read:"
     )
     ports = [stream.port for stream in streams]
     lines.append('name = "my rig"')

@@ -71,7 +71,8 @@ def refuse_older(root: Path, rows: Sequence[JournalRow]) -> None:
     raise Older(
         f"this project is older than what this server approved (version {recorded.version} of "
         f"{recorded.time[:19]}Z): an earlier state, or another project, was put in its place; put "
-        "the newer one back, or take it as it is: recon4 verify PROJECT --accept"
+        "the newer one back, approve the map again, or take it as it is with the command recon4 "
+        "verify PROJECT --accept"
     )
 
 
@@ -158,7 +159,8 @@ def _read(path: Path) -> NewestApproval | None:
     except msgspec.ValidationError as error:
         raise StoreError(
             f"{APPROVALS}/{path.name} in the server's own files is damaged ({error}): compare the "
-            "project with a backup, then take it as it is: recon4 verify PROJECT --accept"
+            "project with a backup, then take it as it is with the command recon4 verify PROJECT "
+            "--accept"
         ) from error
 
 

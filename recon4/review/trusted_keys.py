@@ -109,11 +109,13 @@ class TrustedKeys:
             return (
                 f"the signature is intact, but by the unknown key {short}: this server did not "
                 f"sign it{why}; if that signer is to count here, an admin compares the key with "
-                f"the signer and adds it: recon4 keys add NAME {public_key} --root ROOT"
+                f"the signer and adds it on the page People, or with the command recon4 keys add "
+                f"NAME {public_key} --root ROOT"
             )
         return (
             f"the signature is intact, but the signer is unknown on this computer (key {short})"
-            f"{why}; if you know whose key it is, add it: recon4 keys add NAME {public_key}"
+            f"{why}; if you know whose key it is, add it with the command recon4 keys add NAME "
+            f"{public_key}"
         )
 
 

@@ -278,7 +278,7 @@ def _ask_unit(size: Array, own: Array) -> None:
         )
         raise ConfigError(
             f"read in meters it measures {there} m, the map {here} m. It states no unit: "
-            "choose one, for example millimeters (--unit mm), or meters"
+            "choose one, for example millimeters (command: --unit mm), or meters"
         )
 
 

@@ -206,7 +206,8 @@ def _compare(
     except Altered as error:
         message = f"{name} is not what recon4 wrote: {error}"
         more = (
-            f"; put it back from a backup, or take it as it is (recon4 verify --accept {root}); "
+            "; put it back from a backup, or take it as it is with the command recon4 verify "
+            f"--accept {root}; "
             "if it is the ledger, move it away: finished stages are found by their artifacts"
         )
         raise Altered(message + more if advice else message) from error

@@ -192,7 +192,10 @@ def approve(given: PairingApproval, request: Request, server: Server, *, who: Wh
 
 def _with_login(server: Server) -> None:
     if not server.access.login:
-        raise Conflict("this server listens on this computer only; start it with --lan for phones")
+        raise Conflict(
+            "this server listens on this computer only: phones need one that was started with the "
+            "command recon4 serve ROOT --lan"
+        )
 
 
 def _signed_out(request: Request) -> None:

@@ -157,7 +157,7 @@ def raise_question(preview: TablePreview, name: str) -> None:
     """
     if preview.question:
         raise ConfigError(
-            f"{name}: {preview.question} Say which column is what (--columns "
+            f"{name}: {preview.question} Say which column is what (command: --columns "
             f"{_suggestion(preview.columns)}); the first row is "
             f"{' | '.join(preview.rows[0])[:160]}"
         )
