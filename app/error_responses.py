@@ -19,10 +19,11 @@ from fastapi.responses import HTMLResponse, JSONResponse, Response
 from pydantic import BaseModel
 from starlette.exceptions import HTTPException
 
-from app.errors import AppError
+from app.access.people import MAY, Person
+from app.errors import STORAGE, AppError, Remedy
 from app.network.behind import route_path
 from app.pages import page_response
-from recon4.errors import Recon4Error, UnknownFormat, WrongSettings
+from recon4.errors import NoSpace, Recon4Error, UnknownFormat, WrongSettings
 
 log = logging.getLogger(__name__)
 
@@ -53,6 +54,8 @@ class ProblemDetail(BaseModel):
     """Field -> its problem, where several fields have one."""
     candidates: list[str] = []
     """Paths of recordings in a folder that is none itself: one of them may be meant."""
+    remedy: Remedy | None = None
+    """The page of this server where what `detail` advises is done, if it is another one."""
 
 
 def install(app: FastAPI) -> None:
@@ -63,11 +66,15 @@ def install(app: FastAPI) -> None:
         if _wants_page(request):
             return _page(request, error.status, str(error), headers=error.headers)
         problem = ProblemDetail(error=type(error).__name__, detail=str(error))
+        problem.remedy = _permitted(error.remedy, request)
         return _problem(error.status, problem, error.headers)
 
     @app.exception_handler(Recon4Error)
-    async def wrong_input(_: Request, error: Recon4Error) -> JSONResponse:
-        return _problem(422, _input_problem(error))
+    async def wrong_input(request: Request, error: Recon4Error) -> JSONResponse:
+        problem = _input_problem(error)
+        if isinstance(error, NoSpace):
+            problem.remedy = _permitted(STORAGE, request)
+        return _problem(422, problem)
 
     @app.exception_handler(RequestValidationError)
     async def wrong_form(_: Request, error: RequestValidationError) -> JSONResponse:
@@ -101,6 +108,14 @@ def _input_problem(error: Recon4Error) -> ProblemDetail:
     elif isinstance(error, UnknownFormat):
         problem.candidates = [str(path) for path in error.candidates]
     return problem
+
+
+def _permitted(remedy: Remedy | None, request: Request) -> Remedy | None:
+    """The remedy if the person behind the request may open its page."""
+    if remedy is None or not remedy.needs:
+        return remedy
+    who: Person | None = request.scope.get("state", {}).get("person")
+    return remedy if who is not None and remedy.needs in MAY[who.role] else None
 
 
 def _field_message(problem: Mapping[str, Any]) -> str:

@@ -22,8 +22,36 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import ClassVar
+from urllib.parse import quote
+
+
+@dataclass(frozen=True, slots=True)
+class Remedy:
+    """The page where the reader of an error does what its message names.
+
+    Not needed where the page that shows the error has the field or button itself.
+    """
+
+    text: str
+    """Text of the link."""
+    page: str
+    """Path of the page, below the address of this server."""
+    needs: str = ""
+    """Permission for that page; empty = none."""
+
+
+STORAGE = Remedy("See what takes space", "/storage", needs="process")
+LOGIN = Remedy("Sign in", "/login")
+CAPTURE = Remedy("Open the capture", "/live", needs="look")
+PROJECTS = Remedy("See all jobs", "/", needs="look")
+
+
+def project_page(project_id: str) -> Remedy:
+    """The page of a project: its job, its name, its deletion."""
+    return Remedy(f"Open {project_id}", f"/projects/{quote(project_id)}/", needs="look")
 
 
 class AppError(Exception):
@@ -32,6 +60,11 @@ class AppError(Exception):
     status: ClassVar[int] = 500
     headers: Mapping[str, str] = MappingProxyType({})
     """Headers of the response."""
+    remedy: Remedy | None = None
+
+    def __init__(self, message: str, *, remedy: Remedy | None = None) -> None:
+        super().__init__(message)
+        self.remedy = remedy or self.remedy
 
 
 class WeakPassword(AppError):
@@ -81,8 +114,10 @@ class TooMany(AppError):
 
     status = 429
 
-    def __init__(self, message: str, *, retry_after_s: float = 0.0) -> None:
-        super().__init__(message)
+    def __init__(
+        self, message: str, *, retry_after_s: float = 0.0, remedy: Remedy | None = None
+    ) -> None:
+        super().__init__(message, remedy=remedy)
         if retry_after_s:
             self.headers = {"Retry-After": str(math.ceil(retry_after_s))}
 
@@ -103,6 +138,7 @@ class NoRoom(AppError):
     """Not enough disk space."""
 
     status = 507
+    remedy = STORAGE
 
 
 class ViewerFailed(AppError):

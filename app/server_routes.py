@@ -47,7 +47,7 @@ def read_server(server: Server) -> ServerView:
     ):
         notices.append(
             f"The disk is nearly full: {disk.free / 1e9:.1f} GB of {disk.total / 1e9:.0f} GB are "
-            "free. Delete projects or uploads that are not needed."
+            "free. Delete projects or uploads that are not needed: the page Storage lists them."
         )
     return ServerView(
         version=__version__,

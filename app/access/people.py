@@ -12,7 +12,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from app.access.audit import audit
-from app.errors import Refused, SignInAgain
+from app.errors import LOGIN, Refused, SignInAgain
 
 
 class Permission(StrEnum):
@@ -121,7 +121,7 @@ def interactive_login(connection: HTTPConnection) -> Person:
     """
     session = connection.scope["state"].get("session")
     if session is not None and session.phone:
-        raise Refused("a paired phone may not do that; sign in with your password")
+        raise Refused("a paired phone may not do that; sign in with your password", remedy=LOGIN)
     return person(connection)
 
 

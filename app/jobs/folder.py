@@ -47,6 +47,8 @@ class Outcome:
     startable: bool = True
     """False = its recording or rig cannot be used, and no project was made: running it again would
     fail alike."""
+    no_space: bool = False
+    """Whether the disk was full."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -20,7 +20,8 @@ from app.access.audit import audit
 from app.access.people import Permission, needs
 from app.deps import Server, ServerParts
 from app.error_responses import ProblemDetail
-from app.errors import NoRoom, NotFound, TooMany
+from app.errors import PROJECTS, STORAGE, NoRoom, NotFound, Remedy, TooMany
+from app.jobs.folder import Outcome
 from app.jobs.model import Inputs, Job, JobState
 from app.jobs.space import refuse_if_full
 from app.jobs.status import JobStatus
@@ -102,6 +103,8 @@ class JobView:
     """Remaining time of the whole run [s], None = not known yet."""
     resumable: bool
     """Whether it ended early and can be run again."""
+    remedy: Remedy | None
+    """The page where what the note of a failed job advises is done, if it is another one."""
 
 
 class LogPiece(BaseModel):
@@ -301,7 +304,10 @@ def _refuse_hidden(server: ServerParts, inputs: Inputs) -> None:
 def _refuse_too_many(server: ServerParts) -> None:
     waiting = len(server.jobs.in_state(JobState.QUEUED))
     if waiting >= server.settings.max_waiting_jobs:
-        raise TooMany(f"{waiting} jobs wait already; try again when some are done, or cancel some")
+        raise TooMany(
+            f"{waiting} jobs wait already; try again when some are done, or cancel some",
+            remedy=PROJECTS,
+        )
 
 
 def _refuse_if_full(server: ServerParts, project: str, inputs: Inputs) -> None:
@@ -324,20 +330,22 @@ def _add(server: ServerParts, project: str, inputs: Inputs) -> JobView:
     return _view(server, job)
 
 
-def _is_resumable(server: ServerParts, job: Job) -> bool:
+def _is_resumable(job: Job, outcome: Outcome | None) -> bool:
     if job.state is not JobState.FAILED:
         return job.state is JobState.CANCELLED
-    outcome = server.supervisor.folder(job.id).outcome()
     return outcome is None or outcome.startable
 
 
 def _view(server: ServerParts, job: Job) -> JobView:
     status, run = server.supervisor.status(job), server.supervisor.run_progress(job)
+    failed = job.state is JobState.FAILED
+    outcome = server.supervisor.folder(job.id).outcome() if failed else None
     return JobView(
         job=job,
         status=status,
         fraction=status.fraction,
         run_progress=run.fraction,
         run_eta_s=run.eta_s,
-        resumable=_is_resumable(server, job),
+        resumable=_is_resumable(job, outcome),
+        remedy=STORAGE if outcome is not None and outcome.no_space else None,
     )

@@ -13,7 +13,7 @@ import sqlalchemy as sa
 from sqlalchemy.exc import IntegrityError
 
 from app.databases import migrate, open_engine
-from app.errors import Conflict, NotFound
+from app.errors import Conflict, NotFound, project_page
 from app.jobs.model import Inputs, Job, JobState
 from app.state_copies import StateCopies
 from recon4.errors import StoreError
@@ -71,7 +71,8 @@ class JobStore:
                 connection.execute(JOBS.insert().values(**_row(job)))
         except IntegrityError as error:
             raise Conflict(
-                f"project {job.project} already has a job that waits or runs; cancel it first"
+                f"project {job.project} already has a job that waits or runs; cancel it first",
+                remedy=project_page(job.project),
             ) from error
         return job
 

@@ -61,12 +61,12 @@ def run(folder: JobFolder, work: Work) -> Outcome:
         project, _ = folder.request()
         return Outcome(state="failed", note=str(error), startable=is_project(project))
     except Recon4Error as error:
-        return Outcome(state="failed", note=str(error))
+        return Outcome(state="failed", note=str(error), no_space=isinstance(error, NoSpace))
     except MemoryError:
         return Outcome(state="failed", note=OUT_OF_MEMORY)
     except Exception as error:
         if (full := _full(error, folder.path)) is not None:
-            return Outcome(state="failed", note=full)
+            return Outcome(state="failed", note=full, no_space=True)
         log.exception("unexpected")
         note = f"{type(error).__name__} in the program; the log has the traceback"
         return Outcome(state="failed", note=note)

@@ -9,7 +9,7 @@ from typing import Any
 
 import msgspec
 
-from app.errors import Conflict, NotFound
+from app.errors import CAPTURE, Conflict, NotFound
 from app.live.capture import Capture, unfinished
 from app.live.power import Power, read_battery
 from app.network.streams import StreamLimits, Streams
@@ -79,7 +79,9 @@ class CurrentCapture:
         """
         async with self._starting:
             if self._capture is not None and not self._capture.over:
-                raise Conflict(f"{self._capture.project} is being captured: stop it first")
+                raise Conflict(
+                    f"{self._capture.project} is being captured: stop it first", remedy=CAPTURE
+                )
             loaded = load_rig(rig)
             session = await asyncio.to_thread(begin, self._root / project, loaded, **how)
             capture = Capture(session)

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from app.errors import Conflict, NotFound
+from app.errors import Conflict, NotFound, project_page
 from app.projects.clone import clone_artifacts
 from app.projects.folder_names import free_folder_name
 from app.projects.folder_times import Stamp, iso, stamp_of, weigh
@@ -91,7 +91,8 @@ class ProjectStore:
         if (self._root / name).exists():
             raise Conflict(
                 f"there is a project or folder {name} already: choose another name, or run the "
-                "project again from its own page"
+                "project again from its own page",
+                remedy=project_page(name) if is_project(self._root / name) else None,
             )
 
     def refuse_reserved(self, name: str) -> None:

@@ -16,7 +16,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Literal
 
-from app.errors import Conflict, NotFound
+from app.errors import STORAGE, Conflict, NotFound, project_page
 from recon4.review.newest_approval import move_record, record_path
 from recon4.store.atomic import make_folders
 
@@ -97,7 +97,8 @@ class Trash:
         found, home = self._deleted(path), self._homes[path.parent]
         if (home / found.project).exists():
             raise Conflict(
-                f"another {found.kind} {found.project} exists now; delete or rename it first"
+                f"another {found.kind} {found.project} exists now; delete or rename it first",
+                remedy=project_page(found.project) if found.kind == "project" else STORAGE,
             )
         make_folders(home)
         path.rename(home / found.project)

@@ -17,7 +17,7 @@ from app.access.people import Permission, Person, Who, needs, recent_login
 from app.compute_pool.model import FileAccess, Lane, Terms
 from app.deps import Server, ServerParts
 from app.error_responses import ProblemDetail
-from app.errors import Conflict
+from app.errors import Conflict, project_page
 from app.jobs.model import JobState
 from app.network.request_caller import CalledBy, Caller
 from app.pages import page_response
@@ -252,7 +252,10 @@ async def approve(
     """
     root = server.projects.folder(project_id)
     if await run_in_threadpool(_busy, project_id, server):
-        raise Conflict("a job of this project is queued or running; approve when it is done")
+        raise Conflict(
+            "a job of this project is queued or running; approve when it is done",
+            remedy=project_page(project_id),
+        )
     signer = {"who": who.name, "role": str(who.role), "why": asked.why}
     key = server.settings.state / SIGNING_KEY
     try:

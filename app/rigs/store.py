@@ -14,7 +14,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from stat import S_ISREG
 
-from app.errors import Conflict, NotFound
+from app.errors import Conflict, NotFound, Remedy
 from app.rigs.model import RIG_ID, RigVersion
 from app.rigs.work import CheckedRig
 from recon4.errors import StoreError
@@ -101,7 +101,8 @@ class RigStore:
             if after is not None and after != newest:
                 raise Conflict(
                     f"rig {rig_id} has version {newest} by now, you changed version {after}: "
-                    "load it again"
+                    "load it again",
+                    remedy=Remedy(f"Load {rig_id} again", f"/rigs/{rig_id}/", needs="look"),
                 )
             if newest >= MAX_VERSIONS:
                 raise Conflict(f"rig {rig_id} has {MAX_VERSIONS} versions: start a new rig")

@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from app.deps import ServerParts
-from app.errors import Conflict, NotFound
+from app.errors import Conflict, NotFound, project_page
 from app.jobs.model import JobState
 from app.jobs.space import size_below
 from app.projects.trash import Deleted
@@ -42,7 +42,10 @@ def delete_recording(server: ServerParts, name: str) -> Deleted:
         raise NotFound(f"no uploaded recording {name[:64]!r}")
     for job in server.jobs.in_state(JobState.QUEUED, JobState.RUNNING):
         if any(Path(path).is_relative_to(folder) for path in job.inputs.recordings):
-            raise Conflict(f"a job of {job.project} reads this recording; cancel it first")
+            raise Conflict(
+                f"a job of {job.project} reads this recording; cancel it first",
+                remedy=project_page(job.project),
+            )
     deleted = server.trash.put(folder)
     server.uploads.forget(name)
     return deleted

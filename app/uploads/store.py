@@ -24,7 +24,7 @@ from datetime import UTC, datetime
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from app.errors import BadRequest, NoRoom, NotFound, TooLarge, TooMany
+from app.errors import STORAGE, BadRequest, NoRoom, NotFound, TooLarge, TooMany
 from app.settings import ServerSettings
 from app.uploads.model import Upload, UploadedFile
 from app.uploads.names import another, safe_path, slug
@@ -230,7 +230,8 @@ class UploadStore:
         still_open = [upload for upload in self._uploads.values() if not upload.finished]
         if len(still_open) >= settings.max_open_uploads:
             raise TooMany(
-                f"{len(still_open)} uploads are unfinished already; finish or remove one first"
+                f"{len(still_open)} uploads are unfinished already; finish or remove one first",
+                remedy=STORAGE,
             )
         promised = sum(upload.bytes - upload.received for upload in still_open)
         free = shutil.disk_usage(self._settings.root).free - promised

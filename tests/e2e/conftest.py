@@ -22,6 +22,7 @@ SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
 SCREENS = {"desktop": (1440, 900), "phone": (390, 844)}
 EXPECTED_NOISE = (
     "status of 4",
+    "status of 507",  # a full disk
     "net::ERR_FAILED",
     "GPU stall",
     "THREE.Clock",

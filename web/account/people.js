@@ -9,7 +9,7 @@ import {
   readAudit,
   readCurrentUser,
 } from "../shared/api.js";
-import { attempt, byId, fields, make, onSubmit } from "../shared/dom.js";
+import { attempt, byId, fields, make, onSubmit, succeeds } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import "../shared/page_head.js";
 import "./session_list.js";
@@ -56,8 +56,8 @@ function person({ name, role, disabled, created }) {
 }
 
 async function change(name, changes) {
-  await attempt(byId("message"), () => withPassword(() => changePerson(name, changes)));
-  await reload();
+  if (await succeeds(byId("message"), () => withPassword(() => changePerson(name, changes))))
+    await reload();
 }
 
 async function reload() {

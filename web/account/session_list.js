@@ -1,6 +1,6 @@
 // <session-list>: sessions with a button to end each.
 
-import { attempt, make } from "../shared/dom.js";
+import { attempt, make, succeeds } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 
 const moment = (time_s) => when(new Date(time_s * 1000).toISOString());
@@ -72,8 +72,7 @@ export class SessionList extends HTMLElement {
   }
 
   async #end(id) {
-    await attempt(this.#message, () => this.#source.end(id));
-    await this.reload();
+    if (await succeeds(this.#message, () => this.#source.end(id))) await this.reload();
   }
 }
 

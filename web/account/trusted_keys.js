@@ -1,7 +1,7 @@
 // For admins: the keys whose signatures count on this server.
 
 import { addTrustedKey, listTrustedKeys, removeTrustedKey } from "../shared/api.js";
-import { attempt, byId, fields, make, onSubmit } from "../shared/dom.js";
+import { attempt, byId, fields, make, onSubmit, succeeds } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import { withPassword } from "./recent_login.js";
 
@@ -50,7 +50,8 @@ function row(key, signs) {
 }
 
 async function remove(fingerprint) {
-  await attempt(byId("keys-message"), () => withPassword(() => removeTrustedKey(fingerprint)));
+  const removed = () => withPassword(() => removeTrustedKey(fingerprint));
+  if (!(await succeeds(byId("keys-message"), removed))) return;
   await reload();
   changed();
 }

@@ -13,7 +13,7 @@ import {
 } from "../shared/api.js";
 import { approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
-import { attempt, byId, fill, make } from "../shared/dom.js";
+import { attempt, byId, fill, make, succeeds } from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
 import "./job_status.js";
@@ -101,9 +101,10 @@ function reloadSoon() {
 }
 
 async function showTrash() {
-  const deleted = (await attempt(byId("message"), listTrash)) ?? [];
+  const message = byId("trash-message"); // reading the projects again clears the other one
+  const deleted = (await attempt(message, listTrash)) ?? [];
   const act = (action) => async () => {
-    await attempt(byId("message"), action);
+    if (!(await succeeds(message, action))) return;
     await showTrash();
     reloadSoon();
   };

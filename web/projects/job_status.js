@@ -2,7 +2,7 @@
 
 import { cancelJob, readCurrentUser, retryJob } from "../shared/api.js";
 import { badge } from "../shared/badge.js";
-import { attempt, fill, make } from "../shared/dom.js";
+import { attempt, fill, make, remedyLink } from "../shared/dom.js";
 import { runProgressText, progressText } from "../shared/format.js";
 
 export class JobStatus extends HTMLElement {
@@ -52,11 +52,17 @@ export class JobStatus extends HTMLElement {
         text,
       );
     const open = job.state === "queued" || job.state === "running";
+    const tools = /** @type {any} */ (document.querySelector("project-tools")); // on its own page
+    const other = () => tools.runAgain();
     const { may } = await readCurrentUser();
     if (this.#view.job.state !== job.state || !may.includes("process")) return;
     this.#buttons.replaceChildren(
       ...(open ? [button("Cancel", cancelJob)] : []),
       ...(this.#view.resumable ? [button("Resume", retryJob)] : []),
+      ...(!open && tools
+        ? [make("button", { type: "button", onclick: other }, "Other settings…")]
+        : []),
+      ...(this.#view.remedy ? [remedyLink(this.#view.remedy)] : []),
     );
   }
 }

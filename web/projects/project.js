@@ -12,7 +12,8 @@ import {
 } from "../shared/api.js";
 import { approvalLines, approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
-import { byId, fill, make } from "../shared/dom.js";
+import { byId, fill, make, showError } from "../shared/dom.js";
+import { checked } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
@@ -79,7 +80,10 @@ function drawFiles() {
     const report = file.name === "report.html";
     const link = report
       ? make("a", { href: reportUrl(id), target: "_blank", rel: "noopener" }, file.label)
-      : make("a", { href: fileUrl(id, file.name), download: "" }, file.label);
+      : checked(make("a", { href: fileUrl(id, file.name), download: "" }, file.label), {
+          message: byId("files-message"),
+          status: byId("files-status"),
+        });
     return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
   };
   fill(byId("approval"), ...(project ? approvalLines(project.approval) : []));
@@ -143,7 +147,8 @@ async function reload() {
 function drawMessage() {
   const expected = lacking instanceof ApiError && lacking.status === 404 && view;
   const damage = project?.problem ? `Damaged: ${project.problem}` : "";
-  byId("message").textContent = lacking && !expected ? lacking.message : damage;
+  if (lacking && !expected) showError(byId("message"), lacking);
+  else byId("message").textContent = damage;
 }
 
 function onJob(fresh) {

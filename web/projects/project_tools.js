@@ -54,6 +54,13 @@ export class ProjectTools extends HTMLElement {
     if (document.activeElement !== this.#name) this.#name.value = text;
   }
 
+  /** Opens the form that runs this project with other settings. */
+  runAgain() {
+    this.#again.open = true;
+    this.#again.scrollIntoView({ block: "start" });
+    this.#again.querySelector("summary").focus({ preventScroll: true });
+  }
+
   async #form() {
     if (this.#again.querySelector("new-job")) return;
     const views = await attempt(this.#message, () => listJobsOf(this.#id));

@@ -1,7 +1,7 @@
 // <recording-look>: the contents of a recording as a list.
 
 import { lookAt } from "../shared/api.js";
-import { make } from "../shared/dom.js";
+import { make, showError } from "../shared/dom.js";
 import { bytes, count, seconds } from "../shared/format.js";
 
 export class RecordingLook extends HTMLElement {
@@ -30,11 +30,14 @@ export class RecordingLook extends HTMLElement {
   }
 
   /** The reason, and a button for each recording in the folder. */
-  #refuse(folder, { message, candidates = [] }) {
+  #refuse(folder, error) {
+    const { candidates = [] } = error;
+    const reason = make("p", { className: "error" });
+    showError(reason, error);
     const choose = (path) => this.dispatchEvent(new CustomEvent("pick", { detail: path }));
     const label = (path) => (path.startsWith(`${folder}/`) ? path.slice(folder.length + 1) : path);
     this.replaceChildren(
-      make("p", { className: "error" }, message),
+      reason,
       make(
         "div",
         { className: "buttons" },

@@ -47,6 +47,7 @@ export async function fingerprint(files) {
 export class Sending extends EventTarget {
   state = "waiting"; // sending, paused, trying, failed, done, removed
   text = "";
+  error = null; // why it failed
   sent = 0;
   recording = "";
   #upload = null;
@@ -93,6 +94,7 @@ export class Sending extends EventTarget {
       ).recording;
       this.#tell("done", "");
     } catch (error) {
+      this.error = error;
       if (!stop.signal.aborted) this.#tell("failed", error.message);
       stop.abort();
     }

@@ -2,7 +2,7 @@
 // Event "recording" has the path on the server once everything is there.
 
 import { listUploads, removeUpload } from "../shared/api.js";
-import { attempt, fill, make } from "../shared/dom.js";
+import { attempt, fill, make, showError, succeeds } from "../shared/dom.js";
 import { bytes, count, seconds, when } from "../shared/format.js";
 import { ofDrop, ofInput } from "../slices/picking.js";
 import { Sending, sorted } from "./resumable_upload.js";
@@ -105,16 +105,17 @@ export class UploadBox extends HTMLElement {
     if (sending !== this.#sending) return;
     const { state, name, files, sent, total, text } = sending;
     this.#now.hidden = state === "removed";
-    this.#zone.hidden = !["removed", "done"].includes(state);
+    this.#zone.hidden = !["failed", "removed", "done"].includes(state);
     const label = files.length > 1 ? `${name}, ${count(files.length)} files` : name;
     fill(this.#title, make("strong", {}, label), ` ${STATES[state] ?? ""}`);
     this.#bar.value = total ? (state === "done" ? 1 : sent / total) : 1;
-    this.#text.textContent = text || this.#figures(sending);
+    if (state === "failed") showError(this.#text, sending.error);
+    else this.#text.textContent = text || this.#figures(sending);
     this.#offer(state);
     const busy = ["sending", "trying"].includes(state);
     if (busy) addEventListener("beforeunload", this.#leaving);
     else removeEventListener("beforeunload", this.#leaving);
-    if (["paused", "done", "removed"].includes(state)) this.#listOpen();
+    if (["paused", "failed", "done", "removed"].includes(state)) this.#listOpen();
     if (state === "done")
       this.dispatchEvent(new CustomEvent("recording", { detail: sending.recording }));
     if (state === "removed") this.dispatchEvent(new CustomEvent("removed"));
@@ -156,8 +157,7 @@ export class UploadBox extends HTMLElement {
 
   #row({ id, name, received, bytes: total, expires }) {
     const remove = async () => {
-      await attempt(this.#message, () => removeUpload(id));
-      this.#listOpen();
+      if (await succeeds(this.#message, () => removeUpload(id))) this.#listOpen();
     };
     return make(
       "li",

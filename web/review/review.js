@@ -16,7 +16,7 @@ import {
   remakeMap,
   undoDecision,
 } from "../shared/api.js";
-import { attempt, byId } from "../shared/dom.js";
+import { attempt, byId, showError } from "../shared/dom.js";
 import { askForFrames, showKeys } from "./dialogs.js";
 import { journalNews, showApproval, showEffect, showJournal, showPair } from "./panels.js";
 import { keyOf } from "./captions.js";
@@ -65,7 +65,7 @@ async function select(pair) {
   } catch (error) {
     if (state.selected !== selected) return;
     view.clear("No points to show");
-    message.textContent = error.message;
+    showError(message, error);
   }
 }
 

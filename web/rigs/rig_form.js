@@ -1,6 +1,6 @@
 // <rig-form>: the fields of a rig. Each input changes its number only, the others stay exact.
 
-import { make } from "../shared/dom.js";
+import { make, showError } from "../shared/dom.js";
 import { short } from "./rig_math.js";
 
 const CM = { factor: 100, digits: 4, unit: "cm" };
@@ -67,9 +67,10 @@ export class RigForm extends HTMLElement {
     this.#save.disabled = Object.keys(problems).length > 0;
   }
 
-  /** Shows an error of saving. */
-  set message(text) {
-    this.#message.textContent = text;
+  /** Shows an error of saving; null = none. */
+  set error(error) {
+    if (error) showError(this.#message, error);
+    else this.#message.textContent = "";
   }
 
   #draw() {

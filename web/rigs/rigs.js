@@ -146,14 +146,14 @@ function onEdited() {
 }
 
 async function save(note) {
-  form.message = "";
+  form.error = null;
   try {
     const version = { content: form.content, note, after: rig.versions[0].number };
     await addRigVersion(rig.id, version);
   } catch (error) {
     if (Object.keys(error.problems ?? {}).length)
       form.complain({ problems: error.problems, warnings: [] });
-    form.message = error.message;
+    form.error = error;
     return;
   }
   await reload();

@@ -1,5 +1,7 @@
 // Small helpers to make elements; text is always text, never HTML.
 
+import { at } from "./address.js";
+
 /**
  * The element with an id, of a class if one is given.
  * @template {HTMLElement} [E=HTMLElement]
@@ -46,13 +48,42 @@ export function fill(element, ...children) {
   if (fresh.innerHTML !== element.innerHTML) element.replaceChildren(...fresh.childNodes);
 }
 
+/**
+ * A link to the page where the remedy of an error is. It opens beside this one, which may have
+ * fields filled in and be needed again.
+ */
+export const remedyLink = ({ text, page }) =>
+  make(
+    "a",
+    { className: "button remedy", href: at(page), target: "_blank", rel: "noopener" },
+    text,
+  );
+
+/** Shows an error with what helps against it; `before` stands in front of its message. */
+export function showError(element, error, before = "") {
+  element.textContent = before + error.message;
+  if (error.remedy) element.append(" ", remedyLink(error.remedy));
+}
+
 /** Returns the result of an action; an error is shown in `message`, the result is undefined. */
 export async function attempt(message, action) {
   message.textContent = "";
   try {
     return await action();
   } catch (error) {
-    message.textContent = error.message;
+    showError(message, error);
     return undefined;
   }
+}
+
+/**
+ * Whether an action succeeded; an error is shown in `message`. What was changed is read again only
+ * then: the success of reading would take the error away.
+ */
+export async function succeeds(message, action) {
+  const done = async () => {
+    await action();
+    return true;
+  };
+  return (await attempt(message, done)) ?? false;
 }

@@ -8,14 +8,15 @@ export class ApiError extends Error {
   /**
    * @param {number} status HTTP status, 0 if there was no response
    * @param {{error?: string, detail: string, problems?: Record<string, string>,
-   *   candidates?: string[]}} problem
+   *   candidates?: string[], remedy?: {text: string, page: string}}} problem
    */
-  constructor(status, { error, detail, problems = {}, candidates = [] }) {
+  constructor(status, { error, detail, problems = {}, candidates = [], remedy = undefined }) {
     super(detail);
     this.name = error ?? "Invalid";
     this.status = status;
     this.problems = problems;
     this.candidates = candidates; // recordings in a folder that is none itself
+    this.remedy = remedy; // the page where what the message advises is done
   }
 }
 
@@ -109,6 +110,28 @@ export async function become(response) {
   return me;
 }
 
+/** Asks for a file without reading it; an `ApiError` if the server refuses it. */
+export async function canBeRead(url) {
+  const response = await fetch(url).catch(() => {
+    throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
+  });
+  if (!response.ok) throw await refusalOf(response);
+  await response.body?.cancel();
+}
+
+/** The error of a response that is JSON, or the text of a proxy in between. */
+async function refusalOf(response) {
+  const text = await response.text();
+  let problem = { detail: text || `The server returned ${response.status}` };
+  try {
+    problem = JSON.parse(text);
+  } catch {
+    // from a proxy in between, or the response to HEAD, which has no body
+  }
+  if (response.status === 401) leaveForLogin();
+  return new ApiError(response.status, problem);
+}
+
 // -- uploads
 
 /**
@@ -131,13 +154,5 @@ export async function tus(method, path, { headers = {}, body, signal } = {}) {
     throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
   }
   if (response.ok) return response;
-  const text = await response.text();
-  let problem = { detail: text || `The server returned ${response.status}` };
-  try {
-    problem = JSON.parse(text);
-  } catch {
-    // from a proxy in between, or the response to HEAD, which has no body
-  }
-  if (response.status === 401) leaveForLogin();
-  throw new ApiError(response.status, problem);
+  throw await refusalOf(response);
 }

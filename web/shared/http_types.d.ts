@@ -431,6 +431,7 @@ export interface JobView {
   run_progress: number;
   run_eta_s: number | null;
   resumable: boolean;
+  remedy: Remedy | null;
 }
 
 export interface KeyView {
@@ -688,6 +689,7 @@ export interface ProblemDetail {
   detail: string;
   problems: Record<string, string>;
   candidates: Array<string>;
+  remedy: Remedy | null;
 }
 
 export interface ProjectCard {
@@ -757,6 +759,12 @@ export interface ReferenceFit {
 
 export interface ReferencePreview {
   table: TablePreview | null;
+}
+
+export interface Remedy {
+  text: string;
+  page: string;
+  needs: string;
 }
 
 export interface Rename {

@@ -10,6 +10,7 @@ import {
 } from "../shared/api.js";
 import { isRefused } from "../shared/approval.js";
 import { attempt, make } from "../shared/dom.js";
+import { checked } from "../shared/download.js";
 import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { combined } from "./measured.js";
@@ -33,6 +34,7 @@ function firstPoint(points) {
 
 export function controlPanel({ id, change, point: pointAt, measured }) {
   const message = make("p", { className: "error", role: "alert" });
+  const status = make("p", { className: "quiet", role: "status" });
   const preview = make("div", {});
   const table = make("div", {});
   const file = make("input", { type: "file", accept: ".csv,.txt", ariaLabel: "Survey file" });
@@ -104,9 +106,11 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     try {
       kept = await keepControl(id, { ...edit(kept), version: kept.version });
     } catch (error) {
-      if (error.status !== 409 || !tries) throw error;
+      if (error.status !== 409) throw error;
       kept = await readControl(id);
-      return write(edit, tries - 1);
+      if (tries) return write(edit, tries - 1);
+      await report();
+      throw new Error("Others change these points too: they are read again, do it once more");
     }
     preview.replaceChildren();
     return report();
@@ -207,7 +211,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
         "div",
         { className: "buttons" },
         all,
-        file("csv", "Residuals as CSV", { download: "" }),
+        checked(file("csv", "Residuals as CSV", { download: "" }), { message, status }),
         file("html", "Sheet to print and sign", { target: "_blank", rel: "noopener" }),
       ),
     );
@@ -303,7 +307,7 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     await report();
   });
   return {
-    element: make("div", {}, file, preview, message, table),
+    element: make("div", {}, file, preview, status, message, table),
     facts: (facts) => {
       [georeferenced, mapKey] = [Boolean(facts.crs), facts.key];
       if (refused === isRefused(facts.approval)) return;

@@ -3,6 +3,7 @@
 import { sliceFileUrl } from "../shared/api.js";
 import { approvalLines } from "../shared/approval_lines.js";
 import { fill, make } from "../shared/dom.js";
+import { checked } from "../shared/download.js";
 
 const KINDS = [
   ["png", "PNG", "sheet, 300 dpi"],
@@ -36,6 +37,8 @@ export function exportPanel({ id, change, state, ask }) {
   const flat = make("input", { type: "checkbox", id: "flat" });
   const draft = make("input", { type: "checkbox", id: "draft" });
   const approval = make("div", {});
+  const message = make("p", { className: "error", role: "alert" });
+  const status = make("p", { className: "quiet", role: "status" });
   const count = make("input", {
     type: "number",
     min: 1,
@@ -49,7 +52,10 @@ export function exportPanel({ id, change, state, ask }) {
     value: "0.5",
     ariaLabel: "Spacing of slices",
   });
-  const links = KINDS.map(([ending, name]) => [ending, make("a", { download: "" }, name)]);
+  const links = KINDS.map(([ending, name]) => [
+    ending,
+    checked(make("a", { download: "" }, name), { message, status }),
+  ]);
 
   function wanted() {
     const { window, ...look } = ask();
@@ -116,6 +122,8 @@ export function exportPanel({ id, change, state, ask }) {
         { className: "files" },
         ...links.map(([, link], k) => make("li", {}, link, make("small", {}, KINDS[k][2]))),
       ),
+      status,
+      message,
     ),
     show: draw,
     facts: (found) => fill(approval, ...approvalLines(found.approval)),

@@ -82,8 +82,10 @@ export function referencePanel({ id, change, state, reload }) {
     sendingNow.hidden = false;
     try {
       await sending.start();
-      if (sending.state === "failed")
-        throw new Error(`${sending.text}; choose the same file again to go on`);
+      if (sending.state === "failed") {
+        sending.error.message += "; choose the same file again to go on";
+        throw sending.error;
+      }
       if (sending.state !== "done") return;
       text.textContent = `${sending.name} is being read`;
       path.value = sending.recording;

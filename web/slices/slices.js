@@ -11,7 +11,7 @@ import {
   readSliceFacts,
 } from "../shared/api.js";
 import { approvalFact } from "../shared/approval_lines.js";
-import { byId, fill, make, targetOf } from "../shared/dom.js";
+import { byId, fill, make, showError, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
 import { cutText, distanceText, imageText, lengthText, pointText } from "./captions.js";
 import { controls } from "./controls.js";
@@ -118,7 +118,7 @@ async function load() {
     describe();
   } catch (error) {
     if (mine !== turn || error.name === "Superseded") return;
-    byId("message").textContent = error.message;
+    showError(byId("message"), error);
     if (error instanceof ApiError && error.status === 422) first.clear();
   } finally {
     if (mine === turn) document.body.classList.remove("drawing");
@@ -238,7 +238,7 @@ function follow(from, to) {
     change(from.frame, { keep: true });
   });
   from.addEventListener("place", (event) =>
-    place(event.detail).catch((error) => (byId("message").textContent = error.message)),
+    place(event.detail).catch((error) => showError(byId("message"), error)),
   );
 }
 
@@ -392,7 +392,7 @@ async function begin() {
     change({});
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
   } catch (error) {
-    byId("message").textContent = error.message;
+    showError(byId("message"), error);
   }
 }
 

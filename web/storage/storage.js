@@ -8,7 +8,7 @@ import {
   removeUpload,
   restoreProject,
 } from "../shared/api.js";
-import { attempt, byId, make } from "../shared/dom.js";
+import { attempt, byId, make, succeeds } from "../shared/dom.js";
 import { bytes, when } from "../shared/format.js";
 import "../shared/page_head.js";
 
@@ -44,8 +44,7 @@ async function deleteAfterwards({ kind, name, id, used_by }) {
   };
   const requests = { recording: deleteRecording, upload: removeUpload, deleted: removeProject };
   if (!(await confirmed(`Delete ${name}?`, texts[kind]))) return;
-  await attempt(byId("message"), () => requests[kind](id));
-  await reload();
+  if (await succeeds(byId("message"), () => requests[kind](id))) await reload();
 }
 
 function actions(item) {
@@ -55,8 +54,7 @@ function actions(item) {
   const button = (text, onclick) =>
     make("button", { type: "button", ariaLabel: `${text} ${name}`, onclick }, text);
   const restore = async () => {
-    await attempt(byId("message"), () => restoreProject(id));
-    await reload();
+    if (await succeeds(byId("message"), () => restoreProject(id))) await reload();
   };
   return [
     ...(kind === "deleted" ? [button("Restore", restore)] : []),
