@@ -24,6 +24,7 @@ from recon4.recording.tables.layout import (
     split_row,
     wrong_number,
 )
+from recon4.recording.tables.packed import unpacked
 from recon4.recording.tables.proposals import Purpose
 from recon4.recording.tables.text import decode_table, universal
 
@@ -76,7 +77,7 @@ def read_point_table(
         CorruptFile: If no line has a number, or a cell cannot be read.
         ConfigError: If the chosen columns name no place.
     """
-    text = universal(decode_table(data, name))
+    text = unpacked(universal(decode_table(data, name)))
     try:
         layout = TableLayout.of(text, name, fewest=1)
         preview = preview_table(layout, choice, purpose=purpose)
