@@ -211,6 +211,7 @@ def lidar_streams(
             topic=one.topic.name,
             frame=one.frame,
             points=one.points,
+            detail=one.detail,
         )
         for one in used
     ]

@@ -56,8 +56,13 @@ class CloudTopic:
 
     @property
     def detail(self) -> int:
-        """How much of what a LiDAR measures is there: times and rings of the points."""
-        return sum(bool(find_field(self.fields, names)) for names in (TIME_FIELDS, RING_FIELDS))
+        """How much of what a LiDAR measures is there: times and rings of the points.
+
+        Negative = a camera.
+        """
+        return -self.is_camera + sum(
+            bool(find_field(self.fields, names)) for names in (TIME_FIELDS, RING_FIELDS)
+        )
 
 
 def judged_clouds(bag: Bag, clouds: Sequence[BagTopic], keep: Collection[str]) -> list[CloudTopic]:

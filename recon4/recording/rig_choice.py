@@ -31,6 +31,13 @@ class Stream:
     """Frame of its points in a bag; empty = not known."""
     points: int = 0
     """Usual number of points of a cloud; 0 = not known."""
+    detail: int = 0
+    """How much of what a LiDAR measures its clouds have (`CloudTopic.detail`)."""
+
+    @property
+    def likeness(self) -> tuple[int, bool, int]:
+        """How much it looks like the main LiDAR, by its content."""
+        return self.detail, self.model != "generic", self.points
 
 
 def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = "") -> Rig:

@@ -308,6 +308,13 @@ def test_two_lidars_of_unknown_mounts_end_with_what_to_paste(tmp_path):
     assert {s.topic for s in opened(path, rig)[0].rig.sensors} == {s.topic for s in rig.sensors}
 
 
+def test_of_several_lidars_the_one_with_rings_and_times_is_proposed(tmp_path):
+    path = write(tmp_path, cloud("/a/depth", "cam", plain()), lidar("/z/points", "velodyne"))
+
+    with pytest.raises(ConfigError, match="--set ingest.lidar_topic=/z/points"):
+        opened(path)
+
+
 def test_a_setting_names_the_only_lidar(tmp_path):
     path = robot(tmp_path, lidar("/rear/points", "rear_lidar"))
 
