@@ -311,7 +311,7 @@ def test_two_lidars_of_unknown_mounts_end_with_what_to_paste(tmp_path):
 def test_of_several_lidars_the_one_with_rings_and_times_is_proposed(tmp_path):
     path = write(tmp_path, cloud("/a/depth", "cam", plain()), lidar("/z/points", "velodyne"))
 
-    with pytest.raises(ConfigError, match="--set ingest.lidar_topic=/z/points"):
+    with pytest.raises(ConfigError, match=r"--set ingest\.lidar_topic=/z/points"):
         opened(path)
 
 
