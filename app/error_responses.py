@@ -17,13 +17,15 @@ from fastapi import FastAPI, Request
 from fastapi.exceptions import RequestValidationError
 from fastapi.responses import HTMLResponse, JSONResponse, Response
 from pydantic import BaseModel
+from sqlalchemy.exc import OperationalError
 from starlette.exceptions import HTTPException
 
 from app.access.people import MAY, Person
-from app.errors import STORAGE, AppError, Remedy
+from app.errors import STORAGE, AppError, NoRoom, Remedy
 from app.network.behind import route_path
 from app.pages import page_response
 from recon4.errors import NoSpace, Recon4Error, UnknownFormat, WrongSettings
+from recon4.store.atomic import is_full
 
 log = logging.getLogger(__name__)
 
@@ -34,6 +36,7 @@ FRAMEWORK_MESSAGES: Mapping[int, str] = {
     404: "there is no such address on this server",
     405: "this address does not take that method",
 }
+FULL = "the disk is full; make room and try again"
 HEADERS_OF_FAILURES = {
     "Content-Security-Policy": "default-src 'self'; frame-ancestors 'self'",
     "X-Content-Type-Options": "nosniff",
@@ -60,6 +63,7 @@ class ProblemDetail(BaseModel):
 
 def install(app: FastAPI) -> None:
     """Answer every error with a `ProblemDetail`, or with a page where a browser requests one."""
+    _on_full_disk(app)
 
     @app.exception_handler(AppError)
     async def known(request: Request, error: AppError) -> Response:
@@ -99,6 +103,22 @@ def install(app: FastAPI) -> None:
             return _page(request, 500, message, headers=HEADERS_OF_FAILURES)
         problem = ProblemDetail(error="InternalError", detail=message)
         return _problem(500, problem, HEADERS_OF_FAILURES)
+
+
+def _on_full_disk(app: FastAPI) -> None:
+    """Answer 507 wherever a request fails because the disk is full."""
+
+    @app.exception_handler(OperationalError)
+    @app.exception_handler(OSError)
+    async def full_disk(request: Request, error: Exception) -> Response:
+        if not is_full(error):
+            raise error
+        log.error("the disk is full: %r failed: %s", request.scope["path"], error)
+        problem = ProblemDetail(error=NoRoom.__name__, detail=FULL)
+        problem.remedy = _permitted(NoRoom.remedy, request)
+        if _wants_page(request):
+            return _page(request, NoRoom.status, FULL, headers=None)
+        return _problem(NoRoom.status, problem)
 
 
 def _input_problem(error: Recon4Error) -> ProblemDetail:

@@ -39,7 +39,9 @@ SECRETS = (SIGNING_KEY, TRUSTED_KEYS, "access.sqlite", "tls", "metrics.token", "
 hashes, sessions, the token of the metrics; also copies of them and damaged ones. Backed up and
 restored only on request, so that a foreign backup makes no key and no token valid."""
 _DERIVED = ("thumbnails", "slices", "viewers", "clones", "trash")
-_TEMPORARY = re.compile(r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat")
+_TEMPORARY = re.compile(
+    r"\.(tmp|slice|going)-.*|buckets-.*|\.lock|server\.lock|lock|pid|heartbeat|audit\.room"
+)
 _BESIDE_SQLITE = ("-wal", "-shm", "-journal")
 _MAX_TRIES = 5
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+import logging
 import threading
 import time
 import unicodedata
@@ -19,8 +20,11 @@ from datetime import UTC, datetime
 import sqlalchemy as sa
 from starlette.requests import HTTPConnection
 
-from app.access.database import AUDIT, writing
+from app.access.database import AUDIT, reserve_of, writing
+from app.errors import NoRoom
 from recon4.store.hashing import CHAIN_START
+
+log = logging.getLogger(__name__)
 
 MAX_TEXT_CHARS = 300
 """Longer texts are cut [characters]."""
@@ -70,9 +74,37 @@ class AuditLog:
     def add(
         self, person: str, address: str, *, action: str, what: str, outcome: str = "done"
     ) -> None:
-        """Append a row; it is on disk when this returns."""
+        """Append a row; it is on disk when this returns.
+
+        A refusal or failure that cannot be written is counted like those of a flood: it stays a
+        refusal.
+
+        Raises:
+            NoRoom: If something was done and the disk is too full to write that.
+        """
         if outcome != "done" and not (what := self._counted(what)):
             return
+        try:
+            self._append(person, address, action=action, what=what, outcome=outcome)
+        except NoRoom as error:
+            log.error("not in the audit log, the disk is full: %s %s", action, outcome)
+            if outcome == "done":
+                raise NoRoom(
+                    f"{action}: done, but the disk is full and the audit log does not have it; "
+                    "tell an admin, and make room before anything else"
+                ) from error
+            with self._lock:
+                self._unwritten += 1
+
+    def require_room(self) -> None:
+        """Refuse what could not be entered; call it before something is done.
+
+        Raises:
+            NoRoom: If the disk is too full.
+        """
+        reserve_of(self._engine).require()
+
+    def _append(self, person: str, address: str, *, action: str, what: str, outcome: str) -> None:
         timestamp = datetime.fromtimestamp(self._clock(), UTC).isoformat(timespec="milliseconds")
         texts = dict(person=person, address=address, action=action, object=what, outcome=outcome)
         texts = {name: printable(text) for name, text in texts.items()}

@@ -14,8 +14,12 @@ from pathlib import Path
 import sqlalchemy as sa
 from alembic.util import CommandError
 
+from app.access.reserve import Reserve
 from app.databases import migrate, open_engine
+from app.errors import NoRoom
 from recon4.errors import StoreError
+from recon4.store.atomic import is_full
+from recon4.store.sqlite_files import connect_to_read
 
 METADATA = sa.MetaData()
 PEOPLE = sa.Table(
@@ -74,7 +78,7 @@ def open_database(path: Path) -> sa.Engine:
     """Open the database; create it or migrate it to the newest schema.
 
     Raises:
-        StoreError: If it is of another kind or version, or cannot be read.
+        StoreError: If it is of another kind or version, or cannot be read; if the disk is full.
     """
     os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
     path.chmod(0o600)
@@ -85,12 +89,38 @@ def open_database(path: Path) -> sa.Engine:
     except (sa.exc.DatabaseError, CommandError) as error:
         engine.dispose()
         raise StoreError(f"{path} cannot be used: {getattr(error, 'orig', error)}") from error
+    except NoRoom as error:
+        engine.dispose()
+        raise StoreError(str(error)) from error
     return engine
+
+
+def open_to_read(path: Path) -> sa.Engine:
+    """Open an existing database to read it, also on a full disk and on read-only media."""
+    return sa.create_engine(
+        "sqlite://", creator=lambda: connect_to_read(path), poolclass=sa.pool.NullPool
+    )
+
+
+def reserve_of(engine: sa.Engine) -> Reserve:
+    """The disk space that is kept for a database."""
+    assert engine.url.database is not None
+    return Reserve(Path(engine.url.database).parent)
 
 
 @contextmanager
 def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
-    """An exclusive write transaction; committed at the end."""
-    with engine.begin() as connection:
-        connection.exec_driver_sql("BEGIN IMMEDIATE")
-        yield connection
+    """An exclusive write transaction; committed at the end.
+
+    Raises:
+        NoRoom: If the disk is full, and the reserve used up.
+    """
+    reserve_of(engine).give_way()
+    try:
+        with engine.begin() as connection:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")
+            yield connection
+    except sa.exc.OperationalError as error:  # a quota, or others were faster
+        if is_full(error):
+            raise NoRoom("the disk is full: make room and try again") from error
+        raise

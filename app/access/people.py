@@ -11,7 +11,7 @@ from typing import Annotated
 from fastapi import Depends
 from starlette.requests import HTTPConnection
 
-from app.access.audit import audit
+from app.access.audit import AuditLog, audit
 from app.errors import LOGIN, Refused, SignInAgain
 
 
@@ -85,6 +85,9 @@ def signed_in_s(connection: HTTPConnection) -> float:
     return found
 
 
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+"""Of requests that change nothing."""
+
 Who = Annotated[Person, Depends(person)]
 
 
@@ -93,16 +96,20 @@ def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
 
     Raises (when called by the framework):
         Refused: If the person lacks the permission; the audit log gets an entry.
+        NoRoom: If the request changes something and the disk is too full for that entry.
     """
 
     async def check(connection: HTTPConnection) -> Person:
         who = person(connection)
+        log: AuditLog = connection.app.state.parts.access.log
         if not who.may(what):
             path = connection.scope["path"]
             await asyncio.to_thread(audit, connection, what, path, outcome="refused")
             if who is READER:
                 raise Refused("the folder of the projects cannot be written: nothing can change")
             raise Refused(f"{who.name} is a {who.role} here and may not {what}; ask an admin")
+        if connection.scope.get("method", "GET") not in SAFE_METHODS:
+            await asyncio.to_thread(log.require_room)
         return who
 
     check.needs = what  # type: ignore[attr-defined]  # read by `app.access.routes_check`

@@ -19,6 +19,7 @@ from recon4.errors import StoreError
 from recon4.terminal import write
 
 if TYPE_CHECKING:
+    from app.access.audit import AuditLog
     from app.access.login.login_service import Access
     from app.access.people import Role
 
@@ -88,11 +89,11 @@ def audit(
     last: Annotated[int, typer.Option(min=1, help="Number of entries to show.")] = 50,
 ) -> None:
     """Show the audit log and check its chain of hashes; exit code 1 if it was tampered with."""
-    with access_of(root) as access:
-        for one in reversed(access.log.newest(last)):
-            what = f"{one.person} ({one.address}) {one.action}: {one.object}"
-            write(f"{one.number:>6} {one.time} {one.outcome:<8} {what}")
-        chain = access.log.verify()
+    log = _log_of(root)
+    for one in reversed(log.newest(last)):
+        what = f"{one.person} ({one.address}) {one.action}: {one.object}"
+        write(f"{one.number:>6} {one.time} {one.outcome:<8} {what}")
+    chain = log.verify()
     if chain.broken_at is not None:
         write(f"entry {chain.broken_at} does not follow from the one before: tampered with")
         raise typer.Exit(1)
@@ -111,6 +112,20 @@ def metrics_token(
         token = make_metrics_token(root / ".recon4", renew=renew)
         note(access, "show metrics token", "renewed" if renew else "")
     write(token)
+
+
+def _log_of(root: Path) -> AuditLog:
+    """The audit log, to be read only: also where nothing can be written."""
+    from app.access.audit import AuditLog
+    from app.access.database import open_to_read
+    from app.access.restoring import ACCESS_FILE, check_access
+    from app.settings import ServerSettings
+
+    state = ServerSettings(root=root).state
+    if not (state / ACCESS_FILE).exists():
+        raise StoreError(f"{root} has no audit log: no server ran there")
+    check_access(state)
+    return AuditLog(open_to_read(state / ACCESS_FILE))
 
 
 @contextmanager

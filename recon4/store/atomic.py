@@ -136,14 +136,21 @@ def raise_if_full(error: BaseException, path: Path) -> None:
     Raises:
         NoSpace: If the error, or one it came from, is a full disk (or quota, or size limit).
     """
+    if is_full(error):
+        raise NoSpace(
+            f"no space left on the disk while writing {path}; "
+            "make room and start again: finished stages are kept"
+        ) from error
+
+
+def is_full(error: BaseException) -> bool:
+    """Whether an error, or one it came from, is a full disk (or quota, or size limit)."""
     cause: BaseException | None = error
     while cause is not None:
         if _is_no_space(cause):
-            raise NoSpace(
-                f"no space left on the disk while writing {path}; "
-                "make room and start again: finished stages are kept"
-            ) from error
+            return True
         cause = cause.__cause__ or cause.__context__
+    return False
 
 
 def _is_no_space(error: BaseException) -> bool:

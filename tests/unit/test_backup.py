@@ -16,7 +16,7 @@ from recon4.store.hashing import files_below, hash_file, hash_json
 from recon4.verify import verify
 from tests.benchmarks.flips import make, make_server_state
 
-NOT_COPIED = (".lock", ".seals.lock", ".changes.lock", "seals.json")
+NOT_COPIED = (".lock", ".seals.lock", ".changes.lock", "seals.json", "audit.room")
 
 
 @pytest.fixture(scope="module")

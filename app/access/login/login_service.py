@@ -6,6 +6,7 @@ import hmac
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from app.access.login.sessions import Sessions, hash_of, new_token
 from app.access.pairing.grants import Pairings
 from app.access.people import Role
 from app.access.restoring import ACCESS_FILE
-from app.errors import Refused, TooMany, WrongPassword
+from app.errors import NoRoom, Refused, TooMany, WrongPassword
 
 WRONG = "wrong name or password"
 """The same message for a wrong name, a wrong password and a disabled account."""
@@ -184,6 +185,8 @@ def open_access(
     engine = open_database(state / ACCESS_FILE)
     accounts, sessions = Accounts(engine), Sessions(engine, clock)
     log = AuditLog(engine, clock)
+    with suppress(NoRoom):
+        log.require_room()  # kept from the start: later the disk may be full
     if notice:
         log.add("server", "", action="restore people", what=notice)
     return Access(

@@ -12,6 +12,7 @@ import secrets
 import threading
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -21,7 +22,7 @@ from app.access.audit import printable
 from app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
 from app.access.login.accounts import lookup_key
 from app.access.people import Person, Role
-from app.errors import NotFound
+from app.errors import NoRoom, NotFound
 
 HOUR_S = 3600.0
 
@@ -158,9 +159,10 @@ class Sessions:
         return self._clock() - session.seen_s > NOTED_EVERY_S
 
     def note(self, session: Session) -> None:
-        """Write that a session is in use now."""
+        """Write that a session is in use now; on a full disk it is left out."""
         now_s = self._clock()
-        self._write(SESSIONS.update().where(SESSIONS.c.id == session.id).values(seen_s=now_s))
+        with suppress(NoRoom):
+            self._write(SESSIONS.update().where(SESSIONS.c.id == session.id).values(seen_s=now_s))
 
     def prove(self, session_id: str) -> str:
         """A new token for the same session, after the password was given again."""

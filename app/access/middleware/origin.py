@@ -16,10 +16,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from app.access.middleware.rejection import Rejection, note
 from app.access.middleware.session import SessionMiddleware
-from app.access.people import NOBODY, Person
+from app.access.people import NOBODY, SAFE_METHODS, Person
 from app.network.behind import route_path
-
-SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 PAGE_POLICY = (
     "default-src 'self'; img-src 'self' data: blob:; object-src 'none'; base-uri 'none'; "

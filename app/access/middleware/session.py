@@ -15,7 +15,7 @@ from app.access.login.login_backoff import TokenBuckets
 from app.access.login.login_service import Access
 from app.access.login.sessions import AuthenticatedSession, Session, form_token
 from app.access.middleware.rejection import Rejection, note
-from app.access.people import NOBODY
+from app.access.people import NOBODY, SAFE_METHODS
 from app.network.behind import prefix_of, public_path, route_path
 
 FORM_HEADER = "X-Recon4-Token"
@@ -24,7 +24,6 @@ PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/
 OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
 """Paths answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
-SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
 
 LOOK_AGAIN_S = 2.0
 """An open WebSocket or stream ends at most this long after its session [s]."""
