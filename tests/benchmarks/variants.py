@@ -21,6 +21,8 @@ def main() -> None:
     parser.add_argument("--count", type=int, default=200)
     parser.add_argument("--seed", type=int, default=1, help="of the first variant")
     parser.add_argument("--seconds", type=float, default=5.0, help="length of each recording")
+    parser.add_argument("--whole", action="store_true", help="run all stages and show verdicts")
+    parser.add_argument("--said", action="store_true", help="also show what was said of each")
     parser.add_argument("--keep", type=Path, help="folder for the recordings of the findings")
     a = parser.parse_args()
     outcomes = []
@@ -29,9 +31,10 @@ def main() -> None:
         for seed in range(a.seed, a.seed + a.count):
             place = Path(folder) / str(seed)
             place.mkdir()
-            outcome = run_variant(seed, walk, place)
+            outcome = run_variant(seed, walk, place, whole=a.whole)
             outcomes.append(outcome)
-            print(outcome.text(), flush=True)
+            more = outcome.said * a.said + outcome.verdict
+            print(outcome.text(), *more, sep="\n    ", flush=True)
             if outcome.findings and a.keep:
                 shutil.copytree(place, a.keep / str(seed), dirs_exist_ok=True)
             shutil.rmtree(place)

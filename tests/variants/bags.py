@@ -2,21 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3
 from tests.builders import bag_path, storage_file
-from tests.robot_bags import TF1, TF2, RobotBag, mount
-from tests.variants.companions import others, write_unread
-from tests.variants.layouts import Layout, draw_layout, points_of
-from tests.variants.messages import CloudMessage, ImuMessage
+from tests.robot_bags import RobotBag
+from tests.variants.capture_files import points_in
+from tests.variants.companions import odometry, others, write_unread
+from tests.variants.layouts import draw_layout, points_of
+from tests.variants.messages import (
+    DRIVER_MESSAGES,
+    CloudMessage,
+    DriverMessage,
+    ImuMessage,
+    PacketsMessage,
+)
+from tests.variants.other_lidars import packets_of
+from tests.variants.plan import BagPlan, write_transforms
+from tests.variants.several import add_lidar, draw_copy, lidars_of
 from tests.variants.variant import Draw, Variant
 from tests.variants.walk import TURN_NS, Cloud, RecordedWalk, turned
 
 _SECOND_NS = 1_000_000_000
+_HEADERS = 42
 _CLOCKS = {
     "UTC": 0,
     "TAI": 37 * _SECOND_NS,
@@ -24,45 +35,17 @@ _CLOCKS = {
 }
 
 
-@dataclass(slots=True)
-class BagPlan:
-    """What goes into a bag."""
-
-    layout: Layout
-    kind: str
-    topic: str
-    lidar_frame: str
-    imu_frame: str
-    T_imu_lidar: SE3
-    T_lidar_as_measured: SE3 = field(default_factory=SE3.identity)
-    """Turns the points of the walk to those of a LiDAR that is mounted otherwise."""
-    parts: int = 1
-    """Messages of a revolution."""
-    offset_ns: int = 0
-    """Clock of the stamps minus UTC."""
-    late_ns: int = 40_000_000
-    """From the end of a cloud to its recording."""
-    skipped: set[int] = field(default_factory=set)
-    """Clouds that were not recorded."""
-    repeated: set[int] = field(default_factory=set)
-    unstamped: set[int] = field(default_factory=set)
-    swapped: set[int] = field(default_factory=set)
-    """Clouds recorded behind the next one."""
-    ahead_ns: int = 0
-    """Clock of the recorder minus UTC."""
-    absurd: set[int] = field(default_factory=set)
-    """Clouds with three points of absurd times."""
-
-
 def write_bag(draw: Draw, walk: RecordedWalk, folder: Path) -> Variant:
     """Draw and write a bag."""
     kind = draw.one("bag1", "db3", "mcap")
     variant = Variant(kind, bag_path(folder, kind))
     plan = _plan(draw, walk, variant)
+    lidar = {"clouds": _clouds, "packets": _raw_packets, "driver": _driver_messages}[plan.lidar]
     with RobotBag(variant.path, kind) as bag:
-        _transforms(draw, bag, plan, variant, start_ns=walk.clouds[0].t_ns)
-        messages = [*_clouds(draw, walk, plan, variant), *_imu(draw, walk, plan, variant)]
+        write_transforms(draw, bag, plan, variant, start_ns=walk.clouds[0].t_ns)
+        messages = [*lidar(draw, walk, plan, variant), *_imu(draw, walk, plan, variant)]
         messages += others(draw, walk, plan, variant)
+        messages += odometry(draw, walk, plan, variant)
         write_unread(draw, bag, walk, variant)
         for t_ns, write in sorted(messages, key=lambda one: one[0]):
             write(bag, t_ns + plan.ahead_ns)
@@ -73,15 +56,21 @@ def write_bag(draw: Draw, walk: RecordedWalk, folder: Path) -> Variant:
 
 def _plan(draw: Draw, walk: RecordedWalk, variant: Variant) -> BagPlan:
     layout = draw_layout(draw)
-    lidar = draw.one("velodyne", "/velodyne", "os_sensor", "base/laser 3d", "")
+    lidar = draw.one(
+        *("velodyne", "/velodyne", "os_sensor", "base/laser 3d", ""),
+        *("robot1/velodyne", "/robot_1/os_lidar"),
+    )
     plan = BagPlan(
         layout,
         variant.kind,
         draw.one("/velodyne_points", "/points_raw", "/robot_1/os1/points", "/a/b/c/d_e/cloud"),
         lidar,
-        draw.one(lidar, "imu_link", "/imu"),
+        draw.one(lidar, "imu_link", "/imu", f"{lidar}_imu".replace(" ", "_")),
         SE3.identity(),
     )
+    plan.lidar = draw.one(*["clouds"] * 12, *["packets"] * 2, "driver")
+    if plan.lidar != "clouds":
+        return plan
     variant.say(f"{layout.driver}{', big-endian' * layout.big}{', organized' * layout.organized}")
     clock = draw.one("UTC", "UTC", "UTC", "UTC", "boot", *_CLOCKS)
     plan.offset_ns = 1234 * _SECOND_NS - walk.clouds[0].t_ns if clock == "boot" else _CLOCKS[clock]
@@ -95,6 +84,8 @@ def _plan(draw: Draw, walk: RecordedWalk, variant: Variant) -> BagPlan:
         variant.say("four messages a revolution")
         plan.parts = 4
     _damage(draw, plan, variant, len(walk.clouds))
+    if draw.chance(0.25) and plan.parts == 1 and not plan.layout.organized:
+        add_lidar(draw, plan, variant)
     return plan
 
 
@@ -116,82 +107,69 @@ def _damage(draw: Draw, plan: BagPlan, variant: Variant, count: int) -> None:
             variant.say(f"clouds {what}")
 
 
-# -- transforms
-
-
-def _transforms(
-    draw: Draw, bag: RobotBag, plan: BagPlan, variant: Variant, *, start_ns: int
-) -> None:
-    """How the IMU is mounted: stated by tf or not, and so are its samples."""
-    named = bool(plan.lidar_frame.strip("/")) and plan.imu_frame != plan.lidar_frame
-    how = draw.one("none", "identity", "turned", "upside down", "urdf") if named else "none"
-    if how == "none":
-        return
-    variant.say(f"tf: IMU {how}")
-    T_base_lidar = mount(0.0, 0.0, 1.0)
-    angles = {"turned": {"yaw": 90.0}, "upside down": {"roll": 180.0}, "urdf": {"yaw": -90.0}}
-    T_base_imu = mount(0.0, 0.0, 1.0, **angles.get(how, {}))
-    plan.T_imu_lidar = T_base_imu.inverse() @ T_base_lidar
-    lidar, imu = plan.lidar_frame.strip("/"), plan.imu_frame.strip("/")
-    if draw.chance(0.25):
-        variant.say("LiDAR upside down")
-        T_base_lidar = mount(0.0, 0.0, 1.0, roll=180.0)
-        plan.T_lidar_as_measured = T_base_lidar.inverse() @ mount(0.0, 0.0, 1.0)
-    if draw.chance(0.3):
-        variant.say("recorded at time 0")
-        start_ns = 1
-    if how == "urdf":
-        roll = np.pi * (T_base_lidar.R[2, 2] < 0.0)
-        bag.description(_urdf(lidar, imu, roll), t_ns=start_ns)
-        return
-    kind = TF1 if bag.ros1 and draw.chance(0.5) else TF2
-    slash = "/" * draw.chance(0.3)
-    both = (
-        (f"{slash}base_link", f"{slash}{lidar}", T_base_lidar),
-        (f"{slash}base_link", f"{slash}{imu}", T_base_imu),
-    )
-    if draw.chance(0.2):
-        variant.say("on /tf")
-        for k in range(5):
-            bag.tf(*both, topic="/tf", kind=kind, t_ns=start_ns + k)
-    else:
-        bag.tf(*both, kind=kind, t_ns=start_ns)
-
-
-def _urdf(lidar: str, imu: str, roll: float) -> str:
-    joint = (
-        '<joint name="{name}" type="fixed"><parent link="base_link"/><child link="{name}"/>'
-        '<origin xyz="0 0 1" rpy="{roll} 0 {yaw}"/></joint><link name="{name}"/>'
-    )
-    joints = joint.format(name=lidar, roll=roll, yaw=0)
-    joints += joint.format(name=imu, roll=0, yaw=-np.pi / 2)
-    return f'<robot name="r"><link name="base_link"/>{joints}</robot>'
-
-
 # -- clouds
 
 
 def _clouds(draw, walk, plan, variant):
+    copy = draw_copy(draw, plan, variant)
+    variant.timed = plan.layout.has_times
+    variant.exact &= plan.layout.has_times or not plan.layout.organized
     for k, cloud in enumerate(walk.clouds):
         if k in plan.skipped:
             continue
-        variant.points += len(cloud.xyz) - 3 * (k in plan.absurd)
-        late_ns = 130_000_000 * (k in plan.swapped)
-        for part, t0_ns in _parts(_as_measured(cloud, plan.T_lidar_as_measured), plan.parts):
-            at_end = plan.layout.time == "s before the stamp"
-            stamp_ns = t0_ns + plan.offset_ns + TURN_NS // plan.parts * at_end
-            points = points_of(
-                part, plan.layout, stamp_ns=stamp_ns, t0_ns=cloud.t_ns + plan.offset_ns
-            )
-            if k in plan.absurd and t0_ns == cloud.t_ns:
-                _make_absurd(points, plan.layout)
-            recorded = t0_ns + TURN_NS // plan.parts + plan.late_ns + late_ns
-            stamp_ns = 0 if k in plan.unstamped else stamp_ns
-            for again in range(1 + (k in plan.repeated)):
-                message = CloudMessage(
-                    plan.topic, plan.lidar_frame, stamp_ns, points, plan.layout.dense
-                )
-                yield recorded + again, message
+        sensors = lidars_of(_as_measured(cloud, plan.T_lidar_as_measured), plan)
+        variant.points += len(cloud.xyz) - 3 * (k in plan.absurd) * len(sensors)
+        for topic, frame, measured in sensors:
+            for recorded, message in _messages(k, measured, plan, place=(topic, frame)):
+                yield recorded, message
+                if copy is not None and topic == plan.topic:
+                    yield from copy(k, recorded, message)
+
+
+def _messages(k, cloud, plan, *, place):
+    """The messages of a revolution, with their times of recording [ns]."""
+    late_ns = 130_000_000 * (k in plan.swapped)
+    for part, t0_ns in _parts(cloud, plan.parts):
+        stamp_ns = t0_ns + plan.offset_ns + round(TURN_NS // plan.parts * plan.layout.stamp_at)
+        points = points_of(part, plan.layout, stamp_ns=stamp_ns, t0_ns=cloud.t_ns + plan.offset_ns)
+        if k in plan.absurd and t0_ns == cloud.t_ns:
+            _make_absurd(points, plan.layout)
+        recorded = t0_ns + TURN_NS // plan.parts + plan.late_ns + late_ns
+        stamp_ns = 0 if k in plan.unstamped else stamp_ns
+        for again in range(1 + (k in plan.repeated)):
+            yield recorded + again, CloudMessage(*place, stamp_ns, points, plan.layout.dense)
+
+
+def _raw_packets(draw, walk, plan, variant):
+    """Packets of a Velodyne in messages of a revolution; clouds made of them may be beside."""
+    sensor = draw.one("VLP-16", "VLP-16", "VLP-16 dual", "HDL-32E", "VLP-32C")
+    variant.say(f"raw packets of a {sensor}")
+    packets = packets_of(walk, sensor)
+    variant.points = points_in(bytes(_HEADERS) + p.tobytes() for p in packets.payloads)
+    message_ns = draw.one(TURN_NS, TURN_NS, TURN_NS // 10)
+    number = (packets.t_ns - packets.t_ns[0]) // message_ns
+    for k in range(int(number[-1]) + 1):
+        rows = number == k
+        t_ns = packets.t_ns[rows] + plan.offset_ns
+        message = PacketsMessage(
+            "/velodyne_packets", plan.lidar_frame, t_ns, packets.payloads[rows]
+        )
+        yield int(t_ns[-1]) - plan.offset_ns + plan.late_ns, message
+    if draw.chance(0.4):
+        variant.say("clouds beside them")
+        points = variant.points
+        yield from _clouds(draw, walk, plan, variant)
+        variant.points = points
+
+
+def _driver_messages(draw, walk, plan, variant):
+    """A LiDAR in messages of its own driver, which recon4 does not read."""
+    kind = draw.one(*DRIVER_MESSAGES)
+    variant.say(f"LiDAR as {kind}")
+    variant.refusal = "messages of a driver"
+    variant.remedies = (kind.replace("/msg/", "/"), *DRIVER_MESSAGES[kind])
+    for cloud in walk.clouds:
+        yield cloud.t_ns + TURN_NS, DriverMessage("/lidar", kind, cloud.t_ns + plan.offset_ns)
 
 
 def _as_measured(cloud: Cloud, T: SE3) -> Cloud:
@@ -222,20 +200,23 @@ def _make_absurd(points, layout):
     name = next(n for n, _, _ in layout.fields if "time" in n or n in ("t", "t_us"))
     flat = points.reshape(-1)
     rows = np.flatnonzero(np.isfinite(flat["x"]))[[5, 50, 500]]
-    flat[name][rows] = np.iinfo(flat[name].dtype).max if flat[name].dtype.kind == "u" else 3e30
+    dtype = flat[name].dtype
+    flat[name][rows] = np.iinfo(dtype).max if dtype.kind in "ui" else 3e30
 
 
 # -- IMU
 
 
 def _imu(draw, walk, plan, variant):
-    if draw.chance(0.1):
+    sound = bool(variant.must_say)  # what is said of the IMU's mount needs an IMU that is used
+    if draw.chance(0.1) and not sound:
         variant.say("no IMU")
         return
     imu = walk.imu
     gyro = turned(imu.gyro_rad_s, plan.T_imu_lidar.R)
     accel = turned(imu.accel_m_s2, plan.T_imu_lidar.R)
     how = draw.one("", "", "", "in g", "zeros", "cov", "nan", "stamp 0", "unsorted", "other clock")
+    how = "" if sound else how
     variant.samples = len(imu)
     offset_ns, absent = plan.offset_ns, ()
     if how:

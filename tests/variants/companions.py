@@ -8,7 +8,7 @@ import numpy as np
 
 from tests.robot_bags import RobotBag
 from tests.variants.layouts import points_of
-from tests.variants.messages import CloudMessage, Fix, ImuMessage
+from tests.variants.messages import CloudMessage, Fix, ImuMessage, OdometryMessage
 from tests.variants.variant import Draw, Variant
 from tests.variants.walk import TURN_NS, Cloud, RecordedWalk
 
@@ -68,6 +68,33 @@ def others(draw, walk, plan, variant):
             for t_ns in range(walk.clouds[0].t_ns, end_ns, 200_000_000)
         ]
     return found
+
+
+def odometry(draw, walk, plan, variant):
+    """Odometry of wheels or of a program, which is kept for comparison only."""
+    if not draw.chance(0.35):
+        return []
+    frame = draw.one("odom", "odom", "map", "camera_init", "", plan.lidar_frame, "base_link")
+    topics = draw.one(("/odom",), ("/odom", "/lio/odometry"))
+    child = draw.one("", frame) if frame == plan.lidar_frame else "base_link"
+    standing, unstamped = draw.chance(0.2), draw.chance(0.15)
+    variant.say(f"odometry {' and '.join(topics)} in {frame!r}")
+    variant.say("which never changes") if standing else None
+    variant.say("without stamps") if unstamped else None
+    return [
+        (
+            t_ns + 2_000_000,
+            OdometryMessage(
+                topic,
+                frame,
+                0 if unstamped else t_ns + plan.offset_ns,
+                0.0 if standing else 0.02 * k,
+                child,
+            ),
+        )
+        for topic in topics
+        for k, t_ns in enumerate(range(walk.clouds[0].t_ns, walk.clouds[-1].t_ns, 50_000_000))
+    ]
 
 
 def _moved(cloud: Cloud, walk: RecordedWalk) -> Cloud:

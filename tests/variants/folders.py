@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from tests.builders import write_bin, write_pcd, write_ply
+from tests.variants.tables import write_tables
 from tests.variants.variant import Draw, Variant
 from tests.variants.walk import Cloud, RecordedWalk
 
@@ -25,6 +26,7 @@ def write_folder(draw: Draw, walk: RecordedWalk, folder: Path) -> Variant:
     if missing:
         variant.say("clouds missing")
     fields = _fields(draw, kind, variant)
+    variant.timed = "time" in fields
     for k, cloud in enumerate(clouds):
         name = f"{cloud.t_ns / 1e9:.6f}" if times == "names" else draw_name(variant, k)
         _write(variant.path / f"{name}.{kind}", kind, _table(cloud, fields), variant)
@@ -34,6 +36,8 @@ def write_folder(draw: Draw, walk: RecordedWalk, folder: Path) -> Variant:
         variant.offset_ns, variant.exact = -base_ns, False
     _spoil(draw, variant, sorted(variant.path.glob(f"*.{kind}")))
     variant.exact &= kind != "bin" and "time" in fields
+    if variant.offset_ns == 0 and draw.chance(0.4):
+        write_tables(draw, walk, folder, variant)
     return variant
 
 

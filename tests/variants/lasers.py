@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from recon4.geometry.se2 import between
 from tests.builders import T0_NS, bag_path
+from tests.line_tables import laser_columns, write_csv, write_npz
 from tests.planar_walks import (
     START_NS,
     PlanarWalk,
     along,
     clockwise_and_back,
+    drifting,
     full_turns,
     furnished_room,
     interlaced,
@@ -35,12 +38,17 @@ def planar_walk(draw: Draw, variant: Variant) -> PlanarWalk:
     variant.say(how)
     if how == "equal":
         return scanned(furnished_room(), truth, odometry=draw.chance(0.5))
-    return scanned_in(furnished_room(), truth, layouts[how](len(truth)))
+    walk = scanned_in(furnished_room(), truth, layouts[how](len(truth)))
+    if draw.chance(0.5):
+        variant.say("odometry of the wheels")
+        odometry = drifting(truth, np.random.default_rng(2))
+        walk = replace(walk, scans=replace(walk.scans, odometry=odometry))
+    return walk
 
 
 def write_laser(draw: Draw, folder: Path) -> tuple[Variant, PlanarWalk]:
     """Draw and write a recording of a 2-D laser."""
-    kind = draw.one("bag1", "db3", "mcap", "carmen")
+    kind = draw.one("bag1", "db3", "mcap", "carmen", "csv", "npz")
     variant = Variant(f"2-D laser, {kind}")
     walk = planar_walk(draw, variant)
     if kind == "carmen":
@@ -49,10 +57,27 @@ def write_laser(draw: Draw, folder: Path) -> tuple[Variant, PlanarWalk]:
         variant.points = len(walk.scans)
         _spoil_log(draw, variant)
         return variant, walk
+    if kind in ("csv", "npz"):
+        _write_table(draw, walk, folder, variant, kind=kind)
+        return variant, walk
     variant.path = bag_path(folder, kind)
     with RobotBag(variant.path, kind) as bag:
         _write_scans(draw, bag, walk, variant)
     return variant, walk
+
+
+def _write_table(draw, walk, folder, variant, *, kind):
+    variant.path = folder / f"laser2d.{kind}"
+    variant.points = len(walk.scans)
+    columns = laser_columns(walk.scans)
+    if draw.chance(0.5):
+        variant.say("beams without a return left out")
+        rows = np.isfinite(columns["range_m"])
+        columns = {name: column[rows] for name, column in columns.items()}
+    if draw.chance(0.3):
+        variant.say("columns in another order")
+        columns = dict(reversed(columns.items()))
+    {"csv": write_csv, "npz": write_npz}[kind](variant.path, columns)
 
 
 def _write_scans(draw, bag, walk, variant):
@@ -60,9 +85,11 @@ def _write_scans(draw, bag, walk, variant):
     none = draw.one(np.inf, np.nan, 0.0, 30.0)
     scale = 1000.0 if draw.chance(0.15) else 1.0
     turn = mount(0.0, 0.0, 0.3, roll=180.0 * upside_down)
-    stated = upside_down or draw.chance(0.3)
+    stated, frame = upside_down or draw.chance(0.3), "laser"
     if stated:
-        bag.tf(("base_link", "laser", turn), t_ns=T0_NS - 1)
+        prefix = draw.one("", "", "robot1/", "/robot1/")
+        frame = f"{prefix}laser"
+        bag.tf((f"{prefix}base_link", frame, turn), t_ns=T0_NS - 1)
     skipped, again, unstamped = _damage(draw, len(walk.scans))
     traits = {
         f"no return = {none}": True,
@@ -89,7 +116,7 @@ def _write_scans(draw, bag, walk, variant):
         if upside_down:
             angles = -angles
         ranges = np.where(np.isfinite(ranges), ranges, none) * scale
-        bag.frame = "laser"
+        bag.frame = frame
         for copy in range(1 + (k in again)):
             stamp_ns = 0 if k in unstamped else t_ns
             _scan(bag, topic, t_ns + copy, stamp_ns, ranges=ranges, angles=angles)
@@ -140,8 +167,8 @@ def _spoil_log(draw, variant):
     end = "\r\n" if how == "carriage returns" else "\n"
     text = end.join(lines) + end
     if how == "cut":
-        text = text[: int(0.9 * len(text))]
-        variant.points = int(0.88 * variant.points)
+        text = text[: text.rindex("ROBOTLASER1", 0, int(0.9 * len(text))) + 900]
+        variant.points = text.count(f"{end}ROBOTLASER1") - 1
     variant.path.write_bytes(text.encode("ascii"))
 
 

@@ -34,6 +34,17 @@ class Layout:
     """What ``is_dense`` says."""
 
     @property
+    def has_times(self) -> bool:
+        """Whether the times of the points are fine enough to be used."""
+        types = {name: kind for name, kind, _ in self.fields}
+        return bool(self.time) and (self.time != "s absolute" or types.get("time") != "f4")
+
+    @property
+    def stamp_at(self) -> float:
+        """Where in the duration of a message its stamp is: 0 at the start, 1 at the end."""
+        return {"before": 1.0, "around": 0.5}.get((f"{self.time} ").split(" ")[1], 0.0)
+
+    @property
     def dtype(self) -> np.dtype[Any]:
         """Of a point."""
         order = ">" if self.big else "<"
@@ -122,6 +133,61 @@ DRIVERS = (
         20,
         "ms",
     ),
+    Layout(
+        "ouster, signed times",
+        (*_XYZ, ("signal", "f4", 12), ("t", "i4", 16), ("ring", "u2", 20), ("range", "u4", 24)),
+        28,
+        "ns before the stamp",
+    ),
+    Layout(
+        "ouster, absolute times",
+        (*_XYZ, ("intensity", "f4", 16), ("t", "f8", 24), ("ring", "u1", 32)),
+        48,
+        "ns absolute",
+    ),
+    Layout(
+        "hesai, float64 all over",
+        (
+            ("x", "f8", 0),
+            ("y", "f8", 8),
+            ("z", "f8", 16),
+            ("intensity", "f8", 24),
+            ("timestamp", "f8", 32),
+            ("ring", "i4", 40),
+        ),
+        48,
+        "s absolute",
+    ),
+    Layout(
+        "robosense, since the start",
+        (*_XYZ, ("intensity", "u1", 12), ("ring", "u2", 14), ("timestamp", "f8", 16)),
+        24,
+        "s",
+    ),
+    Layout(
+        "livox, microseconds",
+        (*_XYZ, ("intensity", "f4", 12), ("line", "u1", 16), ("timestamp", "f8", 20)),
+        28,
+        "us absolute",
+    ),
+    Layout(
+        "livox, float32 nanoseconds",
+        (*_XYZ, ("intensity", "f4", 12), ("line", "u1", 16), ("offset_time", "f4", 20)),
+        24,
+        "ns",
+    ),
+    Layout(
+        "a merged cloud in float32 seconds",
+        (*_XYZ, ("intensity", "f4", 12), ("ring", "f4", 16), ("time", "f4", 20)),
+        24,
+        "s absolute",
+    ),
+    Layout(
+        "aeva, stamp in the middle",
+        (*_XYZ, ("intensity", "f4", 12), ("line", "i2", 16), ("time_offset", "i4", 20)),
+        24,
+        "ns around the stamp",
+    ),
     Layout("x y z alone", _XYZ, 16),
     Layout("pcl::PointXYZI", (*_XYZ, ("intensity", "f4", 16)), 32),
 )
@@ -159,7 +225,7 @@ def points_of(cloud: Cloud, layout: Layout, *, stamp_ns: int, t0_ns: int) -> NDA
 def _column(cloud: Cloud, name: str, kind: str, *, times: NDArray[Any]) -> NDArray[Any]:
     if name in "xyz":
         return cloud.xyz[:, "xyz".index(name)]
-    if name in ("intensity", "i", "reflectivity"):
+    if name in ("intensity", "i", "reflectivity", "signal"):
         return np.minimum(cloud.intensity, 255) if kind == "u1" else cloud.intensity
     if name in ("ring", "line", "laser_id", "channel"):
         return cloud.ring

@@ -22,14 +22,23 @@ class Variant:
     """What was drawn, in words."""
     rig: Rig | None = None
     imu: Path | None = None
+    gnss: Path | None = None
     offset_ns: int = 0
     """Clock of the stamps minus UTC [ns]."""
     points: int = 0
     """Points, or scans of a 2-D laser, that are sound and must be used; 0 = not counted."""
+    timed: bool = False
+    """Whether each point has a time of its own, which must be used."""
     samples: int = 0
     """IMU samples that are sound and must be used; 0 = none, or they need not be."""
+    fixes: int = 0
+    """Positions that are sound and must be used; 0 = none, or they need not be."""
     refusal: str = ""
     """Why the recording may be refused; empty = it must be read."""
+    remedies: tuple[str, ...] = ()
+    """Words that a refusal must contain: what to do."""
+    must_say: list[str] = field(default_factory=list)
+    """Words that must be among what is said, if the recording is mapped."""
     damaged: bool = False
     """Whether something must be said, however much is left."""
     exact: bool = True

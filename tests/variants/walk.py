@@ -19,7 +19,7 @@ from recon4.recording.ingest import ingest
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
-from recon4.simulation.setup import prepare
+from recon4.simulation.setup import SimulationSetup, prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 
@@ -52,6 +52,8 @@ class RecordedWalk:
     """Times of arrival of data packets [ns], (P,)."""
     packets: NDArray[np.uint8]
     """(P, 1206)."""
+    setup: SimulationSetup
+    """What was simulated, to measure the walk with other sensors."""
 
     def error_m(self, found: Trajectory, offset_ns: int) -> float:
         """Largest horizontal distance from the truth [m], aligned at the first pose.
@@ -95,6 +97,7 @@ def record_walk(folder: Path, *, seconds: float = 5.0) -> RecordedWalk:
         read_tum(folder / "truth.tum"),
         packet_ns[early],
         packets[early],
+        setup,
     )
 
 
