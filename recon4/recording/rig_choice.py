@@ -72,9 +72,10 @@ def _remedy(streams: Sequence[Stream], why: str) -> str:
     ]
     lines += [f"  {_described(stream)}" for stream in streams]
     if streams[0].topic:
+        best = max(streams, key=lambda stream: stream.likeness).topic
         lines.append(
-            f"Read one of them: set lidar_topic of ingest to {streams[0].topic} (page: All "
-            f"settings; command: --set ingest.lidar_topic={streams[0].topic})"
+            f"Read one of them: set lidar_topic of ingest to {best} (page: All settings; command: "
+            f"--set ingest.lidar_topic={best})"
         )
     lines.append(
         "Or give a rig (page: Rigs, then the field Rig; command: --rig FILE; 4recon is the rig of "
