@@ -8,6 +8,7 @@ from typing import Literal
 from recon4.live.newest import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
+from recon4.model.import_counts import ratio_text
 from recon4.model.rig import Rig, Sensor
 from recon4.model.usability import WEAK_SD_M
 
@@ -20,6 +21,7 @@ _SILENT_S = 1.5
 _GRACE_S = 3.0
 """No sensor is reported as silent this soon after the start."""
 _MAX_LOST = 0.01
+_BAD_PACKETS = ("packets_duplicate", "packets_out_of_order", "packets_late", "packets_wrong_length")
 _DEGRADED_MATCH_RATIO, _DEGRADED_ERROR_M, _DEGRADED_OFFSET_M = 0.4, 0.08, 0.25
 
 
@@ -279,19 +281,12 @@ def _reader(notes: Notes, *, lost_here: bool) -> list[CaptureFinding]:
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
     if packets > 1000 and missing > _MAX_LOST * packets and not lost_here:
-        percent = 100.0 * missing / (packets + missing)
-        text = f"{percent:.0f} % of the packets never arrived: check the cable"
+        text = ratio_text("packets_missing", missing / (packets + missing))
         found.append(CaptureFinding("warning", text))
-    for name, what in (
-        ("packets_duplicate", "arrived twice: the copies are discarded"),
-        ("packets_out_of_order", "arrived out of order: sorted"),
-        ("packets_late", "arrived too late for their frame"),
-        ("packets_wrong_length", "on a LiDAR's port have a wrong size: discarded"),
-    ):
+    for name in _BAD_PACKETS:
         if packets > 1000 and recent.get(name, 0) > _MAX_LOST * packets:
-            found.append(
-                CaptureFinding("info", f"{100 * recent[name] / packets:.0f} % of packets {what}")
-            )
+            text = ratio_text(name, recent[name] / packets)
+            found.append(CaptureFinding("info", text))
     return found
 
 

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from recon4.live.protocol import Notes, Pose
+from recon4.model.import_counts import ratio_text
 
 _LEAST = 20
 """Scans of the last seconds from which parts of them are reported."""
 _PART = 0.02
-_BAD_SCANS = (
-    ("scans_repeated", "arrived twice: the copies are left out"),
-    ("scans_duplicate", "have the time of another one: left out"),
-    ("scans_out_of_order", "arrived out of order: left out"),
-)
+_BAD_SCANS = ("scans_repeated", "scans_duplicate", "scans_out_of_order")
 _UNOBSERVED = {
     "along": "Nothing holds the map along this corridor: look at a corner or an open door",
     "across": "Nothing holds the map across your way: keep near a wall",
@@ -35,11 +32,11 @@ def scan_remarks(notes: Notes) -> Iterator[str]:
         elif damaged > _PART * whole >= _PART * _LEAST:
             yield f"{damaged} datagrams with {where} cannot be read"
             break
-    total = recent.get("scans", 0) + sum(recent.get(name, 0) for name, _ in _BAD_SCANS)
-    for name, what in _BAD_SCANS:
+    total = recent.get("scans", 0) + sum(recent.get(name, 0) for name in _BAD_SCANS)
+    for name in _BAD_SCANS:
         count = recent.get(name, 0)
         if total >= _LEAST and count > _PART * total:
-            yield f"{100 * count / total:.0f} % of the scans {what}"
+            yield ratio_text(name, count / total)
     blind = recent.get("scans_without_returns", 0)
     if blind >= _LEAST and 2 * blind > recent.get("scans", 0):
         yield "The 2-D laser sees nothing: is it covered, or is everything beyond its range?"

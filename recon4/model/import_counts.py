@@ -311,6 +311,17 @@ def count_text(name: str, counts: Mapping[str, int], *, detail: str = "") -> str
     return f"{number}{of_all} {count_label(name)}{f' ({detail})' if detail else ''}"
 
 
+def ratio_text(name: str, ratio: float) -> str:
+    """A part of all as text, such as ``12 % of the data packets: received twice, …``.
+
+    Args:
+        name: Of a count with words.
+        ratio: Of all, 0 to 1.
+    """
+    words, _ = wording(name)
+    return f"{100.0 * ratio:.0f} % of the {_noun(words)}: {words.text}"
+
+
 def losses(counts: Mapping[str, int], details: Mapping[str, str] | None = None) -> list[Loss]:
     """All counts of data that is not used, the largest ratio first.
 

@@ -38,7 +38,9 @@ def samples_beside(recording: Path, kind: RecordingKind) -> str:
     """What to do with samples of a kind beside a recording; empty = there are none."""
     option = {RecordingKind.IMU_CSV: "--imu", RecordingKind.GNSS_CSV: "--gnss"}[kind]
     file = _nearby([recording], kind)
-    return f"{file.name} beside it has them, give it with {option} {file.name}" if file else ""
+    if file is None:
+        return ""
+    return f"{file.name} beside it has them: page: IMU and GNSS files; command: {option} FILE"
 
 
 def _nearby(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:

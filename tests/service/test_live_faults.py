@@ -226,9 +226,9 @@ def test_every_network_fault_gives_a_warning_and_all_datagrams_are_recorded(walk
         r"vertical LiDAR silent for \d+ s",
         r"No LiDAR sends anything for \d+ s: check power and cables",
         r"vertical: its clock is .* s off the recorder's and no GPS drives it.*",
-        r"\d+ % of the packets never arrived: check the cable",
-        r"\d+ % of packets arrived twice: the copies are discarded",
-        r"\d+ % of packets arrived out of order: sorted",
+        r"\d+ % of the data packets: never arrived: check cable and recorder",
+        r"\d+ % of the data packets: received twice, the copies dropped",
+        r"\d+ % of the data packets: out of order, sorted",
         r"Foreign traffic on port 2368 from 127\.9\.9\.9",
         r"GNSS jumped by 50 m: the map does not use it",
     ):

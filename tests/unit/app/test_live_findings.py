@@ -5,6 +5,7 @@ import pytest
 from recon4.live.findings import findings, rates
 from recon4.live.newest import Newest
 from recon4.live.protocol import DiskState, FileState, RecentFrames
+from recon4.model.import_counts import count_text, wording
 from recon4.model.rig import load_rig, parse_rig
 from tests import live_messages
 from tests.live_messages import fix, notes, pose, sender
@@ -190,14 +191,14 @@ def test_poses_of_the_mapper_give_findings(changed, level, text):
         (
             {"packets_missing": 3000},
             "warning",
-            "30 % of the packets never arrived: check the cable",
+            "30 % of the data packets: never arrived: check cable and recorder",
         ),
         (
             {"packets_duplicate": 700},
             "info",
-            "10 % of packets arrived twice: the copies are discarded",
+            "10 % of the data packets: received twice, the copies dropped",
         ),
-        ({"packets_out_of_order": 700}, "info", "10 % of packets arrived out of order: sorted"),
+        ({"packets_out_of_order": 700}, "info", "10 % of the data packets: out of order, sorted"),
         ({"packets_late": 70}, "info", None),
     ],
 )
@@ -207,6 +208,19 @@ def test_repairs_of_the_reader_are_reported_while_they_happen(recent, level, tex
     found = found_in(notes=notes(counts=counts, recent={"packets": 7000} | recent))
 
     assert found == ([(level, text)] if text else [])
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["packets_missing", "packets_duplicate", "packets_late", "packets_wrong_length"],
+)
+def test_live_and_finished_runs_say_a_loss_in_the_same_words(name):
+    counts = {"packets": 7000, name: 700}
+
+    ((_, text),) = found_in(notes=notes(counts=counts, recent=counts))
+
+    assert wording(name)[0].text in text
+    assert count_text(name, counts).split(": ", 1)[1] == text.split(": ", 1)[1]
 
 
 def test_a_clock_that_runs_freely_is_reported():
@@ -306,8 +320,14 @@ def test_a_direction_that_is_not_observed_is_said_in_words(unobserved, text):
 @pytest.mark.parametrize(
     ("recent", "text"),
     [
-        ({"scans": 200, "scans_repeated": 50}, "20 % of the scans arrived twice: the copies are"),
-        ({"scans": 100, "scans_out_of_order": 100}, "50 % of the scans arrived out of order"),
+        (
+            {"scans": 200, "scans_repeated": 50},
+            "20 % of the scans: repeated in other messages, the copies",
+        ),
+        (
+            {"scans": 100, "scans_out_of_order": 100},
+            "50 % of the scans of the 2-D laser: earlier than the one before",
+        ),
         ({"scans": 200, "scans_damaged": 30}, "30 datagrams with scans cannot be read"),
         ({"scans_damaged": 30}, "Nothing of what the 2-D laser sends can be read: 30 datagrams"),
         ({"scans": 100, "scans_without_returns": 100}, "The 2-D laser sees nothing: is it covered"),

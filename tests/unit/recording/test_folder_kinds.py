@@ -124,5 +124,5 @@ def test_info_names_samples_that_lie_beside_a_recording(tmp_path, pcap):
     imu_csv(tmp_path / "imu.csv")
 
     for given in (tmp_path, tmp_path / "walk.pcap"):
-        missing = describe(given).missing
-        assert "IMU (imu.csv beside it has them, give it with --imu imu.csv)" in missing
+        (text,) = (text for text in describe(given).missing if text.startswith("IMU"))
+        assert "imu.csv beside it has them" in text and "command: --imu FILE" in text
