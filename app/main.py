@@ -248,6 +248,8 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
     projects = ProjectStore(settings.root, _import_folders(settings))
     rigs = RigStore(settings.root)
     uses = RigUses(rigs, projects, jobs)
+    trash = Trash(settings.root, settings.state / "trash", kept_s=settings.trash_retention_s)
+    trash.recover()
     viewers = ViewerPool(
         idle_s=settings.viewer_idle_s,
         points=settings.viewer_points,
@@ -260,7 +262,7 @@ def _open_parts(settings: ServerSettings) -> ServerParts:
         access=open_access(settings.state, login=settings.login, notice=notice),
         projects=projects,
         thumbnails=Thumbnails(pool, settings.state / "thumbnails"),
-        trash=Trash(settings.root, settings.state / "trash", kept_s=settings.trash_retention_s),
+        trash=trash,
         uploads=UploadStore(settings),
         jobs=jobs,
         supervisor=Supervisor(jobs, settings),

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import os
 import re
-import secrets
 import shutil
 from dataclasses import dataclass
 from datetime import UTC, datetime
@@ -17,11 +16,12 @@ from pathlib import Path
 from typing import Literal
 
 from app.errors import STORAGE, Conflict, NotFound, project_page
-from recon4.review.newest_approval import move_record, record_path
+from recon4.review.newest_approval import APPROVALS, move_record, record_path
 from recon4.store.atomic import make_folders
 
 NAME = re.compile(r"(?P<project>[A-Za-z0-9][A-Za-z0-9._-]{0,63})@(?P<timestamp>\d{8}T\d{12})")
 RECORDINGS = "recordings"
+GOING = ".going-"
 TIMESTAMP = "%Y%m%dT%H%M%S%f"
 
 
@@ -122,7 +122,7 @@ class Trash:
             The names of the folders.
         """
         for path in self._entries():
-            if path.name.startswith(".going-"):
+            if path.name.startswith(GOING):
                 shutil.rmtree(path, ignore_errors=True)
         old = [path for path in self._entries() if _is_deleted(path)]
         old = [path for path in old if _deleted_s(path) + self._kept_s < now_s]
@@ -130,8 +130,28 @@ class Trash:
             self._remove(path)
         return [self._deleted(path).project for path in old]
 
+    def recover(self) -> None:
+        """Finish what a killed server began, so that each record of an approval has its folder.
+
+        The record and the folder of a project are renamed one after the other. Call it before the
+        records are used.
+        """
+        for going in self._folder.iterdir() if self._folder.exists() else ():
+            if going.name.startswith(GOING):
+                record_path(self._state, going.name.removeprefix(GOING)).unlink(missing_ok=True)
+        for record in (self._state / APPROVALS).glob("*@*.json"):
+            name = record.stem
+            if not NAME.fullmatch(name) or (self._folder / name).exists():
+                continue
+            project = name.split("@")[0]
+            home = self._homes[self._folder] / project
+            if home.exists() and not record_path(self._state, project).exists():
+                move_record(self._state, name, project)
+            else:
+                record.unlink()
+
     def _remove(self, path: Path) -> None:
-        going = path.with_name(f".going-{secrets.token_hex(6)}")
+        going = path.with_name(f"{GOING}{path.name}")
         path.rename(going)
         if path.parent == self._folder:
             record_path(self._state, path.name).unlink(missing_ok=True)

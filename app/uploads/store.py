@@ -30,7 +30,7 @@ from app.uploads.model import Upload, UploadedFile
 from app.uploads.names import another, safe_path, slug
 from recon4.errors import StoreError
 from recon4.names import visible
-from recon4.store.atomic import make_folders, write_json
+from recon4.store.atomic import make_folders, sweep, write_json
 from recon4.store.json_files import read_object
 
 log = logging.getLogger(__name__)
@@ -273,6 +273,9 @@ class UploadStore:
             if not UPLOAD_ID.fullmatch(folder.name):
                 shutil.rmtree(folder, ignore_errors=True)  # removal was begun
                 continue
+            if not _was_announced(folder):  # killed before the response was sent
+                shutil.rmtree(folder, ignore_errors=True)
+                continue
             try:
                 upload = self._read_one(folder)
             except (OSError, ValueError, TypeError, KeyError, StoreError) as error:
@@ -281,10 +284,13 @@ class UploadStore:
                 continue
             self._uploads[upload.id] = upload
             self.finish(upload)
+            if upload.finished and not (self.recordings / upload.folder).exists():
+                self.remove(upload)  # its recording was deleted
 
     def _read_one(self, folder: Path) -> Upload:
         upload = _upload(read_object(folder / "upload.json"))
         moved = upload.finished or not (folder / "data").exists()
+        sweep(folder / "parts")
         for path in sorted((folder / "parts").glob("*.json"), key=lambda p: int(p.stem)):
             note = read_object(path)
             file = UploadedFile(
@@ -292,8 +298,17 @@ class UploadStore:
             )
             file.offset = file.bytes if moved else self._data(upload, file).stat().st_size
             upload.announced[file.name] = file
+        known = {self._data(upload, file) for file in upload.announced.values()}
+        for path in (folder / "data").rglob("*"):
+            if not path.is_dir() and path not in known:
+                path.unlink()  # killed while it was announced: it has no bytes yet
         upload.changed_s = _newest_s(folder)
         return upload
+
+
+def _was_announced(folder: Path) -> bool:
+    """Whether the response with an upload's id may have been sent."""
+    return (folder / "upload.json").exists() or any((folder / "parts").glob("[0-9]*.json"))
 
 
 def _upload(facts: dict[str, Any]) -> Upload:
