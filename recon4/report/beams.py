@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from recon4.model.figures import CalibrationFigures, ParameterFigures
-from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
+from recon4.report.figures import AMBER, BLUE, GRAY, GREEN, INK, ORANGE, PINK, SKY, Chart, add_bars
 from recon4.report.rig import DISPLAY_UNITS
 
 
@@ -26,7 +26,9 @@ _QUANTITIES = (
     _Quantity("elevation", *DISPLAY_UNITS["rad"], 4),
     _Quantity("azimuth", *DISPLAY_UNITS["rad"], 4),
 )
-_COLORS = (BLUE, ORANGE, GREEN, PINK)
+_COLORS = (BLUE, ORANGE, GREEN, PINK, SKY, AMBER, GRAY, INK)
+_APART = 0.6
+"""Width over which the LiDARs of one ring are spread."""
 _WIDTH_SD = 2.0
 """Standard deviations that the bars extend to each side."""
 
@@ -83,17 +85,14 @@ def _text(one: ParameterFigures | None, quantity: _Quantity) -> str:
 
 
 def _chart(rows: Sequence[ParameterFigures], quantity: _Quantity) -> str:
-    chart = Chart(f"beams-{quantity.name}")
-    for k, sensor in enumerate(dict.fromkeys(one.sensor for one in rows)):
+    chart = Chart(f"beams-{quantity.name}", height=3.4)
+    sensors = list(dict.fromkeys(one.sensor for one in rows))
+    for k, sensor in enumerate(sensors):
         own = [one for one in rows if one.sensor == sensor]
-        chart.axes.errorbar(
-            [int(one.axis) + 0.15 * k for one in own],
-            [quantity.factor * one.change for one in own],
-            yerr=[_WIDTH_SD * quantity.factor * (one.sd or np.nan) for one in own],
-            fmt="o",
-            ms=4.0,
-            color=_COLORS[k % len(_COLORS)],
-            label=sensor,
-        )
+        at = [(int(one.axis) + _APART * k / len(sensors), one.change) for one in own]
+        half = [(0.0, _WIDTH_SD * (one.sd or 0.0)) for one in own]
+        scale = [1.0, quantity.factor]
+        color = _COLORS[k % len(_COLORS)]
+        add_bars(chart, np.array(at) * scale, np.array(half) * scale, color=color, label=sensor)
     chart.axes.set(xlabel="ring (0 = lowest)", ylabel=f"{quantity.name} [{quantity.unit.strip()}]")
-    return chart.svg()
+    return chart.svg(above=True)

@@ -12,8 +12,11 @@ import numpy as np
 from recon4.geometry.se3 import Array
 
 BLUE, ORANGE, GREEN, GRAY, PINK = "#0072b2", "#d55e00", "#009e73", "#999999", "#cc79a7"
+SKY, AMBER = "#56b4e9", "#e69f00"
 """Okabe & Ito 2008: distinguishable for color-blind readers."""
-_INK = "#010203"
+_MANY_BARS = 40
+"""More bars of a color are drawn finer."""
+INK = "#010203"
 """Placeholder of the page's text color until the SVG is written."""
 _STYLE: dict[Any, Any] = {
     "svg.fonttype": "none",
@@ -22,11 +25,11 @@ _STYLE: dict[Any, Any] = {
     "font.size": 9.0,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.labelcolor": _INK,
-    "axes.edgecolor": _INK,
-    "text.color": _INK,
-    "xtick.color": _INK,
-    "ytick.color": _INK,
+    "axes.labelcolor": INK,
+    "axes.edgecolor": INK,
+    "text.color": INK,
+    "xtick.color": INK,
+    "ytick.color": INK,
     "axes.grid": True,
     "grid.color": "#808080",
     "grid.alpha": 0.25,
@@ -65,19 +68,26 @@ class Chart:
             FigureCanvasSVG(self.figure)
             self.axes: Any = self.figure.subplots()
 
-    def svg(self, *, legend: bool = True) -> str:
-        """The chart as SVG, with its text in the page's color."""
+    def svg(self, *, legend: bool = True, above: bool = False) -> str:
+        """The chart as SVG, with its text in the page's color.
+
+        Args:
+            legend: Whether the labels are shown.
+            above: In rows above the axes, where many values fill the chart; not with ``numbers``.
+        """
         import matplotlib
 
         with matplotlib.rc_context({**_STYLE, "svg.hashsalt": f"recon4 {self._name}"}):
-            if legend and self.axes.get_legend_handles_labels()[0]:
+            if above:
+                self.figure.legend(loc="outside upper center", ncols=4, fontsize=8)
+            elif legend and self.axes.get_legend_handles_labels()[0]:
                 self.axes.legend(fontsize=8)
             buffer = StringIO()
             # `savefig` draws twice, first for a layout that drawing makes anyway.
             canvas: Any = self.figure.canvas
             canvas.print_svg(buffer, metadata={"Date": None, "Creator": None})
         text = buffer.getvalue()
-        text = text[text.index("<svg") :].replace(_INK, "currentColor")
+        text = text[text.index("<svg") :].replace(INK, "currentColor")
         text = re.sub(r'(<svg[^>]*?) width="[^"]*"', r"\1", text, count=1)
         text = re.sub(r'(<svg[^>]*?) height="[^"]*"', r"\1", text, count=1)
         text = re.sub(r' xmlns(:xlink)?="[^"]*"', "", text)
@@ -144,7 +154,7 @@ def histogram(
             label=f"{label} ({len(values)})",
         )
     if limit is not None:
-        chart.axes.axvline(limit[0], color=_INK, lw=1.2, ls="--", label=limit[1])
+        chart.axes.axvline(limit[0], color=INK, lw=1.2, ls="--", label=limit[1])
     if log:
         chart.axes.set_xscale("log")
         chart.axes.xaxis.set_major_formatter(lambda value, _: f"{value:g}")
@@ -179,23 +189,47 @@ def broken_at_holes(x: Array, y: Array) -> tuple[Array, Array]:
     return np.insert(x, after, np.nan), np.insert(y.astype(np.float64), after, np.nan)
 
 
-def _add_dots(chart: Chart, x: Array, y: Array, *, color: str) -> None:
-    """Draw the values without a neighbor on either side, which no line shows.
+def add_bars(chart: Chart, middle: Array, half: Array, *, color: str, label: str = "") -> None:
+    """Draw values as dots with bars to both sides; any number of them is two paths of the page.
 
-    All are one path of lines without length: a marker would be an element of the page for each, of
-    which an old computer and the judgement of accessibility bear a few thousand.
+    Args:
+        chart: Its limits grow with the bars.
+        middle: The values, (N, 2).
+        half: Half of each bar, (N, 2).
+        color: Of dots and bars.
+        label: Their name in the legend; empty = none.
+    """
+    bar, dot = (1.3, 4.0) if len(middle) <= _MANY_BARS else (0.6, 2.4)
+    _add_strokes(chart, middle - half, middle + half, color=color, width=bar)
+    _add_strokes(chart, middle, middle, color=color, width=dot)
+    if label:
+        chart.axes.plot([], [], "o", ms=4.0, color=color, label=label)
+    chart.axes.update_datalim(np.concatenate([middle - half, middle + half]))
+    chart.axes.autoscale_view()
+
+
+def _add_dots(chart: Chart, x: Array, y: Array, *, color: str) -> None:
+    """Draw the values without a neighbor on either side, which no line shows."""
+    known = np.pad(np.isfinite(y), 1)
+    alone = known[1:-1] & ~known[:-2] & ~known[2:]
+    if alone.any():
+        points = np.stack([x[alone], y[alone]], axis=1)
+        _add_strokes(chart, points, points, color=color, width=2.25)
+
+
+def _add_strokes(chart: Chart, begin: Array, end: Array, *, color: str, width: float) -> None:
+    """Draw lines from ``begin`` to ``end``, (N, 2), as one path; one without length is a dot.
+
+    A marker or bar of matplotlib would be an element of the page for each, of which an old computer
+    and the judgement of accessibility bear a few thousand.
     """
     from matplotlib.patches import PathPatch
     from matplotlib.path import Path
 
-    known = np.pad(np.isfinite(y), 1)
-    alone = known[1:-1] & ~known[:-2] & ~known[2:]
-    if not alone.any():
-        return
-    points = np.stack([x[alone], y[alone]], axis=1)
-    path = Path(np.repeat(points, 2, axis=0), np.tile([Path.MOVETO, Path.LINETO], len(points)))
+    ends = np.stack([begin, end], axis=1).reshape(-1, 2)
+    path = Path(ends, np.tile([Path.MOVETO, Path.LINETO], len(begin)))
     path.should_simplify = False  # it would leave out lines without length
-    chart.axes.add_patch(PathPatch(path, fill=False, ec=color, lw=2.25, capstyle="round"))
+    chart.axes.add_patch(PathPatch(path, fill=False, ec=color, lw=width, capstyle="round"))
 
 
 def thinned(count: int, most: int = 1500) -> Any:

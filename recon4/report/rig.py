@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
+import numpy as np
+
 from recon4.evaluation.table import number
 from recon4.model.figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
-from recon4.report.figures import BLUE, GRAY, ORANGE, Chart
+from recon4.report.figures import BLUE, GRAY, ORANGE, Chart, add_bars
 
 DISPLAY_UNITS = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
 """Factor and unit in which parameters are shown."""
@@ -89,17 +91,12 @@ def _name(one: ParameterFigures) -> str:
 def _chart(rows: Sequence[ParameterFigures], unit: str, title: str) -> str:
     factor, _ = DISPLAY_UNITS[unit]
     chart = Chart(f"rig-{unit}", height=0.7 + 0.26 * len(rows))
-    for at, one in enumerate(rows):
-        if one.sd is None:
-            continue
-        chart.axes.errorbar(
-            factor * one.change,
-            at,
-            xerr=_WIDTH_SD * factor * one.sd,
-            fmt="o",
-            ms=4.0,
-            color=_COLORS[one.status],
-        )
+    for status, color in _COLORS.items():
+        own = [(at, one) for at, one in enumerate(rows) if one.status == status and one.sd]
+        if own:
+            middle = np.array([(factor * one.change, at) for at, one in own])
+            half = np.array([(_WIDTH_SD * factor * (one.sd or 0.0), 0.0) for _, one in own])
+            add_bars(chart, middle, half, color=color)
     chart.axes.axvline(0.0, color=GRAY, lw=1.0, ls="--")
     chart.axes.set(xlabel=title, ylim=(len(rows) - 0.5, -0.5))
     chart.axes.set_yticks(range(len(rows)), [f"{_name(one)}: {one.status}" for one in rows])

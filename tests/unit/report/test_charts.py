@@ -1,6 +1,7 @@
 """Rasters, plans and charts of the report."""
 
 from io import BytesIO
+from typing import Literal
 from xml.etree import ElementTree
 
 import numpy as np
@@ -8,11 +9,14 @@ import pytest
 from matplotlib.image import imread
 
 from recon4.geometry.se3 import SE3
+from recon4.model.figures import CalibrationFigures, ParameterFigures, ParameterStatus
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.report.beams import beam_charts
 from recon4.report.edges import edge_paths
-from recon4.report.figures import histogram, lines, thinned
+from recon4.report.figures import Chart, add_bars, histogram, lines, thinned
 from recon4.report.maps import ABOVE, SIDE, MapChunk, ink_png, intensity_png, rasterize
 from recon4.report.plan import PlanOverlay, PlanPath, frame_around, nice_step, plan_svg
+from recon4.report.rig import rig_charts
 
 NAMED = {"labels": ("x", "y")}
 
@@ -157,6 +161,62 @@ def test_charts_and_plan_of_a_large_graph_have_few_elements() -> None:
     ]
 
     assert [elements(svg) < 200 for svg in drawn] == [True] * 3, list(map(elements, drawn))
+
+
+def made_up_calibration(lidars: int, beams: int) -> CalibrationFigures:
+    rng = np.random.default_rng(3)
+    names = [f"lidar {k}" for k in range(lidars)]
+    statuses: tuple[ParameterStatus, ...] = ("consistent", "off", "not observable")
+
+    def one(sensor: str, quantity: str, axis: str, unit: Literal["rad", "m"]) -> ParameterFigures:
+        change, sd = rng.normal(0.0, 1e-3), rng.uniform(1e-4, 1e-3)
+        status = statuses[rng.integers(3)]
+        return ParameterFigures(
+            sensor=sensor,
+            quantity=quantity,
+            axis=axis,
+            unit=unit,
+            change=change,
+            sd=sd,
+            status=status,
+        )
+
+    return CalibrationFigures(
+        parameters=tuple(
+            one(name, what, axis, unit)
+            for name in names
+            for what, unit in (("rotation", "rad"), ("position", "m"))
+            for axis in "xyz"
+        ),
+        beams=tuple(
+            one(name, f"beam {what}", str(ring), unit)
+            for name in names
+            for what, unit in (("range", "m"), ("elevation", "rad"), ("azimuth", "rad"))
+            for ring in range(beams)
+        ),
+    )
+
+
+def test_charts_of_many_lidars_and_beams_have_few_elements_and_every_value() -> None:
+    found = made_up_calibration(lidars=8, beams=128)
+
+    drawn = [svg for svg, _ in beam_charts(found)]
+    of_rig = [svg for svg, _ in rig_charts(found)]
+
+    assert [elements(svg) < 300 for svg in drawn] == [True] * 3, list(map(elements, drawn))
+    assert [elements(svg) < 500 for svg in of_rig] == [True] * 2, list(map(elements, of_rig))
+    assert [svg.count("M ") >= 2 * 8 * 128 for svg in drawn] == [True] * 3  # a dot and a bar each
+    assert all(f"lidar {k}" in svg for svg in drawn for k in range(8))
+
+
+def test_the_axes_of_a_chart_of_bars_reach_to_their_ends() -> None:
+    chart = Chart("bars")
+
+    add_bars(chart, np.array([[0.0, 1.0], [1.0, 2.0]]), np.array([[0.0, 5.0]] * 2), color="#0072b2")
+
+    low, high = chart.axes.get_ylim()
+    assert low <= -4.0
+    assert high >= 7.0
 
 
 def test_charts_take_the_color_of_the_page() -> None:
