@@ -33,6 +33,7 @@ from recon4.recording.topic_contents import (
     read_contents,
     view_deg,
 )
+from recon4.recording.transform_messages import has_frames, read_frames
 from recon4.settings import IngestSettings
 
 _NO_FORCES, _NO_TURNS = "no accelerometer", "no gyroscope"
@@ -163,7 +164,11 @@ def choose_imu(
         return ImuTopics(known)
     contents = read_contents(bag, [*topics, *lidars])
     beside = {topic.name: contents.pop(topic.name) for topic in lidars}
-    candidates = [_candidate(one, IMU_KIND, near(one, beside)) for one in contents.values()]
+    mounted = _mounted_with(bag, contents, beside)
+    candidates = [
+        _candidate(one, IMU_KIND, 2 * near(one, beside) + (name in mounted))
+        for name, one in contents.items()
+    ]
     best = _best(candidates)
     forces = _forces_beside(best, candidates)
     if forces:
@@ -172,6 +177,22 @@ def choose_imu(
     others = [c for c in candidates if c is not best and c.found.topic.name != forces]
     _say(best, others, IMU_KIND, report=report)
     return ImuTopics(best.found.topic.name, forces)
+
+
+def _mounted_with(
+    bag: Bag, contents: Mapping[str, Contents], lidars: Mapping[str, Contents]
+) -> set[str]:
+    """Topics whose frames the transforms of a bag connect with those of the LiDARs."""
+    frames = {one.frame for one in lidars.values()} - {""}
+    if len(contents) < 2 or not frames or not has_frames(bag.topics):
+        return set()
+    all_frames = sorted(frames | {one.frame for one in contents.values()} - {""})
+    graph = read_frames(bag, all_frames, ImportReport())
+    return {
+        name
+        for name, one in contents.items()
+        if one.frame and any(graph.connected([one.frame, frame]) for frame in frames)
+    }
 
 
 def imu_batches(bag: Bag, imu: ImuTopics, report: ImportReport) -> dict[str, SampleBatch]:
