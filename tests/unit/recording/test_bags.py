@@ -248,7 +248,7 @@ def test_topics_named_like_the_preset_get_its_mounting(tmp_path):
 def test_two_unknown_sensors_need_a_rig(tmp_path):
     path = write_room_bag(tmp_path, "db3", seconds=0.3, topics=("/a", "/b"))
 
-    with pytest.raises(ConfigError, match="give a rig file"):
+    with pytest.raises(ConfigError, match="give a rig"):
         read(path)
 
     _, report, recording = read(path, load_rig("4recon"))
