@@ -122,13 +122,15 @@ def _choices(plan: BagPlan) -> tuple[str, ...]:
 
 def _stated(draw: Draw, plan: BagPlan, variant: Variant, *, how: str) -> list[tuple[str, SE3]]:
     """Frame and mount on the robot of LiDAR, IMU and second LiDAR; sets how they measure."""
-    T_base_lidar = mount(0.0, 0.0, 0.3)
-    T_base_imu = mount(0.0, 0.0, 0.3, **_ANGLES.get(how, {}))
+    # The body of several LiDARs is the robot, and the truth is that of the first LiDAR.
+    height_m = 0.3 if plan.second is None else 0.0
+    T_base_lidar = mount(0.0, 0.0, height_m)
+    T_base_imu = mount(0.0, 0.0, height_m, **_ANGLES.get(how, {}))
     plan.T_imu_lidar = T_base_imu.inverse() @ T_base_lidar
     if draw.chance(0.25) and plan.lidar == "clouds":
         variant.say("LiDAR upside down")
-        T_base_lidar = mount(0.0, 0.0, 0.3, roll=180.0)
-        plan.T_lidar_as_measured = T_base_lidar.inverse() @ mount(0.0, 0.0, 0.3)
+        T_base_lidar = mount(0.0, 0.0, height_m, roll=180.0)
+        plan.T_lidar_as_measured = T_base_lidar.inverse() @ mount(0.0, 0.0, height_m)
     stated = [(plan.lidar_frame.strip("/"), T_base_lidar), (plan.imu_frame.strip("/"), T_base_imu)]
     if plan.second is not None:
         stated.append((plan.second.frame, T_base_lidar @ plan.second.T_first_second))
