@@ -26,6 +26,11 @@ from recon4.slices.signed import (
 )
 from recon4.slices.slice_plane import ERROR_THICKNESS_M, SlicePlane, horizontal, vertical
 
+_METHODS: dict[Method, str] = {
+    "plane": "to the reference's surface",
+    "point": "to its nearest point (V)",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class ComparedSlice:
@@ -73,6 +78,10 @@ class Comparison:
     reference: str
     """Name of the reference."""
     method: Method
+    alignment: str = "none"
+    """How the reference was aligned with the map."""
+    notes: tuple[str, ...] = ()
+    """How its columns, units and CRS were read, as sentences."""
 
 
 def compare(
@@ -107,6 +116,8 @@ def compare(
         fit=fit_of(tiles, reference, rng=rng),
         reference=reference.name,
         method=reference.method,
+        alignment=reference.alignment,
+        notes=reference.notes,
     )
 
 
@@ -142,7 +153,7 @@ def usual_planes(
 
 
 def to_csv(found: Comparison) -> str:
-    """The table as CSV in centimeters and percent, then both averages, the fit, the histogram."""
+    """The table as CSV in centimeters and percent, then both averages, remarks, the histogram."""
     out = io.StringIO()
     rows = csv.writer(out, lineterminator="\n")
     rows.writerow(
@@ -164,10 +175,14 @@ def to_csv(found: Comparison) -> str:
         )
     rows.writerow(["plain average of the slices", "", "", _number(found.plain_mean_m)])
     rows.writerow([])
-    out.write(f"# against {' '.join(found.reference.split())}: {found.fit.text}\n")
-    out.write(
-        "# signed: + = the map lies in front of the reference, on the side it was seen from\n"
+    remarks = (
+        f"against {found.reference}: {found.fit.text}",
+        f"distances: {_METHODS[found.method]}",
+        f"alignment of the reference: {found.alignment}",
+        *(f"reference: {note}" for note in found.notes),
+        "signed: + = the map lies in front of the reference, on the side it was seen from",
     )
+    out.writelines(f"# {' '.join(remark.split())}\n" for remark in remarks)
     rows.writerow(["signed_from_cm", "points"])
     for k, count in enumerate(found.histogram):
         low_m = k * found.histogram_step_m - found.histogram_end_m

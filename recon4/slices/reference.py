@@ -105,6 +105,8 @@ class Reference:
     tiles: TileSet | None = None
     notes: tuple[str, ...] = ()
     """How its columns, units and CRS were read, as sentences."""
+    alignment: str = "none"
+    """How it was aligned with the map, as text."""
 
     @property
     def caption(self) -> str:
@@ -207,11 +209,18 @@ def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
     """
     facts = read_facts(folder)
     T = SE3.from_matrix(_matrix(facts.T_map_reference, folder.name))
-    if facts.kind == "mesh":
-        mesh = _mesh(folder / "mesh.npz")
-        return Reference(facts.name, folder, T, method, mesh=mesh, notes=facts.notes)
-    tiles = TileSet.open(folder)
-    return Reference(facts.name, folder, T, method, tiles=tiles, notes=facts.notes)
+    mesh = _mesh(folder / "mesh.npz") if facts.kind == "mesh" else None
+    tiles = TileSet.open(folder) if mesh is None else None
+    return Reference(
+        facts.name,
+        folder,
+        T,
+        method,
+        mesh=mesh,
+        tiles=tiles,
+        notes=facts.notes,
+        alignment=facts.alignment,
+    )
 
 
 def read_facts(folder: Path) -> ReferenceFacts:
@@ -226,7 +235,8 @@ def read_facts(folder: Path) -> ReferenceFacts:
     except msgspec.ValidationError as error:
         raise StoreError(f"{folder.name}/reference.json: {error}") from error
     notes = tuple(visible(note, most=_LONGEST_NOTE) for note in facts.notes)
-    return replace(facts, name=visible(facts.name), notes=notes)
+    alignment = visible(facts.alignment, most=_LONGEST_NOTE)
+    return replace(facts, name=visible(facts.name), alignment=alignment, notes=notes)
 
 
 def _mesh(path: Path) -> TriangleMesh:

@@ -191,6 +191,8 @@ export interface Comparison {
   fit: ReferenceFit;
   reference: string;
   method: "plane" | "point";
+  alignment: string;
+  notes: Array<string>;
 }
 
 export interface ControlFile {

@@ -67,7 +67,8 @@ export function comparison(found, csvUrl) {
     make(
       "p",
       { className: "quiet" },
-      `Against ${found.reference}, distances ${METHODS[found.method]}. Signed: across the `,
+      `Against ${found.reference}, distances ${METHODS[found.method]}, alignment: `,
+      `${found.alignment}. ${found.notes.join(" ")} Signed: across the `,
       "surfaces, + = the map lies in front of the reference, on the side it was seen from. Walls ",
       "that face each other cancel there; the shift [cm] is the common translation of the map.",
     ),

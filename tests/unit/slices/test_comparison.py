@@ -1,5 +1,7 @@
 """Comparison of maps with references, and alignment of references with maps."""
 
+from dataclasses import asdict, replace
+
 import numpy as np
 import pytest
 
@@ -8,8 +10,9 @@ from recon4.geometry.se3 import SE3
 from recon4.slices.align import align_by_icp, align_by_pairs, align_level_pairs, floor_offset
 from recon4.slices.compare import compare, to_csv, usual_planes
 from recon4.slices.imports import import_reference, set_alignment, undo_alignment
-from recon4.slices.reference import load_reference
+from recon4.slices.reference import load_reference, read_facts
 from recon4.slices.slice_plane import horizontal
+from recon4.store.atomic import write_json
 from tests.unit.slices.room_map import wall, write_map
 from tests.unit.slices.test_references import BOX, reference_wall, write_mesh
 
@@ -38,6 +41,26 @@ def test_the_table_says_how_far_the_map_is_off_and_to_which_side(tmp_path):
         *("3.00", "0.00", "100.00", str(first.points), "3.00", "0.00", "3.00", "–", "–"),
     ]
     assert rows[2] == "z = 9.000 m,0,0,–,–,–,0,–,–,–,–,–"
+
+
+def test_the_table_says_how_the_reference_was_read_and_aligned(tmp_path):
+    p, normal = wall(np.random.default_rng(2), 5000, x_m=0.03, sigma_m=0.0)
+    tiles = write_map(tmp_path / "map", p, normal=normal.astype(np.float16))
+    reference = reference_wall(tmp_path)
+    facts = read_facts(reference.folder)
+    notes = ("Coordinates in feet, converted to meters.", "Transformed from EPSG:5514 to 32633.")
+    write_json(reference.folder / "reference.json", asdict(replace(facts, notes=notes)))
+    set_alignment(reference.folder, SE3.identity(), description="ICP, mean 4 mm")
+
+    found = compared(tiles, [horizontal(0.5)], load_reference(reference.folder, method="point"))
+
+    remarks = [line for line in to_csv(found).splitlines() if line.startswith("# ")]
+    assert remarks[1:5] == [
+        "# distances: to its nearest point (V)",
+        "# alignment of the reference: ICP, mean 4 mm",
+        "# reference: Coordinates in feet, converted to meters.",
+        "# reference: Transformed from EPSG:5514 to 32633.",
+    ]
 
 
 def compared(tiles, planes, reference):
