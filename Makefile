@@ -77,6 +77,7 @@ bench: $(VENV)/installed-dev
 
 docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/settings.md
+	$(BIN)/python -m recon4.findings.explain > docs/findings.md
 	$(BIN)/python -m tests.http_types
 
 constraints: $(VENV)/installed-dev

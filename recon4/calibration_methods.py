@@ -28,8 +28,10 @@ from recon4.calibration.pose_pairs import (
 from recon4.calibration.slices import slice_points
 from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
+from recon4.findings.witnesses.rig import rig_findings
+from recon4.findings.wording import whole_text
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
@@ -161,7 +163,11 @@ def _joint(task: _Task) -> MethodResult:
     figures, rig = calibrate_recording(
         task.sources, task.folder, settings=chosen, progress=task.progress
     )
-    report_lines = (*_table(figures.parameters), *_table(figures.beams), *figures.warnings)
+    report_lines = (
+        *_table(figures.parameters),
+        *_table(figures.beams),
+        *map(whole_text, rig_findings(figures)),
+    )
     return MethodResult(rig, figures.outcome, report_lines, figures)
 
 

@@ -9,9 +9,9 @@ from typing import Any
 
 from recon4 import stages, stages_2d
 from recon4.errors import ConfigError, RecordingError, StoreError
-from recon4.model.figures import CalibrationFigures
+from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.rig import Rig, format_rig, load_rig
-from recon4.pipeline_2d import is_2d, process_2d, remake_2d
+from recon4.pipeline_2d import audit_2d, is_2d, process_2d, remake_2d
 from recon4.progress import Progress, Silent
 from recon4.recording.kinds import located_sources
 from recon4.recording.sources import Sources
@@ -215,6 +215,37 @@ def remake(out: Path, *, progress: Progress | None = None) -> Summary | Summary2
         return publish(out, runner.runs, about, progress=progress)
 
 
+def audit(out: Path, *, progress: Progress | None = None) -> Summary | Summary2d:
+    """Work out the findings of a finished project again, and write its results.
+
+    No other stage runs. New witnesses and new wordings reach a map this way that was made before.
+
+    Args:
+        out: A project that was processed to its end.
+        progress: Who watches.
+
+    Raises:
+        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
+        Recon4Error: Whatever else stops a stage.
+    """
+    progress = progress or Silent()
+    made = read_artifacts(out)
+    if stages_2d.MAP_2D.name in made:
+        return audit_2d(out, progress=progress)
+    if "map" not in made:
+        raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
+    kept = [stage for stage in stages.OF_A_MAP if stage.name in made]
+    settings = settings_to_repeat(made, kept)
+    with Project.open(out) as project:
+        runner = StageRunner(project, settings, progress)
+        for stage in kept:
+            runner.keep(stage)
+        run_audit(runner)
+        return publish(
+            out, runner.runs, About(ProjectDescription.read(out), settings), progress=progress
+        )
+
+
 def run_stages(
     runner: StageRunner,
     inputs: Mapping[str, Input | None],
@@ -284,6 +315,13 @@ def run_from_review(
     level = run_trajectory(runner, measurements, odometry=odometry, graph=graph)
     points = measurements.inputs | {"odometry": odometry, "level": level}
     run(stages.MAP, **points, intensity=run(stages.INTENSITY, **points))
+    run_audit(runner)
+
+
+def run_audit(runner: StageRunner) -> None:
+    """The findings of a run, from the artifacts of all stages that have something to say."""
+    artifacts = {name: run.artifact for name, run in runner.runs.items() if name in stages.AUDITED}
+    runner.run(stages.AUDIT, **artifacts)
 
 
 def run_trajectory(

@@ -112,6 +112,37 @@ def remake_2d(out: Path, *, progress: Progress) -> Summary2d:
         return publish_2d(out, runner.runs, about, progress=progress)
 
 
+def audit_2d(out: Path, *, progress: Progress) -> Summary2d:
+    """Work out the findings of a finished 2-D map again, and write its results.
+
+    Args:
+        out: A project that was processed to its end.
+        progress: Who watches.
+
+    Raises:
+        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
+    """
+    made = read_artifacts(out)
+    kept = [
+        stage
+        for stage in (*BEFORE_REVIEW_2D, stages.REVIEW, stages_2d.MAP_2D)
+        if stage.name in made
+    ]
+    settings = settings_to_repeat(made, kept)
+    with Project.open(out) as project:
+        runner = StageRunner(project, settings, progress)
+        for stage in kept:
+            runner.keep(stage)
+        run_audit_2d(runner)
+        about = About(ProjectDescription.read(out), settings)
+        return publish_2d(out, runner.runs, about, progress=progress)
+
+
+def run_audit_2d(runner: StageRunner) -> None:
+    """The findings of a run, from the artifacts of all its stages."""
+    runner.run(stages_2d.AUDIT_2D, **{name: run.artifact for name, run in runner.runs.items()})
+
+
 def run_stages_2d(
     runner: StageRunner, recordings: Input, *, laser: Input | None, decided: Decided
 ) -> None:
@@ -128,6 +159,7 @@ def run_from_review_2d(runner: StageRunner, made: Planar, decided: Decided) -> N
     """The stages that depend on decisions of people, as `recon4.pipeline.run_from_review`."""
     graph = stages.reviewed(runner, made.graph, decided)
     runner.run(stages_2d.MAP_2D, scans=made.scans, odometry=made.odometry, graph=graph)
+    run_audit_2d(runner)
 
 
 def _check_sources(sources: Sources) -> None:

@@ -14,6 +14,9 @@ from recon4.export.laz import export_laz
 from recon4.export.names import check_name
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
+from recon4.findings.finding import Finding, Level, Value, worst_first
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import path_length_m
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import UncertaintyFigures
@@ -22,10 +25,9 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
 from recon4.recording.formats.poses import write_kitti
-from recon4.report.artifacts import path_length_m
+from recon4.report.assessment import Assessment, assess
 from recon4.report.facts import ReportFacts
 from recon4.report.html import write_report
-from recon4.report.verdict import Assessment, assess
 from recon4.result_files import write_graph, write_pose_covariances, write_trajectory
 from recon4.review.approval import put_back
 from recon4.review.approval_state import WRITTEN_AS_DRAFT, ApprovalState, approval_state
@@ -112,7 +114,7 @@ def _publish(
     assessed = assess(report_facts(runs, about, created=created))
     for write in track(_writers(root, runs, assessed), progress, what="results", unit="files"):
         write()
-    approval, warning = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
+    approval, altered = _put_back(root, {name: run.artifact.key for name, run in runs.items()})
     frames, level = figures_of(runs, stages.FRAMES), figures_of(runs, stages.LEVEL)
     summary = Summary(
         name=about.project.name,
@@ -129,7 +131,7 @@ def _publish(
         edges=load_graph(runs["level"].artifact.folder).verdict_counts(),
         verdict=assessed.verdict,
         uncertainty=level.uncertainty,
-        warnings=(*frames.warnings, *_rig_warnings(runs), *_later_warnings(runs), *warning),
+        findings=worst_first((*assessed.findings, *altered)),
         seconds=seconds_of(runs),
         peak_bytes=peak_bytes_of(runs),
         stages=tuple(StageSummary.of(run) for run in runs.values()),
@@ -143,14 +145,15 @@ def _publish(
     return summary
 
 
-def _put_back(root: Path, keys: Mapping[str, str]) -> tuple[Approval | None, tuple[str, ...]]:
+def _put_back(root: Path, keys: Mapping[str, str]) -> tuple[Approval | None, tuple[Finding, ...]]:
     """The approval of these results, put back; and why not, when what was issued was changed."""
     try:
         approval = approval_of(root, keys)
         if approval:
             put_back(root, approval)
     except Altered as error:
-        return None, (f"the approved files were not put back, this is a draft: {error}",)
+        values: dict[str, Value] = {"reason": str(error)}
+        return None, (Finding(kind=FindingKind.APPROVAL_ALTERED, level=Level.NOTE, values=values),)
     return approval, ()
 
 
@@ -329,8 +332,6 @@ def report_facts(runs: Mapping[str, StageRun[Any]], about: About, *, created: st
         rig=figures_of(runs, stages.FRAMES).rig,
         rig_origin=_rig_origin(runs, about.settings),
         crs=figures_of(runs, stages.LEVEL).crs,
-        warnings=_later_warnings(runs),
-        severe=figures_of(runs, stages.ODOMETRY).severe,
     )
 
 
@@ -344,22 +345,3 @@ def _rig_origin(runs: Mapping[str, StageRun[Any]], settings: Settings) -> RigOri
         recorded_ns=int(store.index["t_ns"][0]) if len(store) else 0,
         max_age_days=settings.rig.max_age_days,
     )
-
-
-def _rig_warnings(runs: Mapping[str, StageRun[Any]]) -> tuple[str, ...]:
-    """What the audit of the rig has to say; a project of an earlier version has none."""
-    if stages.CALIBRATION.name not in runs:
-        return ()
-    return figures_of(runs, stages.CALIBRATION).warnings
-
-
-def _later_warnings(runs: Mapping[str, StageRun[Any]]) -> tuple[str, ...]:
-    """What stages after the import have to say."""
-    warnings = figures_of(runs, stages.ODOMETRY).warnings
-    if stages.REVIEW.name in runs:
-        warnings += figures_of(runs, stages.REVIEW).warnings
-    level = figures_of(runs, stages.LEVEL)
-    warnings += level.warnings
-    if figures_of(runs, stages.FRAMES).gnss and not level.crs:
-        warnings += (f"the positions were not used, the map is local: {level.local}",)
-    return warnings

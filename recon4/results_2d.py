@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from recon4 import stages, stages_2d
-from recon4.bounded import read_json_object
-from recon4.errors import StoreError
-from recon4.geometry.se2 import from_se3
+from recon4.findings.audit import load_findings
+from recon4.findings.finding import Finding
+from recon4.findings.planar_walk import final_graph, import_report, read_planar
+from recon4.findings.verdict import verdict_of
+from recon4.findings.witnesses.planar import PlanarRecord
 from recon4.model.figures import Map2dFigures
-from recon4.model.import_notes import import_notes
 from recon4.model.pose_graph import EdgeKind
-from recon4.model.trajectory import Trajectory
-from recon4.model.usability import MapVerdict
-from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress, track
-from recon4.report.artifacts import path_length_m
 from recon4.report.page_2d import GridImage, Page2d, write_page_2d
 from recon4.report.rows import imported_rows
 from recon4.result_files import write_graph, write_trajectory
@@ -38,14 +34,12 @@ from recon4.run_summary import (
 from recon4.settings import values_by_group
 from recon4.slam2d.map_files import overview_name, read_overview
 from recon4.slam2d.stage import read_covariance
-from recon4.slam2d.steps import Steps2d
-from recon4.slam2d.verdict import Facts2d, judge, remarks
-from recon4.store.arrays import load_record, load_trajectory
+from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import copy_file, write_json
 from recon4.store.package_versions import versions
 from recon4.store.project import SUMMARY
 from recon4.store.seal import changing
-from recon4.store.stage import StageRun, figures_of
+from recon4.store.stage import StageRun
 
 RESULTS_2D = (
     "map.png",
@@ -58,7 +52,6 @@ RESULTS_2D = (
     "report.html",
 )
 """Files of a finished run, beside its summary."""
-_MAX_REPORT_BYTES = 16 << 20
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -104,9 +97,9 @@ class _Made:
     """A finished run as its results show it."""
 
     runs: Mapping[str, StageRun[Any]]
-    trajectory: Trajectory
-    facts: Facts2d
-    verdict: MapVerdict
+    facts: PlanarRecord
+    findings: Sequence[Finding]
+    """Worst first."""
     created: str
 
     @property
@@ -122,11 +115,9 @@ class _Made:
 
 
 def _made(runs: Mapping[str, StageRun[Any]]) -> _Made:
-    trajectory = load_trajectory(runs["map_2d"].artifact.folder / "trajectory.npz")
-    length_m = float(path_length_m(trajectory)[-1]) if len(trajectory) > 1 else 0.0
-    facts = _facts(runs, trajectory, length_m)
+    folder = {name: run.artifact.folder for name, run in runs.items()}
     created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
-    return _Made(runs, trajectory, facts, judge(facts), created)
+    return _Made(runs, read_planar(folder), load_findings(folder["audit"]), created)
 
 
 def _summary(root: Path, made: _Made, about: About) -> Summary2d:
@@ -135,15 +126,15 @@ def _summary(root: Path, made: _Made, about: About) -> Summary2d:
         name=about.project.name,
         created=made.created,
         preset=about.project.preset,
-        duration_s=duration_s(made.trajectory),
+        duration_s=duration_s(made.facts.trajectory),
         path_length_m=round(facts.path_length_m, 3),
         scans=facts.scans.scans,
         lost=facts.odometry.lost,
         loops=made.loops,
         edges=facts.graph.verdict_counts(),
         grid=facts.map,
-        verdict=made.verdict,
-        warnings=(*facts.scans.warnings, *remarks(facts)),
+        verdict=verdict_of(made.findings),
+        findings=tuple(made.findings),
         seconds=seconds_of(runs),
         peak_bytes=peak_bytes_of(runs),
         stages=tuple(StageSummary.of(run) for run in runs.values()),
@@ -154,29 +145,10 @@ def _summary(root: Path, made: _Made, about: About) -> Summary2d:
     )
 
 
-def _facts(runs: Mapping[str, StageRun[Any]], trajectory: Trajectory, length_m: float) -> Facts2d:
-    folder = {name: run.artifact.folder for name, run in runs.items()}
-    return Facts2d(
-        scans=figures_of(runs, stages_2d.SCANS_2D),
-        imported=import_notes(_import_report(folder)),
-        odometry=figures_of(runs, stages_2d.ODOMETRY_2D),
-        map=figures_of(runs, stages_2d.MAP_2D),
-        steps=load_record(folder["odometry_2d"] / "steps.npz", Steps2d),
-        poses=from_se3(trajectory.T_a_b),
-        graph=load_graph(_final_graph(folder)),
-        path_length_m=length_m,
-    )
-
-
-def _import_report(folder: Mapping[str, Path]) -> Mapping[str, object]:
-    path = folder["scans_2d"] / "report.json"
-    return read_json_object(path, _MAX_REPORT_BYTES, failure=StoreError)
-
-
 def _writers(root: Path, made: _Made, about: About) -> list[Callable[[], None]]:
     """One function a file of `RESULTS_2D`."""
     folder = made.folder
-    graph, shown = _final_graph(folder), overview_name(folder["map_2d"])
+    graph, shown = final_graph(folder), overview_name(folder["map_2d"])
     return [
         lambda: copy_file(folder["map_2d"] / "map.png", root / "map.png"),
         lambda: copy_file(folder["map_2d"] / "map.yaml", root / "map.yaml"),
@@ -199,8 +171,7 @@ def _page(made: _Made, about: About) -> Page2d:
         created=made.created,
         preset=about.project.preset,
         settings=about.settings,
-        verdict=made.verdict,
-        warnings=(*facts.scans.warnings, *remarks(facts)),
+        findings=made.findings,
         figures=_key_figures(made),
         grid=GridImage(
             (folder["map_2d"] / f"{overview_name(folder['map_2d'])}.png").read_bytes(),
@@ -208,11 +179,11 @@ def _page(made: _Made, about: About) -> Page2d:
             written.origin_m,
             (written.gray.shape[1], written.gray.shape[0]),
         ),
-        trajectory=made.trajectory,
+        trajectory=facts.trajectory,
         odometry=load_trajectory(folder["odometry_2d"] / "trajectory.npz"),
         sd_m=sd_m,
         graph=facts.graph,
-        imported=imported_rows(_import_report(folder)),
+        imported=imported_rows(import_report(folder)),
         stages=timings(made.runs),
         versions=versions(),
     )
@@ -221,7 +192,7 @@ def _page(made: _Made, about: About) -> Page2d:
 def _key_figures(made: _Made) -> list[tuple[str, str, str]]:
     """Name, value and unit of the figures on top."""
     facts, grid = made.facts, made.facts.map
-    seconds = round(duration_s(made.trajectory))
+    seconds = round(duration_s(made.facts.trajectory))
     width_m, height_m = (cells * grid.cell_m for cells in grid.size)
     return [
         ("duration", f"{seconds // 60}:{seconds % 60:02d}", "min:s"),
@@ -233,8 +204,3 @@ def _key_figures(made: _Made) -> list[tuple[str, str, str]]:
         ("beams that cross walls", f"{100.0 * grid.crossing_ratio:.1f}", "%"),
         ("largest σ of a position", f"{100.0 * grid.largest_sd_m:.1f}", "cm"),
     ]
-
-
-def _final_graph(folder: Mapping[str, Path]) -> Path:
-    """The graph with the decisions of people, if there are any."""
-    return folder.get(stages.REVIEW.name) or folder[stages.VERIFICATION.name]

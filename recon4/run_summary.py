@@ -7,6 +7,8 @@ from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
 
+from recon4.findings.finding import Finding
+from recon4.findings.wording import said
 from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
 from recon4.model.trajectory import Trajectory
@@ -18,8 +20,9 @@ from recon4.store.ledger import FinishedStage
 from recon4.store.project import ProjectDescription
 from recon4.store.stage import StageRun
 
-FORMAT = 2
-"""Format of ``summary.json``; 2 introduced ``path_length_m`` and ratios in the settings."""
+FORMAT = 3
+"""Format of ``summary.json``; 2 introduced ``path_length_m`` and ratios in the settings, 3
+findings as records in place of ``warnings``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +87,8 @@ class RunSummary:
     edges: Mapping[str, int]
     """Edges by verdict, as ``edges.json`` has them."""
     verdict: MapVerdict
-    warnings: tuple[str, ...]
+    findings: tuple[Finding, ...]
+    """Worst first; written with their title, text and remedy."""
     seconds: float
     """Wall clock of all stages, of the earlier run where reused [s]."""
     peak_bytes: int
@@ -102,7 +106,9 @@ class RunSummary:
     def to_json(self) -> dict[str, object]:
         """Plain JSON values."""
         names = [one.name for one in fields(self) if one.name != "folder"]
-        return {"format": FORMAT} | {name: to_plain(getattr(self, name)) for name in names}
+        record = {name: to_plain(getattr(self, name)) for name in names}
+        record["findings"] = [to_plain(said(finding)) for finding in self.findings]
+        return {"format": FORMAT} | record
 
 
 def duration_s(trajectory: Trajectory) -> float:

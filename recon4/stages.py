@@ -6,20 +6,22 @@ A version goes up whenever the same inputs give another result than before.
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
-    CalibrationFigures,
+    AuditFigures,
     Figures,
     FrameFigures,
     GraphFigures,
     LevelFigures,
     MapFigures,
-    OdometryFigures,
     RefineFigures,
     ReviewFigures,
     VerificationFigures,
 )
 from recon4.model.import_notes import import_notes
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.review.decisions import Decided, Standing
 from recon4.store.stage import Artifact, Input, Stage, StageContext, StageRunner
@@ -247,6 +249,13 @@ def _map(
     )
 
 
+def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
+    from recon4.findings.audit import check_walk, save_findings
+    from recon4.findings.walk import read_walk
+
+    return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
+
+
 def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
     from recon4.profiler.stage_odometry import run_line_odometry
     from recon4.store.frames import FrameStore
@@ -283,14 +292,14 @@ def _refine_lines(
 FRAMES = Stage("frames", 26, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    36,
+    37,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
 )
 CALIBRATION = Stage(
     "calibration",
-    13,
+    14,
     ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,
@@ -299,17 +308,29 @@ GRAPH = Stage("graph", 9, _MATCHING, _graph, GraphFigures)
 VERIFICATION = Stage(
     "verification", 2, ("verification", "graph"), _verification, VerificationFigures
 )
-REVIEW = Stage("review", 2, ("verification", "graph"), _review, ReviewFigures)
+REVIEW = Stage("review", 3, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 21, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 22, ("level", "gnss", "verification"), _level, LevelFigures)
+AUDITED = (
+    "frames",
+    "odometry",
+    "calibration",
+    "graph",
+    "verification",
+    "review",
+    "refine",
+    "level",
+)
+"""Stages whose artifacts the witnesses read, where they exist."""
+AUDIT = Stage("audit", 1, ("gnss", "rig"), _audit, AuditFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 9, ("map",), _map, MapFigures)
 
 _PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(
-    "odometry", 103, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
+    "odometry", 104, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
 )
 """The stages of rigs with a profiler have the names of those of LiDARs, and other versions."""
 TURN_GRAPH = Stage(
@@ -320,6 +341,20 @@ TURN_GRAPH = Stage(
     GraphFigures,
 )
 LINE_REFINE = Stage("refine", 103, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
+
+OF_A_MAP: tuple[Stage[Any], ...] = (
+    FRAMES,
+    ODOMETRY,
+    CALIBRATION,
+    GRAPH,
+    VERIFICATION,
+    REVIEW,
+    REFINE,
+    LEVEL,
+    INTENSITY,
+    MAP,
+)
+"""All stages before the audit, by name; those of line scans have the same names."""
 
 
 def reviewed(runner: StageRunner, graph: Artifact, decided: Decided) -> Artifact:

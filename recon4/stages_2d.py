@@ -4,7 +4,13 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from recon4.model.figures import GraphFigures, Map2dFigures, Odometry2dFigures, Scan2dFigures
+from recon4.model.figures import (
+    AuditFigures,
+    GraphFigures,
+    Map2dFigures,
+    Odometry2dFigures,
+    Scan2dFigures,
+)
 from recon4.model.rig import Rig, Sensor
 from recon4.store.hashing import hash_json
 from recon4.store.stage import Input, Stage, StageContext
@@ -54,7 +60,16 @@ def _map(context: StageContext, *, scans: Path, odometry: Path, graph: Path) -> 
     return build_map(artifacts, context.out, settings=context.settings, progress=context.progress)
 
 
+def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
+    from recon4.findings.audit import save_findings
+    from recon4.findings.planar_walk import read_planar
+    from recon4.findings.witnesses.planar import check_planar
+
+    return save_findings(context.out, check_planar(read_planar(artifacts)))
+
+
 SCANS_2D = Stage("scans_2d", 11, ("ingest",), _scans, Scan2dFigures)
 ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d", "hector"), _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 1, ("slam2d", "loops2d"), _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 2, ("slam2d", "grid2d"), _map, Map2dFigures)
+AUDIT_2D = Stage("audit", 1, (), _audit, AuditFigures)

@@ -11,11 +11,13 @@ if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
     from recon4.model.events import Event, StageChanged
-    from recon4.model.usability import MapVerdict
     from recon4.results import Summary
     from recon4.results_2d import Summary2d
+    from recon4.run_summary import RunSummary
 
 _LINE_EVERY_S = 5.0
+_MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
+"""Of findings, by their level."""
 
 
 def write(text: str, end: str = "\n") -> None:
@@ -186,8 +188,7 @@ def _describe_2d(summary: Summary2d) -> str:
         f"{width_m:.0f} x {height_m:.0f} m in cells of {summary.grid.cell_m:g} m, "
         f"{summary.grid.free_m2:.0f} m² free",
         f"{summary.seconds:.1f} s of work, {summary.peak_bytes / 1e9:.2f} GB at most",
-        *(f"warning: {text}" for text in summary.warnings),
-        *_describe_verdict(summary.verdict),
+        *_describe_verdict(summary),
         f"map     {summary.folder / 'map.png'}",
         f"nav2    {summary.folder / 'map.yaml'}",
         f"report  {summary.folder / 'report.html'}",
@@ -203,17 +204,24 @@ def _describe_3d(summary: Summary) -> str:
         f"{sum(summary.edges.values())} pairs tried: {edges}",
         f"{summary.points} points in the map",
         f"{summary.seconds:.1f} s of work, {summary.peak_bytes / 1e9:.2f} GB at most",
-        *(f"warning: {text}" for text in summary.warnings),
-        *_describe_verdict(summary.verdict),
+        *_describe_verdict(summary),
         f"map     {summary.folder / 'map.laz'}",
         f"report  {summary.folder / 'report.html'}",
     ]
     return "\n".join(lines)
 
 
-def _describe_verdict(verdict: MapVerdict) -> list[str]:
-    """The verdict on the map and its reasons, a line each."""
-    return [f"verdict: {verdict.usability}", *(f"  - {text}" for text in verdict.reasons)]
+def _describe_verdict(summary: RunSummary) -> list[str]:
+    """The verdict on the map, with its reasons and notes by their codes, a line each."""
+    from recon4.findings.finding import Level
+    from recon4.findings.wording import whole_text
+
+    shown = [one for one in summary.findings if one.level is not Level.GOOD]
+    return [
+        f"verdict: {summary.verdict.usability}",
+        *(f"  {_MARKS[one.level]} {one.kind}: {whole_text(one)}" for one in shown),
+        *(["  recon4 explain CODE says more"] if shown else []),
+    ]
 
 
 def _describe_stage(event: StageChanged) -> str:

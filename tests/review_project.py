@@ -17,7 +17,8 @@ from app.jobs.folder import JobFolder
 from app.jobs.worker import main
 from recon4 import stages
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.model.figures import FrameFigures, GraphFigures, OdometryFigures
+from recon4.model.figures import FrameFigures, GraphFigures
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pipeline import Measurements, remake, run_from_review

@@ -13,7 +13,7 @@ from recon4.calibration.held_out import Agreement
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.slices import LidarSlices
 from recon4.geometry.se3 import SE3
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Silent
 from recon4.settings import Settings

@@ -111,7 +111,8 @@ class MapFacts:
     """Why the map is approved only with a typed reason; empty = without one."""
     min_reason_characters: int
     """Shortest reason that is accepted then."""
-    warnings: list[str]
+    notes: list[str]
+    """Findings that do not change the verdict."""
     figures: dict[str, object]
     """The figures that an approval signs, by their names in ``summary.json``."""
 

@@ -6,17 +6,14 @@ from dataclasses import replace
 
 import msgspec
 
-from recon4.calibration.judgment import contradictions
 from recon4.calibration.note import with_antenna_note
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.antenna_calibration import AntennaCalibration, calibrate_antenna
-from recon4.model.figures import GNSS
+from recon4.model.calibration_figures import GNSS
 from recon4.progress import Progress
 from recon4.settings import Settings
 
-_VAGUE_M = 0.01
-"""A lever arm that is known no better is named [m]."""
 _AIDED_SD_FACTOR = 3.0
 """True errors against stated ones, of an estimate from a trajectory that the fixes pulled."""
 
@@ -43,7 +40,7 @@ def with_antenna(
     antenna = _estimate(moved, settings)
     if antenna is None:
         return found
-    may = settings.calibration.mode == "auto" and (found.rig or not found.figures.warnings)
+    may = settings.calibration.mode == "auto" and (found.rig or not found.figures.contradicts)
     if not (may and antenna.is_off):
         return _with_rows(found, _doubted(antenna))
     moved = replace(moved, trajectory=moved.tracked_freely(settings, progress))
@@ -96,23 +93,6 @@ def _corrected(
         parameters=(*figures.parameters, *antenna.rows),
         applied=True,
         outcome=f"{outcome}; fixes that were not used confirm the GNSS receiver",
-        warnings=(
-            *figures.warnings,
-            *contradictions(antenna.rows, applied=True),
-            *_vague(antenna),
-        ),
     )
     rig = with_antenna_note(antenna.rig, antenna.rows, recorded_ns=recorded_ns)
     return replace(found, figures=figures, rig=rig)
-
-
-def _vague(antenna: AntennaCalibration) -> tuple[str, ...]:
-    """The axes of the lever arm that the walk shows only roughly."""
-    rows = [row for row in antenna.rows if row.unit == "m" and (row.sd or 0.0) > _VAGUE_M]
-    if not rows:
-        return ()
-    parts = ", ".join(f"{row.axis} ± {100 * (row.sd or 0.0):.1f} cm" for row in rows)
-    return (
-        f"The walk shows the lever arm of the GNSS antenna only roughly along {parts}: measure it "
-        "there, or bend forward and to the sides while you walk.",
-    )

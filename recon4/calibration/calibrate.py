@@ -35,7 +35,7 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-from recon4.model.figures import GNSS, IMU, ParameterFigures
+from recon4.model.calibration_figures import GNSS, IMU, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress, track
 from recon4.settings import CalibrationSettings, Settings

@@ -17,7 +17,7 @@ from scipy.spatial import cKDTree
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import Array
-from recon4.model.figures import IMU
+from recon4.model.calibration_figures import IMU
 from recon4.model.rig import Rig
 from recon4.settings.calibration import EntropySettings
 

@@ -12,7 +12,7 @@ from recon4.calibration.equations import Fit
 from recon4.calibration.joint import SIGMAS, JointEstimate
 from recon4.calibration.parameters import Parameters, Unit
 from recon4.geometry.se3 import Array
-from recon4.model.figures import ParameterFigures
+from recon4.model.calibration_figures import ParameterFigures
 from recon4.model.rig import Rig
 
 _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.model.figures import GNSS, CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import GNSS, CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig, RigCalibration
 from recon4.model.rig_origin import recording_day
 

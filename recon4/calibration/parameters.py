@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
 from recon4.model.beams import BeamCorrections
-from recon4.model.figures import IMU
+from recon4.model.calibration_figures import IMU
 from recon4.model.rig import Rig, Sensor
 
 Unit = Literal["rad", "m", "s"]

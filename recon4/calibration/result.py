@@ -7,7 +7,7 @@ from pathlib import Path
 
 from recon4.calibration.held_out import Agreement
 from recon4.calibration.slices import THICKNESS_M, LidarSlices
-from recon4.model.figures import CalibrationFigures
+from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.plain import to_plain
 from recon4.model.rig import Rig, format_rig
 from recon4.store.atomic import write_json

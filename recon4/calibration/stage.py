@@ -19,7 +19,7 @@ from recon4.calibration.calibrate import (
 )
 from recon4.calibration.calibrate import calibrated_parameters as parameters_of
 from recon4.calibration.joint import JointEstimate
-from recon4.calibration.judgment import changed_text, contradictions, judge, split_beams
+from recon4.calibration.judgment import judge, scatter_of, split_beams
 from recon4.calibration.mount_search import exchanged_mount
 from recon4.calibration.note import calibration_note
 from recon4.calibration.parameters import Parameters
@@ -27,8 +27,8 @@ from recon4.calibration.result import CalibrationResult
 from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.walk import RecordedWalk
-from recon4.model.events import Warned
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.settings import Settings
@@ -70,8 +70,6 @@ def run_calibration(
     found = with_antenna(found, walk, settings=settings, progress=progress)
     if found.rig is not None:
         found = replace(found, slices=lidar_slices(walk, found.rig))
-    for text in found.figures.warnings:
-        progress.event(Warned(text=text))
     return found
 
 
@@ -83,27 +81,27 @@ def _audit(
     settings: Settings,
     progress: Progress,
 ) -> CalibrationResult:
-    remarks = tuple(f"The IMU contradicts the recording. {text}" for text in start.remarks)
     if not len(parameters):
         text = "nothing to compare: neither a second LiDAR nor a usable IMU"
-        return _nothing(text, remarks)
+        return _nothing(text, start.faults)
     estimate = audit(walk, start.rig, parameters, settings=settings, progress=progress)
     if estimate is None:
-        return _nothing("no window of the walk has planes to compare", remarks)
+        return _nothing("no window of the walk has planes to compare", start.faults)
     rows, exchanged = judge(estimate), _exchanged(walk.frames.rig, estimate)
     changes = estimate.changes and not exchanged
     # Of a rig that changes no parameter has one value.
-    contradicted = (changed_text(estimate),) if changes else (*exchanged, *contradictions(rows))
-    warnings = (*remarks, *contradicted)
     figures = CalibrationFigures(
         parameters=rows,
         windows=len(estimate.fits),
         rms_m=estimate.rms_m,
-        outcome="the rig file contradicts the recording" if warnings else _consistent(rows),
-        warnings=warnings,
-        uncorrected=remarks,
+        imu_faults=start.faults,
+        exchanged=exchanged,
+        scatter=scatter_of(estimate) if changes else None,
         changes=changes,
     )
+    contradicted = "the rig file contradicts the recording"
+    outcome = contradicted if figures.contradicts else _consistent(rows)
+    figures = msgspec.structs.replace(figures, outcome=outcome)
     return CalibrationResult(figures=figures, begin=estimate.rig)
 
 
@@ -113,30 +111,29 @@ def _to_calibrate(
     """Where a calibration begins, None = there is none, and what it estimates."""
     rig = walk.frames.rig
     if not settings.calibration.beams:
-        return (audited.begin if audited.figures.warnings else None), parameters
+        return (audited.begin if audited.figures.contradicts else None), parameters
     counts = beam_counts(walk.frames, chosen_lidars(rig, settings.calibration))
     if not counts:
-        return (audited.begin if audited.figures.warnings else None), parameters
+        return (audited.begin if audited.figures.contradicts else None), parameters
     return audited.begin or rig, parameters.with_beams(rig, counts)
 
 
-def _nothing(outcome: str, remarks: tuple[str, ...]) -> CalibrationResult:
-    figures = CalibrationFigures(outcome=outcome, warnings=remarks, uncorrected=remarks)
+def _nothing(outcome: str, faults: tuple[ImuFault, ...]) -> CalibrationResult:
+    figures = CalibrationFigures(outcome=outcome, imu_faults=faults)
     return CalibrationResult(figures=figures)
 
 
-def _exchanged(rig: Rig, found: JointEstimate) -> tuple[str, ...]:
+def _exchanged(rig: Rig, found: JointEstimate) -> tuple[tuple[str, str], ...]:
     """Whether two LiDARs have each other's mount in the rig file."""
     reference = found.parameters.reference
-    texts = []
+    pairs = []
     for row in found.parameters.lidars:
         there = found.rig.sensors[row].T_body_sensor
         apart = exchanged_mount(rig, row, reference).inverse() @ there
         moved = rig.sensors[row].T_body_sensor.inverse() @ there
         if apart.angle() < _SAME_RAD < moved.angle() and np.linalg.norm(apart.t) < _SAME_M:
-            names = f"{rig.sensors[reference].name!r} and {rig.sensors[row].name!r}"
-            texts.append(f"The mounts of {names} seem to be exchanged in the rig file.")
-    return tuple(texts)
+            pairs.append((rig.sensors[reference].name, rig.sensors[row].name))
+    return tuple(pairs)
 
 
 def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
@@ -155,7 +152,6 @@ def _calibrated(
     if found.refusal:
         figures = msgspec.structs.replace(audited.figures, outcome=found.refusal, beams=beams)
         return replace(audited, figures=figures, before=found.before, after=found.after)
-    uncorrected = audited.figures.uncorrected
     figures = CalibrationFigures(
         parameters=mounts,
         beams=beams,
@@ -163,8 +159,7 @@ def _calibrated(
         rms_m=found.estimate.rms_m,
         applied=True,
         outcome="calibrated: windows that were not used confirm it",
-        warnings=(*uncorrected, *contradictions(found.rows, applied=True)),
-        uncorrected=uncorrected,
+        imu_faults=audited.figures.imu_faults,
     )
     note = calibration_note("joint", figures, recorded_ns=recorded_ns)
     rig = replace(found.estimate.rig, calibration=note)

@@ -10,6 +10,7 @@ from recon4.calibration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.calibration.mount_search import without_others
 from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_log
+from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.settings import Settings
@@ -35,8 +36,8 @@ class Start:
     rig: Rig
     imu_usable: bool
     """Whether a rotation and a clock can make the IMU fit."""
-    remarks: tuple[str, ...]
-    """What the IMU's axes, units or clock contradict, a sentence each."""
+    faults: tuple[ImuFault, ...]
+    """What the IMU's axes, units or clock contradict."""
 
 
 def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Start:
@@ -54,17 +55,13 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Sta
     if found is not None and (found.mirrored or found.explained < _MIN_EXPLAINED):
         found = _align_alone(walk, imu, reference, settings=settings) or found
     if found is not None and found.mirrored:
-        text = "The turn rates of the IMU fit the LiDARs only with left-handed axes: an axis has "
-        return Start(rig, False, (text + "the wrong sign.",))
+        return Start(rig, False, (ImuFault(kind="left-handed"),))
     if found is not None and found.explained < _MIN_EXPLAINED:
-        text = f"The IMU explains only {100 * found.explained:.0f} % of the turning that the "
-        text += "LiDARs see: it is another recording, another clock, or not fixed to them."
-        return Start(rig, False, (text,))
+        return Start(rig, False, (ImuFault(kind="foreign", value=float(found.explained)),))
     if found is not None:
         rig = _turned(rig, found)
-    remarks = _force_remarks(imu, walk, rig)
-    remarks += _scale_remarks(found) if found is not None else ()
-    return Start(rig, not remarks, remarks)
+    faults = _force_faults(imu, walk, rig) + (_scale_faults(found) if found is not None else ())
+    return Start(rig, not faults, faults)
 
 
 def _align_alone(
@@ -92,7 +89,7 @@ def _turned(rig: Rig, found: GyroAlignment) -> Rig:
     )
 
 
-def _force_remarks(imu: ImuSamples, walk: RecordedWalk, rig: Rig) -> tuple[str, ...]:
+def _force_faults(imu: ImuSamples, walk: RecordedWalk, rig: Rig) -> tuple[ImuFault, ...]:
     """Over a walk the accelerations cancel out: the mean force has the length of gravity."""
     line = walk.trajectory
     inside = (imu.t_ns >= line.t_ns[0]) & (imu.t_ns <= line.t_ns[-1])
@@ -106,21 +103,14 @@ def _force_remarks(imu: ImuSamples, walk: RecordedWalk, rig: Rig) -> tuple[str, 
     if abs(ratio - 1.0) <= _FORCE_TOLERANCE:
         return ()
     if abs(mean - 1.0) < _UNIT_TOLERANCE:
-        return (
-            f"The accelerometer measures {mean:.2f} at rest: its unit seems to be g, expected "
-            "m/s².",
-        )
-    return (
-        f"The accelerometer measures {mean:.2f} m/s² on average, expected "
-        f"{STANDARD_GRAVITY_M_S2:.2f} m/s²: its scale is {100 * (ratio - 1):+.1f} % off.",
-    )
+        return (ImuFault(kind="accelerometer unit", value=ratio),)
+    return (ImuFault(kind="accelerometer scale", value=ratio - 1.0),)
 
 
-def _scale_remarks(found: GyroAlignment) -> tuple[str, ...]:
+def _scale_faults(found: GyroAlignment) -> tuple[ImuFault, ...]:
     if abs(found.scale - 1.0) <= _SCALE_TOLERANCE:
         return ()
-    if abs(found.scale / _DEG_PER_RAD - 1.0) < _UNIT_TOLERANCE:
-        return ("The gyroscope measures 57 times too much: its unit seems to be °/s, not rad/s.",)
-    if abs(found.scale * _DEG_PER_RAD - 1.0) < _UNIT_TOLERANCE:
-        return ("The gyroscope measures 57 times too little: its unit is not rad/s.",)
-    return (f"The scale of the gyroscope is {100 * (found.scale - 1.0):+.1f} % off.",)
+    ratios = (found.scale / _DEG_PER_RAD, found.scale * _DEG_PER_RAD)
+    if any(abs(ratio - 1.0) < _UNIT_TOLERANCE for ratio in ratios):
+        return (ImuFault(kind="gyroscope unit", value=float(found.scale)),)
+    return (ImuFault(kind="gyroscope scale", value=float(found.scale) - 1.0),)

@@ -180,9 +180,9 @@ def _relation_errors(result: Path, relations: Path) -> RelationErrors:
 
 
 def _write_report(project: Path, found: Evaluation, path: Path) -> None:
+    from recon4.report.assessment import assess
     from recon4.report.html import write_report
     from recon4.report.project import project_facts
-    from recon4.report.verdict import assess
 
     write_report(path, assess(project_facts(project, found)))
 

@@ -25,6 +25,7 @@ from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
 from recon4.cli.evaluation import evaluation
 from recon4.cli.exports import exports
+from recon4.cli.findings import findings
 from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
 from recon4.cli.simulation import simulation
@@ -54,6 +55,7 @@ app.add_typer(backups)
 app.add_typer(calibration)
 app.add_typer(evaluation)
 app.add_typer(exports)
+app.add_typer(findings)
 
 _INTERRUPTED = 130
 """What shells report for a program that Ctrl-C ended."""

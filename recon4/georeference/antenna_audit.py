@@ -8,6 +8,8 @@ the sway of the body a millisecond of it shows.
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -18,7 +20,6 @@ from recon4.georeference.fix_clock import coarse_clock_s
 from recon4.georeference.gnss_priors import positioned
 from recon4.georeference.ins_attitudes import attitudes
 from recon4.model.figures import AntennaFigures
-from recon4.model.gps_time import GPS_MINUS_UTC_S
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -125,45 +126,24 @@ def turn_by_antenna(trajectory: Trajectory, found: AntennaFigures) -> float:
     return float(turning.sum()) / spread if spread > 0.0 else 0.0
 
 
-def antenna_contradictions(found: AntennaFigures) -> tuple[str, ...]:
-    """A sentence for a lever arm, and one for a clock, that the fixes contradict.
+AntennaDoubt = Literal["offset", "unchecked", "clock"]
 
-    A horizontal lever arm that the walk cannot show is said, too: an error would move the map. Of
+
+def antenna_doubts(found: AntennaFigures) -> tuple[AntennaDoubt, ...]:
+    """Whether the fixes contradict the lever arm and the clock, or could not check the arm.
+
+    A horizontal lever arm that the walk cannot show is named, too: an error would move the map. Of
     the vertical one only the sway of a person tells; on a cart it must be measured with care.
     """
-    texts = []
+    doubts: list[AntennaDoubt] = []
     arm, sd = np.array(found.arm_m), np.array(found.arm_sd_m)
     if found.arm_sigmas > _SIGMAS and np.linalg.norm(arm) > _LEVER_ARM_M:
-        parts = (
-            f"{name} {100 * value:+.0f} cm ± {100 * sd_of:.0f} cm"
-            for name, value, sd_of in zip("xyz", arm, sd, strict=True)
-        )
-        texts.append(
-            "The rig file contradicts the GNSS fixes: the antenna differs from it by "
-            f"{', '.join(parts)} in axes of the body. Measure the lever arm, or calibrate the rig "
-            "(recon4 calibrate)."
-        )
+        doubts.append("offset")
     elif sd[:2].max() > _UNKNOWN_M:
-        texts.append(
-            "The lever arm of the GNSS antenna could not be checked "
-            f"(± {100 * sd[:2].max():.0f} cm): the walk has too few turns. An error of the rig "
-            "file moves the map by as much."
-        )
+        doubts.append("unchecked")
     if abs(found.clock_s) > max(_SIGMAS * found.clock_sd_s, _CLOCK_S):
-        texts.append(
-            f"The rig file contradicts the GNSS fixes: their clock differs by {_clock(found)}. "
-            "Check the time offset of the receiver, or calibrate the rig (recon4 calibrate)."
-        )
-    return tuple(texts)
-
-
-def _clock(found: AntennaFigures) -> str:
-    """An error of the clock in milliseconds, or in seconds with a usual cause."""
-    if abs(found.clock_s) < 1.0:
-        return f"{1e3 * found.clock_s:.0f} ms ± {1e3 * found.clock_sd_s:.0f} ms"
-    leap = abs(abs(found.clock_s) - GPS_MINUS_UTC_S) < 0.5
-    cause = f" (GPS time is {GPS_MINUS_UTC_S} s ahead of UTC)" if leap else ""
-    return f"{found.clock_s:.2f} s ± {found.clock_sd_s:.2f} s{cause}"
+        doubts.append("clock")
+    return tuple(doubts)
 
 
 def _coarse_clock_s(trajectory: Trajectory, gnss: GnssSamples, *, origin: GeodeticOrigin) -> float:

@@ -13,7 +13,8 @@ from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.gnss import align_heading
 from recon4.georeference.gnss_priors import GnssPriors, positioned
 from recon4.georeference.level import level
-from recon4.model.figures import GNSS, AntennaFigures, ParameterFigures, ParameterStatus
+from recon4.model.calibration_figures import GNSS, ParameterFigures, ParameterStatus
+from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory

@@ -9,7 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.georeference.antenna_audit import (
-    antenna_contradictions,
+    antenna_doubts,
     audit_antenna,
     turn_by_antenna,
 )
@@ -17,10 +17,10 @@ from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
-from recon4.mapping.mirrors import MirrorFound, Sight, find_mirrors
+from recon4.mapping.mirrors import Sight, find_mirrors
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
-from recon4.model.figures import AntennaFigures, LevelFigures
+from recon4.model.figures import AntennaFigures, LevelFigures, MirrorFigures
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.rejected_fixes import disputed_m, rejected_runs
@@ -79,7 +79,7 @@ class LeveledMap:
     """Audit of the antenna; None = too few fixes."""
     uncertainty: PoseUncertainty | None
     """Covariances of the poses of the nodes; None = not stated."""
-    mirrors: tuple[MirrorFound, ...] = ()
+    mirrors: tuple[MirrorFigures, ...] = ()
     """Walls that show the room before them."""
 
     def save(self, out: Path) -> LevelFigures:
@@ -106,10 +106,7 @@ class LeveledMap:
             uncertainty=(
                 uncertainty_figures(self.uncertainty, self.trajectory) if self.uncertainty else None
             ),
-            warnings=(
-                *(antenna_contradictions(self.antenna) if self.antenna else ()),
-                *(mirror.text for mirror in self.mirrors),
-            ),
+            mirrors=self.mirrors,
         )
 
 
@@ -169,7 +166,7 @@ def level_and_georeference(
     )
 
 
-def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[MirrorFound, ...]:
+def _mirrors(frames: FrameStore, trajectory: Trajectory) -> tuple[MirrorFigures, ...]:
     """Mirrors in a map of LiDARs; a profiler sees too little of a wall at once."""
     if frames.rig.row_of("profiler") is not None or not len(frames):
         return ()
@@ -190,7 +187,7 @@ def _uncertainty(
     runs = rejected_runs(placed.t_ns, placed.used, placed.residual_m)
     disputed = disputed_m(runs, fixes=len(placed.t_ns))
     model = replace(CALIBRATED, gnss_m=float(np.hypot(CALIBRATED.gnss_m, disputed)))
-    if antenna is not None and antenna_contradictions(antenna):
+    if antenna is not None and antenna_doubts(antenna):
         known_m = float(np.linalg.norm(antenna.arm_m)) + _WALK_M_S * abs(antenna.clock_s)
         nodes = Trajectory(graph.t_ns, graph.T_map_body)
         model = replace(

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
-from recon4.live.findings import CaptureFinding, Level
+from recon4.findings.finding import Finding, Level, Value
+from recon4.findings.kinds import FindingKind
+from recon4.findings.verdict import verdict_of
+from recon4.findings.wording import text_of
+from recon4.live.findings import CaptureFinding
+from recon4.live.findings import Level as Urgency
 from recon4.live.protocol import Pose
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS, Usability
 
@@ -11,7 +16,7 @@ _LONGEST_STEP_S = 1.0
 
 
 class WalkSoFar:
-    """Counts over the poses of a walk what decides its verdict, by the limits of the report.
+    """Counts over the poses of a walk what decides its verdict, by the limits of the audit.
 
     It never says that a map is good: that is worked out from the finished map.
     """
@@ -45,21 +50,41 @@ class WalkSoFar:
         """Of the present stretch: short ones are bridged by the motion before them."""
         return self._stretch_s if self._stretch_s >= WEAK_SECONDS else 0.0
 
+    def problems(self) -> list[Finding]:
+        """Findings about the walk so far."""
+        found = []
+        if self.lost:
+            values: dict[str, Value] = {
+                "lost": self.lost,
+                "multiframes": self.multiframes,
+                "ratio": self.lost / self.multiframes,
+                "so_far": True,
+            }
+            found.append(
+                Finding(kind=FindingKind.TRACKING_LOST, level=Level.DO_NOT_USE, values=values)
+            )
+        if self.unobserved_s:
+            bad = self.unobserved_s >= UNOBSERVED_SECONDS
+            found.append(
+                Finding(
+                    kind=FindingKind.WEAK_DIRECTION,
+                    level=Level.DO_NOT_USE if bad else Level.CHECK,
+                    values={"seconds": self.unobserved_s, "so_far": True},
+                )
+            )
+        return found
+
     def findings(self, *, records: bool) -> list[CaptureFinding]:
         """One line with the verdict so far; none if nothing is known to be wrong.
 
         Args:
             records: Whether the walk goes on; what the operator can still change is more urgent.
         """
-        reasons = []
-        if self.lost:
-            reasons.append(f"tracking was lost in {self.lost} of {self.multiframes} multiframes")
-        if self.unobserved_s:
-            text = f"one direction was hardly observed for {self.unobserved_s:.0f} s"
-            reasons.append(text)
-        if not reasons:
+        found = self.problems()
+        if not found:
             return []
-        bad = bool(self.lost) or self.unobserved_s >= UNOBSERVED_SECONDS
-        usability = Usability.DO_NOT_USE if bad else Usability.CHECK
-        level: Level = "error" if bad and not records else "warning"
-        return [CaptureFinding(level, f"Map so far: {usability}; {', '.join(reasons)}")]
+        usability = verdict_of(found).usability
+        urgent = usability is Usability.DO_NOT_USE and not records
+        level: Urgency = "error" if urgent else "warning"
+        texts = " ".join(text_of(one) for one in found)
+        return [CaptureFinding(level, f"Map so far: {usability}. {texts}")]

@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.normals import local_normals
+from recon4.model.figures import MirrorFigures
 
 _CELL_M = 0.15
 """Cells of the normals, which come from three of them."""
@@ -60,27 +61,6 @@ class Sight:
         return Sight(self.point_m[rows], self.origin_m[rows])
 
 
-@dataclass(frozen=True, slots=True)
-class MirrorFound:
-    """A wall that shows the room before it."""
-
-    area_m2: float
-    middle_m: tuple[float, float]
-    """x and y of its middle in the map."""
-    behind: float
-    """Ratio of all points that lie behind it."""
-
-    @property
-    def text(self) -> str:
-        """A sentence for the operator."""
-        x, y = self.middle_m
-        return (
-            f"A mirror or a glass wall of about {self.area_m2:.0f} m² at x {x:.1f} m, y {y:.1f} m "
-            f"doubles the room: what is mapped behind it ({100 * self.behind:.0f} % of all points) "
-            "is the room before it, reflected. Leave these points out."
-        )
-
-
 @dataclass(frozen=True, slots=True, eq=False)
 class _Wall:
     """A vertical plane ``normal . p = offset``; the normal points to the side of the carrier."""
@@ -102,7 +82,7 @@ class _Wall:
         return np.floor(np.stack([p @ along, p[:, 2]], axis=1) / _GRID_M).astype(np.int64)
 
 
-def find_mirrors(sight: Sight) -> list[MirrorFound]:
+def find_mirrors(sight: Sight) -> list[MirrorFigures]:
     """Find mirrors, the largest first.
 
     Args:
@@ -187,7 +167,7 @@ def _fitted(sight: Sight, normal: Array, angle_rad: float) -> _Wall:
     return _Wall(axis, offset_m) if before else _Wall(-axis, -offset_m)
 
 
-def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFound | None:
+def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFigures | None:
     """The part of a wall that shows the room before it; None = less than counts."""
     sight, normal = steep.sight, steep.normal
     before, behind = wall.height(sight.origin_m), -wall.height(sight.point_m)
@@ -215,7 +195,7 @@ def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFound | None:
     x, y, _ = at[mirrored[which]].mean(axis=0).tolist()
     crossing = wall.height(every.origin_m) > _BEFORE_M
     crossing &= wall.height(every.point_m) < -_BEHIND_M
-    return MirrorFound(area_m2, (x, y), float(crossing.mean()))
+    return MirrorFigures(area_m2=area_m2, middle_m=(x, y), behind=float(crossing.mean()))
 
 
 def _is_entered(wall: _Wall, steep: _Steep, reflected: Array) -> bool:

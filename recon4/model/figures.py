@@ -6,8 +6,7 @@ manifest of an earlier version may lack those that have a default.
 
 from __future__ import annotations
 
-from enum import StrEnum
-from typing import ClassVar, Literal
+from typing import Literal
 
 import msgspec
 
@@ -32,155 +31,6 @@ class FrameFigures(Figures, frozen=True, kw_only=True):
     outcome: str = "complete"
     """``complete``, or how far it could be read."""
     warnings: tuple[str, ...] = ()
-
-
-class HeightDoubt(msgspec.Struct, frozen=True, kw_only=True):
-    """A stretch of the walk in which the IMU measures a height that the trajectory has not."""
-
-    start_s: float
-    """After the first pose [s]."""
-    end_s: float
-    rise_m: float
-    """Up is positive [m]."""
-
-
-class TurnDoubt(msgspec.Struct, frozen=True, kw_only=True):
-    """A stretch of the walk in which the LiDARs hardly observe a turn of the body."""
-
-    start_s: float
-    """After the first multiframe [s]."""
-    end_s: float
-    axis: tuple[float, float, float]
-    """Unit vector, in odom axes."""
-    center_m: tuple[float, float, float]
-    """A point of the axis of the turn, from the first position, in odom axes [m]."""
-    rate_sd_rad_s: float
-    """How fast the error grows [rad/s]."""
-
-
-class MovingOutcome(StrEnum):
-    """What became of the points of moving objects."""
-
-    KEPT = "kept"
-    """There are few, or the settings keep them."""
-    LEFT_OUT = "left out"
-    NOT_SETTLED = "not settled"
-    """Left out, but which points they are still changes from pass to pass of the odometry."""
-    CONTRADICTED = "contradicted"
-    """Left out, but the trajectory without them contradicts the fixes of a GNSS/INS."""
-    NOT_HELD = "not held"
-    """Kept, because what is left of the view does not hold the trajectory."""
-
-
-class MovingFigures(msgspec.Struct, frozen=True, kw_only=True):
-    """How much of the view people and vehicles fill in the course of a walk."""
-
-    CROWDED: ClassVar[float] = 0.1
-    """Ratio from which on they are announced. On walks without any it is below 0.06."""
-
-    t_s: tuple[float, ...]
-    """After the first multiframe [s]."""
-    ratio: tuple[float, ...]
-    """Ratio of the points that lie on moving objects at these times, 0..1."""
-    outcome: MovingOutcome = MovingOutcome.KEPT
-    points_left_out: int = 0
-    """How many points on them no later stage sees."""
-
-    @property
-    def is_crowded(self) -> bool:
-        """Whether they fill so much of the view that it is announced."""
-        return max(self.ratio, default=0.0) >= self.CROWDED
-
-    @property
-    def is_severe(self) -> bool:
-        """Whether they have pulled the trajectory along."""
-        return self.outcome not in (MovingOutcome.KEPT, MovingOutcome.LEFT_OUT)
-
-
-class OdometryFigures(Figures, frozen=True, kw_only=True):
-    """Odometry of all multiframes."""
-
-    multiframes: int
-    lost: int
-    """Multiframes where tracking was lost."""
-    imu: bool = False
-    """Whether the IMU was used."""
-    warnings: tuple[str, ...] = ()
-    severe: tuple[str, ...] = ()
-    """Those of the warnings that forbid the use of the map: heights that are wrong by meters."""
-    gnss: bool = False
-    """Whether fixes were used."""
-    heights: tuple[HeightDoubt, ...] = ()
-    """Rides that no LiDAR sees, and other contradictions of the heights."""
-    turns: tuple[TurnDoubt, ...] = ()
-    """Turns that no LiDAR observes."""
-    moving: MovingFigures | None = None
-    """People and vehicles in view; None = not searched for."""
-
-
-IMU, GNSS = "imu", "gnss"
-"""Names of the IMU and of the receiver among the sensors of a calibration."""
-ParameterStatus = Literal["consistent", "off", "not observable"]
-"""Of a parameter of the rig against the recording."""
-
-
-class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
-    """What a recording says of one parameter of its rig."""
-
-    sensor: str
-    """Name of the LiDAR, `IMU` or `GNSS`."""
-    quantity: str
-    """``rotation``, ``position``, ``clock``; of a beam ``beam range``, ``beam elevation`` or
-    ``beam azimuth``."""
-    axis: str
-    """Of the body: ``x``, ``y``, ``z``; empty for a clock; the ring of a beam."""
-    unit: Literal["rad", "m", "s"]
-    change: float
-    """To be added to the rig file's value, in the unit."""
-    sd: float | None
-    """Standard deviation of the change, in the unit; None = not known."""
-    status: ParameterStatus
-
-
-_SEVERE = {"rad": 0.0087, "m": 0.03, "s": 0.01}
-"""Larger differences (0.5°, 3 cm, 10 ms) make walls double."""
-
-
-class CalibrationFigures(Figures, frozen=True, kw_only=True):
-    """Audit of the rig against the recording and, if requested, its calibration."""
-
-    parameters: tuple[ParameterFigures, ...] = ()
-    """Change from the rig file; empty = nothing could be compared."""
-    beams: tuple[ParameterFigures, ...] = ()
-    """The same of single beams; ``axis`` is the ring. Empty = they were not estimated."""
-    windows: int = 0
-    """Number of windows of the walk they come from."""
-    rms_m: float | None = None
-    """Distance of the points from common planes after the estimate [m]."""
-    applied: bool = False
-    """Whether the calibrated rig is used from here on."""
-    outcome: str = ""
-    """Why it was applied, or why not."""
-    warnings: tuple[str, ...] = ()
-    uncorrected: tuple[str, ...] = ()
-    """Those of the warnings that no calibration corrects: wrong units, axes with a wrong sign."""
-    changes: bool = False
-    """Whether the rig does not stay the same during the walk."""
-
-    @property
-    def is_severe(self) -> bool:
-        """Whether a map that was made with the rig file must not be used.
-
-        A lever arm or the clock of the GNSS receiver moves a map and bends it, the place of the IMU
-        changes accelerations only: no wall doubles.
-        """
-        return self.changes or any(
-            row.status == "off"
-            and row.sensor != GNSS
-            and (row.sensor, row.quantity) != (IMU, "position")
-            and abs(row.change) > _SEVERE[row.unit]
-            for row in self.parameters
-        )
 
 
 class GraphFigures(Figures, frozen=True, kw_only=True):
@@ -213,9 +63,14 @@ class ReviewFigures(Figures, frozen=True, kw_only=True):
     """Accepted edges that do not fit the graph."""
     missing: int
     """Decisions without effect."""
+    conflict_pairs: tuple[str, ...] = ()
+    """Names of the first of each kind, ``3-17``."""
+    missing_pairs: tuple[str, ...] = ()
+    changed: int = 0
+    """Decisions about pairs whose measurement has changed."""
+    changed_pairs: tuple[str, ...] = ()
     chi2_before: float | None
     chi2_after: float | None
-    warnings: tuple[str, ...]
 
 
 class RefineRound(msgspec.Struct, frozen=True, kw_only=True):
@@ -271,6 +126,16 @@ class UncertaintyFigures(msgspec.Struct, frozen=True, kw_only=True):
     """… would reduce the largest standard deviation to this [m]."""
 
 
+class MirrorFigures(msgspec.Struct, frozen=True, kw_only=True):
+    """A wall that shows the room before it."""
+
+    area_m2: float
+    middle_m: tuple[float, float]
+    """x and y of its middle in the map [m]."""
+    behind: float
+    """Ratio of all points that lie behind it."""
+
+
 class LevelFigures(Figures, frozen=True, kw_only=True):
     """The leveled map and its place on earth."""
 
@@ -288,7 +153,8 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     """Audit of the antenna; None = too few fixes."""
     uncertainty: UncertaintyFigures | None = None
     """None = not stated: line scans, or fewer than two nodes."""
-    warnings: tuple[str, ...] = ()
+    mirrors: tuple[MirrorFigures, ...] = ()
+    """Walls that show the room before them."""
 
 
 class PlaceThickness(msgspec.Struct, frozen=True):
@@ -325,6 +191,13 @@ class MapFigures(Figures, frozen=True, kw_only=True):
     """Of the surfaces, as delivered; None = of an earlier version."""
     thickness_as_measured: PlaneThickness | None = None
     """The same of the points as measured; None = the points lie there."""
+
+
+class AuditFigures(Figures, frozen=True, kw_only=True):
+    """What the witnesses found."""
+
+    findings: dict[str, int]
+    """How many by level."""
 
 
 class Scan2dFigures(Figures, frozen=True, kw_only=True):

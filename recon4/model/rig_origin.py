@@ -59,16 +59,6 @@ class RigOrigin:
         """Whether the calibration is older than it should be."""
         return self.age_days is not None and self.age_days > self.max_age_days
 
-    @property
-    def remark(self) -> str:
-        """A sentence about a calibration that is too old; empty = it is not."""
-        if not self.is_old or self.calibration is None:
-            return ""
-        return (
-            f"The rig was calibrated on {self.calibration.date}, {self.age_days} days before the "
-            f"walk; after {self.max_age_days} days (rig.max_age_days) it should be done again."
-        )
-
 
 def recording_day(recorded_ns: int) -> date | None:
     """Day of a recording, UTC; None = its clock was never set.

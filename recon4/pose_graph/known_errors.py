@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.figures import CalibrationFigures, HeightDoubt, OdometryFigures, TurnDoubt
+from recon4.model.calibration_figures import CalibrationFigures
+from recon4.model.odometry_figures import HeightDoubt, OdometryFigures, TurnDoubt
 from recon4.model.trajectory import Times
 from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
 from recon4.store.stage import read_figures

@@ -14,7 +14,7 @@ from itertools import groupby
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array
-from recon4.model.figures import GNSS, IMU, ParameterFigures
+from recon4.model.calibration_figures import GNSS, IMU, ParameterFigures
 
 _PULL = 0.35
 """A pose follows a wrong LiDAR by this ratio of its error (1.4° in eleven worlds: NEES of the turns

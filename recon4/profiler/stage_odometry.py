@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3
-from recon4.model.events import PosesAdded, TrackingLost, Warned, positions_of
-from recon4.model.figures import OdometryFigures
+from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.laser_scans import LaserScans
+from recon4.model.odometry_figures import LineFigures, OdometryFigures
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.clock_audit import SAID_S, profiler_ahead_s, some_points
 from recon4.profiler.fusion import fuse
@@ -44,7 +46,7 @@ def run_line_odometry(
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense) and ``steps.npz`` (a row a
             multiframe).
         settings: Uses odometry, lines, and the groups of 2-D SLAM.
-        progress: Counts scans; what is missing is an event.
+        progress: Counts scans; tracking that is lost is an event.
     """
     span_ns = span_of(frames)
     drive = make_drive(
@@ -64,19 +66,24 @@ def run_line_odometry(
     save_trajectory(out / "trajectory.npz", trajectory)
     lost = _lost(frames.t_mid_ns, planar, drive)
     _save_steps(out / "steps.npz", frames, trajectory, planar=planar, lost=lost)
-    warnings = (
-        *laser_remarks(scans, span_ns, is_used=planar is not None),
-        *remarks(drive, planar, lost, frames=frames),
-        *_profiler_remarks(frames, planar, trajectory, min_range_m=settings.lines.min_range_m),
+    ahead_s, change = _profiler_error(
+        frames, planar, trajectory, min_range_m=settings.lines.min_range_m
     )
-    for text in warnings:
-        progress.event(Warned(text=text))
+    lines = replace(
+        line_figures(scans, span_ns, is_used=planar is not None),
+        imu=_imu_state(drive, frames),
+        mirrored=planar is not None and planar.mirrored,
+        imu_ahead_s=_imu_ahead_s(planar),
+        bridged_s=float(lost.sum() * frames.index["duration_ns"][0]) * 1e-9,
+        profiler_ahead_s=ahead_s,
+        mount_change=change,
+    )
     _report(trajectory, frames, lost, progress=progress)
     return OdometryFigures(
         multiframes=len(frames),
         lost=int(lost.sum()),
         imu=drive.has_imu,
-        warnings=warnings,
+        lines=lines,
     )
 
 
@@ -86,96 +93,65 @@ def span_of(frames: FrameStore) -> tuple[int, int]:
     return int(index["t_ns"][0]), int(index["t_ns"][-1] + index["duration_ns"][-1])
 
 
-def laser_remarks(
+def line_figures(
     scans: LaserScans | None, span_ns: tuple[int, int], *, is_used: bool
-) -> tuple[str, ...]:
-    """What is missing of the scans of the 2-D laser, in words.
+) -> LineFigures:
+    """What is missing of the scans of the 2-D laser.
 
     Args:
         scans: All of them.
         span_ns: First and last time of the lines [ns].
         is_used: Whether there is a planar map.
     """
-    alone = "the first trajectory is from the IMU alone and drifts by meters"
+    walk_s = 1e-9 * (span_ns[1] - span_ns[0])
     if scans is None:
-        return (f"no 2-D laser: {alone}",)
+        return LineFigures(walk_s=walk_s, laser="none")
+    first_s, last_s = (1e-9 * float(scans.t_ns[k] - span_ns[0]) for k in (0, -1))
     if not is_used:
-        first, last = (1e-9 * float(scans.t_ns[k] - span_ns[0]) for k in (0, -1))
-        return (
-            f"the scans of the 2-D laser cover {first:.1f} … {last:.1f} s of a walk of "
-            f"{1e-9 * (span_ns[1] - span_ns[0]):.1f} s: are the clocks the same? Without them "
-            f"{alone}",
-        )
+        return LineFigures(walk_s=walk_s, laser="at other times", laser_span_s=(first_s, last_s))
     inside = scans.t_ns[(scans.t_ns >= span_ns[0]) & (scans.t_ns <= span_ns[1])]
     times = np.concatenate([[span_ns[0]], inside, [span_ns[1]]])
     seconds = 1e-9 * np.diff(times)
     silent = np.flatnonzero(seconds > _SILENT_S)
-    if not len(silent):
-        return ()
-    since_s = 1e-9 * float(times[silent[0]] - span_ns[0])
-    return (
-        f"the 2-D laser is silent for {seconds[silent].sum():.1f} s, first {since_s:.1f} s after "
-        "the start",
+    return LineFigures(
+        walk_s=walk_s,
+        laser="used",
+        laser_span_s=(first_s, last_s),
+        silent_s=float(seconds[silent].sum()),
+        silent_from_s=1e-9 * float(times[silent[0]] - span_ns[0]) if len(silent) else 0.0,
     )
 
 
-def remarks(
-    drive: Drive, planar: PlanarMap | None, lost: NDArray[np.bool_], *, frames: FrameStore
-) -> tuple[str, ...]:
-    """What the first trajectory lacks, in words."""
-    found = []
-    if not drive.has_imu:
-        missing = "no IMU" if frames.imu is None else "the IMU's samples do not cover the walk"
-        found.append(f"{missing}: steps and tilts between two scans of the 2-D laser are not known")
-    if planar is None:
-        return tuple(found)
-    if planar.mirrored:
-        found.append(
-            "the 2-D laser turns against the gyroscope: its scans were turned over; it is mounted "
-            "upside down, or its angles have the wrong sign"
-        )
-    if planar.lag is not None and planar.lag.is_wrong:
-        ahead_s = planar.lag.ahead_s
-        found.append(
-            f"the clock of the IMU is {1e3 * abs(ahead_s):.0f} ms "
-            f"{'ahead of' if ahead_s > 0 else 'behind'} that of the 2-D laser: in the rig file add "
-            f"{-ahead_s:+.3f} to time_offset_s of the IMU, or {ahead_s:+.3f} to that of the 2-D "
-            "laser, whichever does not run with the profiler"
-        )
-    if lost.any():
-        seconds = float(lost.sum() * frames.index["duration_ns"][0]) * 1e-9
-        found.append(f"2-D tracking is missing for {seconds:.1f} s: only the IMU bridges that time")
-    return tuple(found)
+def _imu_state(drive: Drive, frames: FrameStore) -> Literal["used", "none", "uncovered"]:
+    if drive.has_imu:
+        return "used"
+    return "none" if frames.imu is None else "uncovered"
 
 
-def _profiler_remarks(
+def _imu_ahead_s(planar: PlanarMap | None) -> float | None:
+    """How far the clock of the IMU is ahead of that of the 2-D laser [s]; None = it is not."""
+    lag = planar.lag if planar is not None else None
+    return lag.ahead_s if lag is not None and lag.is_wrong else None
+
+
+def _profiler_error(
     frames: FrameStore, planar: PlanarMap | None, trajectory: Trajectory, *, min_range_m: float
-) -> tuple[str, ...]:
-    """Whether the profiler has another clock or mount than the rig file says.
+) -> tuple[float | None, str]:
+    """How far the clock of the profiler is ahead [s], and how its mount differs from the rig file.
 
     It is compared with IMU and 2-D laser, if the clocks of these two agree.
     """
     if planar is None or planar.lag is None or planar.lag.is_wrong:
-        return ()
+        return None, ""
     points = some_points(frames, min_range_m=min_range_m)
     ahead_s = profiler_ahead_s(points, trajectory)
-    found = []
-    if abs(ahead_s) >= SAID_S:
-        way = "ahead of" if ahead_s > 0 else "behind"
-        found.append(
-            f"the clock of the profiler is {1e3 * abs(ahead_s):.0f} ms {way} those of the IMU and "
-            f"the 2-D laser: in the rig file add {-ahead_s:+.3f} to its time_offset_s"
-        )
+    is_ahead = abs(ahead_s) >= SAID_S
+    if is_ahead:
         points = TimedPoints(points.t_ns - round(1e9 * ahead_s), points.p_body)
     sensor = frames.rig.sensors[frames.rig.row_of("profiler") or 0]
     change = mount_change(points, sensor.T_body_sensor.t, trajectory)
-    if change is not None and change.is_wrong:
-        found.append(
-            "the map is sharper with the profiler mounted otherwise than the rig file says: "
-            f"{change.describe()} of the body, against the 2-D laser; calibrate with the command "
-            "recon4 calibrate --method entropy"
-        )
-    return tuple(found)
+    is_moved = change is not None and change.is_wrong
+    return ahead_s if is_ahead else None, change.describe() if change and is_moved else ""
 
 
 def _lost(t_ns: Times, planar: PlanarMap | None, drive: Drive) -> NDArray[np.bool_]:

@@ -125,23 +125,3 @@ def _is_rival(one: Registration, best: Registration) -> bool:
     apart = best.T_target_source.inverse() @ one.T_target_source
     elsewhere = np.linalg.norm(apart.t) > _RIVAL_M or apart.angle() > _RIVAL_RAD
     return bool(elsewhere) and one.match_ratio >= _RIVAL_RATIO * best.match_ratio
-
-
-def bridged_text(bridged: Sequence[tuple[float, float]]) -> str:
-    """A sentence for the operator.
-
-    Args:
-        bridged: Time of each bridge after the start [s] and its length [m]; at least one.
-    """
-    first_s = bridged[0][0]
-    longest_s, longest_m = max(bridged, key=lambda one: one[1])
-    where = f"{first_s:.0f} s after the start"
-    if len(bridged) > 1:
-        where = f"first {where}, the longest of {longest_m:.1f} m at {longest_s:.0f} s"
-    else:
-        where += f", {longest_m:.1f} m long"
-    times = "once" if len(bridged) == 1 else f"{len(bridged)} times"
-    return (
-        f"The scans before and after a gap or a lost scan were joined by one registration {times} "
-        f"({where}). Where two places look alike such a joint can be wrong: check the map there."
-    )

@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.frames import RecordedFrames
+from recon4.model.odometry_figures import ImuChoice, ImuOutcome
 from recon4.model.samples import ImuSamples
 from recon4.registration.motion import ImuMotion
 from recon4.registration.odometry import Odometry
@@ -33,6 +34,7 @@ _TYPICAL = 0.8
 _EXPLAINED = 0.3
 """The gyroscope explains the turns that the LiDARs see without it if this ratio of them is left. A
 clock 20 ms off leaves 0.07, a rotated LiDAR 0.12, a clock 300 ms off 0.7, swapped axes 2."""
+_AS_RECORDED = ImuChoice(outcome="as recorded")
 _NEVER_M = 1.0
 """The error of a trial that found no match [m]."""
 
@@ -67,7 +69,7 @@ class Trial:
 
 def consistent_imu(
     frames: RecordedFrames, settings: Settings, *, trusted: bool = False
-) -> tuple[ImuSamples | None, str]:
+) -> tuple[ImuSamples | None, ImuChoice]:
     """The IMU samples as recorded, with the gyroscope bias removed, or None.
 
     The first multiframes and those of the fastest turn are registered with each variant. A variant
@@ -81,22 +83,22 @@ def consistent_imu(
         trusted: Whether nothing but a bias is wrong with it: who walks along contradicts an IMU.
 
     Returns:
-        The samples to use, and a warning for the user (empty = none).
+        The samples to use, and what is wrong with them.
     """
     imu = frames.imu
     planes = settings.registration.solver == "planes"
     if imu is None or len(imu) < 2 or not settings.odometry.use_imu or not planes:
-        return imu, ""
-    chosen: tuple[ImuSamples | None, str] = imu, ""
+        return imu, _AS_RECORDED
+    chosen: tuple[ImuSamples | None, ImuChoice] = imu, _AS_RECORDED
     best = _try(frames, imu, settings)
     zero_rad_s = _zero(imu, frames)
     if np.linalg.norm(zero_rad_s) > _ZERO_RAD_S:
         zeroed = ImuSamples(imu.t_ns, imu.gyro_rad_s - zero_rad_s, imu.accel_m_s2)
         found = _try(frames, zeroed, settings)
         if found.clearly_better(best):
-            text = ", ".join(f"{value:.1f}" for value in np.rad2deg(zero_rad_s))
             best = found
-            chosen = zeroed, f"gyroscope bias at the start ({text} deg/s) was subtracted"
+            x, y, z = zero_rad_s.tolist()
+            chosen = zeroed, ImuChoice(outcome="bias removed", bias_rad_s=(x, y, z))
     if trusted:
         return chosen
     found = _try(frames, None, settings)
@@ -106,12 +108,12 @@ def consistent_imu(
     motion = ImuMotion(used, frames.rig, settings.odometry)
     if found.unexplained(motion) < _EXPLAINED:
         return _without_forces(frames, used, whole=best, settings=settings) or chosen
-    return None, _contradicts("IMU", best, found)
+    return None, _contradicted("not used", best, found)
 
 
 def _without_forces(
     frames: RecordedFrames, imu: ImuSamples, *, whole: Trial, settings: Settings
-) -> tuple[ImuSamples, str] | None:
+) -> tuple[ImuSamples, ImuChoice] | None:
     """The gyroscope alone, if the accelerometer is at fault; None = it is not.
 
     A rotated LiDAR raises the error too, and no IMU is at fault then.
@@ -125,15 +127,11 @@ def _without_forces(
     )
     if not found.clearly_better(best):
         return None
-    return turns_only, _contradicts("accelerometer", best, found)
+    return turns_only, _contradicted("accelerometer not used", best, found)
 
 
-def _contradicts(what: str, with_it: Trial, without: Trial) -> str:
-    return (
-        f"the {what} contradicts the LiDARs and is not used for the motion: "
-        f"the mean residual of the segments is {100 * with_it.error_m:.1f} cm with it, "
-        f"{100 * without.error_m:.1f} cm without it; check its axes, units and clock"
-    )
+def _contradicted(outcome: ImuOutcome, with_it: Trial, without: Trial) -> ImuChoice:
+    return ImuChoice(outcome=outcome, with_m=with_it.error_m, without_m=without.error_m)
 
 
 def _try(

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.model.odometry_figures import ImuFault
 from recon4.registration.motion import MotionState
 from recon4.registration.state import STATE, VECTOR
 
@@ -57,24 +58,23 @@ class ImuEstimate:
         )
 
     @property
-    def texts(self) -> tuple[str, ...]:
-        """Sentences for the operator on what is far from right; none if all is in order."""
+    def faults(self) -> tuple[ImuFault, ...]:
+        """What is far from right; none if all is in order."""
         return (*self._scale(), *self._axes(), *self._clock())
 
-    def _scale(self) -> tuple[str, ...]:
+    def _scale(self) -> tuple[ImuFault, ...]:
         scale, sd = self.gain[::4], np.sqrt(np.diag(self.gain_cov)[::4])
         far = (np.abs(scale) > _MOST_GAIN) & (np.abs(scale) > _SIGMAS * sd)
         if not far.any():
             return ()
         axis = int(np.argmax(np.where(far, np.abs(scale) / sd, 0.0)))
-        percent = 100.0 * (1.0 / (1.0 + scale[axis]) - 1.0)
+        # What is measured of a turn, relative to the turn itself.
+        error = float(1.0 / (1.0 + scale[axis]) - 1.0)
         return (
-            f"The gyroscope measures turns about {'xyz'[axis]} {abs(percent):.1f} % ± "
-            f"{100.0 * sd[axis]:.1f} % too {'large' if percent > 0.0 else 'small'}: check its "
-            "scale. The odometry corrected it.",
+            ImuFault(kind="gyroscope scale", value=error, sd=float(sd[axis]), axis="xyz"[axis]),
         )
 
-    def _axes(self) -> tuple[str, ...]:
+    def _axes(self) -> tuple[ImuFault, ...]:
         turn = _TURN @ self.gain
         angle = float(np.linalg.norm(turn))
         if not angle > _MOST_ANGLE_RAD:
@@ -83,18 +83,9 @@ class ImuEstimate:
         sd = float(np.sqrt(along @ self.gain_cov @ along))
         if angle < _SIGMAS * sd:
             return ()
-        return (
-            f"The gyroscope is rotated by {np.rad2deg(angle):.1f}° ± {np.rad2deg(sd):.1f}° "
-            "against the rig file, as turns of the LiDARs show: check the mount of the IMU. The "
-            "odometry corrected it.",
-        )
+        return (ImuFault(kind="gyroscope rotation", value=angle, sd=sd),)
 
-    def _clock(self) -> tuple[str, ...]:
-        far = max(_MOST_CLOCK_S, _SIGMAS * self.clock_sd_s)
-        if not abs(self.clock_s) > far:
+    def _clock(self) -> tuple[ImuFault, ...]:
+        if not abs(self.clock_s) > max(_MOST_CLOCK_S, _SIGMAS * self.clock_sd_s):
             return ()
-        return (
-            f"The clock of the IMU is {1e3 * abs(self.clock_s):.1f} ms ± "
-            f"{1e3 * self.clock_sd_s:.1f} ms {'ahead of' if self.clock_s > 0.0 else 'behind'} that "
-            "of the LiDARs: check the time offset of the rig file. The odometry corrected it.",
-        )
+        return (ImuFault(kind="clock", value=self.clock_s, sd=self.clock_sd_s),)

@@ -25,12 +25,12 @@ _SPEED_NS = 500_000_000
 """Velocities at the ends are measured over this time [ns]."""
 
 
-def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[str, ...]:
-    """A warning if the accelerometer measures another gravity than there is; else none.
+def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> float | None:
+    """Gravity as the accelerometer measures it [m/s²], if it is wrong; None = not wrong.
 
     Args:
         trajectory: ``T_odom_body``.
-        imu: Samples as they were used.
+        imu: Its samples.
         rig: Where the IMU is.
     """
     first_ns = max(int(trajectory.t_ns[0]), int(imu.t_ns[0]))
@@ -38,21 +38,14 @@ def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[st
     seconds = (last_ns - first_ns) * 1e-9
     inside = (imu.t_ns >= first_ns) & (imu.t_ns <= last_ns)
     if seconds < _MIN_S or inside.sum() < 2:
-        return ()
+        return None
     _, accel = imu_in_body(imu, rig)
     force = np.einsum("nij,nj->ni", trajectory.at(imu.t_ns[inside]).R, accel[inside]).mean(axis=0)
     ends = np.array([first_ns, last_ns - _SPEED_NS])
     gained = np.diff(_velocities(trajectory, ends), axis=0)[0]
     found = float(np.linalg.norm(force - gained / seconds))
-    difference = found - STANDARD_GRAVITY_M_S2
-    if not abs(difference) > _MOST_M_S2:  # NaN: no accelerometer
-        return ()
-    ratio = 100.0 * difference / STANDARD_GRAVITY_M_S2
-    return (
-        f"The IMU measures {found:.2f} m/s² over the walk where gravity is "
-        f"{STANDARD_GRAVITY_M_S2:.2f} m/s²: its scale is {ratio:+.1f} % off, or its accelerometer "
-        "has such a bias.",
-    )
+    # NaN: no accelerometer
+    return found if abs(found - STANDARD_GRAVITY_M_S2) > _MOST_M_S2 else None
 
 
 def _velocities(trajectory: Trajectory, t_ns: Times) -> Array:

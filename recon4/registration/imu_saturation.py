@@ -20,72 +20,47 @@ _SLOWEST_RAD_S, _WEAKEST_M_S2 = 1.5, 14.0
 """No range of an IMU ends below this."""
 
 
-def saturated_texts(imu: ImuSamples) -> tuple[str, ...]:
-    """A sentence for each sensor that is saturated.
+@dataclass(frozen=True, slots=True)
+class SaturatedAxis:
+    """An axis of an IMU that repeats its largest value."""
+
+    sensor: str
+    """``gyroscope`` or ``accelerometer``."""
+    axis: str
+    largest: float
+    """[rad/s] or [m/s²]."""
+    runs: list[NDArray[np.intp]]
+    """Samples of each stretch."""
+
+
+def saturated_axes(imu: ImuSamples) -> list[SaturatedAxis]:
+    """The axes that are saturated at some time.
 
     Args:
         imu: As recorded, in its own axes.
     """
-    gyro, accel = _saturated(imu)
-    texts = []
-    if gyro:
-        parts = [f"{np.rad2deg(s.largest):.0f}°/s about {s.axis} {s.times}" for s in gyro]
-        texts.append(_text(imu, "gyroscope", parts, found=gyro))
-    if accel:
-        parts = [f"{s.largest:.1f} m/s² along {s.axis} {s.times}" for s in accel]
-        texts.append(_text(imu, "accelerometer", parts, found=accel))
-    return tuple(texts)
+    gyro = _saturated("gyroscope", imu.gyro_rad_s, _SLOWEST_RAD_S)
+    return gyro + _saturated("accelerometer", imu.accel_m_s2, _WEAKEST_M_S2)
 
 
 def saturated_samples(imu: ImuSamples) -> NDArray[np.bool_]:
     """Samples at which gyroscope and accelerometer are saturated along some axis, (N, 2)."""
     found = np.zeros((len(imu), 2), np.bool_)
-    gyro, accel = _saturated(imu)
-    for column, axes in enumerate((gyro, accel)):
-        for run in (run for axis in axes for run in axis.runs):
+    for axis in saturated_axes(imu):
+        column = int(axis.sensor == "accelerometer")
+        for run in axis.runs:
             found[run[0] : run[-1] + 1, column] = True
     return found
 
 
-@dataclass(frozen=True, slots=True)
-class _Saturated:
-    """An axis that repeats its largest value."""
-
-    axis: str
-    largest: float
-    runs: list[NDArray[np.intp]]
-    """Samples of each stretch."""
-
-    @property
-    def times(self) -> str:
-        return "once" if len(self.runs) == 1 else f"{len(self.runs)} times"
-
-
-def _text(imu: ImuSamples, name: str, parts: list[str], *, found: list[_Saturated]) -> str:
-    first_ns = int(imu.t_ns[min(axis.runs[0][0] for axis in found)] - imu.t_ns[0])
-    return (
-        f"The {name} is saturated, first {1e-9 * first_ns:.1f} s after its start: it repeats its "
-        f"largest value, {', '.join(parts)}. Faster motions are missing: there only the "
-        "LiDARs observe them. Record with a larger range."
-    )
-
-
-def _saturated(imu: ImuSamples) -> tuple[list[_Saturated], list[_Saturated]]:
-    """The saturated axes of gyroscope and accelerometer."""
-    return (
-        _saturated_axes(imu.gyro_rad_s, _SLOWEST_RAD_S),
-        _saturated_axes(imu.accel_m_s2, _WEAKEST_M_S2),
-    )
-
-
-def _saturated_axes(values: Array, least: float) -> list[_Saturated]:
+def _saturated(sensor: str, values: Array, least: float) -> list[SaturatedAxis]:
     """The saturated axes of a sensor, (N, 3)."""
     found = []
     for axis, column in zip("xyz", values.T, strict=True):
         runs = _runs_at_the_end(column, least)
         if sum(map(len, runs)) >= _LEAST_SAMPLES:
             largest = float(np.nanmax(np.abs(column)))
-            found.append(_Saturated(axis, largest, runs))
+            found.append(SaturatedAxis(sensor, axis, largest, runs))
     return found
 
 

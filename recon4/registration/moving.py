@@ -22,10 +22,10 @@ from recon4.geometry.cubes import cubes_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.free_space import NO_SURFACE, find_moving_points, nearest_ranges
 from recon4.kernels.imu import place_points
-from recon4.model.figures import MovingFigures, MovingOutcome
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import Multiframe
+from recon4.model.odometry_figures import MovingFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -152,38 +152,6 @@ def find_moving(frames: RecordedFrames, trajectory: Trajectory, piece: Times) ->
     since_s = (frames.t_mid_ns[space.rows] - frames.t_mid_ns[0]) / 1e9
     return MovingFigures(
         t_s=tuple(np.round(since_s, 2).tolist()), ratio=tuple(np.round(ratios, 4).tolist())
-    )
-
-
-_BECAME = {
-    MovingOutcome.KEPT: "Their points are in the map, and may have pulled the trajectory along.",
-    MovingOutcome.LEFT_OUT: "Most of their points are left out: the rest holds the trajectory.",
-    MovingOutcome.NOT_SETTLED: (
-        "Without their points the trajectory still changes with every pass of the odometry."
-    ),
-    MovingOutcome.CONTRADICTED: (
-        "The trajectory without their points contradicts the positions of the GNSS/INS: these are "
-        "wrong, or what is left of the view does not hold it."
-    ),
-    MovingOutcome.NOT_HELD: (
-        "The rest does not hold the trajectory, so they stay in and pull it along. Record again "
-        "without people around the carrier."
-    ),
-}
-
-
-def crowd_text(found: MovingFigures) -> tuple[str, ...]:
-    """A sentence for the operator, if moving objects fill much of the view."""
-    if not found.is_crowded:
-        return ()
-    ratio, t_s = np.array(found.ratio), np.array(found.t_s)
-    crowded = t_s[ratio >= found.CROWDED]
-    left_out = f"{found.points_left_out:,}".replace(",", "\u202f")
-    most, when_s = 100 * ratio.max(), t_s[ratio.argmax()]
-    return (
-        f"Between {crowded[0]:.0f} s and {crowded[-1]:.0f} s moving objects (people, vehicles) "
-        f"fill up to {most:.0f} % of the view, most at {when_s:.0f} s. {_BECAME[found.outcome]}"
-        + (f" {left_out} points are left out of the map." if found.points_left_out else ""),
     )
 
 

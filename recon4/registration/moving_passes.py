@@ -13,9 +13,9 @@ from msgspec.structs import replace
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.figures import MovingFigures, MovingOutcome
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import HiddenPoints
+from recon4.model.odometry_figures import MovingFigures, MovingOutcome
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.moving import StandingFrames, find_moving, hide_moving, is_crowded_at

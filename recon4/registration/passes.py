@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, proper, so3_exp, so3_log
 from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.frames import RecordedFrames
+from recon4.model.odometry_figures import ImuChoice
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
@@ -44,8 +45,8 @@ class OdometryPass:
     """``T_odom_body``, dense."""
     imu: ImuSamples | None
     """As it was used; None = not."""
-    remark: str
-    """What is wrong with it before any multiframe is registered; empty = nothing."""
+    imu_choice: ImuChoice
+    """Which samples were used, from the trial before any multiframe is registered."""
     estimate: ImuEstimate | None
 
     @property
@@ -84,17 +85,17 @@ def register_all(
         aiding: Fixes of a GNSS/INS, outdoors.
         trusted: Whether the IMU is, see `consistent_imu`.
     """
-    imu, remark = consistent_imu(frames, settings, trusted=trusted)
+    imu, choice = consistent_imu(frames, settings, trusted=trusted)
 
     def made_by(odometry: Odometry | LineOdometry) -> OdometryPass:
         steps = _without_jumps(_register(frames, odometry, progress))
         estimate = odometry.imu_estimate if isinstance(odometry, Odometry) else None
         used = imu if settings.odometry.use_imu else None
-        return OdometryPass(steps, dense_trajectory(steps), used, remark, estimate)
+        return OdometryPass(steps, dense_trajectory(steps), used, choice, estimate)
 
     odometry = make_odometry(frames.rig, settings, imu, aiding=aiding)
     made = made_by(odometry)
-    if not isinstance(odometry, Odometry) or not (made.estimate and made.estimate.texts):
+    if not isinstance(odometry, Odometry) or not (made.estimate and made.estimate.faults):
         return made
     again = Odometry(frames.rig, settings, imu, aiding=aiding)
     again.remember_imu(odometry)

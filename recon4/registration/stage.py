@@ -2,31 +2,23 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
-from msgspec.structs import replace
 
 from recon4.geometry.se3 import SE3
-from recon4.model.events import Warned
-from recon4.model.figures import MovingFigures, OdometryFigures
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import MOVING_POINTS
+from recon4.model.odometry_figures import MovingFigures, OdometryFigures
 from recon4.model.rig import Rig
-from recon4.model.samples import ImuSamples
-from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.bridge import bridged_text
-from recon4.registration.imu_gravity import wrong_gravity
-from recon4.registration.imu_saturation import saturated_texts
-from recon4.registration.moving import crowd_text, find_moving
+from recon4.registration.moving import find_moving
 from recon4.registration.moving_passes import Found, leave_out_moving, less_sure
 from recon4.registration.passes import OdometryPass, register_all
 from recon4.registration.step import OdometryStep
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
-from recon4.registration.weak_turns import turn_text, weak_turns
+from recon4.registration.weak_turns import weak_turns
 from recon4.settings import Settings
 from recon4.store.arrays import save_record, save_trajectory
 
@@ -46,7 +38,7 @@ def run_odometry(
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense) and ``steps.npz``
             (a row a multiframe), ``moving.npz`` if points on moving objects are left out.
         settings: Uses segments, planes, registration and odometry.
-        progress: Counts multiframes; tracking that is lost and an IMU that is wrong are events.
+        progress: Counts multiframes; tracking that is lost is an event.
         aiding: Fixes of a GNSS/INS, outdoors.
     """
 
@@ -63,61 +55,32 @@ def run_odometry(
     made, moving = found.made, found.moving
     save_trajectory(out / "trajectory.npz", made.trajectory)
     _save_steps(out / "steps.npz", less_sure(found))
-    figures = _judged(made, frames, moving=moving, aided=aiding is not None)
-    for text in figures.warnings:
-        progress.event(Warned(text=text))
-    return replace(figures, gnss=aiding is not None)
+    return _figures(made, frames, moving=moving, aided=aiding is not None)
 
 
-def _judged(
+def _figures(
     made: OdometryPass, frames: RecordedFrames, *, moving: MovingFigures, aided: bool
 ) -> OdometryFigures:
-    """Figures of a pass, with what contradicts it; ``aided`` by fixes, which show the heading."""
-    rig = frames.rig
-    rides = _rides(made.trajectory, made.imu, rig, steps=made.steps)
-    crowd = crowd_text(moving)
-    turns = () if aided else weak_turns(made.steps, with_imu=made.imu is not None)
-    contradicted = (
-        *(ride.text for ride in rides),
-        *(saturated_texts(frames.imu) if frames.imu else ()),
-        *(wrong_gravity(made.trajectory, made.imu, rig) if made.imu else ()),
-        *(made.estimate.texts if made.estimate else ()),
-        *crowd,
-        *(turn_text(turn) for turn in turns),
-        *_bridges(made.steps),
-    )
-    severe = tuple(ride.text for ride in rides if ride.is_severe)
+    """Figures of a pass; ``aided`` by fixes, which show the heading."""
     return OdometryFigures(
         multiframes=len(made.steps),
         lost=made.lost,
         imu=made.imu is not None,
-        warnings=(made.remark, *contradicted) if made.remark else contradicted,
-        severe=(*severe, *(crowd if moving.is_severe else ())),
-        heights=tuple(ride.doubt for ride in rides),
-        turns=turns,
+        imu_choice=made.imu_choice if frames.imu is not None else None,
+        imu_faults=made.estimate.faults if made.estimate else (),
+        heights=tuple(ride.doubt for ride in _rides(made, frames.rig)),
+        gnss=aided,
+        turns=() if aided else weak_turns(made.steps, with_imu=made.imu is not None),
         moving=moving,
     )
 
 
-def _bridges(steps: list[OdometryStep]) -> tuple[str, ...]:
-    """What is to be checked where single registrations joined what no scan chain joins."""
-    bridged = [
-        (1e-9 * (b.t_mid_ns - steps[0].t_mid_ns), a.T_odom_body, b.T_odom_body)
-        for a, b in pairwise([step for step in steps if not step.lost])
-        if b.bridged
-    ]
-    found = [(t_s, float(np.linalg.norm(b.t - a.t))) for t_s, a, b in bridged]
-    return (bridged_text(found),) if found else ()
-
-
-def _rides(
-    trajectory: Trajectory, imu: ImuSamples | None, rig: Rig, *, steps: list[OdometryStep]
-) -> list[UnseenRide | HeightContradiction]:
+def _rides(made: OdometryPass, rig: Rig) -> list[UnseenRide | HeightContradiction]:
     """What the IMU says against the heights of the trajectory."""
-    if imu is None:
+    if made.imu is None:
         return []
-    lost_ns = np.array([step.t_mid_ns for step in steps if step.lost], np.int64)
-    return unseen_rides(trajectory, imu, rig, lost_ns=lost_ns)
+    lost_ns = np.array([step.t_mid_ns for step in made.steps if step.lost], np.int64)
+    return unseen_rides(made.trajectory, made.imu, rig, lost_ns=lost_ns)
 
 
 def _save_steps(path: Path, steps: list[OdometryStep]) -> None:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.model.figures import HeightDoubt
+from recon4.model.odometry_figures import HeightDoubt
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
@@ -56,8 +56,6 @@ _WHOLE = 0.8
 _BALANCE = 0.4
 """The changes of the speed at both ends of a ride cancel out but for this ratio."""
 _LONGEST_S = 120.0
-_STOREY_M = 1.0
-"""Heights that are wrong by more than this put one storey onto another [m]."""
 _UNKNOWN_RIDE_M = 3.0
 """A ride of which the end, or the begin, was not recorded [m]."""
 
@@ -75,30 +73,15 @@ class UnseenRide:
     """Change of the vertical speed at its begin."""
 
     @property
-    def is_severe(self) -> bool:
-        """Whether heights are wrong by meters: also if a ride has no end, or no begin."""
-        return not abs(self.rise_m) < _STOREY_M
-
-    @property
     def doubt(self) -> HeightDoubt:
         """What it makes of the heights; a ride without an end, or a begin, counts as a storey."""
-        rise_m = self.rise_m if np.isfinite(self.rise_m) else _UNKNOWN_RIDE_M
-        return HeightDoubt(start_s=self.start_s, end_s=self.end_s, rise_m=rise_m)
-
-    @property
-    def text(self) -> str:
-        """A sentence for the operator."""
-        if not np.isfinite(self.rise_m):
-            return (
-                f"At {self.start_s:.0f} s the IMU measures a change of the vertical speed by "
-                f"{self.speed_m_s:+.1f} m/s that no LiDAR sees: a floor that moves with the body, "
-                "as in an elevator. Heights before and after it do not belong together."
-            )
-        return (
-            f"From {self.start_s:.0f} s to {self.end_s:.0f} s the IMU measures a ride of about "
-            f"{abs(self.rise_m):.1f} m {'up' if self.rise_m > 0 else 'down'} that no LiDAR sees: a "
-            "floor that moves with the body, as in an elevator. The map puts one storey onto the "
-            "other. Map the storeys separately, or walk the stairs."
+        if np.isfinite(self.rise_m):
+            return HeightDoubt(start_s=self.start_s, end_s=self.end_s, rise_m=self.rise_m)
+        return HeightDoubt(
+            start_s=self.start_s,
+            end_s=self.end_s,
+            rise_m=_UNKNOWN_RIDE_M,
+            speed_m_s=self.speed_m_s,
         )
 
 
@@ -115,23 +98,14 @@ class HeightContradiction:
     """Largest height that the IMU measures meanwhile and the trajectory has not [m]."""
 
     @property
-    def is_severe(self) -> bool:
-        """Whether the heights are contradicted by meters."""
-        return abs(self.rise_m) >= _STOREY_M
-
-    @property
     def doubt(self) -> HeightDoubt:
         """What it makes of the heights."""
-        return HeightDoubt(start_s=self.start_s, end_s=self.end_s, rise_m=self.rise_m)
-
-    @property
-    def text(self) -> str:
-        """A sentence for the operator."""
-        return (
-            f"From {self.start_s:.0f} s to {self.end_s:.0f} s the accelerometer contradicts the "
-            f"heights of the trajectory by up to {self.largest_m_s2:.2f} m/s² (usual: "
-            f"{self.usual_m_s2:.2f}), {abs(self.rise_m):.1f} m in all: the floor moved with the "
-            "body, as in an elevator, or the trajectory is wrong there."
+        return HeightDoubt(
+            start_s=self.start_s,
+            end_s=self.end_s,
+            rise_m=self.rise_m,
+            largest_m_s2=self.largest_m_s2,
+            usual_m_s2=self.usual_m_s2,
         )
 
 

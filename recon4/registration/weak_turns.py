@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
-from recon4.model.figures import TurnDoubt
+from recon4.model.odometry_figures import TurnDoubt
 from recon4.model.usability import WEAK_SECONDS
 from recon4.registration.degeneracy import LEAST_TURN
 from recon4.registration.step import OdometryStep
@@ -47,20 +47,6 @@ def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDo
         _doubt([steps[k] for k in run], t_s[run], steps[0].T_odom_body.t, rate_sd_rad_s=rate)
         for run in runs
         if len(run) and t_s[run[-1]] - t_s[run[0]] >= WEAK_SECONDS
-    )
-
-
-def turn_text(doubt: TurnDoubt) -> str:
-    """A sentence for the operator."""
-    x, y, z = doubt.center_m
-    largest_deg = float(np.rad2deg(2.0 * doubt.rate_sd_rad_s * (doubt.end_s - doubt.start_s)))
-    axis = "vertical" if abs(doubt.axis[2]) > np.sqrt(0.5) else "horizontal"
-    return (
-        f"Between {doubt.start_s:.0f} s and {doubt.end_s:.0f} s the surroundings look the same "
-        f"after a turn about the {axis} axis at x {x:.1f} m, y {y:.1f} m, z {z:.1f} m from the "
-        "start, as in a round hall or on bare ground: the LiDARs hardly observe it. At the end the "
-        f"map may be turned by ± {largest_deg:.1f}° (2σ). Put things there that stand out, or use "
-        "GNSS."
     )
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.report.figures import AMBER, BLUE, GRAY, GREEN, INK, ORANGE, PINK, SKY, Chart, add_bars
 from recon4.report.rig import DISPLAY_UNITS
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.geometry.se3 import Array
-from recon4.model.figures import CalibrationFigures
+from recon4.model.calibration_figures import CalibrationFigures
 from recon4.report.beams import beam_charts, beam_rows
 from recon4.report.chart_groups import framed
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart

@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+from recon4.findings.drift import DriftClosed
+from recon4.findings.walk import WalkRecord
 from recon4.report import charts
-from recon4.report.artifacts import Results
 from recon4.report.beams import beam_charts
-from recon4.report.drift import DriftClosed
 from recon4.report.edges import edge_paths
 from recon4.report.facts import ReportFacts
 from recon4.report.intensity import dependencies
@@ -46,7 +46,7 @@ def map_figures(rasters: list[Raster]) -> list[ChartFigure]:
 
 
 def trajectory_figures(
-    results: Results, drift: DriftClosed | None, rasters: list[Raster]
+    results: WalkRecord, drift: DriftClosed | None, rasters: list[Raster]
 ) -> list[ChartFigure]:
     """The trajectory over the map, and charts along it."""
     final = results.final or results.odometry
@@ -79,7 +79,7 @@ def trajectory_figures(
     )
 
 
-def edge_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
+def edge_figures(results: WalkRecord, rasters: list[Raster]) -> list[ChartFigure]:
     """Every registered pair, and its quality."""
     graph = results.graph
     if graph is None or not len(graph):
@@ -107,7 +107,7 @@ def accuracy_figures(facts: ReportFacts) -> list[ChartFigure]:
     return framed(charts.accuracy_charts(facts.evaluation))
 
 
-def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigure]:
+def intensity_figures(results: WalkRecord, rasters: list[Raster]) -> list[ChartFigure]:
     """Intensity before and after normalization."""
     out: list[ChartFigure] = []
     for after in (False, True):
@@ -123,12 +123,12 @@ def intensity_figures(results: Results, rasters: list[Raster]) -> list[ChartFigu
     return out + framed(charts.intensity_charts(dependencies(results.intensity)))
 
 
-def rig_figures(results: Results) -> list[ChartFigure]:
+def rig_figures(results: WalkRecord) -> list[ChartFigure]:
     """Differences of the recording from the rig file."""
     return framed([*rig_charts(results.calibration), *beam_charts(results.calibration)])
 
 
-def georeference_figures(results: Results) -> list[ChartFigure]:
+def georeference_figures(results: WalkRecord) -> list[ChartFigure]:
     """Residuals at the GNSS positions."""
     return framed(charts.gnss_charts(results.placement.gnss))
 

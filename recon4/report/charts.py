@@ -9,15 +9,15 @@ from numpy.typing import NDArray
 
 from recon4.evaluation.evaluate import Evaluation
 from recon4.evaluation.slices import HISTOGRAM_STEP_M
+from recon4.findings.drift import DriftClosed
+from recon4.findings.placement import GnssFacts
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import PoseUncertainty
-from recon4.report.drift import DriftClosed
 from recon4.report.edges import by_verdict, spanning
 from recon4.report.figures import BLUE, GRAY, GREEN, ORANGE, PINK, cumulative, histogram, lines
 from recon4.report.intensity import Dependency
-from recon4.report.placement import GnssFacts
 
 Charts = list[tuple[str, str]]
 """SVG and caption of each chart."""

@@ -53,7 +53,3 @@ class ReportFacts:
     """Name of the map's CRS or ``EPSG:…``; empty = a local frame."""
     evaluation: Evaluation | None = None
     """Evaluation against ground truth; None = there is none."""
-    warnings: tuple[str, ...] = ()
-    """Further warnings for the operator."""
-    severe: tuple[str, ...] = ()
-    """Those of them that forbid the use of the map."""

@@ -12,20 +12,21 @@ import numpy as np
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from recon4.evaluation.table import number, percentage
+from recon4.findings.drift import DriftClosed
+from recon4.findings.walk import WalkRecord, path_length_m
+from recon4.findings.wording import headline
 from recon4.mapping.tiles import Surface, TileSet, surface_text
 from recon4.model.figures import MapFigures
 from recon4.model.pose_graph import EdgeKind
 from recon4.report import chart_groups
 from recon4.report.approval import draft_block
-from recon4.report.artifacts import Results, path_length_m
-from recon4.report.drift import DriftClosed
+from recon4.report.assessment import Assessment
 from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
-from recon4.report.headline import HEADLINES, LEVELS
+from recon4.report.findings import LEVELS, shown_findings
 from recon4.report.maps import map_chunks, rasterize
 from recon4.report.rig import origin_rows, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
-from recon4.report.verdict import Assessment
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_text
 
@@ -56,10 +57,10 @@ def render(assessed: Assessment) -> str:
             facts=facts,
             thickness=results.map.thickness if results.map else None,
             results=results,
-            findings=assessed.findings,
+            findings=shown_findings(assessed.findings),
             approval=draft_block(),
             level=LEVELS[usability],
-            verdict=HEADLINES[usability],
+            verdict=headline(usability),
             key_figures=_key_figures(facts, results, drift, tiles=tiles),
             maps=chart_groups.map_figures(rasters),
             walk=chart_groups.trajectory_figures(results, drift, rasters),
@@ -101,13 +102,13 @@ def environment() -> Environment:
     return made
 
 
-def _edge_rows(facts: ReportFacts, results: Results) -> list[EdgeRow]:
+def _edge_rows(facts: ReportFacts, results: WalkRecord) -> list[EdgeRow]:
     if results.graph is None:
         return []
     return edge_rows(results.graph, limit_m=facts.settings.verification.limit_m)
 
 
-def _frame(facts: ReportFacts, results: Results) -> str:
+def _frame(facts: ReportFacts, results: WalkRecord) -> str:
     """Frame and unit of the coordinates."""
     if facts.crs:
         return f"{facts.crs} (meters)"
@@ -122,7 +123,7 @@ def changed_settings(settings: Settings, preset_name: str) -> list[tuple[str, st
 
 
 def _key_figures(
-    facts: ReportFacts, results: Results, drift: DriftClosed | None, *, tiles: TileSet | None
+    facts: ReportFacts, results: WalkRecord, drift: DriftClosed | None, *, tiles: TileSet | None
 ) -> list[tuple[str, str, str]]:
     """Name, value and unit of the figures on top."""
     out: list[tuple[str, str, str]] = []

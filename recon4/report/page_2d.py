@@ -10,17 +10,19 @@ import numpy as np
 from markupsafe import Markup
 
 from recon4.evaluation.table import number
+from recon4.findings.finding import Finding
+from recon4.findings.verdict import verdict_of
+from recon4.findings.walk import path_length_m
+from recon4.findings.wording import headline
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import MapVerdict
 from recon4.report.approval import draft_block
-from recon4.report.artifacts import path_length_m
 from recon4.report.chart_groups import ChartFigure, framed
 from recon4.report.edges import edge_paths, edge_rows
 from recon4.report.facts import StageTiming
 from recon4.report.figures import BLUE, ORANGE, Chart
-from recon4.report.headline import HEADLINES, LEVELS
+from recon4.report.findings import LEVELS, shown_findings
 from recon4.report.html import changed_settings, environment
 from recon4.report.maps import ABOVE, ImageFrame
 from recon4.report.plan import PlanOverlay, PlanPath, plan_svg
@@ -54,9 +56,8 @@ class Page2d:
     created: str
     preset: str
     settings: Settings
-    verdict: MapVerdict
-    warnings: Sequence[str]
-    """Of the import."""
+    findings: Sequence[Finding]
+    """Worst first."""
     figures: Sequence[tuple[str, str, str]]
     """Name, value and unit of the figures on top."""
     grid: GridImage
@@ -78,7 +79,7 @@ def write_page_2d(path: Path, page: Page2d) -> None:
     Raises:
         StoreError: If the file cannot be written.
     """
-    verdict = page.verdict
+    verdict = verdict_of(page.findings)
     text = (
         environment()
         .get_template("page_2d.html.jinja")
@@ -86,9 +87,9 @@ def write_page_2d(path: Path, page: Page2d) -> None:
             page=page,
             approval=draft_block(),
             level=LEVELS[verdict.usability],
-            headline=HEADLINES[verdict.usability],
-            # Warnings of the import are findings too; some of them led to the verdict.
-            notes=[text for text in page.warnings if text not in verdict.reasons],
+            headline=headline(verdict.usability),
+            unobserved=verdict.unobserved,
+            findings=shown_findings(page.findings),
             maps=_maps(page),
             charts=framed(_charts(page)),
             edge_kinds=[str(kind) for kind in EdgeKind],

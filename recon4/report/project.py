@@ -24,11 +24,6 @@ class _Stage(msgspec.Struct):
     cpu_seconds: float
     peak_bytes: int
     reused: bool
-    figures: _StageWarnings
-
-
-class _StageWarnings(msgspec.Struct):
-    warnings: tuple[str, ...] = ()
 
 
 class _Summary(msgspec.Struct):
@@ -40,7 +35,6 @@ class _Summary(msgspec.Struct):
     rig: str
     crs: str
     versions: dict[str, str]
-    warnings: tuple[str, ...]
     stages: tuple[_Stage, ...]
 
 
@@ -73,7 +67,6 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
             rig=summary.rig,
             crs=summary.crs,
             evaluation=evaluation,
-            warnings=_later_warnings(summary),
         )
     except (KeyError, TypeError, msgspec.ValidationError) as error:
         raise StoreError(f"{root.name}/summary.json cannot be read: {error!r}") from error
@@ -81,10 +74,3 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
 
 def _timing(one: _Stage) -> StageTiming:
     return StageTiming(one.stage, one.seconds, one.cpu_seconds, one.peak_bytes, one.reused)
-
-
-def _later_warnings(summary: _Summary) -> tuple[str, ...]:
-    """Warnings of the stages after the import; the report reads those of the import itself."""
-    imported = [one.figures.warnings for one in summary.stages if one.stage == "frames"]
-    known = {text for warnings in imported for text in warnings}
-    return tuple(text for text in summary.warnings if text not in known)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from recon4.evaluation.table import number
-from recon4.model.figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
 from recon4.report.figures import BLUE, GRAY, ORANGE, Chart, add_bars

@@ -45,7 +45,8 @@ _FIGURES = (
     "edges",
     "crs",
     "rig_origin",
-    "warnings",
+    "warnings",  # before format 3 of the summary
+    "findings",
 )
 
 

@@ -6,6 +6,8 @@ from collections import OrderedDict
 from dataclasses import dataclass
 from time import perf_counter
 
+from recon4.findings.review_problems import problem_findings
+from recon4.findings.wording import whole_text
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import PoseGraph
 from recon4.review.decisions import AUTOMATIC, Decided, Pair
@@ -16,6 +18,7 @@ from recon4.review.solve import (
     difference,
     pair_of,
     review,
+    review_figures,
 )
 from recon4.review.source import Source
 
@@ -73,6 +76,7 @@ def preview(source: Source, decided: Decided, before: Decided) -> Effect:
     began_s = perf_counter()
     source = _known(source)
     earlier, now = _review(source, before).graph, _review(source, decided)
+    figures = review_figures(now, len(decided.standing), chi2_before=None)
     return Effect(
         key=decided.key,
         last=difference(earlier, now.graph),
@@ -81,7 +85,7 @@ def preview(source: Source, decided: Decided, before: Decided) -> Effect:
         conflicts=now.conflicts,
         missing=now.problems.missing,
         changed=now.problems.changed,
-        warnings=now.problems.warnings,
+        warnings=tuple(whole_text(one) for one in problem_findings(figures)),
         seconds=round(perf_counter() - began_s, 3),
     )
 

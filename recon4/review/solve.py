@@ -5,8 +5,9 @@ The stage ``review`` and the preview after each decision use the same function.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3
 from recon4.model.figures import ReviewFigures
-from recon4.model.plain import to_plain
+from recon4.model.plain import finite_or_none, to_plain
 from recon4.model.pose_graph import Edge, PoseGraph
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import squared_residuals
@@ -31,6 +32,7 @@ MAX_MOVES = 10
 _APART_NODES = 5
 """Nodes closer than this along the trajectory count as one move."""
 _MIN_MOVE_M = 1e-4
+_NAMED_PAIRS = 5
 UNVERIFIED_MODES = ("10", "overlap")
 """Modes of V Table 3.2 without verification."""
 
@@ -69,8 +71,6 @@ class ReviewProblems:
     """Pairs of decisions without effect."""
     changed: tuple[Pair, ...]
     """Pairs whose measurement has changed since the decision."""
-    warnings: tuple[str, ...]
-    """The same in sentences."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -92,33 +92,12 @@ class Reviewed:
 
     @property
     def problems(self) -> ReviewProblems:
-        """Conflicts, ineffective and outdated decisions, and their warnings."""
+        """Conflicts, ineffective and outdated decisions."""
         return ReviewProblems(
             conflicts=self.conflicts,
             missing=tuple(one.pair for one in self.missing),
             changed=tuple(one.pair for one in self.changed),
-            warnings=tuple(self.warnings()),
         )
-
-    def warnings(self) -> list[str]:
-        """Warnings for the operator, one sentence each."""
-        fields = []
-        if self.conflicts:
-            fields.append(
-                f"{len(self.conflicts)} accepted loop closures do not fit the graph: "
-                + ", ".join(_named(one.pair) for one in self.conflicts[:5])
-            )
-        if self.missing:
-            fields.append(
-                f"{len(self.missing)} decisions are about pairs that are no longer in the graph: "
-                + ", ".join(_named(one.pair) for one in self.missing[:5])
-            )
-        if self.changed:
-            fields.append(
-                f"{len(self.changed)} decisions are about pairs whose measurement has changed: "
-                + ", ".join(_named(one.pair) for one in self.changed[:5])
-            )
-        return fields
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,14 +140,25 @@ def run_review(
     changed = difference(verified, reviewed.graph)
     record = to_plain(changed) | {"decisions": decisions} | to_plain(reviewed.problems)
     write_json(out / "review.json", to_plain(record))
+    return review_figures(reviewed, len(decisions), chi2_before=changed.chi2_before)
+
+
+def review_figures(
+    reviewed: Reviewed, decisions: int, *, chi2_before: float | None
+) -> ReviewFigures:
+    """Counts of a review, with the first pairs of each problem."""
+    problems = reviewed.problems
     return ReviewFigures(
         edges=reviewed.graph.verdict_counts(),
-        decisions=len(decisions),
-        conflicts=len(reviewed.conflicts),
-        missing=len(reviewed.missing),
-        chi2_before=changed.chi2_before,
-        chi2_after=changed.chi2_after,
-        warnings=reviewed.problems.warnings,
+        decisions=decisions,
+        conflicts=len(problems.conflicts),
+        conflict_pairs=_first(one.pair for one in problems.conflicts),
+        missing=len(problems.missing),
+        missing_pairs=_first(problems.missing),
+        changed=len(problems.changed),
+        changed_pairs=_first(problems.changed),
+        chi2_before=chi2_before,
+        chi2_after=finite_or_none(reviewed.chi2),
     )
 
 
@@ -284,5 +274,5 @@ def _residual(graph: PoseGraph, edge: Edge) -> SE3:
     return edge.T_i_j.inverse() @ predicted
 
 
-def _named(pair: Pair) -> str:
-    return f"multiframes {pair[0]} and {pair[1]}"
+def _first(pairs: Iterable[Pair]) -> tuple[str, ...]:
+    return tuple(f"multiframes {i} and {j}" for i, j in islice(pairs, _NAMED_PAIRS))

@@ -31,6 +31,7 @@ from recon4.store.arrays import load_arrays
 from recon4.store.frames import FrameStore
 from tests import scanned_room
 from tests.benchmarks.calibration import SETTINGS, row, true_rig
+from tests.said import rig_texts
 from tests.unit.calibration.conftest import (
     AUTO,
     COLUMNS,
@@ -82,7 +83,7 @@ def far_off(name: str, frames: FrameStore, true: Rig, *, calibrate: bool) -> Non
     left = "" if rig is None else f"{apart(rig, true)}; "
     print(
         f"{name}: {lost} lost; {left}{found.figures.outcome}, {cpu_s:.0f} s; "
-        f"{len(found.figures.warnings)} warnings",
+        f"{len(rig_texts(found.figures))} warnings",
         flush=True,
     )
 
@@ -166,7 +167,7 @@ def moving(name: str, motion: Callable[[ArrayLike], SE3]) -> None:
             for one in found.figures.parameters
             if one.status == "not observable"
         ]
-        print(f"  not observable: {', '.join(unknown)}", *found.figures.warnings, sep="\n  ")
+        print(f"  not observable: {', '.join(unknown)}", *rig_texts(found.figures), sep="\n  ")
 
 
 MOTIONS: dict[str, Callable[[ArrayLike], SE3]] = {

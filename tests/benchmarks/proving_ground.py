@@ -23,12 +23,14 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import Recon4Error
+from recon4.findings.finding import Finding
+from recon4.findings.verdict import verdict_of
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.usability import MapVerdict, Usability
 from recon4.pipeline import run_before_review, run_trajectory
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
-from recon4.report.verdict import assess
+from recon4.report.assessment import assess
 from recon4.results import report_facts
 from recon4.run_summary import About
 from recon4.settings import preset
@@ -94,7 +96,8 @@ class Run:
     """None = the program refused the recording."""
     lost: int
     multiframes: int
-    warnings: int
+    kinds: dict[str, str]
+    """Kind -> worst level of the findings."""
     verdict: str
     reasons: tuple[str, ...]
     outcome: str
@@ -127,18 +130,19 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
     begun = time.process_time()
     truth = read_tum(recording / "truth.tum")
     seconds = round(int(truth.t_ns[-1] - truth.t_ns[0]) / 1e9, 3)
-    errors, lost, multiframes, warnings = None, 0, 0, 0
+    errors, lost, multiframes = None, 0, 0
+    findings: tuple[Finding, ...] = ()
     spent: Mapping[str, float] = {}
     audited = not quick or not OF_LIDARS.isdisjoint(degradation.split("+"))
     try:
-        runs, verdict = _process(recording, work, audited=audited)
+        runs, findings = _process(recording, work, audited=audited)
         errors = measure(runs, truth)
         if not audited and not errors.right:
             audited = True
-            runs, verdict = _process(recording, work, audited=True)
-        frames, odometry = runs["frames"].figures, runs["odometry"].figures
-        lost, multiframes = odometry.lost, frames.multiframes
-        warnings = len(frames.warnings) + len(odometry.warnings)
+            runs, findings = _process(recording, work, audited=True)
+        verdict = verdict_of(findings)
+        lost = runs["odometry"].figures.lost
+        multiframes = runs["frames"].figures.multiframes
         spent = {name: round(run.done.cpu_seconds, 1) for name, run in runs.items()}
     except Recon4Error as error:
         verdict = MapVerdict(Usability.DO_NOT_USE, (f"refused: {error}",))
@@ -149,7 +153,7 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
         errors=errors,
         lost=lost,
         multiframes=multiframes,
-        warnings=warnings,
+        kinds={str(one.kind): str(one.level) for one in reversed(findings)},
         verdict=str(verdict.usability),
         reasons=verdict.reasons,
         outcome=judge(errors, verdict),
@@ -161,8 +165,8 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
 
 def _process(
     recording: Path, work: Path, *, audited: bool
-) -> tuple[Mapping[str, StageRun[Any]], MapVerdict]:
-    """The stages up to the trajectory, and the verdict on what they leave."""
+) -> tuple[Mapping[str, StageRun[Any]], tuple[Finding, ...]]:
+    """The stages up to the trajectory, and what the witnesses find in what they leave."""
     outdoors = json.loads((recording / "world.json").read_text("utf-8"))["outdoors"]
     name = "outdoor" if outdoors else "indoor"
     settings, rig = preset(name), load_rig(recording / "rig.toml")
@@ -174,7 +178,7 @@ def _process(
         measurements, odometry, graph = run_before_review(runner, _inputs(recording, rig))
         run_trajectory(runner, measurements, odometry=odometry, graph=graph)
         about = About(ProjectDescription(recording.name, name), settings)
-        return runner.runs, assess(report_facts(runner.runs, about, created="")).verdict
+        return runner.runs, tuple(assess(report_facts(runner.runs, about, created="")).findings)
 
 
 def _inputs(recording: Path, rig: Rig) -> dict[str, Input | None]:
@@ -219,7 +223,7 @@ def table(lines: Sequence[Mapping[str, Any]]) -> str:
     order = {"SILENT": 0, "vague": 1, "announced": 2, "right": 3}
     rows = [
         "| walk | degradation | length m | ATE cm | largest cm | closing cm | stated 2σ cm "
-        "| NEES | on earth cm | lost | warnings | verdict | class | first reason |",
+        "| NEES | on earth cm | lost | findings | verdict | class | first reason |",
         "|---|---|" + "---:|" * 9 + "---|---|---|",
     ]
     for line in sorted(lines, key=lambda r: (order[r["outcome"]], r["walk"], r["degradation"])):
@@ -232,7 +236,7 @@ def table(lines: Sequence[Mapping[str, Any]]) -> str:
         figures += [_number(e.get("nees"), 1.0, 2), _number(e.get("placed_m"), 100.0, 1)]
         reason = (line["reasons"] or [""])[0][:_REASON_LENGTH].replace("|", "/")
         cells = [f"{line['walk']}, {line['seconds']:g} s", line["degradation"], *figures]
-        cells += [f"{line['lost']} of {line['multiframes']}", str(line["warnings"])]
+        cells += [f"{line['lost']} of {line['multiframes']}", str(len(line["kinds"]))]
         # Without the audit of the rig a verdict is not the whole one.
         verdict = line["verdict"] if line.get("audited", True) else f"({line['verdict']})"
         rows.append("| " + " | ".join([*cells, verdict, line["outcome"], reason]) + " |")

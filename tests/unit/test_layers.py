@@ -45,7 +45,8 @@ MAY_IMPORT = {
     | {"recon4.recording.formats.pcap"}
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured")}
     | {"recon4.recording.velodyne.models"}
-    | {"recon4.slam2d"},
+    | {"recon4.slam2d"}
+    | {f"recon4.findings.{name}" for name in ("finding", "kinds", "verdict", "wording")},
     "recon4/live/project_files.py": STAGE | {"recon4.live", "recon4.stages", "recon4.stages_2d"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL | {"recon4.registration", "recon4.store.arrays"},
@@ -74,7 +75,8 @@ MAY_IMPORT = {
         "recon4.review",
         "recon4.slam2d",
     }
-    | {"recon4.report.approval"},
+    | {"recon4.report.approval"}
+    | {f"recon4.findings.{name}" for name in ("review_problems", "wording")},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.mapping"},
     "recon4/export": STAGE
@@ -83,11 +85,22 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.evaluation", "recon4.simulation", "recon4.recording.tables"}
     | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "cloud_headers", "poses")}
     | {"recon4.recording.report"},
+    "recon4/findings": MODEL | {"recon4.findings"},
+    "recon4/findings/witnesses": STAGE
+    | {"recon4.findings", "recon4.pose_graph", "recon4.registration", "recon4.slam2d"}
+    | {"recon4.georeference.antenna_audit"},
+    "recon4/findings/audit.py": STAGE | {"recon4.findings"},
+    "recon4/findings/walk.py": STAGE | {"recon4.findings", "recon4.pose_graph"},
+    "recon4/findings/planar_walk.py": STAGE
+    | {"recon4.findings", "recon4.pose_graph", "recon4.slam2d"},
+    "recon4/findings/accuracy.py": MODEL | {"recon4.findings", "recon4.evaluation"},
+    "recon4/findings/explain.py": MODEL | {"recon4.findings", "recon4.terminal"},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
     "recon4/report": STAGE
-    | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"},
+    | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"}
+    | {"recon4.findings"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4": {"recon4"},
     "recon4/cli/main.py": {"recon4", "app.cli"},
@@ -100,6 +113,7 @@ NOBODY_IMPORTS = {
     "recon4.cli.main": {"recon4/__main__.py"},
     "recon4.pipeline": {
         "recon4/cli/main.py",
+        "recon4/cli/findings.py",
         "recon4/calibration_methods.py",
         "recon4/compile_kernels.py",
         "app/cli/serve.py",

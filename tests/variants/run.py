@@ -12,6 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import Recon4Error
+from recon4.findings.finding import Level
+from recon4.findings.wording import whole_text
 from recon4.geometry.se2 import from_se3
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -208,7 +210,7 @@ def _map_planar(outcome: Outcome, walk: PlanarWalk, out: Path) -> None:
     summary = process(_sources(outcome.variant), out, progress=Silent())
     assert isinstance(summary, Summary2d)
     outcome.said += [text for text in summary.verdict.reasons if _UNVERIFIED not in text]
-    outcome.said += summary.warnings
+    outcome.said += [whole_text(one) for one in summary.findings if one.level is Level.NOTE]
     outcome.used_ratio = summary.scans / outcome.variant.points
     found = read_tum(out / "trajectory.tum")
     outcome.error_m = error_m(walk, found.t_ns, from_se3(found.T_a_b))

@@ -26,15 +26,15 @@ test("a map without a verdict is not good", () => {
   assert.equal(verdictState({ usability: "splendid" }), "unjudged");
 });
 
-test("every warning stands there once, findings first", () => {
+test("every note stands there once, findings first", () => {
   const verdict = { usability: "do not use", reasons: [LOST], unobserved: [CORRIDOR] };
-  const lists = verdictLists({ verdict, warnings: [LOST, "half of the clocks are missing"] });
+  const lists = verdictLists({ verdict, notes: [LOST, "half of the clocks are missing"] });
 
   assert.deepEqual(
     lists.map(([, texts]) => texts),
     [[LOST], [unobservedText(CORRIDOR)], ["half of the clocks are missing"]],
   );
-  assert.deepEqual(verdictLists({ verdict: null, warnings: [] }), []);
+  assert.deepEqual(verdictLists({ verdict: null, notes: [] }), []);
 });
 
 test("what is not observable has time, direction and place", () => {
@@ -50,7 +50,13 @@ test("what is not observable has time, direction and place", () => {
 test("a project before its first map has no facts of one", () => {
   assert.equal(factsIn({}), null);
   assert.equal(factsIn(undefined), null);
-  assert.deepEqual(factsIn({ points: 3 }), { verdict: null, warnings: [] });
+  assert.deepEqual(factsIn({ points: 3 }), { verdict: null, notes: [] });
+  assert.deepEqual(factsIn({ points: 3, warnings: ["no IMU"] }).notes, ["no IMU"]);
+  const findings = [
+    { level: "good", text: "Tracking was not lost." },
+    { level: "note", text: "The rig is old." },
+  ];
+  assert.deepEqual(factsIn({ points: 3, findings }).notes, ["The rig is old."]);
 });
 
 test("blanks are no reason", () => {

@@ -494,7 +494,7 @@ export interface MapFacts {
   verdict: MapVerdict | null;
   reason_needed: string;
   min_reason_characters: number;
-  warnings: Array<string>;
+  notes: Array<string>;
   figures: Record<string, any>;
 }
 

@@ -1,10 +1,10 @@
-// <map-verdict>: the verdict on a map with its reasons and warnings, as a bar that opens.
+// <map-verdict>: the verdict on a map with its reasons and notes, as a bar that opens.
 
 import { badge } from "./badge.js";
 import { fill, make } from "./dom.js";
 import { verdictLists, verdictState } from "./verdict.js";
 
-/** Findings, what is not observable, and warnings as titled lists. */
+/** Findings, what is not observable, and notes as titled lists. */
 export const verdictDetails = (facts) =>
   verdictLists(facts).flatMap(([title, texts]) => [
     make("h3", {}, title),

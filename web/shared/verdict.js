@@ -3,14 +3,20 @@
 /**
  * @typedef {object} MapFacts what is known of a map
  * @property {any} verdict usability, reasons, what is not observable; null = none was worked out
- * @property {string[]} warnings of the run
+ * @property {string[]} notes what does not change the verdict
  */
 
 /** What a project's summary says of its map; null before there is one. */
 export const factsIn = (summary) =>
   summary?.points === undefined
     ? null
-    : { verdict: summary.verdict ?? null, warnings: summary.warnings ?? [] };
+    : { verdict: summary.verdict ?? null, notes: notesIn(summary) };
+
+/** Texts of notes; before format 3 the run wrote warnings. */
+const notesIn = ({ findings, warnings }) =>
+  findings
+    ? findings.filter(({ level }) => level === "note").map(({ text }) => text)
+    : (warnings ?? []);
 
 /** The badge of a verdict, by its name in STATES. */
 export function verdictState(/** @type {any} */ verdict) {
@@ -34,13 +40,13 @@ export function unobservedText({ start_s, end_s, direction, degeneracy, from_m, 
  * @param {MapFacts} facts
  * @returns {Array<[string, string[]]>}
  */
-export function verdictLists({ verdict, warnings }) {
+export function verdictLists({ verdict, notes }) {
   const reasons = verdict?.reasons ?? [];
   /** @type {Array<[string, string[]]>} */
   const lists = [
     ["Findings", reasons],
     ["Hardly observable (0 = unobservable)", (verdict?.unobserved ?? []).map(unobservedText)],
-    ["Warnings of the run", warnings.filter((text) => !reasons.includes(text))],
+    ["Notes", notes.filter((text) => !reasons.includes(text))],
   ];
   return lists.filter(([, texts]) => texts.length > 0);
 }

@@ -24,8 +24,9 @@ def counts(tmp_path, out="project"):
 
 def assert_warned(summary, *words):
     """One warning contains all words, in the summary and in the report."""
-    found = [text for text in summary["warnings"] if all(word in text for word in words)]
-    assert found, summary["warnings"]
+    said = [one["text"] for one in summary["findings"]]
+    found = [text for text in said if all(word in text for word in words)]
+    assert found, said
     assert found[0] in summary["report"]
 
 

@@ -11,12 +11,13 @@ from recon4.calibration.stage import run_calibration
 from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
 from recon4.georeference.stage import RefinedWalk, level_and_georeference
-from recon4.model.figures import CalibrationFigures
+from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.rig import load_rig, parse_rig
 from recon4.model.samples import GnssSamples
 from recon4.progress import Silent
 from recon4.settings import GnssSettings, Settings
+from tests.said import rig_texts
 from tests.unit.calibration.conftest import CALIBRATION
 
 ARM = np.array([-0.2, 0.1, 0.6])
@@ -104,8 +105,8 @@ def test_on_request_the_receiver_is_corrected_and_its_fixes_are_shifted(
     found.save(tmp_path)
 
     assert found.figures.applied, found.figures.outcome
-    assert "the GNSS antenna differs from it by 1" in found.figures.warnings[0]
-    assert "The calibrated rig is used for this map." in found.figures.warnings[0]
+    assert "the GNSS antenna differs from it by 1" in rig_texts(found.figures)[0]
+    assert "The calibrated rig is used for this map." in rig_texts(found.figures)[0]
     rig = load_rig(tmp_path / "rig.toml")
     assert np.all(np.abs(rig.p_body_antenna - ARM)[:2] < 0.01)
     assert rig.gnss_time_offset_s == pytest.approx(-LATE_S, abs=0.002)

@@ -12,6 +12,7 @@ from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.store.frames import CALIBRATED_RIG, FrameStore, open_frames
+from tests.said import rig_texts
 from tests.unit.calibration.conftest import AUTO, store
 
 BEAMS = replace(AUTO, calibration=replace(AUTO.calibration, beams=True))
@@ -68,7 +69,7 @@ def test_what_the_walk_shows_is_within_its_standard_deviation(calibrated):
     ]
 
     assert len(known) > 40
-    assert any("beams by up to" in text for text in found.figures.warnings)
+    assert any("beams by up to" in text for text in rig_texts(found.figures))
     assert np.mean(np.abs(error) < 3.0 * np.array([row.sd for row in known])) > 0.8
 
 

@@ -13,6 +13,7 @@ from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.store.frames import FrameStore, open_frames
 from tests import scanned_room
+from tests.said import rig_texts
 from tests.unit.calibration.conftest import (
     AUTO,
     CALIBRATION,
@@ -58,7 +59,7 @@ def calibrated(wrong):
 def test_a_rig_file_that_is_right_is_confirmed(right):
     found = run(right)
 
-    assert found.figures.warnings == ()
+    assert not rig_texts(found.figures)
     assert found.figures.outcome.startswith("the rig file agrees with the recording")
     assert not any(row.status == "off" for row in found.figures.parameters)
     assert not found.figures.changes
@@ -80,8 +81,8 @@ def test_errors_of_mounts_and_clocks_are_measured_with_a_true_deviation(wrong, a
     assert np.abs(error[unit == "s"]).max() < 5e-4
     sd = np.array([row.sd for row in found.figures.parameters])
     assert np.mean(np.abs(error) < 3.0 * sd) >= 0.9
-    assert len(found.figures.warnings) == 2
-    assert "the LiDAR 's1' differs from it by 1." in found.figures.warnings[0]
+    assert len(rig_texts(found.figures)) == 2
+    assert "the LiDAR 's1' differs from it by 1." in rig_texts(found.figures)[0]
 
 
 def test_an_audit_changes_nothing(audited):
@@ -130,7 +131,7 @@ def test_a_mount_that_slips_during_the_walk_is_announced_and_not_calibrated(danc
     figures = run(slipped, AUTO).figures
 
     assert figures.changes and figures.is_severe
-    (text,) = figures.warnings
+    (text,) = rig_texts(figures)
     assert "The rig does not stay the same during the walk" in text
     assert "A mount has slipped, or a clock has jumped" in text
     assert not figures.applied
@@ -158,7 +159,7 @@ def test_exchanged_mounts_are_called_so(dance, tmp_path):
     found = run(store(tmp_path, dance, rig, dance.imu))
 
     assert "The mounts of 's0' and 's1' seem to be exchanged in the rig file." in (
-        found.figures.warnings
+        rig_texts(found.figures)
     )
 
 
@@ -224,7 +225,7 @@ def test_on_a_circle_a_right_rig_file_raises_no_alarm(on_a_circle, tmp_path, mon
     monkeypatch.setattr("recon4.calibration.calibrate.search_mounts", never)
     found = run(store(tmp_path, on_a_circle, on_a_circle.rig, on_a_circle.imu))
 
-    assert found.figures.warnings == ()
+    assert not rig_texts(found.figures)
     clock = {row.quantity: row for row in rows_of(found, "s1")}["clock"]
     assert clock.status == "not observable"
     assert abs(clock.change) < 1e-3
@@ -273,7 +274,7 @@ def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong, a
     assert found.figures.outcome == (
         "the walk is too short to check the calibrated rig on another part of it"
     )
-    assert found.figures.warnings == audited.figures.warnings
+    assert rig_texts(found.figures) == rig_texts(audited.figures)
     assert found.figures.is_severe
 
 

@@ -10,8 +10,10 @@ from recon4.calibration.gyro_alignment import align_gyro
 from recon4.calibration.start import find_start
 from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import cut_window
+from recon4.findings.witnesses.imu import fault_finding
 from recon4.geometry.se3 import so3_log
 from tests.room_walks import T0_NS
+from tests.said import texts
 from tests.unit.calibration.conftest import SETTINGS, dancing
 
 FASTER = 4
@@ -24,10 +26,15 @@ def start_of(dance, **change):
     return find_start(walk, reference=0, settings=SETTINGS)
 
 
+def said(start):
+    """What is wrong with the IMU, in words."""
+    return texts(fault_finding(fault, corrected=False) for fault in start.faults)
+
+
 def test_a_right_imu_is_left_where_it_is(dance):
     start = start_of(dance)
 
-    assert start.remarks == ()
+    assert start.faults == ()
     assert start.imu_usable
     assert start.rig.imu_time_offset_s == 0.0
     np.testing.assert_array_equal(start.rig.T_body_imu.R, np.eye(3))
@@ -50,7 +57,7 @@ def test_an_axis_with_the_wrong_sign_makes_it_left_handed(dance):
     start = start_of(dance, gyro_rad_s=dance.imu.gyro_rad_s * [1.0, -1.0, 1.0])
 
     assert not start.imu_usable
-    assert "left-handed" in start.remarks[0]
+    assert "left-handed" in said(start)[0]
 
 
 @pytest.mark.parametrize(
@@ -60,7 +67,7 @@ def test_an_axis_with_the_wrong_sign_makes_it_left_handed(dance):
 def test_a_wrong_scale_of_the_gyroscope_is_named(dance, factor, words):
     start = start_of(dance, gyro_rad_s=factor * dance.imu.gyro_rad_s)
 
-    assert any(re.search(words, text) for text in start.remarks), start.remarks
+    assert any(re.search(words, text) for text in said(start)), said(start)
     assert not start.imu_usable
 
 
@@ -70,7 +77,7 @@ def test_a_wrong_scale_of_the_gyroscope_is_named(dance, factor, words):
 def test_a_wrong_unit_of_the_accelerometer_is_named(dance, factor, words):
     start = start_of(dance, accel_m_s2=factor * dance.imu.accel_m_s2)
 
-    assert any(words in text for text in start.remarks), start.remarks
+    assert any(words in text for text in said(start)), said(start)
 
 
 def test_an_imu_of_another_recording_explains_nothing(dance):
@@ -79,7 +86,7 @@ def test_an_imu_of_another_recording_explains_nothing(dance):
     start = start_of(dance, gyro_rad_s=np.cumsum(noise, axis=0) * 0.02)
 
     assert not start.imu_usable
-    assert "explains only" in start.remarks[0]
+    assert "explains only" in said(start)[0]
 
 
 def test_the_clock_is_found_between_the_steps_of_the_search(dance):

@@ -25,9 +25,18 @@ GOOD, LOST, WEAK = {"weak_sd_m": 0.01}, {"lost": True}, {"weak_sd_m": 0.5}
     [
         ([(100, GOOD)], None),
         ([(50, GOOD), (15, WEAK), (50, GOOD)], None),  # shorter than what the report counts
-        ([(50, GOOD), (50, WEAK), (50, GOOD)], "check; one direction was hardly observed for 5 s"),
-        ([(50, GOOD), (120, WEAK)], "do not use; one direction was hardly observed for 12 s"),
-        ([(80, GOOD), (20, LOST)], "do not use; tracking was lost in 20 of 100 multiframes"),
+        (
+            [(50, GOOD), (50, WEAK), (50, GOOD)],
+            "check. One direction was hardly observed for 5 s in all.",
+        ),
+        (
+            [(50, GOOD), (120, WEAK)],
+            "do not use. One direction was hardly observed for 12 s in all.",
+        ),
+        (
+            [(80, GOOD), (20, LOST)],
+            "do not use. Tracking was lost in 20 of 100 multiframes (20.0 %).",
+        ),
     ],
 )
 def test_problems_of_the_walk_are_not_forgotten(parts, text):

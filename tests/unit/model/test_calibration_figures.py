@@ -1,6 +1,6 @@
 import pytest
 
-from recon4.model.figures import GNSS, IMU, CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import GNSS, IMU, CalibrationFigures, ParameterFigures
 
 
 @pytest.mark.parametrize(

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
+from recon4.findings.finding import Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.placement import placement_in
+from recon4.findings.walk import WalkRecord
+from recon4.findings.wording import text_of
 from recon4.model.rejected_fixes import RejectedRun, disputed_m
-from recon4.report.artifacts import Results
-from recon4.report.facts import ReportFacts
-from recon4.report.findings import Level, find
-from recon4.report.placement import placement_in
 from recon4.settings import preset
+from tests.said import found_in
 
 
 def fixes(rejected, residual_m, *, count=300):
@@ -58,12 +60,11 @@ def test_without_gnss_nothing_is_contradicted():
 def test_a_contradiction_is_a_warning_as_multipath_of_a_good_map_looks_the_same():
     record = {"georeference": fixes(slice(239, 300), growing(61))}
 
-    facts = ReportFacts(title="field", created="", preset="outdoor", settings=preset("outdoor"))
-    texts = {f.text: f.level for f in find(facts, Results(georeference=record), None)}
+    found = found_in(WalkRecord(georeference=record), preset("outdoor"))
 
-    (text,) = [text for text in texts if "61 GNSS fixes agree" in text]
-    assert texts[text] is Level.WARNING
-    assert "3.00 m horizontally" in text
+    (one,) = [one for one in found if one.kind is FindingKind.GNSS_REJECTED]
+    assert one.level is Level.CHECK
+    assert "61 GNSS fixes agree" in text_of(one) and "3.00 m horizontally" in text_of(one)
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,11 @@ from dataclasses import replace
 
 import pytest
 
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.rig import RigAge
 from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin
+from tests.said import texts
 
 NOON_2026_11_22_NS = 1_795_348_800_000_000_000
 NOTE = RigCalibration(date="2026-11-12", method="joint", sd_deg=0.02, sd_mm=1.1, sd_ms=0.1)
@@ -25,15 +28,17 @@ def test_serial_numbers_and_age_are_reported():
         ("horizontal", "AF17"), ("vertical", "")
     ]  # fmt: skip
     assert found.age_days == 10
-    assert found.remark == ""
+    assert not found.is_old
 
 
 @pytest.mark.parametrize(("most", "old"), [(9, True), (10, False)])
 def test_a_rig_older_than_the_set_age_is_mentioned(most, old):
-    found = origin(most=most)
+    rig = replace(load_rig("4recon"), calibration=NOTE)
 
-    assert found.is_old is old
-    assert ("calibrated on 2026-11-12, 10 days before the walk" in found.remark) is old
+    said = texts(RigAge(most).check(WalkRecord(rig=rig, recorded_ns=NOON_2026_11_22_NS)))
+
+    assert origin(most=most).is_old is old
+    assert any("calibrated on 2026-11-12, 10 days before the walk" in text for text in said) is old
 
 
 @pytest.mark.parametrize("given", [{"note": None}, {"recorded_ns": 5_000_000_000}])

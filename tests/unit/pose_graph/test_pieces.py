@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.places import ambiguous_places, separate_pieces
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
 from recon4.pose_graph.pieces import joined_pieces, placed, weakened
-from recon4.report.artifacts import Results
-from recon4.report.places import ambiguous_places, separate_pieces
 from tests.unit.pose_graph.graphs import line
 
 PIECES = np.array([0, 0, 0, 1, 1, 1])
@@ -56,7 +56,7 @@ def test_a_recognized_place_moves_its_whole_piece():
 
 def results_of(*edges):
     graph = line(6).with_edges(edges)
-    return Results(graph=graph, steps={"piece": PIECES, "t_mid_ns": graph.t_ns})
+    return WalkRecord(graph=graph, steps={"piece": PIECES, "t_mid_ns": graph.t_ns})
 
 
 def test_a_piece_that_nothing_joins_is_announced_with_its_time():

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION
-from recon4.model.figures import CalibrationFigures, HeightDoubt, ParameterFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.odometry_figures import HeightDoubt
 from recon4.pipeline import _measured
 from recon4.pose_graph.known_errors import KnownErrors
 from recon4.pose_graph.rig_error import EXACT, RigError, audited_error

@@ -7,16 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.witnesses.lines import line_findings
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.clock_audit import clock_lag, profiler_ahead_s, some_points
 from recon4.profiler.fusion import PlanarPoses
-from recon4.profiler.stage_odometry import laser_remarks, run_line_odometry, span_of
+from recon4.profiler.stage_odometry import line_figures, run_line_odometry, span_of
 from recon4.progress import Silent
 from recon4.settings import override
 from recon4.store.arrays import save_record
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans
+from tests.said import line_texts, texts
 
 
 def planar_poses(truth, *, ahead_s=0.0, count=500):
@@ -83,9 +85,9 @@ def test_wrong_clocks_are_said(frames, settings, tmp_path, clocks, words):
 
     found = run_line_odometry(store, tmp_path / "out", settings=settings, progress=Silent())
 
-    assert len(found.warnings) == 1
-    assert "time_offset_s" in found.warnings[0]
-    assert re.search(words, found.warnings[0]), found.warnings
+    assert len(line_texts(found)) == 1
+    assert "time_offset_s" in line_texts(found)[0]
+    assert re.search(words, line_texts(found)[0]), line_texts(found)
 
 
 @pytest.mark.parametrize("changed", ["without times", "as hector"])
@@ -106,7 +108,7 @@ def test_scans_that_are_not_undistorted_do_not_blame_the_clocks(
 
     found = run_line_odometry(store, tmp_path / "out", settings=settings, progress=Silent())
 
-    assert "clock" not in " ".join(found.warnings)
+    assert "clock" not in " ".join(line_texts(found))
 
 
 def test_a_silent_laser_is_said(frames):
@@ -114,17 +116,17 @@ def test_a_silent_laser_is_said(frames):
     since_s = 1e-9 * (scans.t_ns - span_ns[0])
     kept = scans[(since_s < 5.0) | (since_s > 9.0)]
 
-    (text,) = laser_remarks(kept, span_ns, is_used=True)
+    (text,) = texts(line_findings(line_figures(kept, span_ns, is_used=True)))
 
     assert "silent for 4.1 s, first 5.0 s after the start" in text
-    assert laser_remarks(scans, span_ns, is_used=True) == ()
+    assert not list(line_findings(line_figures(scans, span_ns, is_used=True)))
 
 
 def test_scans_of_another_time_are_said(frames):
     scans, span_ns = load_laser_scans(frames.folder), span_of(frames)
     away = replace(scans, t_ns=scans.t_ns + 5_000_000_000_000)
 
-    (text,) = laser_remarks(away, span_ns, is_used=False)
+    (text,) = texts(line_findings(line_figures(away, span_ns, is_used=False)))
 
     assert "cover 5000." in text
     assert "are the clocks the same" in text

@@ -11,6 +11,7 @@ from recon4.profiler.mount_audit import mount_change
 from recon4.profiler.samples import TimedPoints
 from recon4.profiler.stage_odometry import run_line_odometry
 from recon4.progress import Silent
+from tests.said import line_texts
 
 
 @pytest.fixture(scope="module")
@@ -62,5 +63,5 @@ def test_a_wrong_rig_file_is_said_with_the_change(frames, settings, tmp_path):
 
     found = run_line_odometry(store, tmp_path, settings=settings, progress=Silent())
 
-    (text,) = found.warnings
+    (text,) = line_texts(found)
     assert "mounted otherwise than the rig file says: +1.5° about x" in text

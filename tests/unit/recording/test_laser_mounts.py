@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.finding import Level
 from recon4.geometry.se2 import between, compose, from_se3
 from recon4.model.rig import Rig, Sensor
 from recon4.model.usability import Usability
@@ -273,7 +274,7 @@ def test_the_plan_of_a_mounted_laser_is_that_of_the_room_and_good(tmp_path, name
     moved = between(lasers, compose(lasers[0], between(poses[0], poses)))
     assert np.abs(moved).max() < 0.02
     assert summary.verdict.usability is Usability.GOOD
-    assert summary.warnings == ()
+    assert {one.level for one in summary.findings} == {Level.GOOD}
 
 
 def test_the_verdict_names_a_rig_file_that_contradicts_the_bag(tmp_path):

@@ -5,10 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.motion import Bridges
 from recon4.geometry.se3 import SE3
-from recon4.registration.bridge import RecentScans, SeenScan, bridged_text, sure_pose
+from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.scans import lay_onto, make_scan
 from recon4.settings import ScanSettings
+from tests.said import texts
 
 SCANS = ScanSettings()
 UP_M = (-1.2, 1.8)
@@ -118,8 +121,27 @@ def test_scans_from_before_are_not_joined():
     assert len(both) > 1.1 * len(last)
 
 
-def test_the_warning_says_where():
-    assert "once (12 s after the start, 2.5 m long)" in bridged_text([(12.3, 2.5)])
-    assert "3 times (first 1 s after the start, the longest of 8.2 m at 7 s)" in bridged_text(
-        [(1.0, 2.0), (7.1, 8.2), (9.0, 1.0)]
-    )
+def steps(bridges):
+    """Columns of ``steps.npz`` in which the body stands but at bridges: time [s] and length [m]."""
+    t_s = np.arange(0.0, 20.0, 0.1)
+    bridged, x_m = np.zeros(len(t_s), bool), np.zeros(len(t_s))
+    for at_s, length_m in bridges:
+        row = round(10 * at_s)
+        bridged[row] = True
+        x_m[row:] += length_m
+    t_m = np.stack([x_m, 0 * x_m, 0 * x_m], axis=1)
+    return {
+        "t_mid_ns": np.rint(1e9 * t_s).astype(np.int64),
+        "lost": np.zeros(len(t_s), bool),
+        "bridged": bridged,
+        "t_m": t_m,
+    }
+
+
+def test_the_finding_says_where():
+    (one,) = texts(Bridges().check(WalkRecord(steps=steps([(12.3, 2.5)]))))
+    three = WalkRecord(steps=steps([(1.0, 2.0), (7.1, 8.2), (9.0, 1.0)]))
+    (several,) = texts(Bridges().check(three))
+
+    assert "once (12 s after the start, 2.5 m long)" in one
+    assert "3 times (first 1 s after the start, the longest of 8.2 m at 7 s)" in several

@@ -5,13 +5,20 @@ import re
 import numpy as np
 import pytest
 
+from recon4.findings.witnesses.imu import fault_finding
 from recon4.geometry.se3 import so3_exp
 from recon4.model.samples import ImuSamples
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings, override
+from tests.said import texts
 
 SD, SETTINGS = 2e-4, Settings()
+
+
+def said(found):
+    """Its faults in words."""
+    return texts(fault_finding(fault, corrected=True) for fault in found.faults)
 
 
 def estimate(gain=None, *, clock_s=0.0, sd=SD):
@@ -36,7 +43,7 @@ def walked(office_frames):
 def test_an_imu_in_order_is_nothing_to_speak_of(walked):
     found, _ = walked()
 
-    assert found.texts == ()
+    assert found.faults == ()
     assert abs(found.clock_s) < 1e-3
     assert np.abs(found.gain[::4]).max() < 0.01
 
@@ -45,7 +52,7 @@ def test_a_wrong_scale_is_measured_and_named(walked):
     found, _ = walked(scale=1.03)
 
     assert found.gain[8] == pytest.approx(1.0 / 1.03 - 1.0, abs=2e-3)
-    (text,) = found.texts
+    (text,) = said(found)
     assert re.match(r"The gyroscope measures turns about z (2\.[89]|3\.[0-2]) % ± ", text)
     assert "too large" in text
 
@@ -55,7 +62,7 @@ def test_a_wrong_clock_is_measured_and_named(walked, late_ns, words):
     found, _ = walked(late_ns=late_ns)
 
     assert found.clock_s == pytest.approx(1e-9 * late_ns, abs=5e-4)
-    assert f"{words} that of the LiDARs" in " ".join(found.texts)
+    assert f"{words} that of the LiDARs" in " ".join(said(found))
 
 
 def test_without_the_estimate_a_wrong_scale_turns_the_walk(walked):
@@ -69,20 +76,20 @@ def test_without_the_estimate_a_wrong_scale_turns_the_walk(walked):
         truth = right[0].T_odom_body.inverse() @ right[-1].T_odom_body
         return float((truth.inverse() @ between).angle())
 
-    assert found.texts == ()
+    assert found.faults == ()
     assert turned_rad(corrected) < 0.2 * turned_rad(wrong)
 
 
 def test_a_rotated_gyroscope_is_named_with_its_angle():
-    (text,) = estimate(so3_exp([0.02, 0.0, 0.02]) - np.eye(3)).texts
+    (text,) = said(estimate(so3_exp([0.02, 0.0, 0.02]) - np.eye(3)))
 
     assert "rotated by 1.6°" in text
 
 
 def test_what_is_not_significant_is_not_said():
-    assert estimate(0.03 * np.eye(3), sd=0.01).texts == ()
-    assert estimate(so3_exp([0.03, 0.0, 0.0]) - np.eye(3), sd=0.01).texts == ()
-    assert estimate(clock_s=0.003).texts == ()
+    assert estimate(0.03 * np.eye(3), sd=0.01).faults == ()
+    assert estimate(so3_exp([0.03, 0.0, 0.0]) - np.eye(3), sd=0.01).faults == ()
+    assert estimate(clock_s=0.003).faults == ()
 
 
 def test_without_an_imu_there_is_no_estimate(office_frames):

@@ -2,8 +2,16 @@
 
 import numpy as np
 
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
 from recon4.model.samples import ImuSamples
-from recon4.registration.imu_saturation import saturated_texts
+from tests.said import found_in, texts
+
+
+def saturated_texts(imu):
+    """What is said of an IMU alone."""
+    found = found_in(WalkRecord(imu=imu))
+    return texts(one for one in found if one.kind is FindingKind.IMU_SATURATED)
 
 
 def samples(*, gyro_range_deg_s=1e4, accel_range_m_s2=1e4):
@@ -26,7 +34,7 @@ def test_a_gyroscope_at_the_end_of_its_range_is_named_with_axis_and_place():
     (text,) = saturated_texts(samples(gyro_range_deg_s=250.0))
 
     assert "The gyroscope is saturated, first 2.0 s" in text
-    assert "250°/s about z 5 times" in text and "about x" not in text
+    assert "250°/s about z, 5 times" in text and "about x" not in text
 
 
 def test_so_is_an_accelerometer():
@@ -37,14 +45,14 @@ def test_so_is_an_accelerometer():
 
 
 def test_an_imu_within_its_range_is_not():
-    assert saturated_texts(samples()) == ()
+    assert saturated_texts(samples()) == []
 
 
 def test_neither_is_one_that_stands_or_has_no_samples():
     still = np.zeros((200, 3))
     t_ns = np.arange(200) * 5_000_000
     gravity = still + np.array([0.0, 0.0, 9.81])
-    assert saturated_texts(ImuSamples(t_ns=t_ns, gyro_rad_s=still, accel_m_s2=gravity)) == ()
+    assert saturated_texts(ImuSamples(t_ns=t_ns, gyro_rad_s=still, accel_m_s2=gravity)) == []
     nothing = np.empty((0, 3))
     none = ImuSamples(t_ns=np.empty(0, np.int64), gyro_rad_s=nothing, accel_m_s2=nothing)
-    assert saturated_texts(none) == ()
+    assert saturated_texts(none) == []

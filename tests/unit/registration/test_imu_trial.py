@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.model.odometry_figures import ImuChoice
 from recon4.model.samples import ImuSamples
 from recon4.registration import imu_consistency
 from recon4.registration.imu_consistency import Trial, consistent_imu
@@ -12,6 +13,8 @@ from recon4.registration.motion import ImuMotion
 from recon4.settings import OdometrySettings, preset
 
 SETTINGS = preset("indoor")
+
+AS_RECORDED = ImuChoice(outcome="as recorded")
 
 
 class Walk:
@@ -34,20 +37,21 @@ def altered(frames, turn=lambda gyro: gyro, late_ns=0, force=1.0):
 
 
 def test_a_consistent_imu_is_used_unchanged(frames):
-    imu, remark = consistent_imu(frames, SETTINGS)
+    imu, choice = consistent_imu(frames, SETTINGS)
 
     assert imu is frames.imu
-    assert remark == ""
+    assert choice.outcome == "as recorded"
 
 
 def test_the_bias_of_a_gyroscope_is_subtracted(frames):
     bias_rad_s = np.deg2rad([20.0, -5.0, -30.0])
     walk = Walk(frames, altered(frames, lambda gyro: gyro + bias_rad_s))
 
-    imu, remark = consistent_imu(walk, SETTINGS)
+    imu, choice = consistent_imu(walk, SETTINGS)
 
     assert np.allclose(imu.gyro_rad_s, frames.imu.gyro_rad_s, atol=np.deg2rad(1.0))
-    assert "bias" in remark
+    assert choice.outcome == "bias removed"
+    assert np.rad2deg(choice.bias_rad_s) == pytest.approx([20.0, -5.0, -30.0], abs=1.0)
 
 
 @pytest.mark.parametrize(
@@ -60,26 +64,26 @@ def test_the_bias_of_a_gyroscope_is_subtracted(frames):
     ids=["an axis the wrong way", "a wrong unit", "a late clock"],
 )
 def test_an_imu_that_contradicts_the_lidars_is_not_used(frames, fault):
-    imu, remark = consistent_imu(Walk(frames, altered(frames, **fault)), SETTINGS)
+    imu, choice = consistent_imu(Walk(frames, altered(frames, **fault)), SETTINGS)
 
     assert imu is None
-    assert "contradicts the LiDARs" in remark
+    assert choice.outcome == "not used" and choice.with_m > choice.without_m
 
 
 def test_an_imu_that_is_trusted_is_used_all_the_same(frames):
     walk = Walk(frames, altered(frames, turn=lambda gyro: 3.0 * gyro))
 
-    assert consistent_imu(walk, SETTINGS, trusted=True) == (walk.imu, "")
+    assert consistent_imu(walk, SETTINGS, trusted=True) == (walk.imu, AS_RECORDED)
 
 
 def test_of_an_imu_with_wrong_forces_the_gyroscope_is_used(frames):
     walk = Walk(frames, altered(frames, force=-1.0))
 
-    imu, remark = consistent_imu(walk, SETTINGS)
+    imu, choice = consistent_imu(walk, SETTINGS)
 
     assert np.isnan(imu.accel_m_s2).all()
     np.testing.assert_array_equal(imu.gyro_rad_s, frames.imu.gyro_rad_s)
-    assert remark.startswith("the accelerometer contradicts the LiDARs")
+    assert choice.outcome == "accelerometer not used"
 
 
 @pytest.mark.parametrize(("sign", "kept"), [(1.0, True), (-1.0, False)])
@@ -95,10 +99,10 @@ def test_a_gyroscope_that_explains_the_turns_is_not_dropped(monkeypatch, frames,
         lambda _, imu, __, **settling: Trial(1, 0.021, turns) if imu is None else rotated,
     )
 
-    imu, remark = consistent_imu(Walk(frames, frames.imu), SETTINGS)
+    imu, choice = consistent_imu(Walk(frames, frames.imu), SETTINGS)
 
     assert imu is (frames.imu if kept else None)
-    assert (remark == "") == kept
+    assert (choice == AS_RECORDED) == kept
 
 
 @pytest.mark.parametrize(("settled_m", "kept"), [(0.0105, True), (0.0158, False)])
@@ -117,9 +121,9 @@ def test_an_accelerometer_is_tried_again_after_it_settled(monkeypatch, frames, s
     monkeypatch.setattr(imu_consistency, "_try", trial)
     monkeypatch.setattr(Trial, "unexplained", lambda *_: 0.07)
 
-    imu, remark = consistent_imu(frames, SETTINGS)
+    imu, choice = consistent_imu(frames, SETTINGS)
 
-    assert (imu is frames.imu) == kept == (remark == "")
+    assert (imu is frames.imu) == kept == (choice == AS_RECORDED)
     assert max(asked) == 10
 
 
@@ -136,8 +140,8 @@ def test_multiframes_that_settle_do_not_count(frames):
 def test_without_an_imu_or_with_use_imu_off_no_trial_runs(frames):
     never = replace(SETTINGS, odometry=OdometrySettings(use_imu=False))
 
-    assert consistent_imu(Walk(frames, None), SETTINGS) == (None, "")
-    assert consistent_imu(frames, never) == (frames.imu, "")
+    assert consistent_imu(Walk(frames, None), SETTINGS) == (None, AS_RECORDED)
+    assert consistent_imu(frames, never) == (frames.imu, AS_RECORDED)
 
 
 def test_one_multiframe_is_enough(frames):
@@ -145,7 +149,7 @@ def test_one_multiframe_is_enough(frames):
         def __len__(self):
             return 1
 
-    imu, remark = consistent_imu(Single(frames, frames.imu), SETTINGS)
+    imu, choice = consistent_imu(Single(frames, frames.imu), SETTINGS)
 
     assert imu is frames.imu
-    assert remark == ""
+    assert choice.outcome == "as recorded"

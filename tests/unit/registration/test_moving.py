@@ -5,18 +5,19 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
+from recon4.findings.witnesses.motion import moving_finding
+from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.figures import MovingFigures, MovingOutcome
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import Multiframe
+from recon4.model.odometry_figures import MovingFigures, MovingOutcome, OdometryFigures
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Silent
 from recon4.registration.moving import (
     StandingFrames,
-    crowd_text,
     find_moving,
     hide_moving,
     with_points_around,
@@ -24,6 +25,7 @@ from recon4.registration.moving import (
 from recon4.registration.stage import run_odometry
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.arrays import load_record
+from tests.said import odometry_findings, texts
 
 FRAME_NS = 100_000_000
 SPEED_M_S, STRIDE_S = 1.2, 4.0
@@ -191,12 +193,17 @@ def test_single_points_hide_nothing_around_them() -> None:
     np.testing.assert_array_equal(with_points_around(frame, found, RIG), found)
 
 
+def odometry_texts(moving: MovingFigures) -> list[str]:
+    """What is said of an odometry with these moving objects."""
+    return texts(odometry_findings(OdometryFigures(multiframes=9, lost=0, moving=moving)))
+
+
 def test_multiframes_that_lost_tracking_are_not_compared() -> None:
     walk = Walk(GROUP)
 
     found = find_moving(walk, walk.trajectory, np.full(len(walk), -1))
 
-    assert found.ratio == () and crowd_text(found) == ()
+    assert found.ratio == () and not found.is_crowded
 
 
 def test_pieces_are_not_compared_with_each_other() -> None:
@@ -213,7 +220,7 @@ def test_a_crowd_is_announced_with_times_and_ratio() -> None:
         t_s=(0.0, 1.0, 2.0, 3.0), ratio=(0.02, 0.11, 0.27, 0.05), outcome=MovingOutcome.LEFT_OUT
     )
 
-    (text,) = crowd_text(found)
+    text = text_of(moving_finding(found))
 
     assert text.startswith(
         "Between 1 s and 2 s moving objects (people, vehicles) fill up to 27 % of the view, most "
@@ -223,13 +230,13 @@ def test_a_crowd_is_announced_with_times_and_ratio() -> None:
 
 
 def test_few_moving_objects_are_not_announced() -> None:
-    assert crowd_text(MovingFigures(t_s=(0.0, 1.0), ratio=(0.02, 0.09))) == ()
+    assert not odometry_texts(MovingFigures(t_s=(0.0, 1.0), ratio=(0.02, 0.09)))
 
 
 def test_what_does_not_hold_the_trajectory_is_severe() -> None:
     found = MovingFigures(t_s=(0.0,), ratio=(0.6,), outcome=MovingOutcome.NOT_HELD)
 
-    assert found.is_severe and "does not hold the trajectory" in crowd_text(found)[0]
+    assert found.is_severe and "does not hold the trajectory" in text_of(moving_finding(found))
 
 
 def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
@@ -238,14 +245,14 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
     figures = run_odometry(walk, tmp_path, settings=Settings(), progress=Silent())
 
     assert figures.moving is not None and figures.moving.outcome == MovingOutcome.LEFT_OUT
-    assert any("moving objects" in text for text in figures.warnings) and not figures.severe
+    assert any("moving objects" in text for text in odometry_texts(figures.moving))
     hidden = load_record(tmp_path / "moving.npz", HiddenPoints)
     seen = np.array([len(hidden.seen(frame)) / len(frame) for frame in walk])
     assert seen.min() < 0.9
     left_out = sum(len(frame) - len(hidden.seen(frame)) for frame in walk)
     assert figures.moving.points_left_out == left_out > 0
     count = f"{left_out:,}".replace(",", "\u202f")
-    assert any(f"{count} points are left out" in text for text in figures.warnings)
+    assert any(f"{count} points are left out" in text for text in odometry_texts(figures.moving))
 
 
 def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
@@ -254,5 +261,5 @@ def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
     figures = run_odometry(walk, tmp_path, settings=Settings(odometry=kept), progress=Silent())
 
     assert figures.moving is not None and figures.moving.outcome == MovingOutcome.KEPT
-    assert any("Their points are in the map" in text for text in figures.warnings)
+    assert any("Their points are in the map" in text for text in odometry_texts(figures.moving))
     assert not (tmp_path / "moving.npz").exists()

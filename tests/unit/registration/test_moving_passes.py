@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.figures import MovingFigures, MovingOutcome
+from recon4.model.odometry_figures import MovingFigures, MovingOutcome
 from recon4.progress import Silent
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.moving_passes import Found, leave_out_moving, less_sure

@@ -48,7 +48,7 @@ def test_a_wrong_scale_is_corrected_from_the_start(frames, office_recording, mon
     first = register_all(walk, SETTINGS, progress=Silent())
 
     assert progress.passes == 2
-    assert "scale" in first.estimate.texts[0] and "scale" in corrected.estimate.texts[0]
+    assert "scale" in first.estimate.faults[0].kind and "scale" in corrected.estimate.faults[0].kind
     errors = [turn_error_rad(made, office_recording) for made in (first, corrected)]
     assert errors[1] < 0.6 * errors[0]
 
@@ -59,7 +59,7 @@ def test_an_imu_in_order_needs_one_pass(frames):
     made = register_all(frames, SETTINGS, progress=progress)
 
     assert progress.passes == 1
-    assert made.estimate.texts == ()
+    assert made.estimate.faults == ()
 
 
 @pytest.mark.parametrize(

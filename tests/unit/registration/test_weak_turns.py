@@ -5,13 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.witnesses.motion import turn_finding
+from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.known_errors import KnownErrors
 from recon4.registration.degeneracy import of_rigid_pose, weakest_twist
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.step import OdometryStep
-from recon4.registration.weak_turns import turn_text, weak_turns
+from recon4.registration.weak_turns import weak_turns
 from recon4.settings import Settings
 
 CENTER = np.array([0.5, 3.0, 0.0])
@@ -80,8 +82,8 @@ def test_the_stretch_is_found_with_its_axis_and_its_error():
     assert (found.start_s, found.end_s) == (0.0, pytest.approx(9.9))
     np.testing.assert_allclose(np.abs(found.axis), [0.0, 0.0, 1.0], atol=1e-9)
     np.testing.assert_allclose(found.center_m, CENTER, atol=1e-9)
-    assert "about the vertical axis at x 0.5 m, y 3.0 m" in turn_text(found)
-    assert "turned by ± 4.0° (2σ)" in turn_text(found)
+    assert "about the vertical axis at x 0.5 m, y 3.0 m" in text_of(turn_finding(found))
+    assert "turned by ± 4.0° (2σ)" in text_of(turn_finding(found))
     (free,) = weak_turns(walk(100), with_imu=False)
     assert free.rate_sd_rad_s == pytest.approx(10.0 * found.rate_sd_rad_s)
 

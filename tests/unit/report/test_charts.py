@@ -9,7 +9,11 @@ import pytest
 from matplotlib.image import imread
 
 from recon4.geometry.se3 import SE3
-from recon4.model.figures import CalibrationFigures, ParameterFigures, ParameterStatus
+from recon4.model.calibration_figures import (
+    CalibrationFigures,
+    ParameterFigures,
+    ParameterStatus,
+)
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.report.beams import beam_charts
 from recon4.report.edges import edge_paths

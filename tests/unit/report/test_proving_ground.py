@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from recon4.model.usability import Usability
-from recon4.report.verdict import MapVerdict
+from recon4.model.usability import MapVerdict, Usability
 from recon4.simulation.degradation import KINDS
 from recon4.simulation.worlds import build_world
 from tests.benchmarks.proving_errors import Errors

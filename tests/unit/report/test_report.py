@@ -10,6 +10,9 @@ import pytest
 
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import evaluate
+from recon4.findings.drift import drift_closed
+from recon4.findings.finding import Level
+from recon4.findings.kinds import FindingKind
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tile_writer import TileWriter
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
@@ -17,11 +20,10 @@ from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
-from recon4.report.drift import drift_closed
+from recon4.report.assessment import assess
 from recon4.report.edges import edge_rows, spanning
 from recon4.report.facts import InputFile, ReportFacts, StageTiming
 from recon4.report.html import changed_settings, render, write_report
-from recon4.report.verdict import assess
 from recon4.settings import override, preset
 from recon4.store.arrays import save_trajectory
 
@@ -184,7 +186,7 @@ def test_the_report_says_what_was_found(facts: ReportFacts) -> None:
 def test_names_and_texts_from_files_are_shown_as_text(facts: ReportFacts) -> None:
     inputs = (InputFile(EVIL, 1, "0"),)
     hostile = replace(
-        facts, title=EVIL, rig=EVIL, crs=EVIL, inputs=inputs, warnings=(EVIL,), created=EVIL,
+        facts, title=EVIL, rig=EVIL, crs=EVIL, inputs=inputs, created=EVIL,
         versions={EVIL: EVIL}, stages=(StageTiming(EVIL, 1.0, 1.0, 1),),
     )  # fmt: skip
 
@@ -357,25 +359,24 @@ def test_the_rig_is_compared_parameter_by_parameter(facts: ReportFacts, tmp_path
 
 
 @pytest.mark.parametrize(
-    ("applied", "levels"), [(True, ["warning", "note"]), (False, ["bad", "warning"])]
+    ("applied", "levels"),
+    [(True, [Level.CHECK, Level.NOTE]), (False, [Level.CHECK, Level.DO_NOT_USE])],
 )
 def test_what_no_calibration_corrects_stays_a_warning(
-    facts: ReportFacts, tmp_path: Path, applied: bool, levels: list[str]
+    facts: ReportFacts, tmp_path: Path, applied: bool, levels: list[Level]
 ) -> None:
     off = {"sensor": "v", "quantity": "rotation", "axis": "x", "unit": "rad", "change": 0.02,
            "sd": 0.001, "status": "off"}  # fmt: skip
-    unit, mount = "The unit of the gyroscope is wrong.", "The LiDAR is off."
-    figures = {"parameters": [off], "outcome": "o", "warnings": [unit, mount],
-               "uncorrected": [unit], "applied": applied}  # fmt: skip
+    unit = {"kind": "gyroscope unit", "value": 57.3}
+    figures = {"parameters": [off], "outcome": "o", "imu_faults": [unit], "applied": applied}
     (tmp_path / "calibration").mkdir()
     (tmp_path / "calibration" / "calibration.json").write_text(json.dumps({"figures": figures}))
     artifacts = {**facts.artifacts, "calibration": tmp_path / "calibration"}
 
     found = assess(replace(facts, artifacts=artifacts)).findings
 
-    level = {one.text: one.level.name.lower() for one in found}
-    assert sorted([level[unit], level[mount]]) == sorted(levels)
-    assert level[unit] == "warning"
+    level = {one.kind: one.level for one in found}
+    assert [level[FindingKind.IMU_UNIT], level[FindingKind.RIG_CONTRADICTED]] == levels
 
 
 def test_the_report_quotes_serial_numbers_and_calibration_of_the_rig(facts: ReportFacts) -> None:
@@ -393,4 +394,3 @@ def test_the_report_quotes_serial_numbers_and_calibration_of_the_rig(facts: Repo
     assert "serial number not known" in page.text
     assert "2026-01-02, 324 days before the walk" in page.text
     assert "3.7 mm" in page.text
-    assert "after 30 days (rig.max_age_days) it should be done again" in page.text

@@ -5,12 +5,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from recon4.report.artifacts import Results
+from recon4.findings.finding import Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.report.assessment import assess
 from recon4.report.figures import broken_at_holes
-from recon4.report.findings import Level, find
 from recon4.report.html import render
 from recon4.report.rows import imported_rows, placed_rows, quantity
-from recon4.report.verdict import assess
+from tests.said import found_in
 from tests.unit.report.test_report import facts  # noqa: F401
 
 TIME = ("t first", "2014-11-04 02:46:49.554 (sensor's clock, UTC)")
@@ -53,14 +55,14 @@ def test_loop_closures_that_contradict_gnss_are_counted_and_not_listed(facts):  
     nothing = georeference | {"edges_rejected": []}
 
     rows = dict(placed_rows({"georeference": georeference}))
-    found = find(facts, Results(georeference={"georeference": georeference}), None)
-    none = find(facts, Results(georeference={"georeference": nothing}), None)
+    found = found_in(WalkRecord(georeference={"georeference": georeference}))
+    none = found_in(WalkRecord(georeference={"georeference": nothing}))
 
     assert rows["loop closures rejected by GNSS priors"] == "2"
     assert "edges rejected" not in rows
-    start = "Rejected automatically: 2 "
-    assert [f.level for f in found if f.text.startswith(start)] == [Level.NOTE]
-    assert not [f for f in none if "Rejected automatically" in f.text]
+    against = [one for one in found if one.kind is FindingKind.LOOPS_AGAINST_GNSS]
+    assert [(one.level, one.values["count"]) for one in against] == [(Level.NOTE, 2)]
+    assert not [one for one in none if one.kind is FindingKind.LOOPS_AGAINST_GNSS]
 
 
 def test_import_names_each_sensor_and_what_is_missing():
@@ -89,11 +91,11 @@ def test_a_map_that_is_not_level_is_a_warning_and_not_called_z_up(facts, tmp_pat
     (tmp_path / "level" / "georeference.json").write_text(unlevel)
 
     page = render(assess(facts))
-    found = find(facts, Results(georeference={"levelling": {"source": "none"}}), None)
+    found = found_in(WalkRecord(georeference={"levelling": {"source": "none"}}))
 
     assert "local map frame, not leveled (meters)" in page
-    assert [f for f in found if f.level is Level.WARNING and "not leveled" in f.text]
-    assert not find(facts, Results(georeference={"levelling": {"source": "imu"}}), None)
+    assert [(one.kind, one.level) for one in found] == [(FindingKind.NOT_LEVELED, Level.CHECK)]
+    assert not found_in(WalkRecord(georeference={"levelling": {"source": "imu"}}))
 
 
 def test_no_line_is_drawn_over_a_hole_in_a_curve():

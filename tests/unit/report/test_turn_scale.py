@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.turn_scale import turn_scale
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.report.artifacts import Results
-from recon4.report.findings import find
-from recon4.report.turn_scale import turn_scale
+from tests.said import found_in, texts
 from tests.unit.pose_graph.test_uncertainty import edge
-from tests.unit.report.test_verdict import facts
 
 NODES = 60
 
@@ -45,8 +44,8 @@ def test_a_scale_is_measured_and_announced(scale: float) -> None:
 
     assert found is not None and found.is_off
     assert found.ratio == pytest.approx(scale, abs=0.001)
-    texts = [one.text for one in find(facts(), Results(graph=graph, odometry=odometry), None)]
-    assert any(("farther" if scale > 0 else "less far") in text for text in texts)
+    said = texts(found_in(WalkRecord(graph=graph, odometry=odometry)))
+    assert any(("farther" if scale > 0 else "less far") in text for text in said)
 
 
 def test_an_odometry_in_order_is_not_contradicted() -> None:

@@ -2,18 +2,17 @@
 
 import pytest
 
+from recon4.findings.finding import Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
 from recon4.model.unused import unused_parts
-from recon4.report.artifacts import Results
-from recon4.report.facts import ReportFacts
-from recon4.report.findings import Level, find
-from recon4.settings import preset
+from tests.said import found_in
 
 
 def levels(counts):
     """Levels of the findings about data that is not used."""
-    results = Results(steps={}, imported={"counts": counts})
-    facts = ReportFacts(title="test", created="", preset="indoor", settings=preset("indoor"))
-    return [found.level for found in find(facts, results, None) if "not used" in found.text]
+    found = found_in(WalkRecord(steps={}, imported={"counts": counts}))
+    return [one.level for one in found if one.kind is FindingKind.IMPORT_UNUSED]
 
 
 def test_all_reasons_count_together_and_are_named():
@@ -37,11 +36,11 @@ def test_what_is_counted_where_it_is_used_has_its_plain_name():
 @pytest.mark.parametrize(
     ("counts", "expected"),
     [
-        ({"packets": 1000, "packets_missing": 5000}, [Level.BAD]),
-        ({"points": 1000, "points_wrong_time": 5000}, [Level.BAD]),
-        ({"lines": 1000, "lines_missing": 5000}, [Level.BAD]),
+        ({"packets": 1000, "packets_missing": 5000}, [Level.DO_NOT_USE]),
+        ({"points": 1000, "points_wrong_time": 5000}, [Level.DO_NOT_USE]),
+        ({"lines": 1000, "lines_missing": 5000}, [Level.DO_NOT_USE]),
         # Nobody warned of reasons that are rare one by one.
-        ({"packets": 1000, "packets_late": 9, "packets_wrong_flag": 9}, [Level.WARNING]),
+        ({"packets": 1000, "packets_late": 9, "packets_wrong_flag": 9}, [Level.CHECK]),
         # The reader warned of a single large reason already.
         ({"packets": 1000, "packets_late": 200}, []),
         ({"packets": 1000, "packets_late": 9}, []),

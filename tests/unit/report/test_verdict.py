@@ -5,18 +5,20 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.verdict import verdict_of
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.speed import too_fast
+from recon4.findings.witnesses.weak_directions import weak_stretches
 from recon4.geometry.se3 import SE3
+from recon4.model.odometry_figures import HeightDoubt, OdometryFigures
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
-from recon4.report.artifacts import Results
-from recon4.report.facts import ReportFacts
-from recon4.report.findings import Finding, Level, find
-from recon4.report.observability import weak_stretches
-from recon4.report.plausibility import too_fast
-from recon4.report.verdict import map_verdict
 from recon4.settings import preset
+from tests.said import found_in, judged, texts
 
 
 def steps(degeneracy, *, direction=(1.0, 0.0, 0.0), lost=None, converged=None):
@@ -101,7 +103,7 @@ def test_tracking_lost_for_a_moment_leaves_a_map_to_check(gaps, largest_sd_m, us
     lost = np.logical_or.reduce([silent(200, first, last) for first, last in gaps])
     results = replace(uncertain(largest_sd_m), steps=steps([0.1] * 200, lost=lost))
 
-    verdict = map_verdict(find(facts(), results, None))
+    verdict = judged(results)
 
     assert verdict.usability is usability
     assert f"Tracking was lost in {lost.sum()} of 200 multiframes" in verdict.reasons[0]
@@ -113,8 +115,8 @@ def test_a_profiler_observes_what_a_2d_laser_does_not():
     assert weak_stretches(columns, surfaces(340)) == []
     (stretch,) = weak_stretches(columns, surfaces(340, sd_m=3.0))
     assert stretch.start_s == pytest.approx(2.0)
-    findings = find(facts(), Results(steps=columns, support=surfaces(340)), None)
-    assert "the profiler does" in " ".join(found.text for found in findings)
+    findings = found_in(WalkRecord(steps=columns, support=surfaces(340)))
+    assert "the profiler does" in " ".join(texts(findings))
 
 
 @pytest.mark.parametrize(
@@ -131,9 +133,9 @@ def test_a_silent_2d_laser_spoils_a_map_only_if_the_profiler_does_not_hold_it(
     lost, held = silent(200, 80, 100), surfaces(200)
     seen = surfaces(200, **there)
     held.match_ratio[lost], held.weak_sd_m[lost] = seen.match_ratio[lost], seen.weak_sd_m[lost]
-    results = Results(steps=steps([0.1] * 200, lost=lost), support=held)
+    results = WalkRecord(steps=steps([0.1] * 200, lost=lost), support=held)
 
-    verdict = map_verdict(find(facts(), results, None))
+    verdict = judged(results)
 
     assert verdict.usability is usability
     assert words in " ".join(verdict.reasons)
@@ -165,18 +167,14 @@ def test_a_person_does_not_walk_at_thirteen_meters_a_second():
     assert found.seconds == 9
 
 
-def facts():
-    return ReportFacts(title="office", created="", preset="indoor", settings=preset("indoor"))
-
-
 @pytest.mark.parametrize(
     ("results", "usability", "reason"),
     [
-        (Results(steps=steps([0.1] * 50)), Usability.GOOD, ""),
-        (Results(steps=steps(corridor(5.0))), Usability.CHECK, "Between 2 s and 7 s"),
-        (Results(steps=steps(corridor(30.0))), Usability.DO_NOT_USE, "a horizontal direction"),
+        (WalkRecord(steps=steps([0.1] * 50)), Usability.GOOD, ""),
+        (WalkRecord(steps=steps(corridor(5.0))), Usability.CHECK, "Between 2 s and 7 s"),
+        (WalkRecord(steps=steps(corridor(30.0))), Usability.DO_NOT_USE, "a horizontal direction"),
         (
-            Results(
+            WalkRecord(
                 steps=steps(corridor(30.0)),
                 georeference={"georeference": {"georeferenced": True}},
             ),
@@ -184,15 +182,15 @@ def facts():
             "GNSS",
         ),
         (
-            Results(steps=steps([0.1] * 50, converged=np.arange(50) < 20)),
+            WalkRecord(steps=steps([0.1] * 50, converged=np.arange(50) < 20)),
             Usability.DO_NOT_USE,
             "converged in only 20 of 50",
         ),
-        (Results(odometry=walk(13.0)), Usability.DO_NOT_USE, "13.0 m/s"),
+        (WalkRecord(odometry=walk(13.0)), Usability.DO_NOT_USE, "13.0 m/s"),
     ],
 )
 def test_what_makes_a_map_unusable_is_announced(results, usability, reason):
-    verdict = map_verdict(find(facts(), results, None))
+    verdict = judged(results)
 
     assert verdict.usability is usability
     assert reason in " ".join(verdict.reasons)
@@ -212,22 +210,20 @@ def test_heights_that_may_be_above_sea_level_are_announced(
     count, heights, usability, georeferenced
 ):
     settings = preset("outdoor")
-    given = replace(
-        facts(), settings=replace(settings, gnss=replace(settings.gnss, heights=heights))
-    )
-    results = Results(
+    results = WalkRecord(
         imported={"counts": {count: 201}},
         steps=steps([0.1] * 50),
         georeference={"georeference": {"georeferenced": georeferenced}},
     )
 
-    verdict = map_verdict(find(given, results, None))
+    given = replace(settings, gnss=replace(settings.gnss, heights=heights))
+    verdict = judged(results, given)
 
     assert verdict.usability is (usability if georeferenced else Usability.GOOD)
     assert len(verdict.reasons) == int(verdict.usability is not Usability.GOOD)
 
 
-def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> Results:
+def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> WalkRecord:
     """A walk of 13.5 m whose last pose is known least."""
     final = walk(1.5)
     sd_m = np.linspace(0.001, largest_sd_m, len(final))
@@ -235,7 +231,7 @@ def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> Results:
     cov[:, 3, 3] = sd_m**2
     helpful = HelpfulPoint(7_000_000_000, 9_000_000_000, point_sd_m)
     known = PoseUncertainty(final.t_ns, cov, on_earth=False, helpful=helpful)
-    return Results(final=final, uncertainty=known)
+    return WalkRecord(final=final, uncertainty=known)
 
 
 @pytest.mark.parametrize(
@@ -248,15 +244,15 @@ def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> Results:
     ],
 )
 def test_positions_that_are_not_known_are_announced(largest_sd_m, usability):
-    verdict = map_verdict(find(facts(), uncertain(largest_sd_m), None))
+    verdict = judged(uncertain(largest_sd_m))
 
     assert verdict.usability is usability
 
 
 def test_the_control_point_that_helps_most_is_proposed():
-    (reason,) = map_verdict(find(facts(), uncertain(0.2), None)).reasons
-    (nothing_helps,) = map_verdict(find(facts(), uncertain(0.2, point_sd_m=0.19), None)).reasons
-    (lost,) = map_verdict(find(facts(), uncertain(500.0), None)).reasons
+    (reason,) = judged(uncertain(0.2)).reasons
+    (nothing_helps,) = judged(uncertain(0.2, point_sd_m=0.19)).reasons
+    (lost,) = judged(uncertain(500.0)).reasons
 
     assert "known to ± 40.0 cm (2σ) relative to the start at worst, 10 s after the start" in reason
     assert "A control point between 7 s and 9 s would reduce this to ± 2.0 cm." in reason
@@ -265,15 +261,19 @@ def test_the_control_point_that_helps_most_is_proposed():
 
 
 def test_a_map_nothing_is_known_of_is_not_good():
-    assert map_verdict([]).usability is Usability.CHECK
-    assert map_verdict([Finding(Level.GOOD, "fine")]).reasons == ()
+    assert verdict_of([]).usability is Usability.CHECK
+    assert "could be checked" in verdict_of([]).reasons[0]
+    assert verdict_of([Finding(kind=FindingKind.TRACKING_KEPT, level=Level.GOOD)]).reasons == ()
 
 
-def test_heights_that_are_wrong_by_meters_forbid_the_map():
-    given = replace(facts(), warnings=("a ride of 3.4 m", "no IMU"), severe=("a ride of 3.4 m",))
-    verdict = map_verdict(find(given, Results(), None))
+@pytest.mark.parametrize(
+    ("rise_m", "usability"), [(3.4, Usability.DO_NOT_USE), (0.6, Usability.CHECK)]
+)
+def test_heights_that_are_wrong_by_meters_forbid_the_map(rise_m, usability):
+    ride = HeightDoubt(start_s=3.0, end_s=9.0, rise_m=rise_m)
+    figures = OdometryFigures(multiframes=100, lost=0, heights=(ride,))
 
-    assert verdict.usability is Usability.DO_NOT_USE
-    assert verdict.reasons[0] == "a ride of 3.4 m"
-    milder = find(replace(given, severe=()), Results(), None)
-    assert map_verdict(milder).usability is Usability.CHECK
+    verdict = judged(WalkRecord(odometry_figures=figures))
+
+    assert verdict.usability is usability
+    assert f"a ride of about {rise_m:.1f} m up" in verdict.reasons[0]

@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
+from recon4.findings.review_problems import problem_findings
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.verification import verify
 from recon4.review.apply import CHANGED_M, apply_decisions, rows_by_pair
 from recon4.review.decisions import Decision, DecisionKind, Measurement, fold, numbers_of
-from recon4.review.solve import difference, review
+from recon4.review.solve import difference, review, review_figures
 from recon4.settings import GraphSettings, Settings, VerificationSettings
+from tests.said import texts
 from tests.unit.review.graphs import LOOP, truth, two_rounds
 
 
@@ -48,6 +50,11 @@ def at(graph, i, j):
     return graph.edges[rows_by_pair(graph)[frames(i, j)]]
 
 
+def said(reviewed):
+    """Problems of a review in words."""
+    return texts(problem_findings(review_figures(reviewed, 1, chi2_before=None)))
+
+
 def test_no_decision_changes_nothing(verified):
     found = review(verified, (), settings=Settings())
 
@@ -79,7 +86,7 @@ def test_an_accepted_loop_stays_in_although_it_does_not_fit_and_is_named():
     assert conflict.pair == frames(10, 40)
     assert conflict.chi2 > conflict.limit
     assert 0.1 < conflict.residual_m < 1.6
-    assert any(str(frames(10, 40)[0]) in words for words in found.warnings())
+    assert any(str(frames(10, 40)[0]) in text for text in said(found))
 
 
 def test_a_pair_that_never_converged_has_nothing_to_accept(verified):
@@ -159,7 +166,7 @@ def test_decisions_about_pairs_that_are_gone_are_counted_and_named(verified):
     found = review(verified, standing(*gone, elsewhere), settings=Settings())
 
     assert {one.pair for one in found.missing} == {frames(0, 20), frames(9, 55), (2, 999_999)}
-    assert any(words.startswith("3 decisions") for words in found.warnings())
+    assert any(text.startswith("3 decisions") for text in said(found))
 
 
 def test_a_pair_that_was_never_registered_cannot_be_accepted(verified):

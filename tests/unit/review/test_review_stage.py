@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from recon4 import stages
+from recon4.findings.review_problems import problem_findings
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import Reason, Verdict
@@ -100,7 +101,7 @@ def test_review_json_names_what_happened(run):
     assert record["chi2_after"] > record["chi2_before"]
     assert {one["why"] for one in record["decisions"]} == {"seen", ""}
     assert found.figures.conflicts == 1
-    assert len(found.figures.warnings) == 2
+    assert len(problem_findings(found.figures)) == 2
 
 
 def test_the_preview_has_the_result_of_the_stage(run):

@@ -40,6 +40,7 @@ from tests.planar_walks import (
     scanned,
     write_carmen,
 )
+from tests.said import texts
 
 
 @pytest.fixture(scope="module")
@@ -107,7 +108,7 @@ def test_a_setting_of_the_grid_makes_only_the_map_again(mapped):
 
     summary = process(Sources((folder / "walk.log",)), folder / "out", settings=settings)
 
-    assert [stage.stage for stage in summary.stages if not stage.reused] == ["map_2d"]
+    assert [stage.stage for stage in summary.stages if not stage.reused] == ["map_2d", "audit"]
     assert summary.grid.cell_m == 0.1
 
 
@@ -150,7 +151,7 @@ def test_a_silent_laser_without_odometry_is_part_of_the_verdict(tmp_path):
 
     summary = run(tmp_path, walk.scans[(t_s < 5.0) | (t_s > 10.0)])
 
-    assert "silent for 5.2 s at 4.9 s" in " ".join(summary.warnings)
+    assert "silent for 5.2 s at 4.9 s" in " ".join(texts(summary.findings))
     assert summary.verdict.usability is not Usability.GOOD
     assert "is unknown" in " ".join(summary.verdict.reasons)
 
@@ -192,7 +193,7 @@ def broken_steps(scans, *, every):
 def test_mirrored_scans_are_repaired_and_said(tmp_path, room):
     summary = run(tmp_path, mirrored(room.scans))
 
-    assert "wrong order" in " ".join(summary.warnings)
+    assert "wrong order" in " ".join(texts(summary.findings))
     assert other_reasons(summary) == []
 
 
@@ -221,7 +222,7 @@ def test_the_pages_offer_the_files_of_a_2d_map(mapped):
     project = ProjectStore(folder, ImportFolders(())).get("out")
 
     assert set(RESULTS_2D) <= {file.name for file in project.files}
-    stages = ["scans_2d", "odometry_2d", "graph_2d", "verification", "map_2d"]
+    stages = ["scans_2d", "odometry_2d", "graph_2d", "verification", "map_2d", "audit"]
     assert [stage.stage for stage in project.stages] == stages
     assert project.viewable
     assert not project.has_map

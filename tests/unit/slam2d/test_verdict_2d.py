@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.finding import Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.verdict import verdict_of
+from recon4.findings.witnesses.planar import PlanarRecord, check_planar
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, Verdict
+from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.slam2d.steps import empty_steps
-from recon4.slam2d.verdict import Facts2d, judge, remarks
 from tests.project_builder import loop_walk, verified_graph
 
 
@@ -22,7 +26,7 @@ def facts(verdict):
         for edge in graph.edges
     )
     steps = empty_steps(graph.t_ns)
-    return Facts2d(
+    return PlanarRecord(
         scans=Scan2dFigures(scans=len(graph), beams=360, odometry=True),
         imported=ImportNotes(),
         odometry=Odometry2dFigures(scans=len(graph), lost=0, keyframes=9, searched=0, resets=0),
@@ -30,7 +34,7 @@ def facts(verdict):
             cell_m=0.05, size=(10, 10), free_m2=1.0, crossing_ratio=0.0, largest_sd_m=0.01
         ),
         steps=replace(steps, weak_sd_m=np.zeros(len(graph))),
-        poses=np.zeros((len(graph), 3)),
+        trajectory=Trajectory(graph.t_ns, graph.T_map_body),
         graph=graph.with_edges(edges),
         path_length_m=20.0,
     )
@@ -42,7 +46,8 @@ def facts(verdict):
 def test_loop_closures_that_no_alternative_path_confirms_are_said_beside_a_good_verdict(
     verdict, said
 ):
-    found = facts(verdict)
+    found = check_planar(facts(verdict))
 
-    assert judge(found).usability is Usability.GOOD
-    assert any("loop closures are unverified" in text for text in remarks(found)) is said
+    assert verdict_of(found).usability is Usability.GOOD
+    notes = [one for one in found if one.kind is FindingKind.LOOPS_UNVERIFIED]
+    assert [one.level for one in notes] == ([Level.NOTE] if said else [])

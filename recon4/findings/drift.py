@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.findings.walk import WalkRecord
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
-from recon4.report.artifacts import Results
 
 _LOOPS = {EdgeKind.LOOP, EdgeKind.MANUAL}
 
@@ -83,7 +83,7 @@ def _residuals(edges: list[Edge], graph: PoseGraph | None, trajectory: Trajector
     return np.asarray(np.linalg.norm((T_i_j.inverse() @ (T_i.inverse() @ T_j)).t, axis=1))
 
 
-def closed_drift(results: Results) -> DriftClosed | None:
+def closed_drift(results: WalkRecord) -> DriftClosed | None:
     """How far the pose graph moved the odometry; None without both trajectories."""
     if results.odometry is None or results.final is None or not len(results.odometry):
         return None

@@ -7,10 +7,15 @@ an IMU in order both agree to 0.05 % of the turn, with a scale 3 % off they diff
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.findings.finding import Finding, Level, Value
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
@@ -36,16 +41,6 @@ class TurnScale:
         """Whether odometry and pairs contradict each other."""
         return abs(self.ratio) > max(_MOST, _SIGMAS * self.sd)
 
-    @property
-    def text(self) -> str:
-        """A sentence for the operator."""
-        farther = "farther" if self.ratio > 0.0 else "less far"
-        return (
-            f"The odometry turns {100.0 * abs(self.ratio):.1f} % ± {100.0 * self.sd:.1f} % "
-            f"{farther} than registered pairs of places do: the scale of the gyroscope or the "
-            "clock of the IMU contradicts the LiDARs."
-        )
-
 
 def turn_scale(graph: PoseGraph, odometry: Trajectory) -> TurnScale | None:
     """Compare the turns of pairs that are in the graph; None = too few turn.
@@ -70,3 +65,17 @@ def turn_scale(graph: PoseGraph, odometry: Trajectory) -> TurnScale | None:
     middle = float(np.median(ratio))
     spread = 1.4826 * float(np.median(np.abs(ratio - middle)))
     return TurnScale(middle, spread / float(np.sqrt(len(ratio))))
+
+
+class TurnScales:
+    """Turns of the odometry against those of registered pairs."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Whether they contradict each other."""
+        if walk.graph is None or walk.odometry is None:
+            return
+        found = turn_scale(walk.graph, walk.odometry)
+        if found is not None and found.is_off:
+            way = "farther" if found.ratio > 0.0 else "less"
+            values: dict[str, Value] = {"size": abs(found.ratio), "sd": found.sd, "way": way}
+            yield finding(FindingKind.TURN_SCALE, Level.CHECK, values)

@@ -7,15 +7,20 @@ direction the pose lies: neither convergence nor the match ratio shows the error
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from msgspec.structs import replace
 from numpy.typing import NDArray
 
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
 from recon4.geometry.se3 import Array
 from recon4.model.support import SurfaceSupport
-from recon4.model.usability import WEAK_SD_M, WEAK_SECONDS
+from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
 
 _WEAK_DEGENERACY = 0.005
 """Files of earlier versions do not state the standard deviation: there a direction counts as
@@ -24,6 +29,8 @@ _UNSURE_SD_M = 0.03
 """As `WEAK_SD_M`, of a registration that did not converge: what it states is too small [m]."""
 _HELD_RATIO = 0.7
 """A multiframe matches the map if its match ratio reaches this part of the median of the others."""
+_UNLIMITED_M = 10.0
+"""A larger standard deviation is quoted as above this [m]."""
 _BRIDGED_S = 1.0
 """Two weak stretches with less than this between them are one [s]."""
 
@@ -118,3 +125,47 @@ def _mean_direction(directions: Array) -> Array:
         return np.full(3, np.nan)
     axis: Array = np.linalg.eigh(known.T @ known)[1][:, -1]
     return axis
+
+
+class WeakStretches:
+    """Stretches in which the LiDARs hardly observe a direction."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Each stretch, or what the profiler observes in place of the 2-D laser."""
+        stretches = weak_stretches(walk.steps, walk.support)
+        if not stretches and walk.support is not None:
+            yield from _observed_by_profiler(weak_stretches(walk.steps))
+        seconds = sum(stretch.seconds for stretch in stretches)
+        georeferenced = walk.placement.gnss.georeferenced
+        bad = seconds >= UNOBSERVED_SECONDS and not georeferenced
+        for stretch in stretches:
+            yield _finding(stretch, Level.DO_NOT_USE if bad else Level.CHECK)
+
+
+def _observed_by_profiler(planar: Sequence[WeakStretch]) -> Iterator[Finding]:
+    if planar:
+        yield finding(
+            FindingKind.WEAK_LASER,
+            Level.NOTE,
+            {"seconds": sum(stretch.seconds for stretch in planar)},
+            span_s=(planar[0].start_s, planar[0].end_s),
+        )
+
+
+def _finding(stretch: WeakStretch, level: Level) -> Finding:
+    stated = bool(np.isfinite(stretch.sd_m))
+    known = bool(np.isfinite(stretch.direction_odom).all())
+    direction = "horizontal" if stretch.horizontal else "vertical"
+    found = finding(
+        FindingKind.WEAK_DIRECTION,
+        level,
+        {
+            "degeneracy": stretch.degeneracy,
+            "sd_m": stretch.sd_m,
+            "known": stated and stretch.sd_m < _UNLIMITED_M,
+            "unlimited": stated and stretch.sd_m >= _UNLIMITED_M,
+            "unstated": not stated,
+        },
+        span_s=(stretch.start_s, stretch.end_s),
+    )
+    return replace(found, direction=direction if known else "unknown")

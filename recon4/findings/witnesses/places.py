@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
 from recon4.model.pose_graph import PoseGraph, Reason
 from recon4.model.trajectory import Times
 from recon4.pose_graph.pieces import joined_pieces
-from recon4.report.artifacts import Results
 
 _SAME_PLACE_S = 10.0
 """Ambiguous pairs with less time in between are one place."""
@@ -37,12 +41,12 @@ class AmbiguousPlace:
     pairs: int
 
 
-def separate_pieces(results: Results) -> list[SeparatePiece]:
+def separate_pieces(walk: WalkRecord) -> list[SeparatePiece]:
     """Pieces that no edge of the graph joins to the largest one, in order of time."""
-    piece, t_ns = results.steps.get("piece"), results.steps.get("t_mid_ns")
+    piece, t_ns = walk.steps.get("piece"), walk.steps.get("t_mid_ns")
     if piece is None or t_ns is None or not piece.any():
         return []
-    label = _joined(results.graph, piece, t_ns)
+    label = _joined(walk.graph, piece, t_ns)
     main = int(np.argmax(np.bincount(label)))
     out = []
     for other in np.unique(label[label != main]):
@@ -81,3 +85,31 @@ def ambiguous_places(graph: PoseGraph | None) -> list[AmbiguousPlace]:
         )
         for run in runs
     ]
+
+
+class Pieces:
+    """Parts of the walk that nothing joins."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Each piece but the largest."""
+        for piece in separate_pieces(walk):
+            yield finding(
+                FindingKind.SEPARATE_PIECE,
+                Level.DO_NOT_USE,
+                {"multiframes": piece.multiframes},
+                span_s=(piece.start_s, piece.end_s),
+            )
+
+
+class LookAlike:
+    """Places that look like others."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Each place whose pairs wait for a decision."""
+        for place in ambiguous_places(walk.graph):
+            yield finding(
+                FindingKind.PLACE_AMBIGUOUS,
+                Level.CHECK,
+                {"like_s": place.like_s, "pairs": place.pairs},
+                span_s=(place.start_s, place.end_s),
+            )

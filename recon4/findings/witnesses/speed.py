@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Trajectory
 
@@ -40,3 +45,24 @@ def too_fast(trajectory: Trajectory) -> TooFast | None:
         return None
     worst = int(np.argmax(speed_m_s))
     return TooFast(int(fast.sum()), float(speed_m_s[worst]), float(knots[worst]))
+
+
+class Speed:
+    """Jumps of the trajectory."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Whether a person can have walked it."""
+        line = walk.final if walk.final is not None else walk.odometry
+        fast = too_fast(line) if line is not None else None
+        if fast is not None:
+            yield finding(
+                FindingKind.TOO_FAST,
+                Level.DO_NOT_USE,
+                {
+                    "fastest_m_s": fast.fastest_m_s,
+                    "at_s": fast.at_s,
+                    "seconds": fast.seconds,
+                    "limit_m_s": MAX_SPEED_M_S,
+                },
+                span_s=(fast.at_s, fast.at_s + _WINDOW_S),
+            )

@@ -1,4 +1,7 @@
-"""Reads the artifacts of a run for the report; missing ones are left out."""
+"""What witnesses and report read of a run: its artifacts in memory, without points.
+
+Missing artifacts are left out.
+"""
 
 from __future__ import annotations
 
@@ -13,24 +16,29 @@ from numpy.typing import NDArray
 
 from recon4.bounded import read_json_object
 from recon4.errors import StoreError
+from recon4.findings.placement import Placement, placement_in
 from recon4.geometry.se3 import Array
-from recon4.model.figures import CalibrationFigures, MapFigures
+from recon4.model.calibration_figures import CalibrationFigures
+from recon4.model.figures import FrameFigures, LevelFigures, MapFigures, ReviewFigures
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.pose_graph import PoseGraph
+from recon4.model.rig import Rig
+from recon4.model.samples import ImuSamples
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import load_uncertainty
-from recon4.report.placement import Placement, placement_in
 from recon4.store.arrays import load_arrays, load_record, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
-from recon4.store.stage import read_figures
+from recon4.store.frames import FrameStore, open_frames
+from recon4.store.stage import OfStage, read_figures, read_manifest
 
 _MAX_JSON_BYTES = 64 << 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Results:
+class WalkRecord:
     """The artifacts of a run in memory, without points. None or empty = missing."""
 
     imported: dict[str, object] = field(default_factory=dict)
@@ -55,6 +63,20 @@ class Results:
     """Columns of ``diagnostics.npz``."""
     map: MapFigures | None = None
     """Figures of the stage ``map``, with the thickness of its planar surfaces."""
+    frames: FrameFigures | None = None
+    odometry_figures: OdometryFigures | None = None
+    review: ReviewFigures | None = None
+    """None = there are no decisions."""
+    level: LevelFigures | None = None
+    imu: ImuSamples | None = None
+    """As recorded, with the clock of the rig that was used."""
+    rig: Rig | None = None
+    """The rig that the map was made with."""
+    recorded_ns: int = 0
+    """Start of the recording; 0 = unknown."""
+    earlier_warnings: tuple[tuple[str, bool], ...] = ()
+    """Sentences in the manifests of earlier versions, and whether each forbids the use of the map.
+    """
 
     @property
     def placement(self) -> Placement:
@@ -66,13 +88,14 @@ class Results:
         return placement_in(self.georeference)
 
 
-def read_results(artifacts: Mapping[str, Path]) -> Results:
+def read_walk(artifacts: Mapping[str, Path]) -> WalkRecord:
     """Read the existing artifacts.
 
     Raises:
         StoreError: If a file is damaged.
     """
-    return Results(
+    store = _frame_store(artifacts)
+    return WalkRecord(
         imported=_json(artifacts, "frames", "report.json"),
         odometry=_latest_trajectory(artifacts, ("odometry",)),
         steps=current_names(_arrays(artifacts, "odometry", "steps.npz"), STEPS),
@@ -85,7 +108,15 @@ def read_results(artifacts: Mapping[str, Path]) -> Results:
         georeference=_json(artifacts, "level", "georeference.json"),
         uncertainty=load_uncertainty(artifacts["level"]) if "level" in artifacts else None,
         intensity=_arrays(artifacts, "intensity", "diagnostics.npz"),
-        map=_map_figures(artifacts),
+        map=_figures(artifacts, "map", MapFigures),
+        frames=_figures(artifacts, "frames", FrameFigures),
+        odometry_figures=_figures(artifacts, "odometry", OdometryFigures),
+        review=_figures(artifacts, "review", ReviewFigures),
+        level=_figures(artifacts, "level", LevelFigures),
+        imu=store.imu if store else None,
+        rig=store.rig if store else None,
+        recorded_ns=int(store.index["t_ns"][0]) if store and len(store) else 0,
+        earlier_warnings=_earlier_warnings(artifacts),
     )
 
 
@@ -142,10 +173,40 @@ def _support(artifacts: Mapping[str, Path]) -> SurfaceSupport | None:
     return None if path is None else load_record(path, SurfaceSupport)
 
 
-def _map_figures(artifacts: Mapping[str, Path]) -> MapFigures | None:
-    if _file(artifacts, "map", "manifest.json") is None:
+def _figures(artifacts: Mapping[str, Path], stage: str, kind: type[OfStage]) -> OfStage | None:
+    if _file(artifacts, stage, "manifest.json") is None:
         return None
-    return read_figures(artifacts["map"], MapFigures)
+    return read_figures(artifacts[stage], kind)
+
+
+def _frame_store(artifacts: Mapping[str, Path]) -> FrameStore | None:
+    """The multiframes with the rig that the map was made with."""
+    if _file(artifacts, "frames", "rig.toml") is None:
+        return None
+    calibration = _figures(artifacts, "calibration", CalibrationFigures)
+    used = artifacts["calibration"] if calibration and calibration.applied else None
+    return open_frames(artifacts["frames"], used)
+
+
+class _Sentences(msgspec.Struct, frozen=True):
+    """What the stages that are kept said before findings were records."""
+
+    warnings: tuple[str, ...] = ()
+    severe: tuple[str, ...] = ()
+    uncorrected: tuple[str, ...] = ()
+
+
+def _earlier_warnings(artifacts: Mapping[str, Path]) -> tuple[tuple[str, bool], ...]:
+    """Sentences of odometry and calibration of earlier versions."""
+    odometry, calibration = (_sentences(artifacts, name) for name in ("odometry", "calibration"))
+    said = [(text, text in odometry.severe) for text in odometry.warnings]
+    return (*said, *((text, False) for text in calibration.uncorrected))
+
+
+def _sentences(artifacts: Mapping[str, Path], stage: str) -> _Sentences:
+    if _file(artifacts, stage, "manifest.json") is None:
+        return _Sentences()
+    return msgspec.convert(read_manifest(artifacts[stage])["figures"], _Sentences)
 
 
 def _latest_trajectory(artifacts: Mapping[str, Path], stages: tuple[str, ...]) -> Trajectory | None:

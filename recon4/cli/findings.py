@@ -1,0 +1,46 @@
+"""The commands ``recon4 audit`` and ``recon4 explain``."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from recon4.cli.confinement import confine_command
+from recon4.terminal import write
+
+findings = typer.Typer()
+
+
+@findings.command()
+def audit(
+    project: Annotated[Path, typer.Argument(help="Folder of a finished project.")],
+    *,
+    as_json: Annotated[bool, typer.Option("--json", help="Write JSON for programs.")] = False,
+) -> None:
+    """Work out the findings of a finished map again, with the witnesses of this version."""
+    confine_command(write=[project])
+    from recon4.pipeline import audit as run
+    from recon4.terminal import describe_summary, watcher
+
+    with watcher() as progress:
+        summary = run(project, progress=progress)
+    write(
+        json.dumps(summary.to_json(), indent=1, ensure_ascii=False)
+        if as_json
+        else describe_summary(summary)
+    )
+
+
+@findings.command()
+def explain(
+    code: Annotated[
+        str, typer.Argument(help="Code of a finding, as GNSS-CLOCK; without it all are listed.")
+    ] = "",
+) -> None:
+    """Explain a finding: what it means, how it is detected, what to do."""
+    from recon4.findings.explain import explained, listed
+
+    write(explained(code) if code else listed())

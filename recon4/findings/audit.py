@@ -1,0 +1,110 @@
+"""The stage ``audit``: all witnesses over the artifacts of a walk; nothing else writes findings."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+import msgspec
+
+from recon4.bounded import read_json_object
+from recon4.errors import StoreError
+from recon4.findings.finding import Finding, Level, worst_first
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import Witness, placed
+from recon4.findings.witnesses.imports import Earlier, Import
+from recon4.findings.witnesses.imu import Gravity, ImuUse, Rides, Saturation
+from recon4.findings.witnesses.lines import FirstTrajectory
+from recon4.findings.witnesses.loops import Correction, Decisions, Loops
+from recon4.findings.witnesses.motion import Bridges, Moving, WeakTurns
+from recon4.findings.witnesses.places import LookAlike, Pieces
+from recon4.findings.witnesses.placing import Antenna, Gnss, Heights, Leveled, Mirrors
+from recon4.findings.witnesses.rig import RigAge, RigFile
+from recon4.findings.witnesses.speed import Speed
+from recon4.findings.witnesses.tracking import Convergence, Tracking
+from recon4.findings.witnesses.turn_scale import TurnScales
+from recon4.findings.witnesses.uncertainty import Uncertainty
+from recon4.findings.witnesses.weak_directions import WeakStretches
+from recon4.model.figures import AuditFigures
+from recon4.settings import Settings
+from recon4.store.atomic import write_json
+
+FINDINGS = "findings.json"
+_MOST_OF_A_KIND = 200
+"""No more findings of one kind are kept; the first ones are said."""
+_MAX_BYTES = 16 << 20
+
+
+def witnesses(settings: Settings) -> tuple[Witness, ...]:
+    """All witnesses of a 3-D map, in the order in which findings of one level are shown."""
+    return (
+        Tracking(),
+        Convergence(),
+        WeakStretches(),
+        RigFile(),
+        RigAge(settings.rig.max_age_days),
+        Uncertainty(),
+        Pieces(),
+        LookAlike(),
+        TurnScales(),
+        Speed(),
+        Loops(),
+        Correction(),
+        Leveled(),
+        Gnss(),
+        Heights(settings.gnss),
+        Antenna(),
+        Mirrors(),
+        Import(),
+        Rides(),
+        Saturation(),
+        Gravity(),
+        ImuUse(),
+        Moving(),
+        WeakTurns(),
+        Bridges(),
+        FirstTrajectory(),
+        Decisions(),
+        Earlier(),
+    )
+
+
+def check_walk(walk: WalkRecord, settings: Settings) -> tuple[Finding, ...]:
+    """What all witnesses find in a walk, worst first, each with its place in the map."""
+    found = [
+        placed(one, walk.final)
+        for witness in witnesses(settings)
+        for one in witness.check(walk)
+    ]  # fmt: skip
+    return worst_first(_most_of_a_kind(found))
+
+
+def save_findings(folder: Path, findings: Sequence[Finding]) -> AuditFigures:
+    """Write ``findings.json``."""
+    write_json(folder / FINDINGS, {"format": 1, "findings": msgspec.to_builtins(findings)})
+    levels = Counter(finding.level for finding in findings)
+    return AuditFigures(findings={str(level): levels[level] for level in Level})
+
+
+def load_findings(folder: Path) -> tuple[Finding, ...]:
+    """Read ``findings.json``.
+
+    Raises:
+        StoreError: If it is missing or damaged.
+    """
+    record = read_json_object(folder / FINDINGS, _MAX_BYTES, failure=StoreError)
+    try:
+        return tuple(msgspec.convert(record.get("findings"), list[Finding]))
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{FINDINGS} cannot be read: {error}") from error
+
+
+def _most_of_a_kind(findings: Iterable[Finding]) -> list[Finding]:
+    seen: Counter[str] = Counter()
+    kept = []
+    for finding in findings:
+        seen[finding.kind] += 1
+        if seen[finding.kind] <= _MOST_OF_A_KIND:
+            kept.append(finding)
+    return kept

@@ -1,0 +1,78 @@
+"""The kinds of findings for people: ``recon4 explain`` and ``docs/findings.md``."""
+
+from __future__ import annotations
+
+import re
+import textwrap
+from difflib import get_close_matches
+
+from recon4.errors import ConfigError
+from recon4.findings.kinds import FindingKind
+from recon4.findings.wording import KindText, Sentence, catalog
+
+_WIDTH = 88
+_INTRODUCTION = """\
+# Findings
+
+What recon4 says of a map, by the code that stands beside it on the terminal, in the report, on the
+pages and in `summary.json`. `recon4 explain CODE` prints the same text.
+
+A code keeps its meaning in all versions. The verdict of a map is that of its worst finding:
+*good*, *note* (the verdict stays good), *check* or *do not use*.
+`recon4 audit PROJECT` works the findings of a finished map out again, without a new map.
+
+This page is made from the catalog of the texts: `make docs`.
+"""
+
+
+def listed() -> str:
+    """All codes with their titles, a line each."""
+    width = max(map(len, FindingKind))
+    return "\n".join(f"{kind:<{width}}  {catalog().kinds[kind].title}" for kind in FindingKind)
+
+
+def explained(code: str) -> str:
+    """A kind of finding on a terminal.
+
+    Raises:
+        ConfigError: If there is no such code.
+    """
+    try:
+        kind = FindingKind(code.upper())
+    except ValueError:
+        near = get_close_matches(code.upper(), list(FindingKind), n=3)
+        hint = f"; similar: {', '.join(near)}" if near else ""
+        raise ConfigError(f"expected the code of a finding, got {code!r}{hint}") from None
+    entry = catalog().kinds[kind]
+    parts = [("", entry.title), ("", entry.meaning)]
+    parts += [("Detected: ", entry.detection.replace("*", "")), ("What to do: ", entry.remedy)]
+    paragraphs = [textwrap.fill(f"{head}{text}", _WIDTH) for head, text in parts if text]
+    return "\n\n".join([f"{kind}", *paragraphs])
+
+
+def markdown() -> str:
+    """The page ``docs/findings.md``."""
+    return "\n".join(
+        [_INTRODUCTION, *(_section(kind, catalog().kinds[kind]) for kind in FindingKind)]
+    )
+
+
+def _section(kind: FindingKind, entry: KindText) -> str:
+    sentences = [one.text if isinstance(one, Sentence) else one for one in entry.text]
+    shown = " ".join(_readable(text) for text in sentences)
+    rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", ""]
+    rows += [f"- says: {shown}", f"- detected: {entry.detection}"]
+    if entry.remedy:
+        rows.append(f"- what to do: {_readable(entry.remedy)}")
+    return "\n".join([*rows, ""])
+
+
+def _readable(text: str) -> str:
+    """A sentence of the catalog with the names of its values in place of their formats."""
+    return re.sub(r"\{(\w+)(?::[^}]*)?\}", r"‹\1›", text)
+
+
+if __name__ == "__main__":
+    from recon4.terminal import write
+
+    write(markdown(), end="")

@@ -1,0 +1,68 @@
+"""What loop closures make of the drift of the odometry."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from recon4.findings.drift import closed_drift
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.review_problems import problem_findings
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
+from recon4.model.pose_graph import EdgeKind, Verdict
+
+_SMALL_M = 1.0
+"""A larger correction of the odometry is a note [m]."""
+_RESIDUAL_M, _PERCENTILE = 0.10, 95
+"""Loop closures of which 5 % have a larger residual contradict the map [m]."""
+
+
+class Loops:
+    """Loop closures by verdict, and the chain of the odometry."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Whether the drift is corrected, and what waits for a decision."""
+        if walk.graph is None:
+            return
+        verdicts = walk.graph.loop_verdicts()
+        accepted, unverified = verdicts[Verdict.ACCEPTED], verdicts[Verdict.UNVERIFIED]
+        if accepted:
+            yield finding(FindingKind.LOOPS_ACCEPTED, Level.GOOD, {"accepted": accepted})
+        else:
+            yield finding(FindingKind.LOOPS_NONE, Level.CHECK)
+        if unverified > accepted:
+            values = {"unverified": unverified, "accepted": accepted}
+            yield finding(FindingKind.LOOPS_UNVERIFIED, Level.CHECK, values)
+        broken = sum(e.kind is EdgeKind.ODOMETRY and not e.in_graph for e in walk.graph.edges)
+        if broken:
+            yield finding(FindingKind.CHAIN_BROKEN, Level.DO_NOT_USE, {"edges": broken})
+
+
+class Correction:
+    """How far the graph moved the odometry, and what loop closures say of the result."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """The correction, and loop closures that the map does not satisfy."""
+        drift = closed_drift(walk)
+        if drift is None:
+            return
+        closed = len(drift.loop_after_m) > 0
+        # Without a loop closure a small correction is no evidence of small drift.
+        fine = drift.largest_m <= _SMALL_M and closed
+        values = {"end_m": drift.end_m, "largest_m": drift.largest_m}
+        yield finding(FindingKind.CORRECTION, Level.GOOD if fine else Level.NOTE, values)
+        residual_m = float(np.percentile(drift.loop_after_m, _PERCENTILE)) if closed else 0.0
+        if residual_m > _RESIDUAL_M:
+            yield finding(FindingKind.LOOP_RESIDUAL, Level.CHECK, {"residual_m": residual_m})
+
+
+class Decisions:
+    """Decisions of people that contradict the graph, or have no effect."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """What the reviewer should look at again."""
+        if walk.review is not None:
+            yield from problem_findings(walk.review)

@@ -1,0 +1,131 @@
+"""Leveling, and the place of the map on earth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from msgspec.structs import replace
+
+from recon4.findings.finding import Finding, Level, Value
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
+from recon4.georeference.antenna_audit import antenna_doubts
+from recon4.model.figures import AntennaFigures
+from recon4.model.gps_time import GPS_MINUS_UTC_S
+from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED, import_notes
+from recon4.settings import GnssSettings
+
+_LARGE_S = 1.0
+"""A larger error of a clock is stated in seconds, with a usual cause [s]."""
+_SAME_S = 0.5
+
+
+class Leveled:
+    """Whether up is known."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """A map that is not leveled."""
+        if not walk.placement.is_leveled:
+            yield finding(FindingKind.NOT_LEVELED, Level.CHECK)
+
+
+class Gnss:
+    """Fixes against the trajectory and the loop closures."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Fixes and loop closures that were rejected, or no place on earth at all."""
+        gnss = walk.placement.gnss
+        if gnss.edges_rejected:
+            count = len(gnss.edges_rejected)
+            yield finding(FindingKind.LOOPS_AGAINST_GNSS, Level.NOTE, {"count": count})
+        for run in gnss.rejected_runs:
+            yield finding(
+                FindingKind.GNSS_REJECTED,
+                Level.CHECK,
+                {
+                    "fixes": run.fixes,
+                    "horizontal_m": run.horizontal_m,
+                    "height_m": run.height_m,
+                },
+                span_s=(run.start_s, run.end_s),
+            )
+        has_gnss = walk.frames is not None and walk.frames.gnss
+        if has_gnss and walk.level is not None and not walk.level.crs:
+            yield finding(FindingKind.GNSS_NOT_USED, Level.CHECK, {"reason": walk.level.local})
+
+
+class Heights:
+    """Whether the heights of a georeferenced map are those above the ellipsoid."""
+
+    def __init__(self, settings: GnssSettings) -> None:
+        self._settings = settings
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Heights of another kind than the map states, or of a kind that nothing states."""
+        if not walk.placement.gnss.georeferenced or self._settings.heights != "as_recorded":
+            return
+        counts = import_notes(walk.imported).counts
+        if above_sea := counts.get(HEIGHTS_ORTHOMETRIC, 0):
+            yield finding(FindingKind.HEIGHTS_ORTHOMETRIC, Level.DO_NOT_USE, {"fixes": above_sea})
+        if unstated := counts.get(HEIGHTS_UNSTATED, 0):
+            yield finding(FindingKind.HEIGHTS_UNSTATED, Level.CHECK, {"fixes": unstated})
+
+
+class Antenna:
+    """Lever arm and clock of the GNSS receiver against the fixes."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """What the fixes contradict, or cannot check."""
+        found = walk.level.antenna if walk.level is not None else None
+        if found is None:
+            return
+        for doubt in antenna_doubts(found):
+            if doubt == "offset":
+                yield finding(FindingKind.ANTENNA_OFFSET, Level.CHECK, _offset(found))
+            elif doubt == "unchecked":
+                sd_cm = 100.0 * max(found.arm_sd_m[:2])
+                yield finding(FindingKind.ANTENNA_UNCHECKED, Level.CHECK, {"sd_cm": sd_cm})
+            else:
+                yield _clock(found)
+
+
+class Mirrors:
+    """Walls that show the room before them."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Each mirror, with its place."""
+        for mirror in walk.level.mirrors if walk.level is not None else ():
+            x, y = mirror.middle_m
+            found = finding(
+                FindingKind.MIRROR,
+                Level.CHECK,
+                {"area_m2": mirror.area_m2, "x_m": x, "y_m": y, "behind": mirror.behind},
+            )
+            yield replace(found, place_m=((x, y, 0.0), (x, y, 0.0)))
+
+
+def _offset(found: AntennaFigures) -> dict[str, Value]:
+    values: dict[str, Value] = {}
+    for axis, value, sd in zip("xyz", found.arm_m, found.arm_sd_m, strict=True):
+        values |= {f"{axis}_cm": 100.0 * value, f"{axis}_sd_cm": 100.0 * sd}
+    return values
+
+
+def _clock(found: AntennaFigures) -> Finding:
+    """An error of the clock in milliseconds, or in seconds with a usual cause."""
+    large = abs(found.clock_s) >= _LARGE_S
+    leap = large and abs(abs(found.clock_s) - GPS_MINUS_UTC_S) < _SAME_S
+    return finding(
+        FindingKind.GNSS_CLOCK,
+        Level.CHECK,
+        {
+            "clock_s": found.clock_s,
+            "clock_sd_s": found.clock_sd_s,
+            "clock_ms": 1e3 * found.clock_s,
+            "clock_sd_ms": 1e3 * found.clock_sd_s,
+            "large": large,
+            "small": not large,
+        }
+        | ({"leap_s": GPS_MINUS_UTC_S} if leap else {}),
+    )

@@ -1,0 +1,100 @@
+"""Whether each multiframe has a pose by its own points."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.findings.finding import Finding, Level, Value
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.uncertainty import is_known
+from recon4.findings.witnesses.weak_directions import held_by_surfaces
+from recon4.model.trajectory import Times
+
+Flags = NDArray[np.bool_]
+
+_FEW_LOST, _SHORT_GAP_S = 0.1, 2.0
+"""Tracking that is lost in no more than this part of the multiframes, and for no longer than this,
+may leave a usable map: if its positions are known in spite of it."""
+_MIN_CONVERGED, _HALF = 0.9, 0.5
+
+
+class Tracking:
+    """Multiframes whose registration was rejected."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Where tracking was lost, and what holds the map there."""
+        lost = np.asarray(walk.steps.get("lost", np.empty(0)), dtype=bool)
+        if not len(lost):
+            return
+        held = held_by_surfaces(walk.support, lost)
+        if held is not None:
+            yield _laser_poses_missing(lost, held, walk.steps["t_mid_ns"])
+        elif lost.any():
+            yield _lost(lost, walk)
+        else:
+            yield finding(FindingKind.TRACKING_KEPT, Level.GOOD, {"multiframes": len(lost)})
+
+
+class Convergence:
+    """Registrations whose iterations were stopped."""
+
+    def check(self, walk: WalkRecord) -> Iterator[Finding]:
+        """Whether most multiframes converged."""
+        converged = np.asarray(walk.steps.get("converged", np.empty(0)), dtype=bool)
+        if not len(converged) or converged.mean() >= _MIN_CONVERGED:
+            return
+        ratio = float(converged.mean())
+        yield finding(
+            FindingKind.NOT_CONVERGED,
+            Level.CHECK if ratio >= _HALF else Level.DO_NOT_USE,
+            {"converged": int(converged.sum()), "multiframes": len(converged), "ratio": ratio},
+        )
+
+
+def _lost(lost: Flags, walk: WalkRecord) -> Finding:
+    t_ns = walk.steps["t_mid_ns"]
+    held = _short_gaps(lost, t_ns) and is_known(walk)
+    return finding(
+        FindingKind.TRACKING_LOST,
+        Level.CHECK if held else Level.DO_NOT_USE,
+        _counts(lost, t_ns) | {"held": held},
+        span_s=_span_s(lost, t_ns),
+    )
+
+
+def _short_gaps(lost: Flags, t_ns: Times) -> bool:
+    """Whether few multiframes are lost, and never many in a row."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(np.int8)))
+    begin, end = edges[::2], np.minimum(edges[1::2], len(t_ns) - 1)
+    longest_s = float((t_ns[end] - t_ns[begin]).max()) / 1e9
+    return float(lost.mean()) <= _FEW_LOST and longest_s <= _SHORT_GAP_S
+
+
+def _laser_poses_missing(lost: Flags, held: Flags, t_ns: Times) -> Finding:
+    """What became of multiframes without a pose by the 2-D laser."""
+    return finding(
+        FindingKind.LASER_POSES_MISSING,
+        Level.CHECK if held.all() else Level.DO_NOT_USE,
+        _counts(lost, t_ns) | {"held": bool(held.all()), "not_held": int((~held).sum())},
+        span_s=_span_s(lost, t_ns),
+    )
+
+
+def _counts(lost: Flags, t_ns: Times) -> dict[str, Value]:
+    return {
+        "lost": int(lost.sum()),
+        "multiframes": len(lost),
+        "ratio": float(lost.mean()),
+        "first_s": float(t_ns[lost][0] - t_ns[0]) / 1e9,
+    }
+
+
+def _span_s(lost: Flags, t_ns: Times) -> tuple[float, float]:
+    """From the first to the last of them [s]."""
+    first, last = t_ns[lost][[0, -1]]
+    return float(first - t_ns[0]) / 1e9, float(last - t_ns[0]) / 1e9

@@ -1,0 +1,161 @@
+"""Findings in words: the catalog ``en.toml`` with the values of a finding filled in.
+
+A text is a list of sentences. A sentence is left out if a value that it quotes is not known, or if
+the value named by its ``if`` is not true. Formats after the colon, besides those of Python:
+
+========== ==========================================================================
+``length``  meters as centimeters below one meter, else as meters
+``percent`` a ratio as percent with one digit; ``percent0`` without
+``deg``     radians as degrees with two digits; ``deg1`` with one, ``deg3`` with three
+``count``   a whole number with its thousands apart
+``word``    the text of a word, from ``words`` of the kind, else from those of the catalog
+========== ==========================================================================
+"""
+
+from __future__ import annotations
+
+import math
+import string
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+from typing import Any
+
+import msgspec
+
+from recon4.findings.finding import Finding, Value
+from recon4.findings.kinds import FindingKind
+
+_DEGREE_DIGITS = {"deg": 2, "deg1": 1, "deg3": 3}
+
+
+class Sentence(msgspec.Struct, frozen=True):
+    """A sentence that stands only under a condition."""
+
+    text: str
+    given: str = msgspec.field(name="if", default="")
+    """Name of a value that must be there and not be false, zero or empty; empty = always."""
+
+
+class KindText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """What the catalog says of one kind of finding."""
+
+    title: str
+    """Two to five words, for lists and filters."""
+    text: tuple[str | Sentence, ...]
+    remedy: str = ""
+    """What to do about it; empty = nothing."""
+    meaning: str = ""
+    """What it says of the map, for ``docs/findings.md`` and ``recon4 explain``."""
+    detection: str = ""
+    """How it is detected, and from which size on."""
+    words: dict[str, str] = {}
+
+
+class Catalog(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
+    """A catalog in one language."""
+
+    headlines: dict[str, str]
+    """Usability -> headline of a verdict."""
+    words: dict[str, str]
+    kinds: dict[FindingKind, KindText]
+
+
+@cache
+def catalog() -> Catalog:
+    """The English catalog."""
+    text = resources.files("recon4.findings").joinpath("en.toml").read_text("utf-8")
+    return msgspec.convert(tomllib.loads(text), Catalog)
+
+
+def text_of(finding: Finding) -> str:
+    """A finding as sentences, without its remedy."""
+    entry = catalog().kinds[finding.kind]
+    fill = _Filling(entry.words)
+    values = _values(finding)
+    parts = (fill.sentence(one, values) for one in entry.text)
+    return " ".join(part for part in parts if part) or f"{entry.title}."
+
+
+def remedy_of(finding: Finding) -> str:
+    """What to do about a finding; empty = nothing."""
+    entry = catalog().kinds[finding.kind]
+    return _Filling(entry.words).sentence(entry.remedy, _values(finding))
+
+
+def whole_text(finding: Finding) -> str:
+    """A finding with its remedy, as a reason of a verdict."""
+    return " ".join(part for part in (text_of(finding), remedy_of(finding)) if part)
+
+
+def title_of(kind: FindingKind) -> str:
+    """Title of a kind of finding."""
+    return catalog().kinds[kind].title
+
+
+def headline(usability: str) -> str:
+    """The verdict in one line."""
+    return catalog().headlines[usability]
+
+
+def said(finding: Finding) -> dict[str, object]:
+    """A finding for files and pages: the record with its title, text and remedy."""
+    record: dict[str, object] = msgspec.to_builtins(finding)
+    return record | {
+        "title": title_of(finding.kind),
+        "text": text_of(finding),
+        "remedy": remedy_of(finding),
+    }
+
+
+def _values(finding: Finding) -> dict[str, Value]:
+    values = {name: value for name, value in finding.values.items() if _is_known(value)}
+    if finding.span_s is not None:
+        values["start_s"], values["end_s"] = finding.span_s
+    if finding.direction:
+        values["direction"] = finding.direction
+    if finding.sensor:
+        values["sensor"] = finding.sensor
+    return values
+
+
+def _is_known(value: Value) -> bool:
+    return not (isinstance(value, float) and math.isnan(value))
+
+
+class _Filling(string.Formatter):
+    """Fills values into a sentence of the catalog."""
+
+    def __init__(self, words: Mapping[str, str]) -> None:
+        self._words = words
+
+    def sentence(self, one: str | Sentence, values: Mapping[str, Value]) -> str:
+        """The sentence, or nothing where a value is missing."""
+        if isinstance(one, Sentence):
+            if one.given and not values.get(one.given):
+                return ""
+            one = one.text
+        named = {name for _, name, _, _ in self.parse(one) if name}
+        return self.vformat(one, (), values) if named <= values.keys() else ""
+
+    def format_field(self, value: Any, format_spec: str) -> str:
+        """One value in its format."""
+        match format_spec:
+            case "length":
+                return _length(value)
+            case "percent" | "percent0":
+                return f"{100.0 * value:.{0 if format_spec.endswith('0') else 1}f} %"
+            case "deg" | "deg1" | "deg3":
+                return f"{math.degrees(value):.{_DEGREE_DIGITS[format_spec]}f}°"
+            case "count":
+                return f"{value:,}".replace(",", "\u202f")
+            case "word":
+                return self._words.get(value) or catalog().words.get(value, value)
+        return super().format_field(value, format_spec)
+
+
+def _length(value_m: float) -> str:
+    if not math.isfinite(value_m):
+        return "–"
+    return f"{100.0 * value_m:.1f} cm" if value_m < 1.0 else f"{value_m:.2f} m"

@@ -1,0 +1,102 @@
+"""The catalog has words for every kind of finding, and only for values that are known."""
+
+import re
+from pathlib import Path
+
+import pytest
+
+from recon4.errors import ConfigError
+from recon4.findings.explain import explained, listed, markdown
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.wording import Sentence, catalog, said, text_of, whole_text
+
+ROOT = Path(__file__).parents[3]
+SOURCES = [
+    path
+    for path in (ROOT / "recon4").rglob("*.py")
+    if path != ROOT / "recon4" / "findings" / "kinds.py"
+]
+
+
+@pytest.mark.parametrize("kind", list(FindingKind))
+def test_each_kind_has_words_and_says_how_it_is_detected(kind):
+    entry = catalog().kinds[kind]
+
+    assert entry.title and entry.text and entry.meaning and entry.detection
+    assert kind.name == kind.value.replace("-", "_")
+
+
+@pytest.mark.parametrize("kind", list(FindingKind))
+def test_each_kind_is_found_by_some_witness(kind):
+    assert any(
+        re.search(rf"FindingKind\.{kind.name}\b", path.read_text("utf-8")) for path in SOURCES
+    )
+
+
+def test_a_sentence_needs_the_values_that_it_quotes():
+    lost = {"lost": 3, "multiframes": 60, "ratio": 0.05}
+    here = Finding(
+        kind=FindingKind.TRACKING_LOST, level=Level.CHECK, values=lost | {"first_s": 2.0}
+    )
+    held = Finding(
+        kind=FindingKind.TRACKING_LOST, level=Level.CHECK, values=here.values | {"held": True}
+    )
+
+    assert text_of(here) == (
+        "Tracking was lost in 3 of 60 multiframes (5.0 %), first 2.0 s after the start."
+    )
+    assert text_of(held) == f"{text_of(here)} What was registered around them holds the map."
+
+
+def test_a_value_that_is_no_number_is_not_quoted():
+    values = {"end_m": float("nan"), "largest_m": 1.0}
+
+    assert text_of(Finding(kind=FindingKind.CORRECTION, level=Level.NOTE, values=values)) == (
+        "Correction by the graph."
+    )
+
+
+def test_lengths_ratios_and_words_have_their_formats():
+    near = {"end_m": 0.123, "largest_m": 1.5}
+    moved = Finding(kind=FindingKind.CORRECTION, level=Level.NOTE, values=near)
+    clock = Finding(
+        kind=FindingKind.IMU_CLOCK, level=Level.CHECK,
+        values={"size_ms": 12.34, "sd_ms": 0.5, "way": "behind"},
+    )  # fmt: skip
+
+    assert "by 12.3 cm and no pose by more than 1.50 m" in text_of(moved)
+    assert "12.3 ms ± 0.5 ms behind that of the LiDARs" in text_of(clock)
+
+
+def test_a_remedy_follows_the_text_and_stands_by_itself_in_the_summary():
+    finding = Finding(kind=FindingKind.LOOPS_NONE, level=Level.CHECK)
+    record = said(finding)
+
+    assert whole_text(finding) == f"{record['text']} {record['remedy']}"
+    assert record["kind"] == "LOOPS-NONE" and record["level"] == "check"
+
+
+def test_conditions_name_values_that_some_witness_states():
+    code = "".join(path.read_text("utf-8") for path in SOURCES)
+    names = {
+        one.given
+        for entry in catalog().kinds.values()
+        for one in entry.text
+        if isinstance(one, Sentence) and one.given
+    }
+
+    assert {name for name in names if f'"{name}"' not in code} == set()
+
+
+def test_every_code_is_explained_and_a_wrong_one_gets_the_nearest():
+    assert "fixes follow the velocity" in " ".join(explained("gnss-clock").split())
+    assert len(listed().splitlines()) == len(FindingKind)
+    with pytest.raises(ConfigError, match="GNSS-CLOCK"):
+        explained("GNSS-CLOK")
+
+
+def test_the_page_of_the_findings_is_the_catalog():
+    page = (ROOT / "docs" / "findings.md").read_text("utf-8")
+
+    assert page == markdown(), "run make docs"
