@@ -209,3 +209,21 @@ def test_a_recording_in_use_is_not_deleted_and_the_reason_stays(server, page):
     page.get_by_role("dialog").get_by_role("button", name="Delete").click()
 
     expect(page.get_by_role("rowheader", name="walk-0123456789ab")).to_have_count(0)
+
+
+@looks("phone dark")
+def test_a_job_that_ended_early_offers_other_settings(server, page, screenshot):
+    recording = recording_with_gate(server.root / "walk")
+    job = server.start("hall", recording)
+    server.wait_at_gate(job)
+    server.post(f"/api/jobs/{job}/cancel")
+    server.wait_state(job, "cancelled")
+    leave_out_viewer(page)
+    page.goto(f"{server.url}/projects/hall/")
+
+    page.get_by_role("button", name="Other settings…").tap()
+
+    expect(page.locator("new-job input[name=recording]")).to_have_value(str(recording))
+    expect(page.get_by_label("Preset")).to_be_visible()
+    fits(page)
+    screenshot(page, "remedy-other-settings")

@@ -115,8 +115,11 @@ def test_room_is_asked_for_again_when_the_turn_comes(tmp_path):
         request.write_text(request.read_text().replace("2147483648", str(1 << 60)))
         worker = [process.args[0], "-m", "app.jobs.worker", str(request.parent)]
         subprocess.run(worker, check=True, capture_output=True)
+        full = server.get(f"/api/jobs/{job}").json()
 
     outcome = (request.parent / "outcome.json").read_text()
+    assert first["remedy"] is None
+    assert full["remedy"]["page"] == "/storage"
     assert "walk.pcap" in first["job"]["note"]
     assert "no space: this job needs about" in outcome
 

@@ -175,7 +175,7 @@ def test_lines_without_angles_of_the_head_are_refused(tmp_path):
 def test_lines_need_a_rig(tmp_path):
     walk = write_walk(tmp_path / "walk")
 
-    with pytest.raises(ConfigError, match="need a rig file with a sensor of kind profiler"):
+    with pytest.raises(ConfigError, match="need a rig with a sensor of kind profiler"):
         read([walk], tmp_path / "out", None)
 
 
