@@ -289,7 +289,7 @@ def _refine_lines(
     return found.save(context.out)
 
 
-FRAMES = Stage("frames", 26, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 27, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     37,

@@ -198,9 +198,11 @@ def lidar_streams(
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
     used = [one for one in found if not one.why_not]
     if unread := unread_text(bag.topics):
-        no_lidar = all(one.is_camera for one in used)
-        (report.warn if no_lidar else report.derive)(unread)
-    if len(used) < len(found):
+        named = {settings.lidar_topic, *by_rig}
+        lidars = [one for one in used if one.is_measured or one.topic.name in named]
+        (report.derive if lidars else report.warn)(unread)
+        used = lidars  # a map or a depth camera does not stand in for the LiDAR
+    if used and len(used) < len(found):
         names = ", ".join(one.topic.name for one in used)
         others = ", ".join(f"{one.topic.name} ({one.why_not})" for one in found if one.why_not)
         report.derive(f"LiDAR: {names} is read, not {others}")

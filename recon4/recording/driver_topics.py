@@ -47,6 +47,8 @@ def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
     listed += " …" * (len(topics) > _NAMES_LISTED)
     kinds = ", ".join(short_type(kind) for kind in (CLOUD, SCAN, LASER_SCAN))
     why = unread_text(topics) or f"read are {kinds}"
+    if any(topic.type == CLOUD and topic.messages for topic in topics):
+        why += "; the clouds are of a depth camera or a map (--set ingest.lidar_topic reads one)"
     return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
 
 

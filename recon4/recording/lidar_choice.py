@@ -55,6 +55,11 @@ class CloudTopic:
         return last_name(self.frame) in WORLD_FRAMES
 
     @property
+    def is_measured(self) -> bool:
+        """Whether nothing shows that the points are of a depth camera or a map."""
+        return not self.is_camera and not self.is_placed
+
+    @property
     def detail(self) -> int:
         """How much of what a LiDAR measures is there: times and rings of the points.
 

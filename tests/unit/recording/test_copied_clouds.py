@@ -178,20 +178,29 @@ def test_a_bag_without_any_lidar_says_which_topics_are_read(tmp_path):
     )
 
 
-def test_a_depth_camera_beside_a_lidar_that_is_not_read_is_a_warning(tmp_path):
-    def camera(bag, t_ns, k):
-        v, u = np.mgrid[-20:20, -30:30] / 40.0
-        axes = {"x": 2.0 * u, "y": 2.0 * v, "z": np.full(u.shape, 2.0), "rgb": np.zeros(u.shape)}
-        bag.frame = "camera_depth_optical_frame"
-        table = {name: axis.astype(np.float32).ravel() for name, axis in axes.items()}
-        bag.cloud("/camera/points", t_ns, table)
+def camera(bag, t_ns, k):
+    v, u = np.mgrid[-20:20, -30:30] / 40.0
+    axes = {"x": 2.0 * u, "y": 2.0 * v, "z": np.full(u.shape, 2.0), "rgb": np.zeros(u.shape)}
+    bag.frame = "camera_depth_optical_frame"
+    table = {name: axis.astype(np.float32).ravel() for name, axis in axes.items()}
+    bag.cloud("/camera/points", t_ns, table)
 
-    kind = "livox_ros_driver/msg/CustomMsg"
 
-    _, beside_camera = opened(write(tmp_path, driver(kind), camera))
-    (tmp_path / "b").mkdir()
-    _, beside_lidar = opened(write(tmp_path / "b", driver(kind), lidar()))
+@pytest.mark.parametrize("others", [(camera,), (registered,), (camera, registered)])
+def test_no_camera_or_map_stands_in_for_a_lidar_that_is_not_read(tmp_path, others):
+    path = write(tmp_path, driver("livox_ros_driver/msg/CustomMsg"), *others)
 
-    assert any("/livox/lidar is of a LiDAR" in text for text in beside_camera.warnings)
-    assert not any("is of a LiDAR" in text for text in beside_lidar.warnings)
-    assert any("/livox/lidar is of a LiDAR" in text for text in beside_lidar.derived)
+    with pytest.raises(EmptyRecording, match=r"set xfer_format to 0.*ingest\.lidar_topic"):
+        opened(path)
+
+    topic = "/camera/points" if camera in others else "/cloud_registered"
+    settings = IngestSettings(lidar_topic=topic)
+    found = BagRecording([path], None, settings=settings, report=ImportReport())
+    assert [sensor.topic for sensor in found.rig.sensors] == [topic]
+
+
+def test_a_lidar_in_messages_of_its_driver_beside_one_that_is_read_is_no_warning(tmp_path):
+    _, report = opened(write(tmp_path, driver("livox_ros_driver/msg/CustomMsg"), lidar()))
+
+    assert not any("is of a LiDAR" in text for text in report.warnings)
+    assert any("/livox/lidar is of a LiDAR" in text for text in report.derived)
