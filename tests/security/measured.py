@@ -30,8 +30,17 @@ class Outcome:
     refused: bool
     """The error is one of ours."""
     seconds: float
+    """Time of the processor: a busy computer fails no test."""
     peak_bytes: int
     """Resident memory at its highest, beyond that before the call."""
+
+
+def assert_refused(outcome: Outcome, words: str) -> None:
+    assert outcome.refused, f"{outcome.error}: {outcome.words}"
+    assert words in outcome.words
+    assert len(outcome.words) < 1000
+    assert outcome.seconds <= DEADLINE_S
+    assert outcome.peak_bytes <= LIMIT_BYTES
 
 
 class MeasuredChild:
@@ -84,7 +93,7 @@ def _measure(function: Callable[..., object], arguments: tuple[Any, ...]) -> Out
     from recon4.errors import Recon4Error
 
     Path("/proc/self/clear_refs").write_text("5", "ascii")  # the peak starts from here
-    before, start = _status("VmRSS"), time.monotonic()
+    before, start = _status("VmRSS"), time.process_time()
     error: BaseException | None = None
     try:
         found = function(*arguments)
@@ -96,7 +105,7 @@ def _measure(function: Callable[..., object], arguments: tuple[Any, ...]) -> Out
         type(error).__name__ if error else "",
         str(error) if error else "",
         isinstance(error, Recon4Error),
-        time.monotonic() - start,
+        time.process_time() - start,
         _status("VmHWM") - before,
     )
 

@@ -28,6 +28,7 @@ from tests.security.capture_bombs import (
     pcapng_short_block,
     pcapng_sparse,
 )
+from tests.security.chunk_bombs import db3_many_files, db3_many_messages
 from tests.security.database_bombs import (
     db3_blob,
     db3_cycle,
@@ -107,6 +108,8 @@ BOMBS: dict[str, tuple[Callable[[Path], None], ...]] = {
         metadata_indents,
         metadata_sparse,
         metadata_file_zstd,
+        db3_many_messages,
+        db3_many_files,
     ),
     "pcap": (pcap_sparse, pcap_tiny_datagrams, pcap_many_senders),
     "pcapng": (pcapng_short_block, pcapng_long_block, pcapng_interfaces, pcapng_sparse),

@@ -35,7 +35,13 @@ from recon4.store.arrays import load_trajectory
 from recon4.store.frames import INDEX, FrameStore
 from tests.security.fuzz import seeds_clouds as clouds
 from tests.security.fuzz import seeds_tables as tables
-from tests.security.measured import DEADLINE_S, LIMIT_BYTES, MeasuredChild, Outcome, measured_child
+from tests.security.measured import (
+    DEADLINE_S,
+    LIMIT_BYTES,
+    MeasuredChild,
+    assert_refused,
+    measured_child,
+)
 
 SPARSE = 7 << 30
 _PCD = """VERSION 0.7
@@ -74,14 +80,6 @@ def sparse(path: Path, head: bytes | str, size: int = SPARSE) -> Path:
         file.write(head.encode() if isinstance(head, str) else head)
         file.truncate(size)
     return path
-
-
-def assert_refused(outcome: Outcome, words: str) -> None:
-    assert outcome.refused, f"{outcome.error}: {outcome.words}"
-    assert words in outcome.words
-    assert len(outcome.words) < 1000
-    assert outcome.seconds <= DEADLINE_S
-    assert outcome.peak_bytes <= LIMIT_BYTES
 
 
 def kitti(path: Path) -> object:

@@ -25,6 +25,7 @@ from recon4.recording.formats.limits import (
     MAX_MESSAGE_BYTES,
     MAX_RATIO,
     RATIO_FLOOR_BYTES,
+    Budget,
     RecordFile,
     decompress_partly,
 )
@@ -106,6 +107,7 @@ class Bag:
         self._origins: list[Path] = []
         """Of each source: its file, or the folder whose description names it."""
         self._compressed_messages = False
+        self._stored_bytes = 0
         self.ros1 = False
         self.topics: tuple[BagTopic, ...] = ()
         self.t_first_ns, self.t_last_ns = 0, 0
@@ -141,7 +143,8 @@ class Bag:
         Raises:
             CorruptFile: If not one chunk of a file can be read.
         """
-        streams = [self._of_source(source, set(topics)) for source in self._sources]
+        budget = Budget(self._stored_bytes)
+        streams = [self._of_source(source, set(topics), budget) for source in self._sources]
         yield from heapq.merge(*streams, key=lambda message: message.t_ns)
 
     def decode(self, message: BagMessage) -> Any | None:
@@ -220,7 +223,8 @@ class Bag:
         """Decompressed copies of compressed files, while the bag is open."""
         needed = sum(file.stat().st_size for file in files)
         folder = self._stack.enter_context(scratch_folder(needed))
-        return tuple(decompress_file(file, folder) for file in files)
+        budget = Budget(needed)
+        return tuple(decompress_file(file, folder, budget) for file in files)
 
     def _open_file(self, path: Path) -> None:
         if is_bag1(path):
@@ -234,6 +238,7 @@ class Bag:
         else:
             self._sources.append(self._mcap(self._stack.enter_context(RecordFile(path))))
         self._origins.append(path)
+        self._stored_bytes += path.stat().st_size
 
     def _bag1(self, file: RecordFile) -> StorageFile:
         try:
@@ -301,7 +306,9 @@ class Bag:
 
     # -- reading
 
-    def _of_source(self, source: StorageFile, topics: set[str]) -> Iterator[BagMessage]:
+    def _of_source(
+        self, source: StorageFile, topics: set[str], budget: Budget
+    ) -> Iterator[BagMessage]:
         source.report = self.report
         for topic, kind, t_ns, data in source.messages(topics):
             if not self._compressed_messages:
@@ -309,6 +316,7 @@ class Bag:
                 continue
             most = min(MAX_MESSAGE_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * len(data)))
             plain = decompress_partly("zstd", data, most=most, where=topic)
+            budget.charge(len(plain), f"{self._paths[0].name}: {topic}")
             yield BagMessage(topic, kind, t_ns, plain)
 
 

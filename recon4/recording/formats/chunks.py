@@ -179,7 +179,7 @@ def load_chunk(
         CorruptFile: If bytes are missing or differ from the checksum.
     """
     where = f"{file.name}: chunk at byte {chunk.offset}"
-    file.charge(chunk.size, where)
+    file.budget.charge(chunk.size, where)
     file.seek(chunk.offset)
     data = file.take(chunk.length, "chunk", most=MAX_CHUNK_BYTES)
     if chunk.partial:

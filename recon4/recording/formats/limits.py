@@ -20,8 +20,34 @@ MAX_RATIO = 200
 """Largest expansion of a compressed byte, beyond `RATIO_FLOOR_BYTES`."""
 RATIO_FLOOR_BYTES = 16 << 20
 TOTAL_FLOOR_BYTES = 256 << 20
-"""As `RATIO_FLOOR_BYTES`, for all chunks of a file."""
+"""As `RATIO_FLOOR_BYTES`, for all that a recording has compressed, see `Budget`."""
 _PIECE = 1 << 20
+
+
+class Budget:
+    """Bytes that the chunks, messages or files of a recording may become in one pass through it.
+
+    Each of them alone may be harmless: ten thousand of 15 MiB are not.
+    """
+
+    def __init__(self, compressed: int) -> None:
+        """Start a pass through files of ``compressed`` bytes."""
+        self._compressed = compressed
+        self._most = max(TOTAL_FLOOR_BYTES, MAX_RATIO * compressed)
+        self._spent = 0
+
+    def charge(self, size: int, where: str) -> None:
+        """Count decompressed bytes.
+
+        Raises:
+            CorruptFile: If there are more than `MAX_RATIO` times the compressed ones.
+        """
+        self._spent += size
+        if self._spent > self._most:
+            raise CorruptFile(
+                f"{where}: expected {self._compressed} compressed bytes to become at most "
+                f"{self._most} in all, got more"
+            )
 
 
 class RecordFile:
@@ -39,7 +65,7 @@ class RecordFile:
         self.name = path.name
         self._file = path.open("rb")
         self.size = os.fstat(self._file.fileno()).st_size
-        self._inflated = 0
+        self.budget = Budget(self.size)
         if not self.size:
             self._file.close()
             raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
@@ -91,22 +117,8 @@ class RecordFile:
         return self._file.read(length)
 
     def restart_budget(self) -> None:
-        """Start a new pass through the file, see `charge`."""
-        self._inflated = 0
-
-    def charge(self, size: int, where: str) -> None:
-        """Count the decompressed bytes of a chunk.
-
-        Raises:
-            CorruptFile: If all chunks of one pass become more than `MAX_RATIO` times the file.
-        """
-        self._inflated += size
-        most = max(TOTAL_FLOOR_BYTES, MAX_RATIO * self.size)
-        if self._inflated > most:
-            raise CorruptFile(
-                f"{where}: expected all chunks to become at most {most} bytes, {MAX_RATIO} times "
-                f"the file, got more"
-            )
+        """Start a new pass through the file."""
+        self.budget = Budget(self.size)
 
     def uint(self, size: int, what: str) -> int:
         """Read an unsigned little-endian integer of ``size`` bytes."""

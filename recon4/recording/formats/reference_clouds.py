@@ -21,13 +21,15 @@ from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
 from recon4.recording.formats.cloud_files import cloud_chunks, cloud_fields, cloud_rows
 from recon4.recording.formats.cloud_headers import is_ply
-from recon4.recording.formats.e57_xml import check_e57_xml
+from recon4.recording.formats.e57_points import E57Points
 from recon4.recording.formats.las_check import check_las
 from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
 
 CHUNK = 1_000_000
 MAX_POINTS = 400_000_000
+MAX_POINTS_A_BYTE, FREE_POINTS = 40, 5_000_000
+"""Most points a byte of a compressed file, beyond some."""
 MAX_BYTES = 20 << 30
 
 
@@ -146,8 +148,11 @@ def _las(path: Path) -> Iterator[Array]:
     import laspy
 
     with open_regular(path) as raw:
-        promised, got = check_las(raw, path.name).points, 0
+        header, got = check_las(raw, path.name), 0
+        promised = header.points
         _refuse_many(promised, path.name)
+        if header.compressed:
+            _refuse_promise(path, promised)
         raw.seek(0)
         with (
             _decoding(path.name),
@@ -180,32 +185,21 @@ def _refuse_many(points: int, name: str) -> None:
 
 
 def _refuse_promise(path: Path, promised: int) -> None:
-    """Refuse a header with more points than a compressed file of this size can have."""
-    most = path.stat().st_size * 40  # a LAZ point takes a byte or more; 40 is generous
-    if promised > min(MAX_POINTS, most):
-        raise CorruptFile(f"{path.name}: {promised} points promised in {path.stat().st_size} bytes")
+    """Refuse more points than a compressed file of this size has unless all are the same.
+
+    A measured point takes a byte or more, a repeated one next to nothing.
+    """
+    size = path.stat().st_size
+    most = max(FREE_POINTS, MAX_POINTS_A_BYTE * size)
+    if promised > most:
+        raise CorruptFile(
+            f"{path.name}: expected at most {most} points in {size} compressed bytes, "
+            f"got {promised}"
+        )
 
 
 def _e57(path: Path) -> Iterator[Array]:
-    import pye57
-    from pye57.libe57 import E57Exception
-
-    check_e57_xml(path)
-    try:
-        file = pye57.E57(str(path))
-        for index in range(file.scan_count):
-            header = file.get_header(index)
-            if not header.point_count:
-                continue
-            _refuse_promise(path, header.point_count)
-            scan = file.read_scan(index, ignore_missing_fields=True, transform=True)
-            columns = [scan[f"cartesian{axis}"] for axis in "XYZ"]
-            if len(columns[0]) > header.point_count:
-                raise CorruptFile(f"{path.name}: scan {index} has more points than promised")
-            for first in range(0, len(columns[0]), CHUNK):
-                rows = slice(first, first + CHUNK)
-                yield np.column_stack([column[rows] for column in columns]).astype(np.float64)
-    except CorruptFile:
-        raise
-    except (E57Exception, RuntimeError, ValueError, KeyError, AttributeError, OSError) as error:
-        raise CorruptFile(f"{path.name}: not a sound E57 file: {error}") from error
+    points = E57Points(path)
+    _refuse_many(points.promised, path.name)
+    _refuse_promise(path, points.promised)
+    yield from points.chunks(CHUNK)

@@ -15,7 +15,12 @@ from recon4.recording.report import ImportReport
 
 MAX_LOG_BYTES = 4 << 30
 """A log of eight hours at 40 Hz with 1081 beams has 8 GB; decompressed logs are smaller."""
+MAX_LOG_LINES = 30_000_000
+"""Such a log has 12 million; more are empty lines that keep a reader busy."""
 _PIECE = 1 << 20
+_COMPRESSED_PIECE = 1 << 16
+"""What is behind the end of a stream is copied: with larger pieces a file of many short streams
+takes minutes."""
 _BZIP2, _GZIP = b"BZh", b"\x1f\x8b"
 
 
@@ -23,8 +28,9 @@ def log_lines(path: Path, report: ImportReport) -> Iterator[bytes]:
     """Lines without their ends; what is left of a file that is cut off is read and reported.
 
     Raises:
-        CorruptFile: If the file cannot be read, has a line that is too long or becomes larger than
-            `MAX_LOG_BYTES`, or `MAX_RATIO` times its compressed size.
+        CorruptFile: If the file cannot be read, has a line that is too long, more than
+            `MAX_LOG_LINES`, or becomes larger than `MAX_LOG_BYTES`, or `MAX_RATIO` times its
+            compressed size.
     """
     with open_regular(path) as file:
         rest, number, total = b"", 0, 0
@@ -37,6 +43,8 @@ def log_lines(path: Path, report: ImportReport) -> Iterator[bytes]:
             for line in lines:
                 number += 1
                 yield line
+            if number > MAX_LOG_LINES:
+                raise CorruptFile(f"{path.name}: expected at most {MAX_LOG_LINES} lines, got more")
             if len(rest) > MAX_LINE_BYTES:
                 raise CorruptFile(
                     f"{path.name}: line {number + 1}: expected at most {MAX_LINE_BYTES} bytes, "
@@ -119,7 +127,7 @@ def _decompressed(
             return
         data = decoder.unused_data
         if len(data) < len(magic):
-            data += file.read(_PIECE)
+            data += file.read(_COMPRESSED_PIECE)
         if data.startswith(magic):
             continue
         if data.strip(b"\0"):
@@ -135,7 +143,7 @@ def _one_stream(
     """The content of a stream that begins with ``data``; it may end without the stream's end."""
     while not decoder.eof:
         if decoder.needs_input and not data:
-            data = file.read(_PIECE)
+            data = file.read(_COMPRESSED_PIECE)
             if not data:
                 report.outcome = "lossy"
                 report.count("files_cut")

@@ -5,20 +5,24 @@ from __future__ import annotations
 from pathlib import Path
 
 from recon4.errors import CorruptFile
-from recon4.recording.formats.limits import MAX_CHUNK_BYTES, MAX_RATIO, RATIO_FLOOR_BYTES
+from recon4.recording.formats.limits import MAX_CHUNK_BYTES, Budget
 
 _PIECE = 4 << 20
 
 
-def decompress_file(path: Path, folder: Path) -> Path:
+def decompress_file(path: Path, folder: Path, budget: Budget) -> Path:
     """Decompress a zstd file into a folder; a truncated file as far as possible.
 
+    Args:
+        path: The file.
+        folder: Gets the copy.
+        budget: Of all files of the bag.
+
     Raises:
-        CorruptFile: If it becomes more than 200 times its size, or is no zstd file.
+        CorruptFile: If it is no zstd file, or the files become too many bytes.
     """
     import zstandard
 
-    most = max(RATIO_FLOOR_BYTES, MAX_RATIO * path.stat().st_size)
     copy = folder / path.stem
     decoder = zstandard.ZstdDecompressor(max_window_size=MAX_CHUNK_BYTES)
     written = 0
@@ -26,11 +30,7 @@ def decompress_file(path: Path, folder: Path) -> Path:
         try:
             while piece := stream.read(_PIECE):
                 written += len(piece)
-                if written > most:
-                    raise CorruptFile(
-                        f"{path.name}: expected {path.stat().st_size} compressed bytes to become "
-                        f"at most {most}, got more"
-                    )
+                budget.charge(len(piece), path.name)
                 out.write(piece)
         except zstandard.ZstdError as error:
             if not written:
