@@ -28,8 +28,7 @@ from recon4.recording.kinds import (
     RECORDINGS,
     RecordingKind,
     bag_paths,
-    located,
-    recognize,
+    located_kind,
 )
 from recon4.recording.laser2d import is_laser2d, read_laser_recording
 from recon4.recording.laser_mount import mounted_scans
@@ -53,13 +52,13 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
         RecordingError: If it cannot be read or is nothing that recon4 knows.
     """
     settings = settings or IngestSettings()
-    given, path = path, located(path)
-    kind = recognize(path)
+    given = path
+    path, kind = located_kind(path)
     info = RecordingInfo(
         path=path.relative_to(given.parent).as_posix(), kind=str(kind), bytes=_size(path)
     )
     planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
-    if kind in planar or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path)):
+    if kind in planar or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path, kind)):
         if kind is RecordingKind.PCAP:
             info = replace(info, kind=SCAN_CAPTURE)
         return _describe_laser2d(info, path, settings)

@@ -87,7 +87,8 @@ def read_head(
             break
     for row, parts in shots.items():
         t_ns, xyz = (np.concatenate([getattr(p, name) for p in parts]) for name in ("t_ns", "xyz"))
-        head.rotation_hz[row] = rotation_rate(t_ns, xyz)
+        first = t_ns <= t_ns[0] + _HEAD_NS  # a pause may follow the first of them
+        head.rotation_hz[row] = rotation_rate(t_ns[first], xyz[first])
     return head
 
 

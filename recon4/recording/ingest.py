@@ -192,11 +192,12 @@ def ingest(
 def _sort_out(sources: Sources) -> Sources:
     """The sources with CSV files among the recordings moved to their place."""
     imu, gnss = sources.imu, sources.gnss
-    kinds = {path: recognize(path) for path in sources.recordings}
-    for path, kind in kinds.items():
-        if kind is RecordingKind.IMU_CSV and imu is None and len(kinds) > 1:
+    files = [path for path in sources.recordings if not path.is_dir()]
+    for path in files if len(sources.recordings) > 1 else ():
+        kind = recognize(path)
+        if kind is RecordingKind.IMU_CSV and imu is None:
             imu = path
-        if kind is RecordingKind.GNSS_CSV and gnss is None and len(kinds) > 1:
+        if kind is RecordingKind.GNSS_CSV and gnss is None:
             gnss = path
     recordings = tuple(path for path in sources.recordings if path not in (imu, gnss))
     return Sources(recordings, sources.rig, imu, gnss)

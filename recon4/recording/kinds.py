@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import cached_property
 from pathlib import Path
 
 from recon4.errors import EmptyRecording, RecordingError, UnknownFormat
@@ -76,17 +77,34 @@ _OTHERS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FolderContents:
-    """What in a folder may be a recording."""
+    """What in a folder may be a recording, as it was when it was listed."""
 
     folder: Path
     kinds: dict[RecordingKind, list[str]]
     """Kinds of recordings directly in it, each with the names of its files."""
     meshes: tuple[str, ...]
     """Models of surfaces directly in it: no recordings."""
-    folders: tuple[Path, ...]
-    """Subfolders that are recordings."""
+
+    @cached_property
+    def folders(self) -> tuple[Path, ...]:
+        """Subfolders that are recordings; they are looked through when somebody asks."""
+        found: list[Path] = []
+        _collect_folders(self.folder, found, depth=_DEPTH)
+        return tuple(found)
+
+    @property
+    def kind(self) -> RecordingKind:
+        """The kind of recording that the folder is.
+
+        Raises:
+            UnknownFormat: If it is none, or several.
+            EmptyRecording: If it is empty.
+        """
+        if len(self.kinds) == 1:
+            return next(iter(self.kinds))
+        raise _no_single_recording(self)
 
     def candidates(self) -> tuple[Path, ...]:
         """Files and subfolders that can be given as a recording on their own."""
@@ -118,7 +136,7 @@ def recognize(path: Path) -> RecordingKind:
     if not path.exists():
         raise RecordingError(f"{path} does not exist")
     try:
-        return _folder_kind(path) if path.is_dir() else _file_kind(path)
+        return contents_of(path).kind if path.is_dir() else _file_kind(path)
     except OSError as error:
         raise RecordingError(f"{path} cannot be read: {error.strerror or error}") from error
 
@@ -183,11 +201,25 @@ _BY_CONTENT = (
 
 def located(path: Path) -> Path:
     """The folder itself, or the only recording in its subfolders if it holds none itself."""
+    return _located(contents_of(path)) if path.is_dir() else path
+
+
+def located_kind(path: Path) -> tuple[Path, RecordingKind]:
+    """The path as `located` finds it, and its kind; a folder is listed once.
+
+    Raises:
+        RecordingError: As `recognize`.
+    """
     if not path.is_dir():
-        return path
+        return path, recognize(path)
     contents = contents_of(path)
+    found = _located(contents)
+    return found, contents.kind if found == path else recognize(found)
+
+
+def _located(contents: FolderContents) -> Path:
     alone = not contents.kinds and len(contents.folders) == 1
-    return contents.folders[0] if alone else path
+    return contents.folders[0] if alone else contents.folder
 
 
 def located_sources(sources: Sources) -> Sources:
@@ -207,15 +239,13 @@ def located_elsewhere(sources: Sources) -> list[str]:
 
 
 def contents_of(folder: Path) -> FolderContents:
-    """Find the recordings of a folder and, to a depth of `_DEPTH`, of its subfolders.
+    """List a folder: its recordings and, to a depth of `_DEPTH`, those of its subfolders.
 
     Raises:
         OSError: If the folder cannot be listed.
     """
     kinds, meshes = _kinds_in(folder)
-    found: list[Path] = []
-    _collect_folders(folder, found, depth=_DEPTH)
-    return FolderContents(folder, kinds, tuple(meshes), tuple(found))
+    return FolderContents(folder, kinds, tuple(meshes))
 
 
 def _collect_folders(folder: Path, found: list[Path], *, depth: int) -> None:
@@ -235,29 +265,26 @@ def _collect_folders(folder: Path, found: list[Path], *, depth: int) -> None:
             _collect_folders(child, found, depth=depth - 1)
 
 
-def _folder_kind(path: Path) -> RecordingKind:
-    contents = contents_of(path)
-    kinds = contents.kinds
-    if len(kinds) == 1:
-        return next(iter(kinds))
+def _no_single_recording(contents: FolderContents) -> RecordingError:
+    path, kinds = contents.folder, contents.kinds
     names = sorted(child.name for child in path.iterdir())
     if not names:
-        raise EmptyRecording(f"{path.name}: the folder is empty")
+        return EmptyRecording(f"{path.name}: the folder is empty")
     candidates = contents.candidates()
     if kinds:
         held = ", ".join(f"{files[0]} ({kind})" for kind, files in kinds.items())
-        raise UnknownFormat(
+        return UnknownFormat(
             f"{path.name}: holds recordings of {len(kinds)} kinds: {held}; give one",
             candidates=candidates,
         )
     if candidates:
         held = ", ".join(str(one.relative_to(path)) for one in candidates[:8])
-        raise UnknownFormat(
+        return UnknownFormat(
             f"{path.name}: holds {len(candidates)} recordings: {held}"
             f"{' …' if len(candidates) > 8 else ''}; give one",
             candidates=candidates,
         )
-    raise UnknownFormat(
+    return UnknownFormat(
         f"{path.name}: no recording in this folder; it has {', '.join(names[:8])}"
         f"{' …' if len(names) > 8 else ''}; {_known()}"
     )

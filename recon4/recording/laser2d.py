@@ -39,15 +39,19 @@ _MOUNTING_SD = 1e-3
 """Spread of the pose of the laser on the robot [m, rad] that is only rounding."""
 
 
-def is_laser2d(path: Path) -> bool:
+def is_laser2d(path: Path, kind: RecordingKind | None = None) -> bool:
     """Whether a path is a recording of a 2-D laser without any LiDAR or profiler.
+
+    Args:
+        path: A file or folder.
+        kind: Of the recording; None = not known yet.
 
     Raises:
         RecordingError: If it cannot be read.
     """
     if path.is_file() and (is_carmen(path) or is_laser_table(path)):
         return True
-    kind = recognize(path)
+    kind = kind or recognize(path)
     if kind is RecordingKind.PCAP:
         return is_scan_capture(pcap_files(path))
     if kind not in (RecordingKind.BAG1, RecordingKind.BAG2):

@@ -85,9 +85,11 @@ def open_recording(
         RecordingError: If it cannot be read.
         ConfigError: If the rig is wrong or cannot be chosen.
     """
-    kind = _one_kind(paths, rig)
-    for folder in filter(Path.is_dir, paths):
-        for text in contents_of(folder).passed_over():
+    folders = {path: contents_of(path) for path in paths if path.is_dir()}
+    kinds = [folders[path].kind if path in folders else recognize(path) for path in paths]
+    kind = _one_kind(paths, kinds, rig)
+    for contents in folders.values():
+        for text in contents.passed_over():
             report.derive(text)
     if kind is RecordingKind.PCAP:
         files = [f for path in paths for f in pcap_files(path)]
@@ -107,15 +109,22 @@ def open_recording(
         tables = LineTableRecording(LineTables.of(paths), rig, report=report)
         return Recording(kind, tables.rig, tables.read)
     files = [f for path in paths for f in bag_paths(path)]
-    with_profiler = _profiler_rig(files, rig, report)
-    if with_profiler is not None:
-        lines = LineRecording(files, with_profiler, report=report, settings=settings)
-        return Recording(kind, lines.rig, lines.read, lines.seconds)
-    bag = BagRecording(files, rig, settings=settings, report=report)
+    bag = _open_bags(files, rig, settings, report=report)
     return Recording(kind, bag.rig, bag.read, bag.seconds)
 
 
-def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
+def _open_bags(
+    files: Sequence[Path], rig: Rig | None, settings: IngestSettings, *, report: ImportReport
+) -> LineRecording | BagRecording:
+    with_profiler = _profiler_rig(files, rig, report)
+    if with_profiler is not None:
+        return LineRecording(files, with_profiler, report=report, settings=settings)
+    return BagRecording(files, rig, settings=settings, report=report)
+
+
+def _one_kind(
+    paths: Sequence[Path], kinds: Sequence[RecordingKind], rig: Rig | None
+) -> RecordingKind:
     """The kind of recordings that belong together and fit the rig.
 
     Raises:
@@ -124,7 +133,6 @@ def _one_kind(paths: Sequence[Path], rig: Rig | None) -> RecordingKind:
     """
     if not paths:
         raise ConfigError("no recording given")
-    kinds = [recognize(path) for path in paths]
     if RecordingKind.LINE_TABLES in kinds and set(kinds) <= TABLES:
         return RecordingKind.LINE_TABLES
     kind = kinds[0]

@@ -4,6 +4,7 @@ import pytest
 import trimesh
 
 from recon4.errors import UnknownFormat
+from recon4.recording import kinds
 from recon4.recording.folders import list_frames
 from recon4.recording.info import describe
 from recon4.recording.kinds import (
@@ -19,7 +20,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from tests.builders import room_cloud, write_pcd
-from tests.unit.recording.ingested import frame_folder, imu_csv
+from tests.unit.recording.ingested import frame_folder, imu_csv, run
 
 
 def test_a_folder_with_recordings_of_two_kinds_is_refused_and_both_are_named(tmp_path, pcap):
@@ -126,3 +127,23 @@ def test_info_names_samples_that_lie_beside_a_recording(tmp_path, pcap):
     for given in (tmp_path, tmp_path / "walk.pcap"):
         (text,) = (text for text in describe(given).missing if text.startswith("IMU"))
         assert "imu.csv beside it has them" in text and "command: --imu FILE" in text
+
+
+@pytest.mark.parametrize("command", ["info", "import"])
+def test_a_folder_of_many_files_is_listed_few_times(tmp_path, monkeypatch, command):
+    folder = frame_folder(tmp_path / "walk", [f"{k}.pcd" for k in range(3)])
+    listed = []
+    list_once = kinds._kinds_in
+
+    def counted(path):
+        listed.append(path)
+        return list_once(path)
+
+    monkeypatch.setattr(kinds, "_kinds_in", counted)
+
+    if command == "info":
+        describe(folder)
+    else:
+        run(folder, out=tmp_path / "frames")
+
+    assert len(listed) <= (2 if command == "info" else 1)
