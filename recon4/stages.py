@@ -304,15 +304,15 @@ CALIBRATION = Stage(
     _calibration,
     CalibrationFigures,
 )
-GRAPH = Stage("graph", 9, _MATCHING, _graph, GraphFigures)
+GRAPH = Stage("graph", 10, _MATCHING, _graph, GraphFigures)
 VERIFICATION = Stage(
-    "verification", 2, ("verification", "graph"), _verification, VerificationFigures
+    "verification", 3, ("verification", "graph"), _verification, VerificationFigures
 )
-REVIEW = Stage("review", 3, ("verification", "graph"), _review, ReviewFigures)
+REVIEW = Stage("review", 4, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 22, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 23, ("level", "gnss", "verification"), _level, LevelFigures)
 AUDITED = (
     "frames",
     "odometry",
@@ -335,7 +335,7 @@ LINE_ODOMETRY = Stage(
 """The stages of rigs with a profiler have the names of those of LiDARs, and other versions."""
 TURN_GRAPH = Stage(
     "graph",
-    101,
+    102,
     ("odometry", "lines", "graph", "planes", "registration"),
     _turn_graph,
     GraphFigures,

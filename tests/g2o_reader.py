@@ -13,7 +13,7 @@ import numpy as np
 from recon4.bounded import lines_limited, parse_float
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3, Array
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.pose_graph.relations import reverse
 
 _FIELDS = {"VERTEX_SE3:QUAT": 9, "EDGE_SE3:QUAT": 31, "VERTEX_SE2": 5, "EDGE_SE2": 12, "FIX": 2}
@@ -134,7 +134,14 @@ def _edge(tag: str, fields: Array, row_of: dict[int, int]) -> Edge:
         i, j = j, i
         T_i_j, information = reverse(T_i_j, information)
     kind = EdgeKind.ODOMETRY if j == i + 1 else EdgeKind.LOOP
-    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=Verdict.ACCEPTED, information=information)
+    return Edge(
+        i=i,
+        j=j,
+        T_i_j=T_i_j,
+        kind=kind,
+        information=information,
+        judgments=known_history(Verdict.ACCEPTED),
+    )
 
 
 def _information(tag: str, numbers: Array) -> Array:

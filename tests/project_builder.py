@@ -13,7 +13,7 @@ from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
 from recon4.model.figures import MapFigures
 from recon4.model.multiframe import Multiframe
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
@@ -139,7 +139,14 @@ def _edge(T: SE3, i: int, j: int, kind: EdgeKind) -> Edge:
     elif kind is EdgeKind.LOOP and i % 7 == 0:
         verdict = Verdict.UNVERIFIED
     T_i_j = T[i].inverse() @ T[j]
-    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=verdict, reason=reason, overlap=0.7)
+    return Edge(
+        i=i,
+        j=j,
+        T_i_j=T_i_j,
+        kind=kind,
+        overlap=0.7,
+        judgments=known_history(verdict, reason),
+    )
 
 
 def room_points(rng: np.random.Generator, count: int) -> np.ndarray:

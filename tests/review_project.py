@@ -19,7 +19,7 @@ from recon4 import stages
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import FrameFigures, GraphFigures
 from recon4.model.odometry_figures import OdometryFigures
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.trajectory import Trajectory
 from recon4.pipeline import Measurements, remake, run_from_review
 from recon4.pose_graph.files import save_graph
@@ -138,18 +138,30 @@ def _edge(T, i, j, kind, rng, off_m=None) -> Edge:
         T_i_j = SE3(T_i_j.R, T_i_j.t + np.array(off_m))
     sd = [0.002, 0.008] if kind is EdgeKind.LOOP else [0.001, 0.003]
     return Edge(
-        i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=Verdict.ACCEPTED,
-        overlap=0.8 - 0.003 * (i % 40), error_m=0.008 + 0.0003 * (i % 30), limit_m=0.07,
-        degeneracy=0.09, iterations=8, information=np.diag(1.0 / np.repeat(sd, 3) ** 2),
-    )  # fmt: skip
+        i=i,
+        j=j,
+        T_i_j=T_i_j,
+        kind=kind,
+        overlap=0.8 - 0.003 * (i % 40),
+        error_m=0.008 + 0.0003 * (i % 30),
+        limit_m=0.07,
+        degeneracy=0.09,
+        iterations=8,
+        information=np.diag(1.0 / np.repeat(sd, 3) ** 2),
+        judgments=known_history(Verdict.ACCEPTED),
+    )
 
 
 def _apart(T, i, j) -> Edge:
     """A pair that sees too little of each other to be registered."""
     return Edge(
-        i=i, j=j, T_i_j=T[i].inverse() @ T[j], kind=EdgeKind.LOOP, verdict=Verdict.REJECTED,
-        reason=Reason.OVERLAP, overlap=0.3,
-    )  # fmt: skip
+        i=i,
+        j=j,
+        T_i_j=T[i].inverse() @ T[j],
+        kind=EdgeKind.LOOP,
+        overlap=0.3,
+        judgments=known_history(Verdict.REJECTED, Reason.OVERLAP),
+    )
 
 
 def work(folder: JobFolder, progress: Progress) -> None:

@@ -15,12 +15,13 @@ from recon4.georeference.gnss_priors import (
     one_prior_per_node,
     usable_gnss_priors,
 )
-from recon4.model.pose_graph import PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import AUTOMATIC, Judge, Judgment, PoseGraph
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.pose_graph.robust import LOOP_NODES, optimize_gnc
 from recon4.pose_graph.solve import PosePriors, PositionPriors, Priors, optimize
+from recon4.pose_graph.verification import outlier_judgments, with_judgments
 from recon4.settings import GnssSettings
 
 _DRAWS = 400
@@ -180,7 +181,8 @@ def _place_by_priors(
         return _local(graph, why, samples=samples)
     graph = graph.with_poses(T_enu_map @ graph.T_map_body)
     rejected = _contradicting(graph, gnss_priors, near, settings=settings)
-    graph, used = _solve(_without(graph, rejected), gnss_priors, near, settings=settings)
+    graph = with_judgments(graph, rejected)
+    graph, used = _solve(graph, gnss_priors, near, settings=settings)
     return GeoreferenceResult(
         graph=graph,
         origin=origin,
@@ -281,28 +283,24 @@ def _solve(
 
 def _contradicting(
     graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
-) -> list[int]:
-    """Rows of edges that the robust solve with GNSS priors rejects.
+) -> dict[int, Judgment]:
+    """Judgments on the edges that the robust solve with GNSS priors rejects, by row.
 
     Outliers of the fixes are found by the walk without its loops: otherwise several wrong loops
     would reject the fixes that contradict them.
     """
     if not settings.judge_edges:
-        return []
-    short = tuple(e for e in graph.edges if e.decided_by != "auto" or abs(e.j - e.i) < LOOP_NODES)
+        return {}
+    short = tuple(
+        e for e in graph.edges if e.decided_by != AUTOMATIC or abs(e.j - e.i) < LOOP_NODES
+    )
     walk, used = _solve(graph.with_edges(short), gnss_priors, near, settings=settings)
     tilt = _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
     priors: tuple[Priors, ...] = (_positions(gnss_priors.take(used), settings), tilt)
     graph = graph.with_poses(walk.T_map_body)
-    weights = optimize_gnc(graph, fixed=(), priors=priors).weights
-    return [row for row, edge in enumerate(graph.edges) if edge.in_graph and weights[row] == 0.0]
-
-
-def _without(graph: PoseGraph, rows: list[int]) -> PoseGraph:
-    edges = list(graph.edges)
-    for row in rows:
-        edges[row] = edges[row].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
-    return graph.with_edges(tuple(edges))
+    robust = optimize_gnc(graph, fixed=(), priors=priors)
+    outliers = np.flatnonzero(graph.relations.in_graph & (robust.weights == 0.0)).tolist()
+    return outlier_judgments(robust, outliers, by=Judge.GNSS)
 
 
 def _positions(gnss_priors: GnssPriors, settings: GnssSettings) -> PositionPriors:

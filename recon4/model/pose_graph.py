@@ -59,9 +59,83 @@ class Reason(StrEnum):
     OPERATOR = "operator"
 
 
+class Judge(StrEnum):
+    """Who gave a verdict on an edge; the value is shown to users."""
+
+    ODOMETRY = "odometry"
+    """Consecutive nodes are joined without a test."""
+    SEARCH = "search"
+    """The registration of the pair."""
+    FREE_SPACE = "free space"
+    """Whether one visit has points where the other one saw through."""
+    PLACES = "neighboring places"
+    """The group of recognized places that agree on one correction."""
+    VERIFICATION = "verification"
+    """The alternative paths."""
+    ROBUST = "robust solve"
+    GNSS = "GNSS"
+    """The robust solve with the fixes."""
+    PERSON = "person"
+
+
+CHECKS_OF_THE_GRAPH = frozenset({Judge.VERIFICATION, Judge.ROBUST, Judge.GNSS})
+"""They judge only what the search accepted, and judge again whenever the graph changes."""
+
+
+class Measure(StrEnum):
+    """The figure that a judge compared with its limit; the value is its name in files."""
+
+    NONE = ""
+    OVERLAP = "overlap"
+    ERROR = "error_m"
+    MATCHES = "match_ratio"
+    DEGENERACY = "degeneracy"
+    SEEN_THROUGH = "seen_through"
+    """Fraction of the points of one node in the free space of the other, 0..1."""
+    CONFIRMED = "confirmed_nodes"
+    """Nodes along the path whose views fit the same correction."""
+    CONTRADICTED = "contradicted_nodes"
+    PATHS = "verification_m"
+    """Median translation difference to the alternative paths [m]."""
+    CHI2 = "chi2"
+    """Squared Mahalanobis residual."""
+
+
+AUTOMATIC = "auto"
+"""`Edge.decided_by` of automatic verdicts; no user may have this name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judgment:
+    """One verdict on an edge: who gave it, why, and by which figure."""
+
+    by: Judge
+    verdict: Verdict
+    reason: Reason = Reason.NONE
+    measure: Measure = Measure.NONE
+    value: float | None = None
+    """Of the measure, when the verdict was given; None = not known."""
+    limit: float | None = None
+    """Of the value; None = not known."""
+    person: str = ""
+    """Name of the person; empty for every other judge."""
+    note: str = ""
+    """Reason that the person gave."""
+
+    def __post_init__(self) -> None:
+        if (self.by is Judge.PERSON) != bool(self.person):
+            raise ValueError(f"a judgment by {self.by} of the person {self.person!r}")
+
+    def repeats(self, other: Judgment) -> bool:
+        """Whether the same judge says the same again, whatever its figures."""
+        return (self.by, self.verdict, self.reason, self.person) == (
+            other.by, other.verdict, other.reason, other.person,
+        )  # fmt: skip
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Edge:
-    """A measured relative pose of two nodes."""
+    """A measured relative pose of two nodes, with the history of the verdicts on it."""
 
     i: int
     """Row of the first node."""
@@ -70,8 +144,8 @@ class Edge:
     T_i_j: SE3
     """Maps points of the body at node ``j`` into the body frame at node ``i`` (A0 no. 3)."""
     kind: EdgeKind
-    verdict: Verdict
-    reason: Reason = Reason.NONE
+    judgments: tuple[Judgment, ...]
+    """All verdicts in the order in which they were given; the last one counts. At least one."""
     overlap: float = float("nan")
     """Fraction of points of ``j`` inside the view volume of ``i``, 0..1 (V Eq. 2.6)."""
     error_m: float = float("nan")
@@ -90,17 +164,126 @@ class Edge:
     """Number of alternative paths of at most three edges."""
     chi2: float = float("nan")
     """Squared Mahalanobis residual in the final graph."""
-    decided_by: str = "auto"
-    """``auto`` or the name of the person."""
+
+    def __post_init__(self) -> None:
+        if not self.judgments:
+            raise ValueError(f"edge {self.i}-{self.j} has no judgment")
 
     def evolve(self, **changes: Any) -> Edge:
-        """The edge with some fields changed."""
+        """The edge with some fields changed; its judgments change by `judged` only."""
+        if "judgments" in changes:
+            raise TypeError("a verdict is given by Edge.judged, which keeps the earlier ones")
         return replace(self, **changes)
+
+    def judged(self, judgment: Judgment) -> Edge:
+        """The edge with another verdict; the earlier ones stay in its history.
+
+        The same verdict by the same judge again only brings its figures up to date.
+
+        Raises:
+            ValueError: If the program would overrule a person.
+        """
+        last = self.judgments[-1]
+        if last.by is Judge.PERSON and judgment.by is not Judge.PERSON:
+            raise ValueError(f"edge {self.i}-{self.j}: the decision of {last.person} stands")
+        earlier = self.judgments[:-1] if judgment.repeats(last) else self.judgments
+        return replace(self, judgments=(*earlier, judgment))
+
+    def after(self, earlier: Edge) -> Edge:
+        """The edge with the history of its pair before its own.
+
+        Args:
+            earlier: The same pair, as it was registered or judged before.
+        """
+        known = 0
+        for one, other in zip(self.judgments, earlier.judgments, strict=False):
+            if one != other:
+                break
+            known += 1
+        edge = replace(self, judgments=earlier.judgments)
+        for judgment in self.judgments[known:]:
+            edge = edge.judged(judgment)
+        return edge
+
+    def before(self, judges: frozenset[Judge]) -> Edge:
+        """The edge as it was before the last judgments, if some judges gave them.
+
+        Used to judge again; `after` puts the history back.
+        """
+        count = len(self.judgments)
+        while count > 1 and self.judgments[count - 1].by in judges:
+            count -= 1
+        return replace(self, judgments=self.judgments[:count])
+
+    @property
+    def verdict(self) -> Verdict:
+        """The last one."""
+        return self.judgments[-1].verdict
+
+    @property
+    def reason(self) -> Reason:
+        """Why the last verdict was given; `Reason.NONE` if the edge is accepted."""
+        return self.judgments[-1].reason
+
+    @property
+    def decided_by(self) -> str:
+        """Name of the person who gave the last verdict, or `AUTOMATIC`."""
+        return self.judgments[-1].person or AUTOMATIC
 
     @property
     def in_graph(self) -> bool:
         """Whether the optimizer uses it."""
-        return self.verdict is not Verdict.REJECTED
+        return self.judgments[-1].verdict is not Verdict.REJECTED
+
+
+def accepted_unseen() -> tuple[Judgment, ...]:
+    """History of an odometry edge: consecutive nodes are joined without a test."""
+    return (Judgment(Judge.ODOMETRY, Verdict.ACCEPTED),)
+
+
+_JUDGE_OF = {
+    Reason.SEEN_THROUGH: Judge.FREE_SPACE,
+    Reason.UNCONFIRMED: Judge.PLACES,
+    Reason.AMBIGUOUS: Judge.PLACES,
+    Reason.VERIFICATION: Judge.VERIFICATION,
+    Reason.ROBUST: Judge.ROBUST,
+}
+
+
+def known_judgment(
+    verdict: Verdict, reason: Reason = Reason.NONE, decided_by: str = AUTOMATIC
+) -> Judgment:
+    """The judgment behind a verdict of which only the reason is known.
+
+    Args:
+        verdict: Its verdict.
+        reason: Its reason; the judge follows from it.
+        decided_by: `AUTOMATIC` or the name of a person.
+    """
+    if decided_by != AUTOMATIC:
+        return Judgment(Judge.PERSON, verdict, reason, person=decided_by)
+    by = _JUDGE_OF.get(reason, Judge.SEARCH)
+    return Judgment(Judge.VERIFICATION if verdict is Verdict.UNVERIFIED else by, verdict, reason)
+
+
+def known_history(
+    verdict: Verdict,
+    reason: Reason = Reason.NONE,
+    decided_by: str = AUTOMATIC,
+    *,
+    kind: EdgeKind = EdgeKind.LOOP,
+) -> tuple[Judgment, ...]:
+    """What is known of the history of an edge from its last verdict alone.
+
+    Verification and the robust solve judge only what was accepted before. Arguments as of
+    `known_judgment`, and the kind of the edge.
+    """
+    last = known_judgment(verdict, reason, decided_by)
+    is_odometry = kind is EdgeKind.ODOMETRY
+    opening = Judgment(Judge.ODOMETRY if is_odometry else Judge.SEARCH, Verdict.ACCEPTED)
+    if last.by in CHECKS_OF_THE_GRAPH:
+        return (opening, last)
+    return (opening,) if is_odometry and last.verdict is Verdict.ACCEPTED else (last,)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -137,7 +320,7 @@ def relations_of(edges: Sequence[Edge]) -> Relations:
 
 
 def _is_protected(edge: Edge) -> bool:
-    return edge.kind is EdgeKind.ODOMETRY or edge.decided_by != "auto"
+    return edge.kind is EdgeKind.ODOMETRY or edge.decided_by != AUTOMATIC
 
 
 @dataclass(frozen=True, eq=False)

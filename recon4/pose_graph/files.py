@@ -15,16 +15,21 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import finite_or_none
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
+from recon4.pose_graph.histories import judgment_columns, judgments_in
 from recon4.store.arrays import load_arrays, save_arrays
 
 _NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
 _COUNTS = ("iterations", "paths")
-_TEXTS = ("kind", "verdict", "reason", "decided_by")
 _NODES = ("frame_ids", "t_ns", "node_R", "node_t")
 _BLOCK = 1024
 """Edges that are written at a time."""
-_EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged")
+_EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged", "kind")
+
+HISTORY = ("by", "verdict", "reason", "measure", "value", "limit", "person", "note")
+"""Names of the values of a judgment in ``edges.json``."""
+_DIGITS = 5
+"""Significant digits of its figures; ``graph.npz`` has all."""
 
 
 def save_graph(folder: Path, graph: PoseGraph) -> None:
@@ -41,8 +46,10 @@ def save_graph(folder: Path, graph: PoseGraph) -> None:
         "edge_t": of.T_i_j.t,
         "information": of.information,
         "converged": np.array([edge.converged for edge in graph.edges], dtype=np.bool_),
+        "kind": np.array([edge.kind for edge in graph.edges], dtype=np.str_),
+        **judgment_columns(graph.edges),
     }
-    for names, kind in ((_NUMBERS, np.float64), (_COUNTS, np.int64), (_TEXTS, np.str_)):
+    for names, kind in ((_NUMBERS, np.float64), (_COUNTS, np.int64)):
         for name in names:
             columns[name] = np.array([getattr(edge, name) for edge in graph.edges], dtype=kind)
     save_arrays(folder / "graph.npz", columns)
@@ -52,11 +59,15 @@ def save_graph(folder: Path, graph: PoseGraph) -> None:
 def load_graph(folder: Path) -> PoseGraph:
     """Read the ``graph.npz`` that `save_graph` wrote.
 
+    Of a file from before edges had a history, the history is what its one verdict says.
+
     Raises:
         StoreError: If the file is missing, damaged or its columns do not fit together.
     """
-    names = [*_NODES, *_EDGES, *_NUMBERS, *_COUNTS, *_TEXTS]
-    columns = load_arrays(folder / "graph.npz", names)
+    names = [*_NODES, *_EDGES, *_NUMBERS, *_COUNTS]
+    columns = load_arrays(folder / "graph.npz")
+    if missing := [name for name in names if name not in columns]:
+        raise StoreError(f"graph.npz: expected arrays {names}, got none of {missing}")
     for name in names:
         expected = len(columns["frame_ids"] if name in _NODES else columns["i"])
         if len(columns[name]) != expected:
@@ -64,14 +75,15 @@ def load_graph(folder: Path) -> PoseGraph:
                 f"graph.npz: {name}: expected {expected} rows, got {len(columns[name])}"
             )
     try:
-        edges = tuple(_edge(columns, row) for row in range(len(columns["i"])))
+        histories = zip(range(len(columns["i"])), judgments_in(columns), strict=True)
+        edges = tuple(_edge(columns, row, judgments) for row, judgments in histories)
     except ValueError as error:
         raise StoreError(f"graph.npz: {error}") from error
     T_map_body = SE3(columns["node_R"], columns["node_t"])
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
 
 
-def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
+def _edge(columns: Mapping[str, NDArray[Any]], row: int, judgments: tuple[Judgment, ...]) -> Edge:
     number = {name: float(columns[name][row]) for name in _NUMBERS}
     count = {name: int(columns[name][row]) for name in _COUNTS}
     return Edge(
@@ -79,11 +91,9 @@ def _edge(columns: Mapping[str, NDArray[Any]], row: int) -> Edge:
         j=int(columns["j"][row]),
         T_i_j=SE3(columns["edge_R"][row], columns["edge_t"][row]),
         kind=EdgeKind(str(columns["kind"][row])),
-        verdict=Verdict(str(columns["verdict"][row])),
-        reason=Reason(str(columns["reason"][row])),
+        judgments=judgments,
         information=columns["information"][row],
         converged=bool(columns["converged"][row]),
-        decided_by=str(columns["decided_by"][row]),
         overlap=number["overlap"],
         error_m=number["error_m"],
         limit_m=number["limit_m"],
@@ -104,6 +114,7 @@ def write_edges_json(path: Path, graph: PoseGraph) -> None:
         {
             "convention": "T_a_b maps points of node b into node a; metres; quaternion x y z w",
             "nodes": len(graph),
+            "history": HISTORY,
         }
     )
     with path.open("w", encoding="utf-8") as file:
@@ -148,6 +159,9 @@ class EdgeRecord:
     paths: int
     chi2: float | None
     decided_by: str
+    history: list[list[str | float | None]]
+    """Verdicts in the order in which they were given, the last one counts; `HISTORY` names the
+    values of each. The last two are left out where no person decided."""
 
 
 def _records(graph: PoseGraph, edges: Sequence[Edge]) -> Iterator[EdgeRecord]:
@@ -175,4 +189,14 @@ def _records(graph: PoseGraph, edges: Sequence[Edge]) -> Iterator[EdgeRecord]:
             paths=edge.paths,
             chi2=finite_or_none(edge.chi2),
             decided_by=edge.decided_by,
+            history=[_history_row(judgment) for judgment in edge.judgments],
         )
+
+
+def _history_row(one: Judgment) -> list[str | float | None]:
+    figures = [
+        None if value is None else finite_or_none(value, _DIGITS)
+        for value in (one.value, one.limit)
+    ]
+    row = [str(one.by), str(one.verdict), str(one.reason), str(one.measure), *figures]
+    return [*row, one.person, one.note] if one.person else row

@@ -8,7 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Rows, Verdict
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Judgment,
+    PoseGraph,
+    Reason,
+    Rows,
+    Verdict,
+)
 from recon4.pose_graph.density import MAX_SHIFT_M
 from recon4.pose_graph.groups import RecognizedChain, contradicts
 from recon4.pose_graph.pairs import Pair, PairRegistrar
@@ -119,7 +128,7 @@ class ChainFollower:
             T_map_i @ pair.T_i_j, T_map_i @ edge.T_i_j, beside=(_CHANGE_M, _CHANGE_RAD)
         ):
             return edge
-        return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.UNCONFIRMED)
+        return edge.judged(Judgment(Judge.PLACES, Verdict.REJECTED, Reason.UNCONFIRMED))
 
     def _next_pairs(self, end: _ChainEnd) -> list[Pair]:
         """The same correction a step along the path; none where the paths part."""
@@ -168,7 +177,7 @@ def register_recognized(
     again = [k for k, edge in enumerate(edges) if _is_close(edge)]
     further = [_recognized(e.i, e.j, e.T_i_j) for e in (edges[k] for k in again)]
     for k, edge in zip(again, registrar.register(further, progress) if again else [], strict=True):
-        edges[k] = edge
+        edges[k] = edge.after(edges[k])
     return edges
 
 

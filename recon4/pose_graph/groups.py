@@ -11,7 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, PoseGraph, Reason, Verdict
 from recon4.pose_graph.places import Places
 from recon4.settings import RecognitionSettings
 
@@ -89,33 +89,44 @@ def judge_chains(
         All edges of the chains.
     """
     groups = _groups(places, [chain for chain in chains if chain.confirmed], settings)
-    reasons: dict[int, Reason] = {}
+    judgments: dict[int, Judgment] = {}
     for group in groups:
-        reason = _reason(group, groups, settings)
-        reasons |= {id(edge): reason for chain in group.chains for edge in chain.confirmed}
-    return [_judged(edge, reasons.get(id(edge))) for chain in chains for edge in chain.edges]
+        judgment = _judgment(group, groups, settings)
+        judgments |= {id(edge): judgment for chain in group.chains for edge in chain.confirmed}
+    return [_judged(edge, judgments.get(id(edge))) for chain in chains for edge in chain.edges]
 
 
-def _judged(edge: Edge, reason: Reason | None) -> Edge:
-    if not reason:
-        return edge
-    return edge.evolve(verdict=Verdict.REJECTED, reason=reason)
+def _judged(edge: Edge, judgment: Judgment | None) -> Edge:
+    return edge.judged(judgment) if judgment else edge
 
 
-def _reason(
+def _judgment(
     group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionSettings
-) -> Reason:
-    """Why a group is not accepted; `Reason.NONE` = it is."""
-    support = len(group.nodes)
-    if support < settings.min_places or group.contradicted > _MAX_CONTRADICTED * support:
-        return Reason.UNCONFIRMED
-    if not group.is_within:
-        return Reason.AMBIGUOUS
-    for other in groups:
-        weighs = len(other.nodes) >= settings.rival_ratio * support
-        if other is not group and other.is_within and weighs and _compete(group, other):
-            return Reason.AMBIGUOUS
-    return Reason.NONE
+) -> Judgment:
+    """Whether a group is accepted."""
+    support, by, rejected = len(group.nodes), Judge.PLACES, Verdict.REJECTED
+    confirmed = (Measure.CONFIRMED, float(support), float(settings.min_places))
+    most = _MAX_CONTRADICTED * support
+    if support < settings.min_places:
+        return Judgment(by, rejected, Reason.UNCONFIRMED, *confirmed)
+    if group.contradicted > most:
+        contradicted = (Measure.CONTRADICTED, float(group.contradicted), most)
+        return Judgment(by, rejected, Reason.UNCONFIRMED, *contradicted)
+    if not group.is_within or _has_rival(group, groups, settings):
+        return Judgment(by, rejected, Reason.AMBIGUOUS, *confirmed)
+    return Judgment(by, Verdict.ACCEPTED, Reason.NONE, *confirmed)
+
+
+def _has_rival(
+    group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionSettings
+) -> bool:
+    """Whether another correction of the same nodes is nearly as well confirmed."""
+    least = settings.rival_ratio * len(group.nodes)
+    return any(
+        other is not group and other.is_within and len(other.nodes) >= least
+        and _compete(group, other)
+        for other in groups
+    )  # fmt: skip
 
 
 def _compete(a: _ChainGroup, b: _ChainGroup) -> bool:

@@ -12,7 +12,7 @@ from recon4.geometry.lines import Lines
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import EdgeTried
 from recon4.model.plain import finite_or_none
-from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Measure, Reason, Verdict
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
 from recon4.registration.overlap import RangeImage, overlap, seen_through
@@ -95,7 +95,7 @@ class PairRegistrar:
             ends = self.views.ends(pair.j)
             overlap_ratio = self._overlap(pair)
             if overlap_ratio < self.settings.overlap.threshold:
-                out.append((k, _edge(pair, overlap_ratio, Reason.OVERLAP)))
+                out.append((k, self._apart(pair, overlap_ratio)))
                 continue
             if target is None:
                 target = self._target(self._submaps.around(pair.i, reach), planes)
@@ -144,17 +144,14 @@ class PairRegistrar:
         g = self.settings.graph
         range_m = median_range_m(self.views.ends(pair.i))
         limit_m = range_m * g.error_relative + g.error_absolute_m
-        reason = Reason.NONE
-        if not found.converged:
-            reason = Reason.NOT_CONVERGED
-        elif not found.error_m <= limit_m:
-            reason = Reason.ERROR
-        elif found.match_ratio < g.min_match_ratio:
-            reason = Reason.FEW_MATCHES
-        elif found.degeneracy < g.min_degeneracy:
-            reason = Reason.DEGENERATE
-        edge = _edge(pair, overlap_ratio, reason).evolve(
+        limits = RegistrationLimits(limit_m, g.min_match_ratio, g.min_degeneracy)
+        edge = Edge(
+            i=pair.i,
+            j=pair.j,
             T_i_j=found.T_target_source,
+            kind=pair.kind,
+            judgments=(registration_judgment(found, limits),),
+            overlap=overlap_ratio,
             error_m=found.error_m,
             limit_m=limit_m,
             degeneracy=found.degeneracy,
@@ -164,9 +161,57 @@ class PairRegistrar:
         )
         of = self.settings.recognition if pair.recognized else g
         is_loop = edge.in_graph and edge.kind is EdgeKind.LOOP
-        if is_loop and self.seen_through(edge) > of.max_seen_through:
-            return edge.evolve(verdict=Verdict.REJECTED, reason=Reason.SEEN_THROUGH)
-        return edge
+        return self._in_free_space(edge, limit=of.max_seen_through) if is_loop else edge
+
+    def _in_free_space(self, edge: Edge, *, limit: float) -> Edge:
+        through = self.seen_through(edge)
+        verdict, reason = Verdict.ACCEPTED, Reason.NONE
+        if through > limit:
+            verdict, reason = Verdict.REJECTED, Reason.SEEN_THROUGH
+        return edge.judged(
+            Judgment(Judge.FREE_SPACE, verdict, reason, Measure.SEEN_THROUGH, through, limit)
+        )
+
+    def _apart(self, pair: Pair, overlap_ratio: float) -> Edge:
+        """A pair that overlaps too little to be registered."""
+        limit = self.settings.overlap.threshold
+        return Edge(
+            i=pair.i, j=pair.j, T_i_j=pair.T_i_j, kind=pair.kind, overlap=overlap_ratio,
+            judgments=(too_little_overlap(overlap_ratio, limit),),
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class RegistrationLimits:
+    """What a registration must keep to be accepted (V Algorithm 2.1 line 8; A0 no. 12)."""
+
+    error_m: float
+    match_ratio: float
+    degeneracy: float
+
+
+def registration_judgment(found: Registration, limits: RegistrationLimits) -> Judgment:
+    """Accept or reject a registration, with the figure that decided."""
+    by, rejected = Judge.SEARCH, Verdict.REJECTED
+    if not found.converged:
+        return Judgment(by, rejected, Reason.NOT_CONVERGED)
+    if not found.error_m <= limits.error_m:
+        error_m = finite_or_none(found.error_m)
+        return Judgment(by, rejected, Reason.ERROR, Measure.ERROR, error_m, limits.error_m)
+    if found.match_ratio < limits.match_ratio:
+        measured = (Measure.MATCHES, found.match_ratio, limits.match_ratio)
+        return Judgment(by, rejected, Reason.FEW_MATCHES, *measured)
+    if found.degeneracy < limits.degeneracy:
+        measured = (Measure.DEGENERACY, found.degeneracy, limits.degeneracy)
+        return Judgment(by, rejected, Reason.DEGENERATE, *measured)
+    accepted = (Verdict.ACCEPTED, Reason.NONE)
+    return Judgment(by, *accepted, Measure.ERROR, found.error_m, limits.error_m)
+
+
+def too_little_overlap(ratio: float, limit: float | None = None) -> Judgment:
+    """The search rejects a pair whose views hardly overlap."""
+    rejected = (Verdict.REJECTED, Reason.OVERLAP)
+    return Judgment(Judge.SEARCH, *rejected, Measure.OVERLAP, ratio, limit)
 
 
 def tried_event(edge: Edge) -> EdgeTried:
@@ -181,14 +226,6 @@ def tried_event(edge: Edge) -> EdgeTried:
         error_m=finite_or_none(edge.error_m, 5),
         limit_m=finite_or_none(edge.limit_m, 5),
     )
-
-
-def _edge(pair: Pair, overlap_ratio: float, reason: Reason) -> Edge:
-    verdict = Verdict.REJECTED if reason else Verdict.ACCEPTED
-    return Edge(
-        i=pair.i, j=pair.j, T_i_j=pair.T_i_j, kind=pair.kind, verdict=verdict, reason=reason,
-        overlap=overlap_ratio,
-    )  # fmt: skip
 
 
 def _information(found: Registration, settings: Settings) -> Array:

@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
+from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
 from recon4.pose_graph.density import MAX_SHIFT_M, Overlay, overlays, yaws_within
 from recon4.pose_graph.follow import ChainFollower, loop_pairs, register_recognized, taken_pairs
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
@@ -109,11 +109,10 @@ def without_settled(graph: PoseGraph) -> PoseGraph:
     Where a loop closure was accepted later, the other hypotheses were wrong.
     """
     closed = _closed_nodes(graph)
+    settled = Judgment(Judge.PLACES, Verdict.REJECTED, Reason.UNCONFIRMED)
     return graph.with_edges(
         tuple(
-            edge.evolve(reason=Reason.UNCONFIRMED)
-            if edge.reason is Reason.AMBIGUOUS and closed[edge.j]
-            else edge
+            edge.judged(settled) if edge.reason is Reason.AMBIGUOUS and closed[edge.j] else edge
             for edge in graph.edges
         )
     )

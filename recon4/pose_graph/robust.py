@@ -7,6 +7,7 @@ begins at several starting points and keeps the lowest cost.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -72,7 +73,8 @@ def optimize_gnc(
         if _is_plain(of, weights):
             break
     assert best is not None
-    return solved(graph, of, best[0], weights=best[1], iterations=best[2])
+    solution = solved(graph, of, best[0], weights=best[1], iterations=best[2])
+    return replace(solution, outlier_limit=limit)
 
 
 def outlier_limit(edge_chi2: Array, *, probability: float) -> float:

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import NodesPlaced, positions_of
 from recon4.model.figures import GraphFigures
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, accepted_unseen
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
@@ -211,7 +211,7 @@ def odometry_edges(
                 j=k + 1,
                 T_i_j=T_i_j[k],
                 kind=EdgeKind.ODOMETRY,
-                verdict=Verdict.ACCEPTED,
+                judgments=accepted_unseen(),
                 information=0.5 * (information + information.T),
             )
         )
@@ -255,10 +255,10 @@ class _Attempts:
 
 
 def _newest(edges: tuple[Edge, ...], tried: list[Edge]) -> tuple[Edge, ...]:
-    """One edge per pair: a new registration replaces the one before."""
+    """One edge per pair: a new registration replaces the one before, and keeps its history."""
     newest = {(edge.i, edge.j): edge for edge in tried}
-    kept = [
-        edge if edge.kind is EdgeKind.ODOMETRY else newest.pop((edge.i, edge.j), edge)
-        for edge in edges
-    ]
+    kept = []
+    for edge in edges:
+        again = None if edge.kind is EdgeKind.ODOMETRY else newest.pop((edge.i, edge.j), None)
+        kept.append(again.after(edge) if again else edge)
     return (*kept, *newest.values())

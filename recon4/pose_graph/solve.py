@@ -74,6 +74,8 @@ class Solution:
     iterations: int
     converged: bool
     """Whether the cost no longer decreased before the limit of iterations."""
+    outlier_limit: float | None = None
+    """Squared residual beyond which a free edge has no weight; None = none is an outlier."""
 
 
 def optimize(

@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.events import VerdictsChanged
 from recon4.model.plain import finite_or_none
-from recon4.model.pose_graph import Edge, PoseGraph, Reason, Relations, Verdict
+from recon4.model.pose_graph import (
+    AUTOMATIC,
+    CHECKS_OF_THE_GRAPH,
+    Edge,
+    Judge,
+    Judgment,
+    Measure,
+    PoseGraph,
+    Reason,
+    Relations,
+    Verdict,
+)
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.paths import PathIndex, reject_worst_first
 from recon4.pose_graph.relations import squared_residuals
@@ -18,8 +29,6 @@ from recon4.pose_graph.robust import optimize_gnc, outlier_limit
 from recon4.pose_graph.solve import Solution, optimize
 from recon4.progress import Progress, Silent
 from recon4.settings import VerificationSettings
-
-_REVISED = (Reason.VERIFICATION, Reason.ROBUST)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,14 +105,15 @@ def verify(
     the whole graph finds outliers that no path reaches.
 
     Odometry and decisions of a person are never changed. Automatic decisions of an earlier
-    verification are undone first, so that verifying twice is the same as verifying once.
+    verification do not count, so that verifying twice is the same as verifying once; they stay in
+    the history of the edge.
 
     Raises:
         GraphError: If the graph cannot be solved.
         Cancelled: If the caller requested to stop.
     """
-    watcher = progress or Silent()
-    graph = graph.with_edges(tuple(_as_before(edge) for edge in graph.edges))
+    watcher, given = progress or Silent(), graph.edges
+    graph = graph.with_edges(tuple(edge.before(CHECKS_OF_THE_GRAPH) for edge in given))
     of = graph.relations
     duplicates = check_relations(graph.T_map_body, of)
     chi2_before = float(squared_residuals(graph.T_map_body, of)[of.in_graph].sum())
@@ -111,19 +121,19 @@ def verify(
     paths = _index(of, nodes=len(graph), settings=settings)
     watcher.advance()
     rounds = reject_worst_first(paths, free=~of.protected, limit_m=settings.limit_m)
-    graph = _with_rejected(graph, [row for rows in rounds for row in rows], Reason.VERIFICATION)
-    _report_verdicts(graph.edges, [row for rows in rounds for row in rows], watcher)
+    rejected = [row for rows in rounds for row in rows]
+    graph = _contradicted(graph, paths, rejected, limit_m=settings.limit_m)
+    _report_verdicts(graph.edges, rejected, watcher)
     watcher.advance()
-    solution, outliers = _solve(graph, settings)
-    graph = _with_rejected(graph.with_poses(solution.T_map_body), outliers, Reason.ROBUST)
+    graph, solution, outliers = _solve(graph, settings)
     paths.remove(outliers)
     watcher.advance()
     over = of.protected & paths.alive & (paths.median_m > settings.limit_m)
-    edges = _with_figures(graph.edges, paths, solution.edge_chi2)
+    edges = _with_figures(graph.edges, paths, solution.edge_chi2, limit_m=settings.limit_m)
     unconfirmed = [row for row, edge in enumerate(edges) if edge.verdict is Verdict.UNVERIFIED]
     _report_verdicts(edges, [*outliers, *unconfirmed], watcher)
     return Verification(
-        graph=graph.with_edges(edges),
+        graph=graph.with_edges(_after(edges, given)),
         rounds=tuple(tuple(rows) for rows in rounds),
         flagged=tuple(np.flatnonzero(over).tolist()),
         outliers=tuple(outliers),
@@ -144,22 +154,13 @@ def confirmed_again(graph: PoseGraph, *, settings: VerificationSettings) -> Pose
     for row, edge in enumerate(edges):
         if not edge.in_graph or edge.paths == 0:  # it was not confirmed before either
             continue
-        alone = edge.decided_by == "auto" and paths.count[row] == 0
         edges[row] = edge.evolve(
-            verdict=Verdict.UNVERIFIED if alone else edge.verdict,
-            verification_m=float(paths.median_m[row]),
-            paths=int(paths.count[row]),
+            verification_m=float(paths.median_m[row]), paths=int(paths.count[row])
         )
+        if edge.decided_by == AUTOMATIC and paths.count[row] == 0:
+            unverified = _by_paths(paths, row, Verdict.UNVERIFIED, limit_m=settings.limit_m)
+            edges[row] = edges[row].judged(unverified)
     return graph.with_edges(tuple(edges))
-
-
-def _as_before(edge: Edge) -> Edge:
-    """The edge as it was before any verification."""
-    if edge.decided_by != "auto":
-        return edge
-    if edge.verdict is Verdict.UNVERIFIED or edge.reason in _REVISED:
-        return edge.evolve(verdict=Verdict.ACCEPTED, reason=Reason.NONE)
-    return edge
 
 
 def _index(of: Relations, *, nodes: int, settings: VerificationSettings) -> PathIndex:
@@ -168,45 +169,88 @@ def _index(of: Relations, *, nodes: int, settings: VerificationSettings) -> Path
     return PathIndex.build(of, nodes=nodes, max_edges=settings.max_path_edges)
 
 
-def _with_rejected(graph: PoseGraph, rows: list[int], reason: Reason) -> PoseGraph:
+def with_judgments(graph: PoseGraph, judgments: Mapping[int, Judgment]) -> PoseGraph:
+    """The graph with further verdicts on some edges, by their row."""
     edges = list(graph.edges)
-    for row in rows:
-        edges[row] = edges[row].evolve(verdict=Verdict.REJECTED, reason=reason)
+    for row, judgment in judgments.items():
+        edges[row] = edges[row].judged(judgment)
     return graph.with_edges(tuple(edges))
 
 
-def _solve(graph: PoseGraph, settings: VerificationSettings) -> tuple[Solution, list[int]]:
-    """The final poses, and the rows of the outliers."""
+def outlier_judgments(solution: Solution, rows: Iterable[int], *, by: Judge) -> dict[int, Judgment]:
+    """Judgments on the outliers of a robust solve.
+
+    Args:
+        solution: Has their squared residuals.
+        rows: Their rows in the graph.
+        by: Which robust solve.
+    """
+    rejected = (by, Verdict.REJECTED, Reason.ROBUST, Measure.CHI2)
+    chi2, limit = solution.edge_chi2, solution.outlier_limit
+    return {row: Judgment(*rejected, finite_or_none(float(chi2[row])), limit) for row in rows}
+
+
+def _contradicted(
+    graph: PoseGraph, paths: PathIndex, rows: Sequence[int], *, limit_m: float
+) -> PoseGraph:
+    """The graph without the edges that their alternative paths contradict."""
+    rejected = Verdict.REJECTED
+    return with_judgments(
+        graph, {row: _by_paths(paths, row, rejected, limit_m=limit_m) for row in rows}
+    )
+
+
+def _by_paths(paths: PathIndex, row: int, verdict: Verdict, *, limit_m: float) -> Judgment:
+    """Judgment on an edge by its alternative paths."""
+    reason = Reason.VERIFICATION if verdict is Verdict.REJECTED else Reason.NONE
+    median_m = finite_or_none(float(paths.median_m[row]))
+    return Judgment(Judge.VERIFICATION, verdict, reason, Measure.PATHS, median_m, limit_m)
+
+
+def _solve(
+    graph: PoseGraph, settings: VerificationSettings
+) -> tuple[PoseGraph, Solution, list[int]]:
+    """The graph with its final poses and without its outliers, the solution, their rows."""
     if settings.robust == "none":
-        return optimize(graph, kernel="none"), []
+        solution = optimize(graph, kernel="none")
+        return graph.with_poses(solution.T_map_body), solution, []
     of = graph.relations
     free = of.in_graph & ~of.protected
     if settings.robust == "gnc":
         solution = optimize_gnc(graph, probability=settings.inlier_probability)
-        return solution, np.flatnonzero(free & (solution.weights == 0.0)).tolist()
+        outliers = np.flatnonzero(free & (solution.weights == 0.0)).tolist()
+        judgments = outlier_judgments(solution, outliers, by=Judge.ROBUST)
+        return with_judgments(graph.with_poses(solution.T_map_body), judgments), solution, outliers
     start = optimize(graph, kernel="cauchy")
     limit = outlier_limit(start.edge_chi2[free], probability=settings.inlier_probability)
     outliers = np.flatnonzero(free & (start.edge_chi2 > limit)).tolist()
-    kept = _with_rejected(graph.with_poses(start.T_map_body), outliers, Reason.ROBUST)
-    return optimize(kept, kernel="none"), outliers
+    judgments = outlier_judgments(replace(start, outlier_limit=limit), outliers, by=Judge.ROBUST)
+    kept = with_judgments(graph.with_poses(start.T_map_body), judgments)
+    solution = optimize(kept, kernel="none")
+    return kept.with_poses(solution.T_map_body), solution, outliers
 
 
-def _with_figures(edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array) -> tuple[Edge, ...]:
+def _with_figures(
+    edges: tuple[Edge, ...], paths: PathIndex, edge_chi2: Array, *, limit_m: float
+) -> tuple[Edge, ...]:
     """Edges with path discrepancy, path count and chi-square; unconfirmed ones are unverified."""
     out = []
     for row, edge in enumerate(edges):
-        verdict = edge.verdict
-        if edge.in_graph and edge.decided_by == "auto":
-            verdict = Verdict.ACCEPTED if paths.count[row] else Verdict.UNVERIFIED
-        out.append(
-            edge.evolve(
-                verdict=verdict,
-                verification_m=float(paths.median_m[row]),
-                paths=int(paths.count[row]),
-                chi2=float(edge_chi2[row]),
-            )
+        edge = edge.evolve(
+            verification_m=float(paths.median_m[row]),
+            paths=int(paths.count[row]),
+            chi2=float(edge_chi2[row]),
         )
+        if edge.in_graph and edge.decided_by == AUTOMATIC:
+            verdict = Verdict.ACCEPTED if paths.count[row] else Verdict.UNVERIFIED
+            edge = edge.judged(_by_paths(paths, row, verdict, limit_m=limit_m))
+        out.append(edge)
     return tuple(out)
+
+
+def _after(edges: tuple[Edge, ...], given: tuple[Edge, ...]) -> tuple[Edge, ...]:
+    """The edges with the history that they had before they were verified again."""
+    return tuple(edge.after(earlier) for edge, earlier in zip(edges, given, strict=True))
 
 
 def _report_verdicts(edges: tuple[Edge, ...], rows: list[int], watcher: Progress) -> None:

@@ -12,10 +12,19 @@ from scipy.spatial import cKDTree
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import NodesPlaced, positions_of
 from recon4.model.figures import GraphFigures
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Judgment,
+    Measure,
+    PoseGraph,
+    Verdict,
+    accepted_unseen,
+)
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
-from recon4.pose_graph.pairs import tried_event
+from recon4.pose_graph.pairs import RegistrationLimits, registration_judgment, tried_event
 from recon4.pose_graph.solve import optimize
 from recon4.profiler.global_icp import preregister, register_all
 from recon4.profiler.turns import Turns, relative, unwind_turns
@@ -125,12 +134,13 @@ def published_graph(
     information = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** -2.0)
     for i, j, overlap in links:
         kind = EdgeKind.NEIGHBOR if j - i <= settings.graph.neighbors else EdgeKind.LOOP
+        linked_as = Judgment(Judge.SEARCH, Verdict.ACCEPTED, measure=Measure.OVERLAP, value=overlap)
         edge = Edge(
             i=i,
             j=j,
             T_i_j=relative(T, i, j),
             kind=kind,
-            verdict=Verdict.ACCEPTED,
+            judgments=(linked_as,),
             overlap=overlap,
             information=information,
         )
@@ -210,22 +220,14 @@ def _register(
     )
     range_m = float(np.median(np.linalg.norm(points[0], axis=1)))
     limit_m = range_m * g.error_relative + g.error_absolute_m
-    reason = Reason.NONE
-    if not found.converged:
-        reason = Reason.NOT_CONVERGED
-    elif not found.error_m <= limit_m:
-        reason = Reason.ERROR
-    elif found.match_ratio < g.min_match_ratio * min(link.overlap, 1.0):
-        reason = Reason.FEW_MATCHES
-    elif found.degeneracy < g.min_degeneracy:
-        reason = Reason.DEGENERATE
+    least_matches = g.min_match_ratio * min(link.overlap, 1.0)
+    limits = RegistrationLimits(limit_m, least_matches, g.min_degeneracy)
     return Edge(
         i=link.i,
         j=link.j,
         T_i_j=found.T_target_source,
         kind=EdgeKind.NEIGHBOR if link.j - link.i <= g.neighbors else EdgeKind.LOOP,
-        verdict=Verdict.REJECTED if reason else Verdict.ACCEPTED,
-        reason=reason,
+        judgments=(registration_judgment(found, limits),),
         overlap=link.overlap,
         error_m=found.error_m,
         limit_m=limit_m,
@@ -270,7 +272,7 @@ def _chain(
                 j=k + 1,
                 T_i_j=relative(T, k, k + 1),
                 kind=EdgeKind.ODOMETRY,
-                verdict=Verdict.ACCEPTED,
+                judgments=accepted_unseen(),
                 information=np.diag(sd**-2.0),
             )
         )

@@ -7,7 +7,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.plain import finite_or_none
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Judgment,
+    Measure,
+    PoseGraph,
+    Reason,
+    Verdict,
+)
 from recon4.review.decisions import Measurement, Pair, Standing, pose_of
 
 CHANGED_M = 0.1
@@ -45,7 +55,11 @@ def apply_decisions(graph: PoseGraph, standing: Sequence[Standing]) -> Applied:
             edges[row] = _decided(edges[row], one)
         elif one.measurement is not None and all(frame in node_of for frame in one.pair):
             i, j = (node_of[frame] for frame in one.pair)
-            edges.append(_decided(_manual(i, j, one.measurement), one))
+            judged = (_judgment(one),)
+            added = Edge(
+                i=i, j=j, T_i_j=one.measurement.motion(), kind=EdgeKind.MANUAL, judgments=judged
+            )
+            edges.append(_measured(added, one.measurement))
         else:
             missing.append(one)
     return Applied(graph.with_edges(tuple(edges)), tuple(missing), tuple(changed))
@@ -68,15 +82,22 @@ def is_measured(edge: Edge) -> bool:
 def _decided(edge: Edge, one: Standing) -> Edge:
     if one.measurement is not None:
         edge = _measured(edge, one.measurement)
-    return edge.evolve(
-        verdict=Verdict.ACCEPTED if one.accepted else Verdict.REJECTED,
-        reason=Reason.NONE if one.accepted else Reason.OPERATOR,
-        decided_by=one.who,
+    return edge.judged(_judgment(one))
+
+
+def _judgment(one: Standing) -> Judgment:
+    """The decision as a verdict; the figure is that of the person's own registration."""
+    measured = one.measurement
+    return Judgment(
+        Judge.PERSON,
+        Verdict.ACCEPTED if one.accepted else Verdict.REJECTED,
+        Reason.NONE if one.accepted else Reason.OPERATOR,
+        Measure.ERROR if measured else Measure.NONE,
+        finite_or_none(measured.error_m) if measured else None,
+        finite_or_none(measured.limit_m) if measured else None,
+        person=one.who,
+        note=one.why,
     )
-
-
-def _manual(i: int, j: int, measured: Measurement) -> Edge:
-    return Edge(i=i, j=j, T_i_j=measured.motion(), kind=EdgeKind.MANUAL, verdict=Verdict.ACCEPTED)
 
 
 def _measured(edge: Edge, measured: Measurement) -> Edge:

@@ -17,6 +17,7 @@ import numpy as np
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.plain import to_plain
+from recon4.model.pose_graph import AUTOMATIC
 from recon4.store.hashing import hash_json
 
 Pair = tuple[int, int]
@@ -44,8 +45,6 @@ class DecisionKind(StrEnum):
     """A finished map was approved; changes no decision."""
 
 
-AUTOMATIC = "auto"
-"""`Edge.decided_by` of automatic verdicts; no user may have this name."""
 MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
 """Kinds with a measurement of their own."""
 ABOUT_PAIRS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.place import place
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
 from recon4.pose_graph.pairs import Pair as TriedPair
-from recon4.pose_graph.pairs import PairRegistrar
+from recon4.pose_graph.pairs import PairRegistrar, too_little_overlap
 from recon4.progress import Silent
 from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames
@@ -172,7 +172,7 @@ def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     ends = [RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
     ratio = overlap(ends[0], ends[1], tried.T_i_j, settings=settings.overlap)
     if not tried.reason and ratio < source.settings.overlap.threshold:
-        tried = tried.evolve(reason=Reason.OVERLAP)
+        tried = tried.judged(too_little_overlap(ratio, source.settings.overlap.threshold))
     return tried.evolve(overlap=ratio)
 
 

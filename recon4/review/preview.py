@@ -9,8 +9,8 @@ from time import perf_counter
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.wording import whole_text
 from recon4.model.plain import finite_or_none
-from recon4.model.pose_graph import PoseGraph
-from recon4.review.decisions import AUTOMATIC, Decided, Pair
+from recon4.model.pose_graph import AUTOMATIC, PoseGraph
+from recon4.review.decisions import Decided, Pair
 from recon4.review.solve import (
     Difference,
     EdgeConflict,

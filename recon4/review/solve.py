@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3
 from recon4.model.figures import ReviewFigures
 from recon4.model.plain import finite_or_none, to_plain
-from recon4.model.pose_graph import Edge, PoseGraph
+from recon4.model.pose_graph import AUTOMATIC, Edge, PoseGraph
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import outlier_limit
@@ -24,7 +24,7 @@ from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent
 from recon4.review.apply import apply_decisions
-from recon4.review.decisions import AUTOMATIC, Pair, Standing
+from recon4.review.decisions import Pair, Standing
 from recon4.settings import Settings
 from recon4.store.atomic import write_json
 

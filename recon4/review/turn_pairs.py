@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, Reason
+from recon4.model.pose_graph import Edge
+from recon4.pose_graph.pairs import too_little_overlap
 from recon4.review.source import Source
 
 
@@ -39,5 +40,5 @@ def align_turns(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
     link = Link(*nodes, initial=predicted, overlap=0.0)
     edge, close_points = register_pair((first, second), link, settings=settings)
     if not edge.reason and close_points < settings.lines.link_pairs:
-        return edge.evolve(reason=Reason.OVERLAP)
+        return edge.judged(too_little_overlap(edge.overlap))
     return edge

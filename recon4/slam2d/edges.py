@@ -6,7 +6,7 @@ import numpy as np
 
 from recon4.geometry.se2 import between, to_se3
 from recon4.geometry.se3 import Array
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, accepted_unseen
 from recon4.slam2d.keyframes import Keyframes
 
 _PLANE = np.array([2, 3, 4])
@@ -57,7 +57,7 @@ def odometry_graph(keyframes: Keyframes, *, sd_m: float, sd_rad: float) -> PoseG
             j=k + 1,
             T_i_j=motions[k],
             kind=EdgeKind.ODOMETRY,
-            verdict=Verdict.ACCEPTED,
+            judgments=accepted_unseen(),
             information=space_information(keyframes.information[k + 1], sd_m=sd_m, sd_rad=sd_rad),
         )
         for k in range(len(keyframes) - 1)

@@ -9,7 +9,17 @@ import numpy as np
 
 from recon4.geometry.se2 import between, from_se3, to_se3
 from recon4.geometry.se3 import Array
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.plain import finite_or_none
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Judgment,
+    Measure,
+    PoseGraph,
+    Reason,
+    Verdict,
+)
 from recon4.progress import Progress, track
 from recon4.settings.slam2d import Loop2dSettings, Slam2dSettings
 from recon4.slam2d.candidates import Candidate2d
@@ -98,22 +108,15 @@ class SubmapRegistrar:
         # Returns of several scans repeat the same surfaces: they count as those of one scan.
         repeated = float(2 * self._loops.source_reach + 1)
         seen = observed(match.H / repeated, self._settings.normal_noise_rad)
-        reason = Reason.NONE
-        if not match.converged or np.hypot(moved[0], moved[1]) > _MOVED_M:
-            reason = Reason.NOT_CONVERGED
-        elif match.match_ratio < self._loops.min_match_ratio:
-            reason = Reason.FEW_MATCHES
-        elif seen.degeneracy < self._loops.min_degeneracy:
-            reason = Reason.DEGENERATE
+        error_m = float(np.sqrt(match.variance_ratio) * self._settings.noise_sd_m)
         return Edge(
             i=pair.target,
             j=pair.source,
             T_i_j=to_se3(match.pose),
             kind=EdgeKind.LOOP,
-            verdict=Verdict.REJECTED if reason else Verdict.ACCEPTED,
-            reason=reason,
+            judgments=(self._judgment(match, seen.degeneracy, moved=moved, error_m=error_m),),
             overlap=score,
-            error_m=float(np.sqrt(match.variance_ratio) * self._settings.noise_sd_m),
+            error_m=error_m,
             information=space_information(
                 in_source_axes(seen.information, float(match.pose[2])),
                 sd_m=self._loops.loop_sd_m,
@@ -124,6 +127,21 @@ class SubmapRegistrar:
             iterations=match.iterations,
         )
 
+    def _judgment(
+        self, match: Match2d, degeneracy: float, *, moved: Array, error_m: float
+    ) -> Judgment:
+        by, rejected, loops = Judge.SEARCH, Verdict.REJECTED, self._loops
+        if not match.converged or np.hypot(moved[0], moved[1]) > _MOVED_M:
+            return Judgment(by, rejected, Reason.NOT_CONVERGED)
+        if match.match_ratio < loops.min_match_ratio:
+            measured = (Measure.MATCHES, float(match.match_ratio), loops.min_match_ratio)
+            return Judgment(by, rejected, Reason.FEW_MATCHES, *measured)
+        if degeneracy < loops.min_degeneracy:
+            measured = (Measure.DEGENERACY, float(degeneracy), loops.min_degeneracy)
+            return Judgment(by, rejected, Reason.DEGENERATE, *measured)
+        value = finite_or_none(error_m)
+        return Judgment(by, Verdict.ACCEPTED, measure=Measure.ERROR, value=value)
+
 
 def _rejected(pair: Candidate2d, predicted: Array, reason: Reason) -> Edge:
     return Edge(
@@ -131,8 +149,7 @@ def _rejected(pair: Candidate2d, predicted: Array, reason: Reason) -> Edge:
         j=pair.source,
         T_i_j=to_se3(predicted),
         kind=EdgeKind.LOOP,
-        verdict=Verdict.REJECTED,
-        reason=reason,
+        judgments=(Judgment(Judge.SEARCH, Verdict.REJECTED, reason),),
         converged=False,
     )
 

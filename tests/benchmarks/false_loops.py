@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.pose_graph.verification import verify
 from recon4.settings import VerificationSettings
 from tests.g2o_reader import read_g2o
@@ -73,8 +73,8 @@ def _edge(T_map_body: SE3, i: int, j: int, xi: np.ndarray) -> Edge:
         j=j,
         T_i_j=T_i_j,
         kind=kind,
-        verdict=Verdict.ACCEPTED,
         information=np.diag(1.0 / SD**2),
+        judgments=known_history(Verdict.ACCEPTED),
     )
 
 
@@ -131,8 +131,8 @@ def _false(model: Edge, i: int, j: int, T_i_j: SE3) -> Edge:
         j=j,
         T_i_j=T_i_j,
         kind=EdgeKind.LOOP,
-        verdict=Verdict.ACCEPTED,
         information=model.information,
+        judgments=known_history(Verdict.ACCEPTED),
     )
 
 

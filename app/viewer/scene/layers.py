@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from app.viewer.cloud.palette import Rgb
 from recon4.geometry.se3 import Array
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import AUTOMATIC, Edge, EdgeKind, PoseGraph, Reason, Verdict
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +71,7 @@ ORDER = {"decided": 0, "accepted": 1, "unverified": 2, "rejected": 3}
 def edge_layer(edge: Edge) -> Layer:
     """The layer an edge belongs to."""
     kind = KIND_LABELS[edge.kind]
-    if edge.decided_by != "auto":
+    if edge.decided_by != AUTOMATIC:
         verdict = "rejected" if edge.verdict is Verdict.REJECTED else "accepted"
         label = f"Operator's decisions, {verdict}"
         return Layer(f"decided/{verdict}", label, DECIDED_COLORS[edge.verdict], width_px=3.0)

@@ -26,7 +26,15 @@ from recon4.model.events import (
     VerdictsChanged,
     WorkProgress,
 )
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_history,
+    known_judgment,
+)
 from recon4.model.trajectory import Trajectory
 
 SILENT_S = 30.0
@@ -100,7 +108,7 @@ class LiveGraph:
 
     def _judge(self, pair: Pair, verdict: Verdict, reason: Reason) -> None:
         if pair in self._edges:
-            self._edges[pair] = self._edges[pair].evolve(verdict=verdict, reason=reason)
+            self._edges[pair] = self._edges[pair].judged(known_judgment(verdict, reason))
 
     @property
     def trajectory(self) -> Trajectory | None:
@@ -180,8 +188,7 @@ def _edge(event: EdgeTried) -> Edge:
         j=event.j,
         T_i_j=SE3.identity(),
         kind=event.edge_kind,
-        verdict=event.verdict,
-        reason=event.reason,
+        judgments=known_history(event.verdict, event.reason, kind=event.edge_kind),
         overlap=_nan_for_none(event.overlap),
         error_m=_nan_for_none(event.error_m),
         limit_m=_nan_for_none(event.limit_m),

@@ -12,7 +12,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.model.multiframe import Multiframe
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -77,7 +77,13 @@ def graph() -> PoseGraph:
     """A short pose graph."""
     T = walk().T_a_b
     edges = tuple(
-        Edge(i=i, j=j, T_i_j=T[i].inverse() @ T[j], kind=kind, verdict=Verdict.ACCEPTED)
+        Edge(
+            i=i,
+            j=j,
+            T_i_j=T[i].inverse() @ T[j],
+            kind=kind,
+            judgments=known_history(Verdict.ACCEPTED),
+        )
         for i, j, kind in [
             *((k, k + 1, EdgeKind.ODOMETRY) for k in range(9)),
             (0, 5, EdgeKind.LOOP),

@@ -29,7 +29,7 @@ from app.viewer.scene.source import ProjectSource
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
-from recon4.model.pose_graph import Verdict
+from recon4.model.pose_graph import Verdict, known_judgment
 from tests.project_builder import build_project, loop_walk, verified_graph
 
 
@@ -96,8 +96,8 @@ def test_an_edge_runs_from_node_to_node(content):
 def test_what_a_person_decided_has_a_layer_and_a_color_of_its_own(content):
     edge = content.edges.graph.edges[0]
 
-    kept = edge_layer(edge.evolve(decided_by="Ada"))
-    rejected = edge_layer(edge.evolve(decided_by="Ada", verdict=Verdict.REJECTED))
+    kept = edge_layer(edge.judged(known_judgment(Verdict.ACCEPTED, decided_by="Ada")))
+    rejected = edge_layer(edge.judged(known_judgment(Verdict.REJECTED, decided_by="Ada")))
 
     others = {layer.rgb for layer in edge_layers(content.edges.graph.edges)}
     assert kept.key == "decided/accepted" and rejected.key == "decided/rejected"

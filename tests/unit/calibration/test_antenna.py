@@ -12,7 +12,7 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
 from recon4.georeference.stage import RefinedWalk, level_and_georeference
 from recon4.model.calibration_figures import CalibrationFigures
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.rig import load_rig, parse_rig
 from recon4.model.samples import GnssSamples
 from recon4.progress import Silent
@@ -70,8 +70,8 @@ def test_heights_above_sea_level_are_raised_by_the_geoid_that_the_settings_have(
             j=i + 1,
             T_i_j=nodes[i].inverse() @ nodes[i + 1],
             kind=EdgeKind.ODOMETRY,
-            verdict=Verdict.ACCEPTED,
             information=1e5 * np.eye(6),
+            judgments=known_history(Verdict.ACCEPTED),
         )
         for i in range(len(rows) - 1)
     )

@@ -6,7 +6,18 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
 from recon4.georeference.gnss import GeoreferenceResult, georeference
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import (
+    AUTOMATIC,
+    Edge,
+    EdgeKind,
+    Judge,
+    Measure,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_history,
+    known_judgment,
+)
 from recon4.model.rig import load_rig
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Trajectory
@@ -56,8 +67,8 @@ def slam(true: Trajectory, rng: np.random.Generator) -> tuple[PoseGraph, Traject
                     j=k + d,
                     T_i_j=T[k].inverse() @ T[k + d],
                     kind=kind,
-                    verdict=Verdict.ACCEPTED,
                     information=information,
+                    judgments=known_history(Verdict.ACCEPTED),
                 )
             )
     return PoseGraph(rows, dense.t_ns[rows], T, tuple(edges)), dense
@@ -202,7 +213,7 @@ def soft(graph: PoseGraph) -> PoseGraph:
 
 
 def with_loops(
-    graph: PoseGraph, true: Trajectory, *, shift_m: float, **changes: object
+    graph: PoseGraph, true: Trajectory, *, shift_m: float, decided_by: str = AUTOMATIC
 ) -> PoseGraph:
     """25 loops from the end back to the beginning; all are wrong by one shift of the end."""
     T = true.at(graph.t_ns)
@@ -212,10 +223,14 @@ def with_loops(
         j = len(graph) - LOOPS + k
         loops.append(
             Edge(
-                i=k, j=j, T_i_j=T[k].inverse() @ T_moved[j], kind=EdgeKind.LOOP,
-                verdict=Verdict.ACCEPTED, information=np.diag([1e6] * 3 + [1e4] * 3),
-            ).evolve(**changes)
-        )  # fmt: skip
+                i=k,
+                j=j,
+                T_i_j=T[k].inverse() @ T_moved[j],
+                kind=EdgeKind.LOOP,
+                information=np.diag([1e6] * 3 + [1e4] * 3),
+                judgments=known_history(Verdict.ACCEPTED, decided_by=decided_by),
+            )
+        )
     return graph.with_edges((*graph.edges, *loops))
 
 
@@ -225,8 +240,10 @@ def test_the_positions_decide_which_loops_are_rejected(
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
     graph = with_loops(soft(graph), true, shift_m=shift_m)
-    unregistered = graph.edges[0].evolve(
-        j=50, kind=EdgeKind.LOOP, verdict=Verdict.REJECTED, reason=Reason.OVERLAP
+    unregistered = (
+        graph.edges[0]
+        .evolve(j=50, kind=EdgeKind.LOOP)
+        .judged(known_judgment(Verdict.REJECTED, Reason.OVERLAP))
     )
     graph = graph.with_edges((unregistered, *graph.edges))
 
@@ -236,18 +253,26 @@ def test_the_positions_decide_which_loops_are_rejected(
     loops = result.graph.edges[-LOOPS:]
     assert sum(edge.in_graph for edge in loops) == kept
     assert all(edge.reason is Reason.ROBUST for edge in loops if not edge.in_graph)
+    for edge in loops:
+        if not edge.in_graph:
+            first, last = edge.judgments
+            assert (first.by, first.verdict) == (Judge.SEARCH, Verdict.ACCEPTED)
+            assert (last.by, last.verdict, last.measure) == (
+                Judge.GNSS, Verdict.REJECTED, Measure.CHI2,
+            )  # fmt: skip
+            assert last.value > last.limit
     assert len(result.rejected) == LOOPS - kept
     assert result.record().edges_rejected == list(result.rejected)
     assert worst_m(result, true) < 0.15
     assert result.used.mean() > 0.98
 
 
-@pytest.mark.parametrize(("person", "judge_edges"), [({"decided_by": "Ada"}, True), ({}, False)])
+@pytest.mark.parametrize(("person", "judge_edges"), [("Ada", True), (AUTOMATIC, False)])
 def test_positions_reject_no_decision_of_a_person_and_nothing_when_off(
-    true: Trajectory, gnss: GnssSamples, person: dict[str, str], judge_edges: bool
+    true: Trajectory, gnss: GnssSamples, person: str, judge_edges: bool
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
-    graph = with_loops(graph, true, shift_m=1.0, **person)
+    graph = with_loops(graph, true, shift_m=1.0, decided_by=person)
     settings = GnssSettings(judge_edges=judge_edges)
 
     result = georeference(graph, dense, gnss, rig=RIG, settings=settings)

@@ -5,11 +5,25 @@ import math
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_history,
+    known_judgment,
+)
 
 
 def edge(verdict: Verdict, reason: Reason = Reason.NONE) -> Edge:
-    return Edge(i=0, j=1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=verdict, reason=reason)
+    return Edge(
+        i=0,
+        j=1,
+        T_i_j=SE3.identity(),
+        kind=EdgeKind.LOOP,
+        judgments=known_history(verdict, reason),
+    )
 
 
 def test_only_a_rejected_edge_is_out_of_the_graph():
@@ -27,7 +41,7 @@ def test_values_that_were_not_measured_are_nan():
 def test_changing_an_edge_makes_a_new_one():
     tried = edge(Verdict.ACCEPTED)
 
-    rejected = tried.evolve(verdict=Verdict.REJECTED, reason=Reason.VERIFICATION)
+    rejected = tried.judged(known_judgment(Verdict.REJECTED, Reason.VERIFICATION))
 
     assert (tried.verdict, rejected.verdict) == (Verdict.ACCEPTED, Verdict.REJECTED)
     assert str(rejected.reason) == "verification median > limit"

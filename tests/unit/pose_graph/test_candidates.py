@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, Verdict, known_history
 from recon4.pose_graph.candidates import (
     distance_schedule,
     neighbor_pairs,
@@ -90,7 +90,13 @@ def test_wrapping_pairs_need_a_closed_trajectory():
 
 
 def test_registered_pairs_are_not_selected_again():
-    tried = Edge(i=1, j=3, T_i_j=SE3.identity(), kind=EdgeKind.NEIGHBOR, verdict=Verdict.REJECTED)
+    tried = Edge(
+        i=1,
+        j=3,
+        T_i_j=SE3.identity(),
+        kind=EdgeKind.NEIGHBOR,
+        judgments=known_history(Verdict.REJECTED),
+    )
     graph = line(5).with_edges((tried,))
 
     assert ends(pairs_at_distances(graph, distances=[2], settings=GraphSettings())) == [
@@ -165,7 +171,14 @@ def test_no_node_has_more_revisits_than_the_limit_and_two_limits_never_repeat():
 
     few = revisit_pairs(graph, settings=GraphSettings(), limit=2)
     made = tuple(
-        Edge(i=p.i, j=p.j, T_i_j=p.T_i_j, kind=p.kind, verdict=Verdict.ACCEPTED) for p in few
+        Edge(
+            i=p.i,
+            j=p.j,
+            T_i_j=p.T_i_j,
+            kind=p.kind,
+            judgments=known_history(Verdict.ACCEPTED),
+        )
+        for p in few
     )
     more = revisit_pairs(graph.with_edges(made), settings=GraphSettings(), limit=6)
 

@@ -10,10 +10,20 @@ from hypothesis import strategies as st
 
 from recon4.errors import CorruptFile, StoreError
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import (
+    Edge,
+    Judge,
+    Judgment,
+    Measure,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_judgment,
+)
 from recon4.pose_graph.files import load_graph, save_graph, write_edges_json
 from recon4.pose_graph.g2o import write_g2o
 from recon4.pose_graph.relations import squared_residuals
+from recon4.store.arrays import load_arrays, save_arrays
 from tests.benchmarks.false_loops import office_graph
 from tests.g2o_reader import read_g2o
 
@@ -22,17 +32,18 @@ def sample() -> PoseGraph:
     graph, _ = office_graph(np.random.default_rng(1), nodes=12)
     rng = np.random.default_rng(2)
     root = rng.normal(size=(6, 6))
-    odd = graph.edges[3].evolve(
-        information=root @ root.T + np.eye(6),
-        overlap=0.61,
-        error_m=0.1 + 0.2,
-        verification_m=1 / 3,
-        paths=4,
-        decided_by="Žofie",
-        verdict=Verdict.REJECTED,
-        reason=Reason.OPERATOR,
-        converged=False,
-        iterations=12,
+    odd = (
+        graph.edges[3]
+        .evolve(
+            information=root @ root.T + np.eye(6),
+            overlap=0.61,
+            error_m=0.1 + 0.2,
+            verification_m=1 / 3,
+            paths=4,
+            converged=False,
+            iterations=12,
+        )
+        .judged(known_judgment(Verdict.REJECTED, Reason.OPERATOR, decided_by="Žofie"))
     )
     return graph.with_edges((*graph.edges[:3], odd, *graph.edges[4:]))
 
@@ -96,6 +107,67 @@ def test_the_json_has_every_pair_and_null_for_unknown_numbers(tmp_path: Path) ->
     assert odd["chi2"] is None
     back = SE3.from_quat(odd["T_a_b"]["quaternion_xyzw"], odd["T_a_b"]["translation"])
     np.testing.assert_allclose(back.matrix(), graph.edges[3].T_i_j.matrix(), atol=1e-12)
+
+
+def test_the_json_has_the_history_of_each_pair(tmp_path: Path) -> None:
+    graph = sample()
+    found = Judgment(Judge.SEARCH, Verdict.ACCEPTED, Reason.NONE, Measure.ERROR, 1 / 3, None)
+    ada = Judgment(Judge.PERSON, Verdict.REJECTED, Reason.OPERATOR, person="Ada", note="a mirror")
+    judged = graph.edges[4].judged(found).judged(ada)
+
+    save_graph(tmp_path, graph.with_edges((*graph.edges[:4], judged)))
+
+    record = json.loads((tmp_path / "edges.json").read_text("utf-8"))
+    first, second = record["edges"][4]["history"]
+    assert dict(zip(record["history"], first, strict=False)) == {
+        "by": "search", "verdict": "accepted", "reason": "",
+        "measure": "error_m", "value": 0.33333, "limit": None,
+    }  # fmt: skip
+    assert second == ["person", "rejected", "operator", "", None, None, "Ada", "a mirror"]
+
+
+def test_a_file_from_before_edges_had_a_history_is_read(tmp_path: Path) -> None:
+    graph = sample()
+    save_graph(tmp_path, graph)
+    columns = load_arrays(tmp_path / "graph.npz")
+    new = {"judgments", "judgment", "judged_value", "judged_limit"}
+    new |= {"judges", "verdicts", "reasons", "measures", "persons", "notes"}
+    old = {name: column for name, column in columns.items() if name not in new}
+    texts = {
+        name: [str(getattr(edge, name)) for edge in graph.edges]
+        for name in ("verdict", "reason", "decided_by")
+    }
+    texts["verdict"][5:7] = ["rejected", "rejected"]
+    texts["reason"][5:7] = ["verification median > limit", "overlap < t_o"]
+    old |= {name: np.array(column, dtype=np.str_) for name, column in texts.items()}
+    save_arrays(tmp_path / "graph.npz", old)
+
+    edges = load_graph(tmp_path).edges
+
+    assert edges[0].judgments == (Judgment(Judge.ODOMETRY, Verdict.ACCEPTED),)
+    assert edges[3].judgments == (
+        Judgment(Judge.PERSON, Verdict.REJECTED, Reason.OPERATOR, person="Žofie"),
+    )
+    assert [one.by for one in edges[5].judgments][-1] is Judge.VERIFICATION
+    assert edges[6].judgments == (Judgment(Judge.SEARCH, Verdict.REJECTED, Reason.OVERLAP),)
+
+
+@pytest.mark.parametrize(("name", "column", "message"), [
+    ("judgments", np.ones(3, np.int64), "do not fit"),
+    ("judgments", np.zeros((2, 2), np.int64), "expected one row"),
+    ("judgment", np.full(3, 99), "do not fit"),
+    ("judged_value", np.array(["x"]), "expected one row"),
+    ("judges", np.array(["nobody"]), "do not fit|nobody"),
+])  # fmt: skip
+def test_judgments_that_do_not_fit_are_refused(
+    tmp_path: Path, name: str, column: np.ndarray, message: str
+) -> None:
+    save_graph(tmp_path, sample())
+    columns = load_arrays(tmp_path / "graph.npz")
+    save_arrays(tmp_path / "graph.npz", {**columns, name: column})
+
+    with pytest.raises(StoreError, match=message):
+        load_graph(tmp_path)
 
 
 def test_a_damaged_file_is_refused(tmp_path: Path) -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from recon4.model.pose_graph import EdgeKind, Measure, Reason, Verdict
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.progress import Silent
 from recon4.registration.collar_lines import register_lines
@@ -101,6 +101,12 @@ def test_each_reason_to_reject_a_pair(stroll, assignments, wrong, reason):
     assert (edge.verdict, edge.reason) == (Verdict.REJECTED, reason)
     assert not edge.in_graph
     assert np.isfinite(edge.overlap)
+    last = edge.judgments[-1]
+    if reason is Reason.NOT_CONVERGED:
+        assert last.value is None
+    else:
+        above = last.measure in (Measure.ERROR, Measure.SEEN_THROUGH)
+        assert (last.value > last.limit) is above
 
 
 def test_a_wrong_pose_has_points_where_the_other_visit_saw_through(stroll):

@@ -6,7 +6,7 @@ import pytest
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.places import ambiguous_places, separate_pieces
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict, known_history
 from recon4.pose_graph.pieces import joined_pieces, placed, weakened
 from tests.unit.pose_graph.graphs import line
 
@@ -15,7 +15,13 @@ PIECES = np.array([0, 0, 0, 1, 1, 1])
 
 def loop(i, j, T_i_j, reason=Reason.NONE):
     verdict = Verdict.REJECTED if reason else Verdict.ACCEPTED
-    return Edge(i=i, j=j, T_i_j=T_i_j, kind=EdgeKind.LOOP, verdict=verdict, reason=reason)
+    return Edge(
+        i=i,
+        j=j,
+        T_i_j=T_i_j,
+        kind=EdgeKind.LOOP,
+        judgments=known_history(verdict, reason),
+    )
 
 
 HERE = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[7.0, 1.0, 0.0])
@@ -23,7 +29,13 @@ HERE = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[7.0, 1.0, 0.0])
 
 def test_an_edge_between_two_pieces_states_nothing_of_the_heading():
     edges = tuple(
-        Edge(i=k, j=k + 1, T_i_j=SE3.identity(), kind=EdgeKind.ODOMETRY, verdict=Verdict.ACCEPTED)
+        Edge(
+            i=k,
+            j=k + 1,
+            T_i_j=SE3.identity(),
+            kind=EdgeKind.ODOMETRY,
+            judgments=known_history(Verdict.ACCEPTED),
+        )
         for k in range(5)
     )
 

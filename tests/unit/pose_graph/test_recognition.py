@@ -7,7 +7,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges, seen_through_ratio
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density import make_density_image, overlays, yaws_within
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
@@ -82,9 +82,8 @@ def edge(i, j, *, sd_m=0.1, T_i_j=None, kind=EdgeKind.ODOMETRY, reason=Reason.NO
         j=j,
         T_i_j=SE3(np.eye(3), np.array([float(j - i), 0.0, 0.0])) if T_i_j is None else T_i_j,
         kind=kind,
-        verdict=Verdict.REJECTED if reason else Verdict.ACCEPTED,
-        reason=reason,
         information=np.diag([1e8, 1e8, 1e8, *[sd_m**-2.0] * 3]),
+        judgments=known_history(Verdict.REJECTED if reason else Verdict.ACCEPTED, reason),
     )
 
 

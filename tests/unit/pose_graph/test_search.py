@@ -11,7 +11,7 @@ from recon4.errors import Cancelled, ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.events import EdgeTried
 from recon4.model.plain import to_plain
-from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, Reason, Verdict, known_history
 from recon4.pose_graph.candidates import (
     retry_pairs,
 )
@@ -91,7 +91,12 @@ def test_the_poses_of_the_graph_are_true(searched, stroll):
 
 def test_the_event_of_an_edge_never_registered_has_no_error():
     edge = Edge(
-        i=0, j=1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=Verdict.REJECTED, overlap=0.1
+        i=0,
+        j=1,
+        T_i_j=SE3.identity(),
+        kind=EdgeKind.LOOP,
+        overlap=0.1,
+        judgments=known_history(Verdict.REJECTED),
     )
 
     assert tried_event(edge).error_m is None
@@ -136,7 +141,13 @@ def test_who_asks_to_stop_is_heard(searched, stroll):
 
 def test_a_pair_turned_down_is_tried_again_once_its_poses_have_moved():
     def edge(i, j, verdict, kind=EdgeKind.LOOP):
-        return Edge(i=i, j=j, T_i_j=SE3.identity(), kind=kind, verdict=verdict)
+        return Edge(
+            i=i,
+            j=j,
+            T_i_j=SE3.identity(),
+            kind=kind,
+            judgments=known_history(verdict),
+        )
 
     refused, kept = Verdict.REJECTED, Verdict.ACCEPTED
     edges = [edge(0, 3, refused), edge(1, 3, kept), edge(0, 2, refused), edge(1, 2, refused)]

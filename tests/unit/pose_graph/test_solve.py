@@ -3,7 +3,16 @@ import pytest
 
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, relations_of
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_history,
+    known_judgment,
+    relations_of,
+)
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.relations import reverse, squared_residuals
 from recon4.pose_graph.robust import optimize_gnc, outlier_limit
@@ -13,7 +22,7 @@ from tests.benchmarks.false_loops import inject_random, office_graph
 
 def edge(i: int, j: int, T_i_j: SE3, **changes: object) -> Edge:
     kind = EdgeKind.ODOMETRY if j == i + 1 else EdgeKind.LOOP
-    made = Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=Verdict.ACCEPTED)
+    made = Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, judgments=known_history(Verdict.ACCEPTED))
     return made.evolve(**changes)
 
 
@@ -63,7 +72,7 @@ def test_the_order_of_information_is_rotation_first() -> None:
 
 def test_rejected_edges_do_not_count_but_are_measured() -> None:
     graph = triangle()
-    rejected = graph.edges[2].evolve(verdict=Verdict.REJECTED, reason=Reason.OVERLAP)
+    rejected = graph.edges[2].judged(known_judgment(Verdict.REJECTED, Reason.OVERLAP))
 
     solution = optimize(graph.with_edges((*graph.edges[:2], rejected)), kernel="none")
 
@@ -218,7 +227,7 @@ def test_an_invalid_edge_is_reported_with_its_row(change: dict[str, object], mes
 def test_a_bad_edge_that_is_rejected_does_no_harm() -> None:
     graph = triangle()
     nan = SE3(np.eye(3), np.full(3, np.nan))
-    bad = graph.edges[2].evolve(T_i_j=nan, verdict=Verdict.REJECTED)
+    bad = graph.edges[2].evolve(T_i_j=nan).judged(known_judgment(Verdict.REJECTED))
 
     solution = optimize(graph.with_edges((*graph.edges[:2], bad)), kernel="none")
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3, TRANSLATION, Array, so3_log
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph import uncertainty
 from recon4.pose_graph.error_model import ErrorModel
@@ -45,8 +45,8 @@ def edge(T: SE3, i: int, j: int, kind: EdgeKind, sd: Array) -> Edge:
         j=j,
         T_i_j=T[i].inverse() @ T[j],
         kind=kind,
-        verdict=Verdict.ACCEPTED,
         information=np.diag(sd**-2.0),
+        judgments=known_history(Verdict.ACCEPTED),
     )
 
 

@@ -4,7 +4,18 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, relations_of
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Measure,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_history,
+    known_judgment,
+    relations_of,
+)
 from recon4.pose_graph.paths import PathIndex
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.verification import confirmed_again, verify
@@ -22,13 +33,27 @@ def line(*loops: tuple[int, int, float], nodes: int = 6, turn: float = 0.0) -> P
         poses.append(poses[-1] @ step)
     T_map_body = SE3.stack(poses)
     edges = [
-        Edge(i=k, j=k + 1, T_i_j=steps[k], kind=EdgeKind.ODOMETRY, verdict=Verdict.ACCEPTED)
+        Edge(
+            i=k,
+            j=k + 1,
+            T_i_j=steps[k],
+            kind=EdgeKind.ODOMETRY,
+            judgments=known_history(Verdict.ACCEPTED),
+        )
         for k in range(nodes - 1)
     ]
     for i, j, error in loops:
         T_i_j = poses[i].inverse() @ poses[j]
         T_i_j = SE3(T_i_j.R, T_i_j.t + np.array([0.0, error, 0.0]))
-        edges.append(Edge(i=i, j=j, T_i_j=T_i_j, kind=EdgeKind.LOOP, verdict=Verdict.ACCEPTED))
+        edges.append(
+            Edge(
+                i=i,
+                j=j,
+                T_i_j=T_i_j,
+                kind=EdgeKind.LOOP,
+                judgments=known_history(Verdict.ACCEPTED),
+            )
+        )
     rows = np.arange(nodes, dtype=np.int64)
     return PoseGraph(rows, rows, T_map_body, tuple(edges))
 
@@ -95,7 +120,7 @@ def test_removing_edges_gives_the_same_as_starting_without_them() -> None:
     gone = np.random.default_rng(2).choice(np.flatnonzero(~of.protected), 40, replace=False)
     edges = list(graph.edges)
     for row in gone:
-        edges[row] = edges[row].evolve(verdict=Verdict.REJECTED)
+        edges[row] = edges[row].judged(known_judgment(Verdict.REJECTED))
 
     index = PathIndex.build(of, nodes=80, max_edges=3)
     index.remove(gone)
@@ -138,7 +163,9 @@ def test_false_edges_far_apart_go_in_one_round() -> None:
 def test_odometry_that_disagrees_is_flagged_but_never_rejected() -> None:
     graph = line((0, 2, 0.0), (1, 3, 0.0), (0, 3, 0.0), nodes=4)
     wrong = graph.edges[1].evolve(T_i_j=SE3(np.eye(3), np.array([1.0, 1.0, 0.0])))
-    approved = [edge.evolve(decided_by="Ada") for edge in graph.edges[3:]]
+    approved = [
+        edge.judged(known_judgment(Verdict.ACCEPTED, decided_by="Ada")) for edge in graph.edges[3:]
+    ]
     graph = graph.with_edges((graph.edges[0], wrong, graph.edges[2], *approved))
 
     result = verify(graph, settings=PATHS_ONLY)
@@ -154,8 +181,8 @@ def test_decisions_of_a_person_are_kept(robust: str) -> None:
     stated = np.diag([1e6] * 3 + [1e4] * 3)
     graph = line((0, 2, 3.0), (2, 4, 0.0))
     edges = [edge.evolve(information=stated) for edge in graph.edges]
-    edges[5] = edges[5].evolve(decided_by="Ada")
-    edges[6] = edges[6].evolve(decided_by="Ada", verdict=Verdict.REJECTED, reason=Reason.OPERATOR)
+    edges[5] = edges[5].judged(known_judgment(Verdict.ACCEPTED, decided_by="Ada"))
+    edges[6] = edges[6].judged(known_judgment(Verdict.REJECTED, Reason.OPERATOR, decided_by="Ada"))
     settings = VerificationSettings(robust=robust)  # type: ignore[arg-type]
 
     found = verify(graph.with_edges(tuple(edges)), settings=settings)
@@ -179,13 +206,41 @@ def test_verifying_twice_is_verifying_once() -> None:
 
     assert [edge.verdict for edge in twice.edges] == [edge.verdict for edge in once.edges]
     assert [edge.reason for edge in twice.edges] == [edge.reason for edge in once.edges]
+    assert [edge.judgments for edge in twice.edges] == [edge.judgments for edge in once.edges]
+
+
+def test_the_history_has_the_figures_that_decided() -> None:
+    edge = verify(line((0, 2, 0.3)), settings=PATHS_ONLY).graph.edges[5]
+
+    search, paths = edge.judgments
+    assert (search.by, search.verdict) == (Judge.SEARCH, Verdict.ACCEPTED)
+    assert (paths.by, paths.verdict, paths.reason, paths.measure) == (
+        Judge.VERIFICATION, Verdict.REJECTED, Reason.VERIFICATION, Measure.PATHS,
+    )  # fmt: skip
+    assert (paths.value, paths.limit) == (pytest.approx(0.3), PATHS_ONLY.limit_m)
+
+
+def test_an_edge_that_is_right_after_all_was_rejected_in_its_history() -> None:
+    # The second measurement of (0, 2) agrees with the steps.
+    graph = line((0, 2, 0.3))
+    once = verify(graph, settings=PATHS_ONLY).graph
+    T = once.edges[5].T_i_j
+    right = once.edges[5].evolve(T_i_j=SE3(T.R, np.array([2.0, 0.0, 0.0])))
+
+    again = verify(once.with_edges((*once.edges[:5], right)), settings=PATHS_ONLY).graph.edges[5]
+
+    assert [(one.by, one.verdict) for one in again.judgments] == [
+        (Judge.SEARCH, Verdict.ACCEPTED),
+        (Judge.VERIFICATION, Verdict.REJECTED),
+        (Judge.VERIFICATION, Verdict.ACCEPTED),
+    ]
 
 
 @pytest.mark.parametrize("reason", [Reason.VERIFICATION, Reason.ROBUST])
 def test_edges_rejected_by_an_earlier_verification_are_verified_again(reason: Reason) -> None:
     graph = line((0, 2, 0.0), (2, 4, 0.0))
-    refused = graph.edges[5].evolve(verdict=Verdict.REJECTED, reason=reason)
-    unregistered = graph.edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.OVERLAP)
+    refused = graph.edges[5].judged(known_judgment(Verdict.REJECTED, reason))
+    unregistered = graph.edges[6].judged(known_judgment(Verdict.REJECTED, Reason.OVERLAP))
     graph = graph.with_edges((*graph.edges[:5], refused, unregistered))
 
     edges = verify(graph, settings=VerificationSettings()).graph.edges
@@ -196,7 +251,12 @@ def test_edges_rejected_by_an_earlier_verification_are_verified_again(reason: Re
 
 def test_an_edge_a_person_accepted_needs_no_path() -> None:
     graph = line((0, 4, 0.0))
-    graph = graph.with_edges((*graph.edges[:5], graph.edges[5].evolve(decided_by="Ada")))
+    graph = graph.with_edges(
+        (
+            *graph.edges[:5],
+            graph.edges[5].judged(known_judgment(Verdict.ACCEPTED, decided_by="Ada")),
+        )
+    )
 
     edge = verify(graph, settings=VerificationSettings()).graph.edges[5]
 
@@ -249,6 +309,10 @@ def test_the_robust_solve_rejects_a_false_loop_without_paths(robust: str) -> Non
     assert not any(edge.in_graph for edge in result.graph.edges[-8:])
     assert all(result.graph.edges[row].reason is Reason.ROBUST for row in result.outliers)
     assert len(result.outliers) > 0
+    for row in result.outliers:
+        last = result.graph.edges[row].judgments[-1]
+        assert (last.by, last.measure) == (Judge.ROBUST, Measure.CHI2)
+        assert last.value > last.limit > 0.0
     assert result.chi2_after < result.chi2_before
     assert np.linalg.norm(result.graph.T_map_body.t - truth.t, axis=1).max() < 0.05
 
@@ -256,12 +320,12 @@ def test_the_robust_solve_rejects_a_false_loop_without_paths(robust: str) -> Non
 def test_an_edge_without_its_last_path_becomes_unverified() -> None:
     graph = verify(line((0, 4, 0.0), (0, 2, 0.0), (2, 4, 0.0)), settings=PATHS_ONLY).graph
     edges = list(graph.edges)
-    edges[6] = edges[6].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
+    edges[6] = edges[6].judged(known_judgment(Verdict.REJECTED, Reason.ROBUST))
 
     one_gone = confirmed_again(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
-    edges[7] = edges[7].evolve(verdict=Verdict.REJECTED, reason=Reason.ROBUST)
+    edges[7] = edges[7].judged(known_judgment(Verdict.REJECTED, Reason.ROBUST))
     both_gone = confirmed_again(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
-    edges[5] = edges[5].evolve(decided_by="Ada")
+    edges[5] = edges[5].judged(known_judgment(Verdict.ACCEPTED, decided_by="Ada"))
     decided = confirmed_again(graph.with_edges(tuple(edges)), settings=PATHS_ONLY).edges
 
     # (0, 4) is confirmed by (0, 2, 4), (0, 1, 2, 4) and (0, 2, 3, 4).

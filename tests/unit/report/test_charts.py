@@ -14,7 +14,7 @@ from recon4.model.calibration_figures import (
     ParameterFigures,
     ParameterStatus,
 )
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.report.beams import beam_charts
 from recon4.report.edges import edge_paths
 from recon4.report.figures import Chart, add_bars, histogram, lines, thinned
@@ -150,7 +150,13 @@ def test_charts_and_plan_of_a_large_graph_have_few_elements() -> None:
     count, nodes = 20_000, 5000
     verdicts = rng.choice(np.array(list(Verdict), dtype=object), count)
     edges = [
-        Edge(i=int(i), j=nodes - 1, T_i_j=SE3.identity(), kind=EdgeKind.LOOP, verdict=verdict)
+        Edge(
+            i=int(i),
+            j=nodes - 1,
+            T_i_j=SE3.identity(),
+            kind=EdgeKind.LOOP,
+            judgments=known_history(verdict),
+        )
         for i, verdict in zip(rng.integers(0, nodes - 1, count), verdicts, strict=True)
     ]
     place = rng.uniform(0.0, 500.0, (nodes, 3))

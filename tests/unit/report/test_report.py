@@ -15,7 +15,7 @@ from recon4.findings.finding import Level
 from recon4.findings.kinds import FindingKind
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tile_writer import TileWriter
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.rig import RigCalibration, load_rig
 from recon4.model.rig_origin import RigOrigin
 from recon4.model.trajectory import Trajectory
@@ -62,7 +62,8 @@ def edge(
     walk: Trajectory, i: int, j: int, kind: EdgeKind, verdict: Verdict, **facts: object
 ) -> Edge:
     T_i_j = walk.T_a_b[10 * i].inverse() @ walk.T_a_b[10 * j]
-    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=verdict, **facts)
+    judgments = known_history(verdict, facts.pop("reason", Reason.NONE))
+    return Edge(i=i, j=j, T_i_j=T_i_j, kind=kind, judgments=judgments, **facts)
 
 
 def graph_of(walk: Trajectory) -> PoseGraph:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from recon4.geometry.se3 import SE3, so3_exp
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 
 STEP_NS = 500_000_000
 ODOMETRY = np.diag(1.0 / np.repeat([0.002, 0.01], 3) ** 2)
@@ -26,9 +26,17 @@ def edge(T, i, j, kind, *, noise=0.0, rng=None, off_m=(0.0, 0.0, 0.0)):
     T_i_j = SE3(T_i_j.R, T_i_j.t + np.asarray(off_m))
     information = ODOMETRY if kind is EdgeKind.ODOMETRY else LOOP
     return Edge(
-        i=i, j=j, T_i_j=T_i_j, kind=kind, verdict=Verdict.ACCEPTED, information=information,
-        overlap=0.8, error_m=0.01, limit_m=0.05, degeneracy=0.1,
-    )  # fmt: skip
+        i=i,
+        j=j,
+        T_i_j=T_i_j,
+        kind=kind,
+        information=information,
+        overlap=0.8,
+        error_m=0.01,
+        limit_m=0.05,
+        degeneracy=0.1,
+        judgments=known_history(Verdict.ACCEPTED),
+    )
 
 
 def two_rounds(nodes=60, *, noise=0.002, loops=True, wrong=()):

@@ -3,7 +3,7 @@
 import numpy as np
 
 from recon4.kernels.selected_inverse import entries, selected_inverse
-from recon4.model.pose_graph import EdgeKind, Verdict
+from recon4.model.pose_graph import EdgeKind, Verdict, known_judgment
 from recon4.pose_graph.solve import optimize
 from recon4.review.influence import ARM_M, influence_m
 from tests.unit.review.graphs import two_rounds
@@ -16,7 +16,7 @@ def solved(graph):
 def really_moved_m(graph, row, *, verdict):
     """Change of the relative pose when an edge changes sides and everything is solved again."""
     edges = list(graph.edges)
-    edges[row] = edges[row].evolve(verdict=verdict)
+    edges[row] = edges[row].judged(known_judgment(verdict))
     after = solved(graph.with_edges(tuple(edges)))
     i, j = edges[row].i, edges[row].j
     before_ij = graph.T_map_body[i].inverse() @ graph.T_map_body[j]
@@ -40,7 +40,7 @@ def test_influence_of_a_rejected_edge_is_what_taking_it_in_moves():
     graph = two_rounds(wrong=[(10, 40, (0.05, 0.02, 0.0))])
     row = len(graph.edges) - 1
     edges = list(graph.edges)
-    edges[row] = edges[row].evolve(verdict=Verdict.REJECTED)
+    edges[row] = edges[row].judged(known_judgment(Verdict.REJECTED))
     graph = solved(graph.with_edges(tuple(edges)))
 
     found = influence_m(graph, np.arange(len(edges)) == row)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.findings.review_problems import problem_findings
-from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from recon4.model.pose_graph import EdgeKind, Reason, Verdict, known_judgment
 from recon4.pose_graph.verification import verify
 from recon4.review.apply import CHANGED_M, apply_decisions, rows_by_pair
 from recon4.review.decisions import Decision, DecisionKind, Measurement, fold, numbers_of
@@ -92,8 +92,10 @@ def test_an_accepted_loop_stays_in_although_it_does_not_fit_and_is_named():
 def test_a_pair_that_never_converged_has_nothing_to_accept(verified):
     edges = list(verified.edges)
     row = next(k for k, e in enumerate(edges) if (e.i, e.j) == (3, 32))
-    edges[row] = edges[row].evolve(
-        verdict=Verdict.REJECTED, reason=Reason.NOT_CONVERGED, converged=False
+    edges[row] = (
+        edges[row]
+        .evolve(converged=False)
+        .judged(known_judgment(Verdict.REJECTED, Reason.NOT_CONVERGED))
     )
 
     found = review(verified.with_edges(tuple(edges)), standing(accept(3, 32)), settings=Settings())
@@ -172,7 +174,7 @@ def test_decisions_about_pairs_that_are_gone_are_counted_and_named(verified):
 def test_a_pair_that_was_never_registered_cannot_be_accepted(verified):
     edges = list(verified.edges)
     row = rows_by_pair(verified)[frames(3, 32)]
-    edges[row] = edges[row].evolve(verdict=Verdict.REJECTED, reason=Reason.OVERLAP)
+    edges[row] = edges[row].judged(known_judgment(Verdict.REJECTED, Reason.OVERLAP))
 
     applied = apply_decisions(verified.with_edges(tuple(edges)), standing(accept(3, 32)))
 

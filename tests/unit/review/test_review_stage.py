@@ -9,7 +9,7 @@ from recon4 import stages
 from recon4.findings.review_problems import problem_findings
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import to_plain
-from recon4.model.pose_graph import Reason, Verdict
+from recon4.model.pose_graph import Reason, Verdict, known_judgment
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
@@ -145,10 +145,10 @@ def test_pairs_without_a_registration_that_holds_come_last():
 
     def rejected_pair(i, j, reason, overlap, off_m):
         T = SE3(loop.T_i_j.R, loop.T_i_j.t + off_m)
-        return loop.evolve(
-            i=i, j=j, T_i_j=T, verdict=Verdict.REJECTED, reason=reason, overlap=overlap,
-            converged=reason is not Reason.NOT_CONVERGED,
-        )  # fmt: skip
+        pair = loop.evolve(
+            i=i, j=j, T_i_j=T, overlap=overlap, converged=reason is not Reason.NOT_CONVERGED
+        )
+        return pair.judged(known_judgment(Verdict.REJECTED, reason))
 
     more = (
         rejected_pair(1, 50, Reason.NOT_CONVERGED, 0.6, far),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se2 import between, compose, from_se3, inverse, to_se3, transform
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict
+from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.pose_graph.solve import optimize
 from recon4.slam2d.correction import corrected_poses
 from recon4.slam2d.covariance import node_covariances
@@ -21,8 +21,8 @@ def graph_of(poses, pairs, *, sd_m=0.1, sd_rad=0.01):
             j=j,
             T_i_j=to_se3(between(poses[i], poses[j])),
             kind=EdgeKind.ODOMETRY if j == i + 1 else EdgeKind.LOOP,
-            verdict=Verdict.ACCEPTED,
             information=space_information(information, sd_m=1e-6, sd_rad=1e-6),
+            judgments=known_history(Verdict.ACCEPTED),
         )
         for i, j in pairs
     )

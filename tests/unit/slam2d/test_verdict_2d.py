@@ -11,7 +11,7 @@ from recon4.findings.verdict import verdict_of
 from recon4.findings.witnesses.planar import PlanarRecord, check_planar
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
-from recon4.model.pose_graph import EdgeKind, Verdict
+from recon4.model.pose_graph import EdgeKind, Verdict, known_judgment
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.slam2d.steps import empty_steps
@@ -22,7 +22,7 @@ def facts(verdict):
     """A map without fault whose loop closures all have one verdict."""
     graph = verified_graph(loop_walk())
     edges = tuple(
-        replace(edge, verdict=verdict) if edge.kind is EdgeKind.LOOP else edge
+        edge.judged(known_judgment(verdict)) if edge.kind is EdgeKind.LOOP else edge
         for edge in graph.edges
     )
     steps = empty_steps(graph.t_ns)

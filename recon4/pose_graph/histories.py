@@ -1,0 +1,134 @@
+"""The histories of edges as columns of ``graph.npz``.
+
+Judgments of all edges stand one after the other. What they say in words repeats, so each distinct
+wording is stored once.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import StoreError
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Judgment,
+    Measure,
+    Reason,
+    Verdict,
+    known_history,
+)
+
+Columns = Mapping[str, NDArray[Any]]
+_FIELDS = ("judges", "verdicts", "reasons", "measures", "persons", "notes")
+_ROWS = ("judgment", "judged_value", "judged_limit")
+_KINDS = {"judgments": "iu", "judgment": "iu", "judged_value": "f", "judged_limit": "f"}
+"""Kinds of numbers; every other column has texts."""
+_BEFORE_HISTORIES = ("verdict", "reason", "decided_by")
+"""Columns of a file from before edges had a history."""
+
+
+def judgment_columns(edges: Iterable[Edge]) -> dict[str, NDArray[Any]]:
+    """Columns of the judgments of all edges.
+
+    Returns:
+        ``judgments``: their number, (E,). ``judgment``: the wording of each, a row of ``judges``,
+        ``verdicts``, ``reasons``, ``measures``, ``persons`` and ``notes``; ``judged_value`` and
+        ``judged_limit``: its figures, NaN = not known, (J,) each.
+    """
+    wordings: dict[tuple[str, ...], int] = {}
+    counts, rows, values, limits = [], [], [], []
+    for edge in edges:
+        counts.append(len(edge.judgments))
+        for one in edge.judgments:
+            wording = (one.by, one.verdict, one.reason, one.measure, one.person, one.note)
+            rows.append(wordings.setdefault(wording, len(wordings)))
+            values.append(math.nan if one.value is None else one.value)
+            limits.append(math.nan if one.limit is None else one.limit)
+    fields = zip(_FIELDS, zip(*wordings, strict=True), strict=True) if wordings else ()
+    texts = {name: np.array(column, dtype=np.str_) for name, column in fields}
+    return {
+        "judgments": np.array(counts, dtype=np.int64),
+        "judgment": np.array(rows, dtype=np.int64),
+        "judged_value": np.array(values, dtype=np.float64),
+        "judged_limit": np.array(limits, dtype=np.float64),
+        **(texts or {name: np.array([], dtype=np.str_) for name in _FIELDS}),
+    }
+
+
+def judgments_in(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
+    """The judgments of each edge.
+
+    Args:
+        columns: Of ``graph.npz``.
+
+    Raises:
+        StoreError: If a column is missing, or the columns do not fit together.
+        ValueError: If a word is not known.
+    """
+    if "judgments" not in columns:
+        yield from _known_alone(columns)
+        return
+    _check(columns, [*_FIELDS, *_ROWS, "judgments"])
+    wordings, count = _wordings(columns), columns["judgments"]
+    row, ends = columns["judgment"], np.cumsum(count)
+    texts = {len(columns[name]) for name in _FIELDS}
+    fits = len(texts) == 1 and {len(columns[name]) for name in _ROWS} == {int(count.sum())}
+    if not fits or np.any(count < 1) or np.any((row < 0) | (row >= len(wordings))):
+        raise StoreError("graph.npz: the judgments do not fit the edges")
+    values, limits = (_numbers(columns[name]) for name in _ROWS[1:])
+    every = [
+        _judgment(wordings[at], value, limit)
+        for at, value, limit in zip(row.tolist(), values, limits, strict=True)
+    ]
+    for start, end in zip((ends - count).tolist(), ends.tolist(), strict=True):
+        yield tuple(every[start:end])
+
+
+_Wording = tuple[Judge, Verdict, Reason, Measure, str, str]
+"""Fields of a judgment without its figures; the last two are person and note."""
+
+
+def _wordings(columns: Columns) -> list[_Wording]:
+    texts = zip(*(columns[name].tolist() for name in _FIELDS), strict=False)
+    return [
+        (Judge(by), Verdict(verdict), Reason(reason), Measure(measure), person, note)
+        for by, verdict, reason, measure, person, note in texts
+    ]
+
+
+def _judgment(wording: _Wording, value: float | None, limit: float | None) -> Judgment:
+    by, verdict, reason, measure, person, note = wording
+    return Judgment(by, verdict, reason, measure, value, limit, person, note)
+
+
+def _numbers(column: NDArray[Any]) -> list[float | None]:
+    return [value if math.isfinite(value) else None for value in column.tolist()]
+
+
+def _known_alone(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
+    _check(columns, ("kind", *_BEFORE_HISTORIES))
+    for kind, verdict, reason, by in zip(
+        columns["kind"], *(columns[name] for name in _BEFORE_HISTORIES), strict=True
+    ):
+        yield known_history(
+            Verdict(str(verdict)), Reason(str(reason)), str(by), kind=EdgeKind(str(kind))
+        )
+
+
+def _check(columns: Columns, names: Sequence[str]) -> None:
+    if missing := [name for name in names if name not in columns]:
+        raise StoreError(f"graph.npz: expected arrays {list(names)}, got none of {missing}")
+    for name in names:
+        found, expected = columns[name], _KINDS.get(name, "U")
+        if found.ndim != 1 or found.dtype.kind not in expected:
+            raise StoreError(
+                f"graph.npz: {name}: expected one row of kind {expected}, got {found.dtype} "
+                f"with the shape {found.shape}"
+            )
