@@ -48,7 +48,10 @@ def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
     kinds = ", ".join(short_type(kind) for kind in (CLOUD, SCAN, LASER_SCAN))
     why = unread_text(topics) or f"read are {kinds}"
     if any(topic.type == CLOUD and topic.messages for topic in topics):
-        why += "; the clouds are of a depth camera or a map (--set ingest.lidar_topic reads one)"
+        why += (
+            "; the clouds are of a depth camera or a map (one is read with lidar_topic of ingest; "
+            "page: All settings; command: --set ingest.lidar_topic=TOPIC)"
+        )
     return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
 
 
