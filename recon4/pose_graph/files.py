@@ -16,7 +16,7 @@ from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
-from recon4.pose_graph.histories import judgment_columns, judgments_in
+from recon4.pose_graph.histories import judgment_columns, judgments_in, judgments_of
 from recon4.store.arrays import load_arrays, save_arrays
 
 _NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
@@ -81,6 +81,29 @@ def load_graph(folder: Path) -> PoseGraph:
         raise StoreError(f"graph.npz: {error}") from error
     T_map_body = SE3(columns["node_R"], columns["node_t"])
     return PoseGraph(columns["frame_ids"], columns["t_ns"], T_map_body, edges)
+
+
+def load_history(folder: Path, frames: tuple[int, int]) -> tuple[Judgment, ...]:
+    """The judgments on one pair, without the rest of the graph; odometry edges do not count.
+
+    Args:
+        folder: With a ``graph.npz``.
+        frames: Ids of the two multiframes.
+
+    Returns:
+        Empty if the graph does not have the pair.
+
+    Raises:
+        StoreError: If the file is missing or damaged.
+    """
+    columns = load_arrays(folder / "graph.npz")
+    try:
+        ends = [columns["frame_ids"][columns[name]] for name in ("i", "j")]
+        is_pair = (ends[0] == frames[0]) & (ends[1] == frames[1])
+        rows = np.flatnonzero(is_pair & (columns["kind"] != EdgeKind.ODOMETRY.value))
+        return judgments_of(columns, int(rows[-1])) if len(rows) else ()
+    except (KeyError, IndexError, ValueError) as error:
+        raise StoreError(f"graph.npz: {error}") from error
 
 
 def _edge(columns: Mapping[str, NDArray[Any]], row: int, judgments: tuple[Judgment, ...]) -> Edge:

@@ -91,6 +91,26 @@ def judgments_in(columns: Columns) -> Iterator[tuple[Judgment, ...]]:
         yield tuple(every[start:end])
 
 
+def judgments_of(columns: Columns, row: int) -> tuple[Judgment, ...]:
+    """The judgments of one edge; arguments and errors as of `judgments_in`.
+
+    Args:
+        columns: Of ``graph.npz``.
+        row: Row of the edge.
+    """
+    own: dict[str, NDArray[Any]]
+    if "judgments" in columns:
+        _check(columns, ["judgments", *_ROWS])
+        start = int(columns["judgments"][:row].sum())
+        span = slice(start, start + int(columns["judgments"][row]))
+        own = {name: columns[name][span] for name in _ROWS}
+        own["judgments"] = columns["judgments"][row : row + 1]
+    else:
+        _check(columns, ["kind", *_BEFORE_HISTORIES])
+        own = {name: columns[name][row : row + 1] for name in ("kind", *_BEFORE_HISTORIES)}
+    return next(judgments_in({**columns, **own}))
+
+
 _Wording = tuple[Judge, Verdict, Reason, Measure, str, str]
 """Fields of a judgment without its figures; the last two are person and note."""
 

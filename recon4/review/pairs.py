@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.place import place
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
+from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.pose_graph.pairs import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar, too_little_overlap
 from recon4.progress import Silent
@@ -76,6 +76,8 @@ class PairFacts:
     """Worst first; at most `MAX_PATHS`."""
     path_count: int
     """Number of all alternative paths."""
+    history: tuple[Judgment, ...]
+    """Verdicts in the latest map, oldest first; empty where the graph does not have the pair."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,6 +134,7 @@ def pair_facts(source: Source, pair: Pair) -> PairFacts:
         apart_rad=float((predicted.inverse() @ T_i_j).angle()),
         paths=tuple(paths[:MAX_PATHS]),
         path_count=len(paths),
+        history=source.history(pair),
     )
 
 

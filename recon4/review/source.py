@@ -8,9 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from recon4.errors import StoreError
-from recon4.model.pose_graph import PoseGraph
+from recon4.model.pose_graph import Judgment, PoseGraph
 from recon4.model.trajectory import Trajectory
-from recon4.pose_graph.files import load_graph
+from recon4.pose_graph.files import load_graph, load_history
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore, open_frames
@@ -23,6 +23,8 @@ if TYPE_CHECKING:  # other kinds of recordings; each is imported where it is rea
 
 _MADE_WITH = ("graph", "graph_2d", "verification")
 """Stages whose settings a review uses."""
+_LAST_FIRST = ("level", "review", "verification")
+"""Stages that judge edges, the last one first."""
 
 
 @dataclass(frozen=True)
@@ -54,6 +56,15 @@ class Source:
     def verified(self) -> PoseGraph:
         """The graph before any decision."""
         return load_graph(self.artifacts["verification"])
+
+    def history(self, frames: tuple[int, int]) -> tuple[Judgment, ...]:
+        """Verdicts on a pair in the latest map, oldest first, with those of people and of GNSS.
+
+        Empty if the graph does not have the pair. As long as there is no map: in the verified
+        graph.
+        """
+        made = next(name for name in _LAST_FIRST if name in self.artifacts)
+        return load_history(self.artifacts[made], frames)
 
     @cached_property
     def settings(self) -> Settings:

@@ -3,6 +3,7 @@
 import { approvalLine } from "../shared/approval.js";
 import { fill, make } from "../shared/dom.js";
 import { when } from "../shared/format.js";
+import { historyOf } from "./history.js";
 import {
   KINDS,
   approvalObstacle,
@@ -90,7 +91,28 @@ export function showPair(panel, row, details, registration, path_limit_m) {
       ),
       figureRow("Decided by", row.who || "program", row.why),
     ),
+    details ? historyList(historyOf(details.history, row)) : null,
     details?.paths.length ? pathList(details) : null,
+  );
+}
+
+/** Who judged the pair, in order: a list that is open where more than the search did. */
+function historyList(judgments) {
+  if (!judgments.length) return null;
+  const line = ({ by, verdict, why, pending }) =>
+    make(
+      "li",
+      { className: verdict },
+      make("b", {}, by),
+      ` ${verdict}`,
+      why ? make("small", {}, ` ${why}`) : null,
+      pending ? make("small", {}, " (not in the map yet)") : null,
+    );
+  return make(
+    "details",
+    { open: judgments.length > 1 },
+    make("summary", {}, `History of the verdict (${judgments.length})`),
+    make("ol", { className: "history" }, ...judgments.map(line)),
   );
 }
 

@@ -9,6 +9,7 @@ import {
   fitPoints,
   readEffect,
   readJournal,
+  readPair,
   readQueue,
   readReview,
   readWalk,
@@ -91,14 +92,27 @@ function inTurn(action) {
 
 function update(server) {
   if (!server) return;
-  const seqBefore = state.server?.seq;
+  const before = state.server;
   for (const row of state.update(server)) queue.add(row);
   queue.refresh(state.refreshRows());
   document.querySelector("map-verdict").facts = server.map;
   showApproval(byId("signing"), server, { remake, approve });
   drawSelected();
-  if (seqBefore !== server.seq) updateEffect();
+  if (before?.seq !== server.seq) updateEffect();
+  if (before && ((before.busy && !server.busy) || (!before.in_map && server.in_map)))
+    updateHistory();
   if (byId("journal", HTMLDetailsElement).open) drawJournal();
+}
+
+/** Another map was made: who judged the selected pair in it. */
+async function updateHistory() {
+  loader.clear();
+  const { selected } = state;
+  if (!selected?.facts) return;
+  const facts = await readPair(id, selected.pair).catch(() => null);
+  if (!facts || state.selected !== selected) return;
+  selected.facts.history = facts.history;
+  drawSelected();
 }
 
 /** Polls whether others decided, or a job made another map or another graph. */

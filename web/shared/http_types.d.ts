@@ -436,6 +436,19 @@ export interface JobView {
   remedy: Remedy | null;
 }
 
+export type Judge = "odometry" | "search" | "free space" | "neighboring places" | "verification" | "robust solve" | "GNSS" | "person";
+
+export interface Judgment {
+  by: Judge;
+  verdict: Verdict;
+  reason: Reason;
+  measure: Measure;
+  value: number | null;
+  limit: number | null;
+  person: string;
+  note: string;
+}
+
 export interface KeyView {
   fingerprint: string;
   public_key: string;
@@ -511,6 +524,8 @@ export interface Me {
   login: boolean;
   token: string;
 }
+
+export type Measure = "" | "overlap" | "error_m" | "match_ratio" | "degeneracy" | "seen_through" | "confirmed_nodes" | "contradicted_nodes" | "verification_m" | "chi2";
 
 export interface Move {
   node: number;
@@ -617,6 +632,7 @@ export interface PairFacts {
   apart_rad: number;
   paths: Array<AlternativePath>;
   path_count: number;
+  history: Array<Judgment>;
 }
 
 export interface PairingApproval {
@@ -725,6 +741,8 @@ export interface ProjectView {
   approval: ApprovalState;
   problem: string;
 }
+
+export type Reason = "" | "overlap < t_o" | "error > limit" | "not converged" | "too few segments match" | "degenerate" | "free space contradicts it" | "neighboring places do not confirm it" | "ambiguous: places look alike" | "verification median > limit" | "outlier in the robust solution" | "operator";
 
 export interface RecordingSummary {
   path: string;
@@ -1152,6 +1170,8 @@ export interface UploadView {
 }
 
 export type Usability = "good" | "check" | "do not use";
+
+export type Verdict = "accepted" | "rejected" | "unverified";
 
 export interface WindowSpec {
   left: number;

@@ -175,6 +175,28 @@ def test_the_page_shows_the_effect_of_a_decision(opened, look, screenshot):
     screenshot(page, "review-effect")
 
 
+@looks("desktop dark")
+def test_the_page_shows_who_judged_a_pair_in_order(opened, screenshot):
+    page = opened
+    page.keyboard.press("j")
+    settled(page)
+    history = page.locator("#pair .history li")
+    expect(history).to_contain_text(["search accepted", "robust solve rejected"])
+    expect(history.last).to_contain_text("outlier in the robust solution; squared residual")
+
+    page.get_by_label("Reason", exact=True).fill("the same door")
+    page.locator("#decision").get_by_role("button", name="Accept").click()
+
+    expect(history.last).to_have_text("local accepted the same door (not in the map yet)")
+    fits(page)
+    page.get_by_role("button", name="Rebuild map").click()
+    made = page.locator("#signing")
+    expect(made).to_contain_text("was made with these decisions", timeout=120_000)
+    expect(history.last).to_have_text("local accepted the same door")
+    expect(history).to_have_count(3)
+    screenshot(page, "review-history")
+
+
 @looks("desktop light")
 def test_the_help_sheet_lists_the_keys(opened, screenshot):
     opened.keyboard.press("?")

@@ -104,6 +104,8 @@ def test_the_queue_and_a_pair_and_its_points(server):
     assert {(20, 90), (41, 70)} == {tuple(row[:2]) for row in queue["rows"][:2]}
     assert facts["apart_m"] > 0.4
     assert points[:4] == b"R4PP"
+    assert [one["by"] for one in facts["history"]] == ["search", "robust solve"]
+    assert facts["history"][-1]["value"] > facts["history"][-1]["limit"]
     version, n_i, n_j = np.frombuffer(points[4:16], "<u4")
     xyz = np.frombuffer(points[16:], "<f4").reshape(-1, 3)
     assert version == 1

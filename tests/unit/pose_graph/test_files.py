@@ -12,6 +12,7 @@ from recon4.errors import CorruptFile, StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import (
     Edge,
+    EdgeKind,
     Judge,
     Judgment,
     Measure,
@@ -20,7 +21,7 @@ from recon4.model.pose_graph import (
     Verdict,
     known_judgment,
 )
-from recon4.pose_graph.files import load_graph, save_graph, write_edges_json
+from recon4.pose_graph.files import load_graph, load_history, save_graph, write_edges_json
 from recon4.pose_graph.g2o import write_g2o
 from recon4.pose_graph.relations import squared_residuals
 from recon4.store.arrays import load_arrays, save_arrays
@@ -150,6 +151,17 @@ def test_a_file_from_before_edges_had_a_history_is_read(tmp_path: Path) -> None:
     )
     assert [one.by for one in edges[5].judgments][-1] is Judge.VERIFICATION
     assert edges[6].judgments == (Judgment(Judge.SEARCH, Verdict.REJECTED, Reason.OVERLAP),)
+
+
+def test_the_history_of_one_pair_is_that_of_the_whole_graph(tmp_path: Path) -> None:
+    graph = sample()
+    save_graph(tmp_path, graph)
+
+    for edge in load_graph(tmp_path).edges:
+        frames = (int(graph.frame_ids[edge.i]), int(graph.frame_ids[edge.j]))
+        expected = () if edge.kind is EdgeKind.ODOMETRY else edge.judgments
+        assert load_history(tmp_path, frames) == expected
+    assert load_history(tmp_path, (0, 9999)) == ()
 
 
 @pytest.mark.parametrize(("name", "column", "message"), [

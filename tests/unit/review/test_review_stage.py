@@ -9,7 +9,7 @@ from recon4 import stages
 from recon4.findings.review_problems import problem_findings
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import to_plain
-from recon4.model.pose_graph import Reason, Verdict, known_judgment
+from recon4.model.pose_graph import Judge, Reason, Verdict, known_judgment
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
@@ -188,6 +188,22 @@ def test_the_reviewed_graph_keeps_every_pair_that_was_tried(run):
     assert sum(e.verdict is Verdict.REJECTED for e in reviewed.edges) == 1 + sum(
         e.verdict is Verdict.REJECTED for e in verified.edges
     )
+
+
+def test_the_history_of_a_pair_has_the_program_and_then_the_person(run):
+    pair = reject(3, 32).pair
+    run()
+    before = Source.of(run.root).history(pair)
+    append(run.root, reject(3, 32))
+    run()
+
+    after = Source.of(run.root).history(pair)
+
+    assert [one.by for one in before] == [Judge.SEARCH, Judge.VERIFICATION]
+    assert after[:-1] == before
+    last = after[-1]
+    assert (last.by, last.person, last.verdict) == (Judge.PERSON, "Eva", Verdict.REJECTED)
+    assert Source.of(run.root).history((1, 2)) == ()
 
 
 def test_settings_are_those_the_graph_was_made_with(run):

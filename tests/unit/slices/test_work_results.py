@@ -13,6 +13,7 @@ from app.review.work import pair_facts, preview
 from app.slices.control_work import control_report
 from app.slices.work import comparison
 from recon4.evaluation.slices import SliceError
+from recon4.model.pose_graph import Judge, Judgment, Measure, Reason, Verdict
 from recon4.review.pairs import PairFacts
 from recon4.review.preview import DecidedEdge, Effect
 from recon4.review.queue import AlternativePath
@@ -60,6 +61,10 @@ def test_records_come_back_as_they_were():
     pair = PairFacts(
         (1, 2), (10**18, 10**18 + 1), POSE, POSE, None, POSE[3:], 0.1, 0.2,
         (AlternativePath((1, 3, 2), 0.1, 0.01),), 1,
+        (
+            Judgment(Judge.SEARCH, Verdict.ACCEPTED, measure=Measure.ERROR, value=0.1, limit=None),
+            Judgment(Judge.PERSON, Verdict.REJECTED, Reason.OPERATOR, person="Eva", note="glass"),
+        ),
     )  # fmt: skip
     row = ComparedSlice.of(ROW, SignedFigures(9, -0.01, 0.02, (0.03, None, 0.0)))
     fit = ReferenceFit(0.9, 0.8, None, True, "✓")
