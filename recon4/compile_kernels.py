@@ -30,7 +30,7 @@ from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.points import extent
 from recon4.slices.slice_image import RasterGrid, draw
-from recon4.slices.slice_plane import horizontal
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.frames import FrameStore
 from recon4.store.locks import open_lock_file, wait_for_lock
 from recon4.store.project import read_artifacts
@@ -76,7 +76,7 @@ def _lidars(folder: Path) -> None:
     made = read_artifacts(project)
     tiles = TileSet.open(made["map"])
     find_double_walls(tiles)
-    plane = horizontal(1.0)
+    plane = SlicePlane.horizontal(1.0)
     paper = RasterGrid(extent(tiles, plane), _PIXEL_M)
     draw(tiles, plane, paper, color="height")
     draw(tiles, plane, paper, color="sensor")

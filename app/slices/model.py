@@ -17,14 +17,7 @@ from recon4.slices.colors import ColorBy, Ground
 from recon4.slices.limits import MOST_M, ControlLimits
 from recon4.slices.measured import orthonormal
 from recon4.slices.reference import ReferenceFacts
-from recon4.slices.slice_plane import (
-    MAX_SLICES,
-    MAX_THICKNESS_M,
-    SlicePlane,
-    free,
-    horizontal,
-    vertical,
-)
+from recon4.slices.slice_plane import MAX_SLICES, MAX_THICKNESS_M, SlicePlane
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Part = Annotated[float, Field(ge=-2.0, le=2.0, allow_inf_nan=False)]
@@ -67,10 +60,10 @@ class SlicePlaneSpec(Strict):
             ConfigError: If it is no plane.
         """
         if self.kind == "horizontal":
-            return horizontal(self.z_m, thickness_m=self.thickness_m)
+            return SlicePlane.horizontal(self.z_m, thickness_m=self.thickness_m)
         if self.kind == "vertical":
-            return vertical(self.a_m, self.b_m, thickness_m=self.thickness_m)
-        return free(self.origin_m, self.normal, thickness_m=self.thickness_m)
+            return SlicePlane.vertical(self.a_m, self.b_m, thickness_m=self.thickness_m)
+        return SlicePlane.free(self.origin_m, self.normal, thickness_m=self.thickness_m)
 
 
 class WindowSpec(Strict):

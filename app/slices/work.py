@@ -48,7 +48,7 @@ from recon4.slices.sheet import (
     axis_labels,
 )
 from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
-from recon4.slices.slice_plane import SlicePlane, horizontal
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import atomic_file, write_json
 from recon4.store.checked import CheckedArtifact
 
@@ -159,7 +159,7 @@ def overview(map_folder: str, image: str, about: str) -> None:
     if not np.isfinite(low).all():
         raise ConfigError("the map has no points")
     middle, height = float(low[2] + high[2]) / 2.0, float(high[2] - low[2]) + 0.1
-    plane = horizontal(middle, thickness_m=height)
+    plane = SlicePlane.horizontal(middle, thickness_m=height)
     margin = 0.02 * float((high - low)[:2].max()) + 0.1
     window = SliceWindow(low[0] - margin, low[1] - margin, high[0] + margin, high[1] + margin)
     pixel_m = max(window.right - window.left, window.top - window.bottom) / 1200.0

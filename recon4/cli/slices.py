@@ -121,17 +121,17 @@ def double_walls(project: ProjectArgument) -> None:
 
 
 def _slice_plane(z: float | None, line: str, plane: str, *, thickness_m: float) -> SlicePlane:
-    from recon4.slices.slice_plane import free, horizontal, vertical
+    from recon4.slices.slice_plane import SlicePlane
 
     if (z is not None) + bool(line) + bool(plane) != 1:
         raise ConfigError("say where to cut: one of --z, --line, --plane")
     if z is not None:
-        return horizontal(z, thickness_m=thickness_m)
+        return SlicePlane.horizontal(z, thickness_m=thickness_m)
     if line:
         x1, y1, x2, y2 = _numbers(line, 4)
-        return vertical((x1, y1), (x2, y2), thickness_m=thickness_m)
+        return SlicePlane.vertical((x1, y1), (x2, y2), thickness_m=thickness_m)
     px, py, pz, nx, ny, nz = _numbers(plane, 6)
-    return free((px, py, pz), (nx, ny, nz), thickness_m=thickness_m)
+    return SlicePlane.free((px, py, pz), (nx, ny, nz), thickness_m=thickness_m)
 
 
 def _numbers(text: str, count: int) -> list[float]:

@@ -24,7 +24,7 @@ from recon4.slices.signed import (
     SignedTally,
     merged,
 )
-from recon4.slices.slice_plane import ERROR_THICKNESS_M, SlicePlane, horizontal, vertical
+from recon4.slices.slice_plane import ERROR_THICKNESS_M, SlicePlane
 
 _METHODS: dict[Method, str] = {
     "plane": "to the reference's surface",
@@ -138,16 +138,20 @@ def usual_planes(
     if not np.isfinite(low).all():
         raise ConfigError("the map has no points")
     x, y, z = ((low[a] + (np.arange(4) + 0.5) / 4.0 * (high - low)[a]) for a in range(3))
-    planes = [horizontal(float(h), thickness_m=thickness_m) for h in z]
+    planes = [SlicePlane.horizontal(float(h), thickness_m=thickness_m) for h in z]
     for k in (0, 2):
         middle = (x[k] + x[k + 1]) / 2.0
         planes.append(
-            vertical((middle, float(low[1])), (middle, float(high[1])), thickness_m=thickness_m)
+            SlicePlane.vertical(
+                (middle, float(low[1])), (middle, float(high[1])), thickness_m=thickness_m
+            )
         )
     for k in (0, 2):
         middle = (y[k] + y[k + 1]) / 2.0
         planes.append(
-            vertical((float(low[0]), middle), (float(high[0]), middle), thickness_m=thickness_m)
+            SlicePlane.vertical(
+                (float(low[0]), middle), (float(high[0]), middle), thickness_m=thickness_m
+            )
         )
     return tuple(planes)
 

@@ -46,6 +46,51 @@ class SlicePlane:
                 f"the thickness must be 0 to {MAX_THICKNESS_M:.0f} m, got {self.thickness_m}"
             )
 
+    @staticmethod
+    def horizontal(z_m: float, *, thickness_m: float = LOOKING_THICKNESS_M) -> SlicePlane:
+        """A floor plan at a height of the map."""
+        return SlicePlane(
+            "horizontal", (0.0, 0.0, z_m), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness_m
+        )
+
+    @staticmethod
+    def vertical(
+        a_m: tuple[float, float],
+        b_m: tuple[float, float],
+        *,
+        thickness_m: float = LOOKING_THICKNESS_M,
+    ) -> SlicePlane:
+        """A section through two points seen from above; u counts from the first.
+
+        Raises:
+            ConfigError: If the points are less than 1 mm apart.
+        """
+        along = np.array(b_m, dtype=np.float64) - a_m
+        length_m = float(np.linalg.norm(along))
+        if not length_m >= 0.001:
+            raise ConfigError("the two points of a vertical slice must be 1 mm apart or more")
+        u = (*(along / length_m).tolist(), 0.0)
+        origin = (float(a_m[0]), float(a_m[1]), 0.0)
+        return SlicePlane("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
+
+    @staticmethod
+    def free(
+        origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M
+    ) -> SlicePlane:
+        """Any plane. v is as near to the map's z as it can be (to y, if the plane is level).
+
+        Raises:
+            ConfigError: If the normal has no direction.
+        """
+        length = float(np.linalg.norm(normal))
+        if not (np.isfinite(length) and length > 1e-9):
+            raise ConfigError(f"a plane needs a normal with a direction, got {normal}")
+        n = np.array(normal) / length
+        up = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
+        u = np.cross(up, n)
+        u /= np.linalg.norm(u)
+        return SlicePlane("free", origin_m, _vector(u), _vector(np.cross(n, u)), thickness_m)
+
     @property
     def axes(self) -> Array:
         """Unit vectors u, v and normal in the map, rows of (3, 3)."""
@@ -98,46 +143,6 @@ class SlicePlane:
             return f"azimuth {azimuth:.1f}°, offset {self.offset_m:.3f} m"
         n = ", ".join(f"{x:.3f}" for x in self.normal)
         return f"normal ({n}), offset {self.offset_m:.3f} m"
-
-
-def horizontal(z_m: float, *, thickness_m: float = LOOKING_THICKNESS_M) -> SlicePlane:
-    """A floor plan at a height of the map."""
-    return SlicePlane("horizontal", (0.0, 0.0, z_m), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness_m)
-
-
-def vertical(
-    a_m: tuple[float, float], b_m: tuple[float, float], *, thickness_m: float = LOOKING_THICKNESS_M
-) -> SlicePlane:
-    """A section through two points seen from above; u counts from the first.
-
-    Raises:
-        ConfigError: If the points are less than 1 mm apart.
-    """
-    along = np.array(b_m, dtype=np.float64) - a_m
-    length_m = float(np.linalg.norm(along))
-    if not length_m >= 0.001:
-        raise ConfigError("the two points of a vertical slice must be 1 mm apart or more")
-    u = (*(along / length_m).tolist(), 0.0)
-    origin = (float(a_m[0]), float(a_m[1]), 0.0)
-    return SlicePlane("vertical", origin, u, (0.0, 0.0, 1.0), thickness_m)
-
-
-def free(
-    origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M
-) -> SlicePlane:
-    """Any plane. v is as near to the map's z as it can be (to y, if the plane is level).
-
-    Raises:
-        ConfigError: If the normal has no direction.
-    """
-    length = float(np.linalg.norm(normal))
-    if not (np.isfinite(length) and length > 1e-9):
-        raise ConfigError(f"a plane needs a normal with a direction, got {normal}")
-    n = np.array(normal) / length
-    up = np.array([0.0, 0.0, 1.0]) if abs(n[2]) < 0.999 else np.array([0.0, 1.0, 0.0])
-    u = np.cross(up, n)
-    u /= np.linalg.norm(u)
-    return SlicePlane("free", origin_m, _vector(u), _vector(np.cross(n, u)), thickness_m)
 
 
 def _vector(values: Array) -> Vector:

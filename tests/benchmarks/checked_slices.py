@@ -16,7 +16,7 @@ from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slices.points import extent
 from recon4.slices.slice_image import RasterGrid, draw
-from recon4.slices.slice_plane import horizontal
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.checked import CheckedArtifact
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageRunner
@@ -24,7 +24,7 @@ from tests.benchmarks.large_map import _map
 
 
 def _seconds(tiles: TileSet) -> float:
-    plane = horizontal(1.5, thickness_m=0.1)
+    plane = SlicePlane.horizontal(1.5, thickness_m=0.1)
     window = extent(tiles, plane)
     began = time.perf_counter()
     draw(tiles, plane, RasterGrid(window, 0.02))

@@ -16,7 +16,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.points import SliceWindow, extent
 from recon4.slices.slice_image import RasterGrid, draw, png
-from recon4.slices.slice_plane import SlicePlane, free, horizontal, vertical
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.project import read_artifacts
 
 
@@ -26,12 +26,12 @@ def main(project: Path) -> None:
     low, high = tiles.bounds_m
     x, y, z = (float(c) for c in (low + high) / 2.0)
     planes = {
-        "horizontal, 10 cm": horizontal(float(low[2]) + 1.2),
-        "horizontal, 2 cm": horizontal(float(low[2]) + 1.2, thickness_m=0.02),
-        "floor, 40 cm": horizontal(float(low[2]) + 0.1, thickness_m=0.4),
-        "vertical, 10 cm": vertical((float(low[0]), y - 1.0), (float(high[0]), y + 3.0)),
-        "free, 10 cm": free((x, y, z), (0.3, 0.5, 0.8)),
-        "all points": horizontal(z, thickness_m=99.0),
+        "horizontal, 10 cm": SlicePlane.horizontal(float(low[2]) + 1.2),
+        "horizontal, 2 cm": SlicePlane.horizontal(float(low[2]) + 1.2, thickness_m=0.02),
+        "floor, 40 cm": SlicePlane.horizontal(float(low[2]) + 0.1, thickness_m=0.4),
+        "vertical, 10 cm": SlicePlane.vertical((float(low[0]), y - 1.0), (float(high[0]), y + 3.0)),
+        "free, 10 cm": SlicePlane.free((x, y, z), (0.3, 0.5, 0.8)),
+        "all points": SlicePlane.horizontal(z, thickness_m=99.0),
     }
     time_image(tiles, planes["horizontal, 2 cm"], "height")  # compile, import
     print(f"{len(tiles)} points")

@@ -29,7 +29,7 @@ from recon4.registration.odometry import Odometry
 from recon4.settings import MapSettings, Settings
 from recon4.slices.points import SliceWindow
 from recon4.slices.slice_image import RasterGrid, draw, png
-from recon4.slices.slice_plane import horizontal
+from recon4.slices.slice_plane import SlicePlane
 from tests.benchmarks.loaders import muehlburg, nclt, nclt_truth, one_sensor, store
 from tests.benchmarks.real_sequences import DATA, corridor
 
@@ -128,7 +128,7 @@ def slice_pair(tiles: TileSet, *, side_m: float = 5.0, pixels: int = 420) -> byt
     grid = RasterGrid(window, side_m / pixels)
     images = []
     for shown in (tiles.as_measured(), tiles):
-        made = draw(shown, horizontal(z_m, thickness_m=0.1), grid)
+        made = draw(shown, SlicePlane.horizontal(z_m, thickness_m=0.1), grid)
         images.append(made.rgba(made.span, "light"))
     gap = np.zeros((images[0].shape[0], 12, 4), np.uint8)
     return png(np.concatenate([images[0], gap, images[1]], axis=1))

@@ -11,7 +11,7 @@ from recon4.slices.align import align_by_icp, align_by_pairs, align_level_pairs,
 from recon4.slices.compare import compare, to_csv, usual_planes
 from recon4.slices.imports import import_reference, set_alignment, undo_alignment
 from recon4.slices.reference import load_reference, read_facts
-from recon4.slices.slice_plane import horizontal
+from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import write_json
 from tests.unit.slices.room_map import wall, write_map
 from tests.unit.slices.test_references import BOX, reference_wall, write_mesh
@@ -22,7 +22,9 @@ def test_the_table_says_how_far_the_map_is_off_and_to_which_side(tmp_path):
     tiles = write_map(tmp_path / "map", p, normal=normal.astype(np.float16))
     reference = reference_wall(tmp_path)
 
-    found = compared(tiles, [horizontal(0.5, thickness_m=0.2), horizontal(9.0)], reference)
+    found = compared(
+        tiles, [SlicePlane.horizontal(0.5, thickness_m=0.2), SlicePlane.horizontal(9.0)], reference
+    )
 
     first, second = found.slices
     assert first.mean_m == pytest.approx(0.03, abs=1e-4)
@@ -52,7 +54,9 @@ def test_the_table_says_how_the_reference_was_read_and_aligned(tmp_path):
     write_json(reference.folder / "reference.json", asdict(replace(facts, notes=notes)))
     set_alignment(reference.folder, SE3.identity(), description="ICP, mean 4 mm")
 
-    found = compared(tiles, [horizontal(0.5)], load_reference(reference.folder, method="point"))
+    found = compared(
+        tiles, [SlicePlane.horizontal(0.5)], load_reference(reference.folder, method="point")
+    )
 
     remarks = [line for line in to_csv(found).splitlines() if line.startswith("# ")]
     assert remarks[1:5] == [
@@ -119,7 +123,7 @@ def test_a_map_that_is_larger_than_the_reference_has_a_signed_mean_and_no_shift(
 def test_a_map_without_normals_has_distances_without_sign(tmp_path, box_reference):
     p, _ = seen_box(np.random.default_rng(2))
 
-    found = compared(write_map(tmp_path / "map", p), [horizontal(1.0)], box_reference)
+    found = compared(write_map(tmp_path / "map", p), [SlicePlane.horizontal(1.0)], box_reference)
 
     assert found.point_weighted.mean_m < 0.01 and found.point_weighted.signed.mean_m is None
     assert found.fit.fits is None and found.fit.text.startswith("– Not judged")
@@ -141,7 +145,7 @@ def test_a_reference_that_does_not_fit_is_named(tmp_path, box_reference, moved, 
     tiles = write_map(tmp_path / "map", p, normal=normal.astype(np.float16))
     set_alignment(tmp_path / "reference", moved, description="test")
 
-    found = compared(tiles, [horizontal(1.0)], load_reference(tmp_path / "reference"))
+    found = compared(tiles, [SlicePlane.horizontal(1.0)], load_reference(tmp_path / "reference"))
 
     assert found.fit.fits is fits
     assert ("does not fit" in found.fit.text) is not fits
@@ -157,7 +161,7 @@ def test_a_reference_of_one_room_of_the_map_fits(tmp_path, box_reference):
         normal=np.concatenate([normal, normal]).astype(np.float16),
     )
 
-    assert compared(tiles, [horizontal(1.0)], box_reference).fit.fits
+    assert compared(tiles, [SlicePlane.horizontal(1.0)], box_reference).fit.fits
 
 
 def test_eight_slices_are_spread_over_the_map(tmp_path):

@@ -22,7 +22,7 @@ from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.sheet import SheetText, approval_text, grid_step_m, lay_out, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw
-from recon4.slices.slice_plane import horizontal, vertical
+from recon4.slices.slice_plane import SlicePlane
 from tests.unit.slices.room_map import wall, write_map
 
 BRNO = CrsTransform(
@@ -32,7 +32,7 @@ BRNO = CrsTransform(
 )
 LOCAL = MapFrame("", "", None)
 PLACED = MapFrame(BRNO.crs, BRNO.wkt, BRNO.to_crs)
-CUT = horizontal(0.5, thickness_m=0.2)
+CUT = SlicePlane.horizontal(0.5, thickness_m=0.2)
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, 
 
 
 def test_a_flat_dxf_has_the_section_on_the_sheet(tiles, tmp_path):
-    plane = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.2)
+    plane = SlicePlane.vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.2)
 
     write_dxf(SliceSelection(tiles, [plane]), tmp_path / "s.dxf", frame=LOCAL, flat=True)
 
@@ -98,14 +98,14 @@ from pathlib import Path
 from recon4.export import laz
 from recon4.mapping.tiles import TileSet
 from recon4.slices import export
-from recon4.slices.slice_plane import horizontal
+from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.frames import MapFrame
 
 def killed(*_, **__):
     os.kill(os.getpid(), signal.SIGKILL)
 
 laz.export_laz = killed
-cut = horizontal(0.5, thickness_m=0.2)
+cut = SlicePlane.horizontal(0.5, thickness_m=0.2)
 chosen = export.SliceSelection(TileSet.open(Path(sys.argv[1])), [cut])
 export.write_laz(chosen, Path(sys.argv[2]), frame=MapFrame("", "", None))
 """
@@ -156,7 +156,7 @@ def test_a_geotiff_lies_where_the_crs_says(tiles, tmp_path):
 
 
 def test_a_geotiff_of_a_section_has_its_own_meters(tiles, tmp_path):
-    plane = vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
+    plane = SlicePlane.vertical((0.0, 1.0), (4.0, 1.0), thickness_m=0.5)
     drawn = draw(tiles, plane, RasterGrid(SliceWindow(0.0, -1.0, 4.0, 3.0), 0.01))
 
     write_geotiff(drawn, tmp_path / "s.tif", frame=PLACED, rgba=drawn.rgba(drawn.span, "light"))

@@ -12,7 +12,7 @@ from recon4.slices.measured import MeasuredPosition, orthonormal
 from recon4.slices.pick import measured_directions, nearest_surface
 from recon4.slices.residual_table import residual_csv, residual_text
 from recon4.slices.residuals import OUTLIER_SIGMAS, ControlContext, residuals
-from recon4.slices.slice_plane import horizontal, vertical
+from recon4.slices.slice_plane import SlicePlane
 from tests.unit.slices.room_map import wall, write_map
 
 MOVED_M = np.array([0.004, 0.0, 0.002])
@@ -179,8 +179,10 @@ def test_a_pick_measures_the_plane_of_its_slice_and_the_surface_it_lies_on(tmp_p
     tiles = write_map(tmp_path, wall(np.random.default_rng(1), 40_000, sigma_m=0.001)[0])
     p = np.array([0.0, 2.0, 1.0])
 
-    plan = orthonormal(measured_directions(tiles, horizontal(1.0), p))
-    section = orthonormal(measured_directions(tiles, vertical((0.0, 0.0), (0.0, 4.0)), p))
+    plan = orthonormal(measured_directions(tiles, SlicePlane.horizontal(1.0), p))
+    section = orthonormal(
+        measured_directions(tiles, SlicePlane.vertical((0.0, 0.0), (0.0, 4.0)), p)
+    )
 
     assert MeasuredPosition(p, plan).axes == (True, True, False)  # nothing gives the height
     assert MeasuredPosition(p, section).axes == (True, True, True)

@@ -15,7 +15,7 @@ from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference, mesh_lines
-from recon4.slices.slice_plane import free, horizontal
+from recon4.slices.slice_plane import SlicePlane
 
 P = np.random.default_rng(4).uniform(-3.0, 3.0, (500, 3)).round(3)
 BOX_TRIANGLES = "013 032 475 467 051 045 237 276 026 064 157 173"
@@ -168,7 +168,7 @@ def test_a_damaged_mesh_is_refused(tmp_path, changes):
 
 
 def test_a_plane_cuts_a_box_in_its_outline():
-    lines = mesh_lines(BOX, horizontal(0.7))
+    lines = mesh_lines(BOX, SlicePlane.horizontal(0.7))
 
     assert np.linalg.norm(lines[:, 1] - lines[:, 0], axis=1).sum() == pytest.approx(14.0)
     assert lines.min() == 0.0 and lines.max() == 4.0
@@ -218,7 +218,7 @@ def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
     set_alignment(tmp_path / "reference", T, description="test")
     moved = load_reference(tmp_path / "reference")
     outline = np.concatenate(
-        list(moved.outline(horizontal(1.0), SliceWindow(-9, -9, 9, 9), step_m=0.01))
+        list(moved.outline(SlicePlane.horizontal(1.0), SliceWindow(-9, -9, 9, 9), step_m=0.01))
     )
 
     assert moved.distance(np.array([[2.0, 0.05, 1.0]]))[0] == pytest.approx(0.05, abs=1e-6)
@@ -226,7 +226,7 @@ def test_an_alignment_moves_the_reference_and_its_outline(tmp_path):
 
 
 def test_a_free_cut_of_a_mesh_is_in_its_plane():
-    plane = free((2.0, 1.5, 1.0), (1.0, 0.0, 0.0))
+    plane = SlicePlane.free((2.0, 1.5, 1.0), (1.0, 0.0, 0.0))
 
     lines = mesh_lines(BOX, plane)
 

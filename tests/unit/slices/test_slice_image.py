@@ -10,10 +10,10 @@ from recon4.slices.imports import import_reference
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference
 from recon4.slices.slice_image import RasterGrid, draw, png
-from recon4.slices.slice_plane import horizontal
+from recon4.slices.slice_plane import SlicePlane
 from tests.unit.slices.room_map import T0_NS, write_map
 
-CUT = horizontal(1.0, thickness_m=0.2)
+CUT = SlicePlane.horizontal(1.0, thickness_m=0.2)
 PAPER = RasterGrid(SliceWindow(0.0, 0.0, 4.0, 2.0), 0.1)
 POINTS = np.array(
     [[0.05, 1.95, 1.0], [0.07, 1.93, 1.05], [3.95, 0.05, 0.95], [2.05, 1.05, 2.0], [5.0, 1.0, 1.0]]

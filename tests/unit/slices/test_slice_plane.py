@@ -5,7 +5,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.slices.points import SliceWindow, extent, points_in
 from recon4.slices.reference import moved_plane
-from recon4.slices.slice_plane import SlicePlane, free, horizontal, vertical
+from recon4.slices.slice_plane import SlicePlane
 from tests.unit.slices.room_map import write_map
 
 
@@ -20,11 +20,11 @@ def tiles(cloud, tmp_path_factory):
 
 
 PLANES = [
-    horizontal(0.7, thickness_m=0.3),
-    vertical((-3.0, -2.0), (5.0, 4.0), thickness_m=0.2),
-    vertical((1.0, 1.0), (0.66, 0.06), thickness_m=0.05),
-    free((0.5, 0.3, 0.1), (0.3, -0.5, 0.8), thickness_m=0.4),
-    free((0.0, 0.0, 0.5), (0.0, 0.0, 1.0), thickness_m=0.4),
+    SlicePlane.horizontal(0.7, thickness_m=0.3),
+    SlicePlane.vertical((-3.0, -2.0), (5.0, 4.0), thickness_m=0.2),
+    SlicePlane.vertical((1.0, 1.0), (0.66, 0.06), thickness_m=0.05),
+    SlicePlane.free((0.5, 0.3, 0.1), (0.3, -0.5, 0.8), thickness_m=0.4),
+    SlicePlane.free((0.0, 0.0, 0.5), (0.0, 0.0, 1.0), thickness_m=0.4),
 ]
 
 
@@ -52,13 +52,13 @@ def test_the_axes_of_a_cut_are_right_handed_and_its_coordinates_lead_back(plane)
 
 
 def test_a_horizontal_cut_shows_the_coordinates_of_the_map():
-    uvd = horizontal(1.5).to_plane(np.array([[3.0, 4.0, 1.7]]))
+    uvd = SlicePlane.horizontal(1.5).to_plane(np.array([[3.0, 4.0, 1.7]]))
 
     assert uvd[0] == pytest.approx([3.0, 4.0, 0.2])
 
 
 def test_a_vertical_cut_shows_the_way_from_its_first_point_and_the_height():
-    uvd = vertical((1.0, 1.0), (1.0, 9.0)).to_plane(np.array([[1.25, 4.0, 2.0]]))
+    uvd = SlicePlane.vertical((1.0, 1.0), (1.0, 9.0)).to_plane(np.array([[1.25, 4.0, 2.0]]))
 
     assert uvd[0] == pytest.approx([3.0, 2.0, 0.25])
 
@@ -92,7 +92,7 @@ def test_far_from_the_origin_nothing_is_lost(tmp_path):
     p = np.array([[500_000.123, 5_400_000.456, 300.0], [500_001.0, 5_400_001.0, 300.004]])
     tiles = write_map(tmp_path, p)
 
-    part = next(points_in(tiles, horizontal(300.0, thickness_m=0.004)))
+    part = next(points_in(tiles, SlicePlane.horizontal(300.0, thickness_m=0.004)))
 
     assert len(part) == 1
     assert part.uvd[0, :2] == pytest.approx(p[0, :2], abs=1e-6)
@@ -110,12 +110,12 @@ def test_a_moved_cut_gives_moved_points_the_same_place():
 @pytest.mark.parametrize(
     "make",
     [
-        lambda: free((0, 0, 0), (0, 0, 0)),
-        lambda: free((0, 0, float("nan")), (0, 0, 1)),
-        lambda: vertical((1, 1), (1, 1)),
-        lambda: horizontal(1.0, thickness_m=0.0),
-        lambda: horizontal(1.0).repeated(0, spacing_m=1.0),
-        lambda: horizontal(1.0).repeated(3, spacing_m=0.0),
+        lambda: SlicePlane.free((0, 0, 0), (0, 0, 0)),
+        lambda: SlicePlane.free((0, 0, float("nan")), (0, 0, 1)),
+        lambda: SlicePlane.vertical((1, 1), (1, 1)),
+        lambda: SlicePlane.horizontal(1.0, thickness_m=0.0),
+        lambda: SlicePlane.horizontal(1.0).repeated(0, spacing_m=1.0),
+        lambda: SlicePlane.horizontal(1.0).repeated(3, spacing_m=0.0),
     ],
 )
 def test_a_plane_without_meaning_is_refused(make):
@@ -124,8 +124,10 @@ def test_a_plane_without_meaning_is_refused(make):
 
 
 def test_a_cut_is_a_value():
-    assert horizontal(1.0) == horizontal(1.0)
-    assert isinstance(hash(horizontal(1.0)), int) and isinstance(horizontal(1.0), SlicePlane)
+    assert SlicePlane.horizontal(1.0) == SlicePlane.horizontal(1.0)
+    assert isinstance(hash(SlicePlane.horizontal(1.0)), int) and isinstance(
+        SlicePlane.horizontal(1.0), SlicePlane
+    )
 
 
 def sorted_rows(p):
