@@ -18,6 +18,12 @@
 
 A measurement that turns out bad is not an error: it is a value
 (``Registration.converged``, ``Edge.verdict``, ``OdometryStep.lost``).
+
+>>> try:
+...     api.process("missing.pcap", "out")
+... except api.errors.RecordingError as error:
+...     print(error)
+cannot read missing.pcap: there is no such file or folder
 """
 
 from __future__ import annotations

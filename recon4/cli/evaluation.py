@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
 from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -19,9 +18,7 @@ from recon4.terminal import write
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density
     from recon4.evaluation.evaluate import Evaluation
-    from recon4.evaluation.reference_mesh import TriangleMesh
     from recon4.evaluation.relations import RelationErrors
-    from recon4.geometry.se3 import Array
     from recon4.recording.tables.coordinates import ColumnChoice
     from recon4.slices.residuals import ControlReport
 
@@ -95,6 +92,7 @@ def evaluate(  # noqa: PLR0913 - options of a command
 ) -> None:
     """Evaluate a result: ATE, KITTI drift, relations, e_r in slices, density, survey markers."""
     confine_command(write=[report.parent] if report else [])
+    from recon4.api import evaluate as evaluate_result
     from recon4.evaluation.text import density_text, relations_text
 
     if truth is None and markers is None and not patch:
@@ -108,7 +106,7 @@ def evaluate(  # noqa: PLR0913 - options of a command
         record["relations"] = asdict(compared)
         texts.append(relations_text(compared))
     elif truth is not None:
-        found = _against_truth(result, truth, model=_model(model, unit, result), floor=floor)
+        found = evaluate_result(result, truth, model=model, unit=unit, true_poses=floor)
         record, texts = found.to_json(), [found.table()]
         if report is not None:
             _write_report(result, found, report)
@@ -126,49 +124,6 @@ def evaluate(  # noqa: PLR0913 - options of a command
         write(json.dumps(to_plain(record), indent=1, ensure_ascii=False))
     else:
         write("\n\n".join(texts))
-
-
-def _model(path: Path | None, unit: str, result: Path) -> TriangleMesh | None:
-    """The model in meters.
-
-    Raises:
-        ConfigError: If no unit is given and it is far larger than the map of the result.
-    """
-    from recon4.evaluation.reference_mesh import TriangleMesh, read_mesh
-    from recon4.mapping.tiles import TileSet
-    from recon4.recording.tables.column_names import UNITS_M
-    from recon4.slices.placement import check_extent
-    from recon4.store.project import is_project, read_artifacts
-
-    if path is None:
-        return None
-    mesh, chosen = read_mesh(path), parse_choice("", unit).unit
-    if chosen:
-        return TriangleMesh(mesh.vertices_m * UNITS_M[chosen], mesh.triangles)
-    map_ = read_artifacts(result).get("map") if is_project(result) else None
-    check_extent(mesh.bounds(), TileSet.open(map_).bounds_m if map_ else None, certain=False)
-    return mesh
-
-
-def _against_truth(
-    result: Path, truth: Path, *, model: TriangleMesh | None, floor: bool
-) -> Evaluation:
-    from recon4.evaluation.evaluate import MapChunks
-    from recon4.evaluation.evaluate import evaluate as evaluate_result
-    from recon4.store.project import is_project, read_artifacts
-
-    chunks = frames = None
-    artifacts = read_artifacts(result) if is_project(result) else {}
-    if "map" in artifacts:
-        map_ = artifacts["map"]
-        chunks = MapChunks(_map_chunks(map_), _measured_chunks(map_))
-    if floor:
-        if "frames" not in artifacts:
-            raise typer.BadParameter(f"--floor needs a project with its frames, got {result}")
-        from recon4.store.frames import open_frames
-
-        frames = open_frames(artifacts["frames"], artifacts.get("calibration"))
-    return evaluate_result(result, truth=truth, model=model, chunks=chunks, frames=frames)
 
 
 def _relation_errors(result: Path, relations: Path) -> RelationErrors:
@@ -213,6 +168,7 @@ def _patch_density(project: Path, text: str) -> Density:
     import numpy as np
 
     from recon4.evaluation.density import PlanePatch, patch_density
+    from recon4.mapping.tiles import TileSet
     from recon4.store.project import read_artifacts
 
     try:
@@ -222,22 +178,5 @@ def _patch_density(project: Path, text: str) -> Density:
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise ConfigError(f"--patch: expected a project with a map, got {project}")
-    return patch_density(
-        _map_chunks(artifacts["map"])(), PlanePatch(corner, u - corner, v - corner)
-    )
-
-
-def _map_chunks(folder: Path) -> Callable[[], Iterator[Array]]:
-    from recon4.mapping.tiles import TileSet
-
-    return lambda: (tile.xyz_m() for tile in TileSet.open(folder))
-
-
-def _measured_chunks(folder: Path) -> Callable[[], Iterator[Array]] | None:
-    """The points where they were measured; None if the map has no fitted surfaces."""
-    from recon4.mapping.tiles import TileSet
-
-    tiles = TileSet.open(folder)
-    if tiles.surface == "raw":
-        return None
-    return lambda: (tile.xyz_m() for tile in tiles.as_measured())
+    points = (tile.xyz_m() for tile in TileSet.open(artifacts["map"]))
+    return patch_density(points, PlanePatch(corner, u - corner, v - corner))

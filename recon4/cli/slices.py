@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,26 +19,9 @@ from recon4.cli.references import (
 from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
-    from recon4.mapping.tiles import TileSet
-    from recon4.review.stamp import Stamp
-    from recon4.slices.frames import MapFrame
-    from recon4.slices.reference import Reference
     from recon4.slices.slice_plane import SlicePlane
 
 slices = typer.Typer()
-
-
-@dataclass(frozen=True, slots=True)
-class SliceLook:
-    """What a slice shows beside its points."""
-
-    color: str
-    """Key of `recon4.slices.colors.LABELS`."""
-    name: str
-    """Name of the project."""
-    stamp: Stamp | None
-    """Approval of the map."""
-    reference: Reference | None = None
 
 
 ProjectArgument = Annotated[Path, typer.Argument(help="Folder that `recon4 process --out` made.")]
@@ -69,27 +51,16 @@ def cut_map(  # noqa: PLR0913 - options of a command
 ) -> None:
     """Cut a map and write the slice, at full resolution. It carries the map's approval."""
     confine_command(write=[file.parent])
-    from recon4.mapping.tiles import TileSet
+    from recon4.api.maps import open_map
+    from recon4.api.slices import SliceLook, write_planes
     from recon4.review.approval_state import latest_state
-    from recon4.review.approved import approval_of
-    from recon4.slices.frames import frame_of
-    from recon4.store.project import read_artifacts
 
     planes = _slice_plane(z, line, plane, thickness_m=thickness).repeated(count, spacing_m=spacing)
-    artifacts = read_artifacts(project)
-    keys = {stage: folder.name for stage, folder in artifacts.items()}
-    approval = None if draft else approval_of(project, keys)
-    if approval:
-        approval.evidence.check_frame(artifacts)
-    frame = frame_of(artifacts)
-    tiles = (
-        approval.evidence.open_map(artifacts["map"]) if approval else TileSet.open(artifacts["map"])
-    )
-    look = SliceLook(color, project.name, approval.stamp if approval else None)
+    opened = open_map(project, draft=draft)
     reading = (columns, unit, frame_of_reference)
-    with open_reference(reference, reading, tiles=tiles, frame=frame) as against:
-        look = replace(look, reference=against, color="distance" if against else color)
-        points = _write(tiles, planes, file, frame=frame, look=look)
+    with open_reference(reference, reading, tiles=opened.tiles, frame=opened.frame) as against:
+        look = SliceLook("distance" if against else color, project.name, against)
+        points = write_planes(opened, planes, file, look=look)
     state = latest_state(project, draft=draft)
     sys.stdout.write(f"{points} points in {file}\n{state.text}\n")
 
@@ -142,72 +113,3 @@ def _numbers(text: str, count: int) -> list[float]:
     if len(values) != count:
         raise ConfigError(f"expected {count} numbers with commas, got {text!r}")
     return values
-
-
-def _write(
-    tiles: TileSet, planes: tuple[SlicePlane, ...], file: Path, *, frame: MapFrame, look: SliceLook
-) -> int:
-    from recon4.review.stamp import stamp_file
-    from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_laz
-    from recon4.store.atomic import atomic_file
-
-    ending = file.suffix.lower()
-    writers = {".laz": write_laz, ".csv": write_csv, ".dxf": write_dxf}
-    if ending in writers and look.reference:
-        raise ConfigError(f"distances to a reference are written as an image, got {file.name}")
-    if ending in writers:
-        with atomic_file(file) as temporary:
-            points = writers[ending](SliceSelection(tiles, planes), temporary, frame=frame)
-            if look.stamp:
-                stamp_file(temporary, temporary, look.stamp)
-        return points
-    if ending not in {".png", ".svg", ".pdf", ".tif"}:
-        raise ConfigError(f"a slice is written as png svg pdf tif dxf laz csv, got {file.name}")
-    if len(planes) > 1:
-        raise ConfigError("an image has one slice; use .dxf, .laz or .csv for several")
-    return _write_image(tiles, planes[0], file, frame=frame, look=look)
-
-
-def _write_image(
-    tiles: TileSet, plane: SlicePlane, file: Path, *, frame: MapFrame, look: SliceLook
-) -> int:
-    from recon4.mapping.tiles import surface_text
-    from recon4.slices.colors import LABELS
-    from recon4.slices.export import write_geotiff
-    from recon4.slices.points import extent
-    from recon4.slices.sheet import (
-        SheetText,
-        approval_text,
-        lay_out,
-        source_text,
-        write_sheet,
-    )
-    from recon4.slices.slice_image import RasterGrid, draw
-
-    if look.color not in LABELS:
-        raise ConfigError(f"colors are {', '.join(LABELS)}; got {look.color!r}")
-    color = look.color
-    approval = approval_text(look.stamp.to_json() if look.stamp else None)
-    window = extent(tiles, plane)
-    if file.suffix.lower() == ".tif":
-        side_m = max(window.right - window.left, window.top - window.bottom)
-        made = draw(
-            tiles,
-            plane,
-            RasterGrid(window, max(0.005, side_m / 6000)),
-            color=color,
-            reference=look.reference,
-        )
-        title = f"{look.name}: {surface_text(tiles.surface)}. {approval}"
-        write_geotiff(
-            made, file, frame=frame, rgba=made.rgba(made.span, "light"), description=title
-        )
-        return made.points
-    layout = lay_out(window)
-    made = draw(tiles, plane, layout.paper, color=color, reference=look.reference)
-    key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
-    lie = surface_text(tiles.surface)
-    against = look.reference.caption if look.reference else ""
-    text = SheetText(look.name, frame.text, source_text(key), approval, lie, against)
-    write_sheet(made, layout, file, span=made.span, text=text)
-    return made.points

@@ -325,7 +325,14 @@ def _is_protected(edge: Edge) -> bool:
 
 @dataclass(frozen=True, eq=False)
 class PoseGraph:
-    """Nodes with their poses, and all edges with any verdict."""
+    """Nodes with their poses, and all edges with any verdict.
+
+    >>> graph = api.open_project("walk").graph
+    >>> graph.T_map_body.t.shape == (len(graph), 3)
+    True
+    >>> {str(edge.kind) for edge in graph.edges if edge.j == edge.i + 1} >= {"odometry"}
+    True
+    """
 
     frame_ids: Times
     """Multiframe of each node, (N,)."""

@@ -6,6 +6,7 @@ import json
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
+from os import PathLike
 from pathlib import Path
 from typing import Literal, get_args
 
@@ -151,11 +152,14 @@ def rig_presets() -> list[str]:
     )
 
 
-def load_rig(name_or_path: str | Path) -> Rig:
+def load_rig(name_or_path: str | PathLike[str]) -> Rig:
     """Read a rig file, or one of the shipped presets by name.
 
     Raises:
         ConfigError: If there is no such preset or file, or the file is not a rig.
+
+    >>> [(sensor.name, sensor.model, sensor.port) for sensor in api.load_rig("4recon").sensors]
+    [('horizontal', 'VLP-16', 2368), ('vertical', 'VLP-16', 2369)]
     """
     path = Path(name_or_path)
     if not path.suffix:

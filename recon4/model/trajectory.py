@@ -15,7 +15,13 @@ Times = NDArray[np.int64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Trajectory:
-    """Poses at strictly increasing times; between two of them lerp and SLERP (V Eq. 2.8)."""
+    """Poses at strictly increasing times; between two of them lerp and SLERP (V Eq. 2.8).
+
+    >>> walk = api.open_project("walk").trajectory
+    >>> T_map_body = walk.at(walk.t_ns[:1] + 5_000_000)
+    >>> T_map_body.t.shape, T_map_body.quat_xyzw().shape
+    ((1, 3), (1, 4))
+    """
 
     t_ns: Times
     """Absolute times [ns], strictly increasing, (N,)."""

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
+from os import PathLike
 from pathlib import Path
 
 from recon4.errors import RecordingError
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, load_rig
 
 
 @dataclass(frozen=True, slots=True)
 class Sources:
-    """The files of one walk, and what replaces the contents of its recordings."""
+    """The files of one walk, and what replaces the contents of its recordings.
+
+    >>> walk = api.Sources.of("recording/recording.pcap", rig="4recon", imu="recording/imu.csv")
+    >>> walk.rig.name, [path.name for path in walk.paths]
+    ('4RECON', ['recording.pcap', 'imu.csv'])
+    """
 
     recordings: tuple[Path, ...]
     """Files or folders: pcap, bags, folders of clouds."""
@@ -22,6 +28,31 @@ class Sources:
     """CSV file, in place of the recording's IMU samples."""
     gnss: Path | None = None
     """CSV file, in place of the recording's GNSS samples."""
+
+    @staticmethod
+    def of(
+        *recordings: str | PathLike[str],
+        rig: str | PathLike[str] | Rig | None = None,
+        imu: str | PathLike[str] | None = None,
+        gnss: str | PathLike[str] | None = None,
+    ) -> Sources:
+        """The files of one walk by their paths.
+
+        Args:
+            recordings: Files or folders: pcap, bags, folders of clouds; several are one walk.
+            rig: Rig file, or the name of a shipped rig; None = chosen from the recording.
+            imu: CSV file, in place of the recording's IMU samples.
+            gnss: CSV file, in place of the recording's GNSS samples.
+
+        Raises:
+            ConfigError: If the rig cannot be read.
+        """
+        return Sources(
+            tuple(map(Path, recordings)),
+            rig if rig is None or isinstance(rig, Rig) else load_rig(rig),
+            Path(imu) if imu else None,
+            Path(gnss) if gnss else None,
+        )
 
     def require(self) -> None:
         """Check that there is something to read, before anything is made for nothing.

@@ -28,6 +28,12 @@ class SlicePlane:
 
     ``u`` points to the right, ``v`` up, and the viewer looks against ``u × v``. A horizontal slice
     has the map's own x and y; a vertical one the distance along its line, and the map's z.
+
+    >>> section = api.SlicePlane.vertical((0.0, 0.0), (0.0, 5.0), thickness_m=0.05)
+    >>> section.name, section.to_plane([[0.01, 2.0, 1.5]]).tolist()
+    ('azimuth 0.0°, offset 0.000 m', [[2.0, 1.5, 0.01]])
+    >>> [plane.name for plane in api.SlicePlane.horizontal(0.5).repeated(2, spacing_m=0.5)]
+    ['z = 0.500 m', 'z = 1.000 m']
     """
 
     kind: Kind

@@ -31,7 +31,7 @@ def root(tmp_path):
 
 def call(here, url, *more):
     return subprocess.run(
-        [sys.executable, str(ROOT / "docs" / "client_example.py"), url, "walk.pcap", *more],
+        [sys.executable, str(ROOT / "examples" / "http_client.py"), url, "walk.pcap", *more],
         cwd=here,
         capture_output=True,
         text=True,

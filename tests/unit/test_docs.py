@@ -1,12 +1,10 @@
 """The pages of the documentation: links, paths, modules, routes, settings and commands exist."""
 
-import inspect
 import re
 import shlex
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from rich.text import Text
@@ -15,11 +13,8 @@ from typer.main import get_command
 from app.access.routes_check import declared
 from app.main import create_app
 from app.settings import ServerSettings
-from recon4 import pipeline
 from recon4.cli.main import app
 from recon4.model.rig import parse_rig
-from recon4.recording.sources import Sources
-from recon4.results import Summary
 from recon4.settings import Settings
 
 ROOT = Path(__file__).parents[2]
@@ -28,12 +23,14 @@ COMMANDS = get_command(app)
 
 SOURCES = [
     f"/{path.relative_to(ROOT)}"
-    for top in ("recon4", "app", "tests", "docs")
+    for top in ("recon4", "app", "tests", "examples")
     for path in (ROOT / top).rglob("*.py")
 ]
 
 LINK = re.compile(r"\]\(([^)\s]+)\)|<img src=\"([^\"]+)\"")
-REPOSITORY_PATH = re.compile(r"(?<![\w./-])(?:recon4|app|web|tests|docs)/[\w./{},*-]*\w[}/]?")
+REPOSITORY_PATH = re.compile(
+    r"(?<![\w./-])(?:recon4|app|web|tests|docs|examples)/[\w./{},*-]*\w[}/]?"
+)
 PYTHON_FILE = re.compile(r"(?<![\w./*{},-])[\w/]+\.py\b")
 MODULE = re.compile(r"`((?:recon4|app)(?:\.\w+)+)")
 ROUTE = re.compile(r"(?:^|`)(GET|HEAD|POST|PUT|PATCH|DELETE) +(/api[\w/<>{}-]*)", re.MULTILINE)
@@ -44,7 +41,9 @@ INVENTED = {"run_x", "g_beam", "H_k", "g_k"}
 SUFFIXES = {"json", "npz", "npy", "g2o", "laz", "csv", "tum", "toml", "py", "las", "png", "yaml"}
 CODE = re.compile(r"^```\w*\n(.*?)^```|`([^`\n]+)`|^ {4}(\S[^\n]*)$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^recon4 ([a-z][^\n#]*)", re.MULTILINE)
-BENCHMARK = re.compile(r"python -m (tests\.benchmarks\.\w+)|python (tests/\S+\.py|docs/\S+\.py)")
+BENCHMARK = re.compile(
+    r"python -m (tests\.benchmarks\.\w+)|python (tests/\S+\.py|examples/\S+\.py)"
+)
 
 
 @pytest.fixture(params=PAGES, ids=lambda path: path.name)
@@ -150,7 +149,7 @@ def test_architecture_names_every_top_level_module():
 @cache
 def all_code():
     """The Python and JavaScript files of the repository as one text."""
-    tops = [ROOT / top for top in ("recon4", "app", "web", "tests")]
+    tops = [ROOT / top for top in ("recon4", "app", "web", "tests", "examples")]
     files = [path for top in tops for path in top.rglob("*") if path.suffix in {".py", ".js"}]
     return "".join(path.read_text("utf-8") for path in files if path.name != "test_docs.py")
 
@@ -260,23 +259,3 @@ def test_the_patterns_of_these_tests_find_what_they_should():
         ("a", "b"),
         ("graph", "mode"),
     ]
-
-
-def test_the_example_of_the_library_fits_it(monkeypatch, capsys):
-    """What it passes is what the function takes, and what it prints a summary has."""
-    text = (ROOT / "README.md").read_text("utf-8")
-    (example,) = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
-    takes = inspect.signature(pipeline.process)
-
-    def process(*given, **named):
-        arguments = takes.bind(*given, **named).arguments
-        assert isinstance(arguments["sources"], Sources)
-        assert all(
-            isinstance(path, Path) for path in (arguments["out"], *arguments["sources"].paths)
-        )
-        return SimpleNamespace(**{field.name: field.name for field in fields(Summary)})
-
-    monkeypatch.setattr(pipeline, "process", process)
-    exec(compile(example, "README.md", "exec"), {})
-
-    assert capsys.readouterr().out == "path_length_m edges\n"

@@ -103,6 +103,10 @@ MAY_IMPORT = {
     | {"recon4.findings"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4": {"recon4"},
+    "recon4/api": STAGE
+    | {f"recon4.{room}" for room in ("api", "evaluation", "mapping", "recording", "review")}
+    | {"recon4.simulation", "recon4.slices", "recon4.pose_graph.files"}
+    | {"recon4.pipeline", "recon4.results", "recon4.cli.kernel_cache"},
     "recon4/cli/main.py": {"recon4", "app.cli"},
     "app/cli/users.py": {"recon4.errors", "recon4.terminal", "recon4.verify", "app"},
     "app": {"app", "recon4"},
@@ -112,6 +116,7 @@ MAY_IMPORT = {
 NOBODY_IMPORTS = {
     "recon4.cli.main": {"recon4/__main__.py"},
     "recon4.pipeline": {
+        "recon4/api/running.py",
         "recon4/cli/main.py",
         "recon4/cli/findings.py",
         "recon4/calibration_methods.py",

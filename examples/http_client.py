@@ -1,7 +1,7 @@
 r"""Upload a recording to a recon4 server, process it and download the map.
 
-    python docs/client_example.py http://127.0.0.1:8000 walk.pcap --project office
-    python docs/client_example.py https://backpack.local:8000 walk.pcap --project office \
+    python examples/http_client.py http://127.0.0.1:8000 walk.pcap --project office
+    python examples/http_client.py https://backpack.local:8000 walk.pcap --project office \
         --name anna --certificate certificate.pem
 
 Call it again to continue an interrupted upload. The password is read from RECON4_PASSWORD or from

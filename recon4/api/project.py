@@ -1,0 +1,168 @@
+"""A finished project as a value: what a run made, read from its folder when it is needed."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import msgspec
+
+from recon4.errors import StoreError
+from recon4.model.usability import MapVerdict, Usability
+
+if TYPE_CHECKING:
+    from recon4.mapping.tiles import TileSet
+    from recon4.model.pose_graph import PoseGraph
+    from recon4.model.trajectory import Trajectory
+
+_PLANAR = "map_2d"
+"""Stage that only recordings of a 2-D laser alone have."""
+
+_NO_VERDICT = MapVerdict(Usability.CHECK, ("It was made by a version that judged no maps.",))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectSummary:
+    """What ``summary.json`` says of a run: the part of it that stays as it is."""
+
+    name: str
+    """Of the project."""
+    created: str
+    """When the run ended, ISO 8601 UTC."""
+    preset: str
+    """What the settings started from."""
+    duration_s: float
+    """Time covered by the trajectory [s]."""
+    path_length_m: float
+    """Path length [m]."""
+    edges: Mapping[str, int]
+    """Number of edges of the pose graph by verdict."""
+    seconds: float
+    """Wall clock of all stages [s]."""
+    verdict: MapVerdict = _NO_VERDICT
+    """Whether the map may be used, and why not."""
+    warnings: tuple[str, ...] = ()
+    lost: int = 0
+    """Multiframes or 2-D scans where tracking was lost."""
+    points: int = 0
+    """In the map; 0 = a 2-D map."""
+    crs: str = ""
+    """Code of the map's coordinate reference system; empty = a local frame."""
+
+
+@dataclass(frozen=True, slots=True)
+class MapProject:
+    """A finished project; its parts are read from the folder when they are asked for.
+
+    The result files (``map.laz``, ``trajectory.tum``, ``report.html``, …) lie in `folder`.
+
+    >>> project = api.open_project("walk")
+    >>> poses = project.trajectory
+    >>> poses.T_a_b.t.shape == (len(poses), 3)
+    True
+    >>> len(project.graph) > 1 and all(edge.in_graph for edge in project.graph.edges[:1])
+    True
+    >>> project.tiles.bounds_m[0].shape
+    (3,)
+    """
+
+    folder: Path
+    summary: ProjectSummary
+
+    @property
+    def trajectory(self) -> Trajectory:
+        """The final poses ``T_map_body``, dense.
+
+        Raises:
+            Altered: If it was approved and is not what was approved.
+            StoreError: If it is missing or damaged.
+        """
+        from recon4.results import final_trajectory
+        from recon4.store.arrays import load_trajectory
+
+        artifacts = self._artifacts()
+        if _PLANAR in artifacts:
+            return load_trajectory(artifacts[_PLANAR] / "trajectory.npz")
+        return final_trajectory(self.folder, artifacts)
+
+    @property
+    def odometry(self) -> Trajectory:
+        """The poses ``T_odom_body`` before loop closure.
+
+        Raises:
+            StoreError: If it is missing or damaged.
+        """
+        from recon4.store.arrays import load_trajectory
+
+        return load_trajectory(self._artifact("odometry", "odometry_2d") / "trajectory.npz")
+
+    @property
+    def graph(self) -> PoseGraph:
+        """The final pose graph: its nodes, and every pair that was tried with its verdict.
+
+        Raises:
+            StoreError: If it is missing or damaged.
+        """
+        from recon4.pose_graph.files import load_graph
+
+        return load_graph(self._artifact("level", "review", "verification"))
+
+    @property
+    def tiles(self) -> TileSet:
+        """The points of the map, see `read_tiles`.
+
+        Raises:
+            Altered: If the map was approved and is not what was approved.
+            StoreError: If there is none (as of a 2-D laser), or it is damaged.
+        """
+        from recon4.api.maps import read_tiles
+
+        return read_tiles(self.folder)
+
+    def _artifacts(self) -> dict[str, Path]:
+        from recon4.store.project import read_artifacts
+
+        return read_artifacts(self.folder)
+
+    def _artifact(self, *stages: str) -> Path:
+        """The artifact of the first of these stages that ran."""
+        artifacts = self._artifacts()
+        for stage in stages:
+            if stage in artifacts:
+                return artifacts[stage]
+        raise StoreError(f"{self.folder} has no finished stage {' or '.join(stages)}")
+
+
+def open_project(folder: str | PathLike[str]) -> MapProject:
+    """Open a project that was processed to its end; another process may work with it.
+
+    Args:
+        folder: What `process` or ``recon4 process --out`` made.
+
+    Raises:
+        StoreError: If it is no project, has no finished run, or is damaged.
+
+    >>> project = api.open_project("walk")
+    >>> project.summary.preset, project.summary.duration_s > 2
+    ('indoor', True)
+    >>> project.summary.verdict.usability in ("good", "check", "do not use")
+    True
+    >>> api.open_project("recording")
+    Traceback (most recent call last):
+    recon4.errors.StoreError: recording is not a recon4 project: it has no project.json
+    """
+    from recon4.review.state import read_summary
+    from recon4.store.project import read_description
+
+    root = Path(folder)
+    read_description(root)
+    record = read_summary(root)
+    if record is None:
+        raise StoreError(f"{root} has no finished run: process its recording to the end first")
+    try:
+        return MapProject(root, msgspec.convert(record, ProjectSummary))
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{root / 'summary.json'} cannot be read: {error}") from error

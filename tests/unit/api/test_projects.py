@@ -1,0 +1,110 @@
+"""Projects as Python programs see them: made, interrupted, opened, altered."""
+
+import tarfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from recon4 import api
+from recon4.cli.main import main
+from recon4.mapping.columns import column_file
+from recon4.store.checked import Altered
+from recon4.store.project import Project, read_artifacts
+from tests.project_builder import approve_project, build_project
+
+ARCHIVE = Path(__file__).parents[2] / "data" / "project-format1.tar.xz"
+FILES = {"imu": "imu.csv", "rig": "rig.toml"}
+
+
+def sources(folder):
+    return api.Sources.of(
+        folder / "recording.pcap", **{name: folder / file for name, file in FILES.items()}
+    )
+
+
+def test_a_wrong_setting_is_named_before_anything_is_made(here, tmp_path):
+    wrong = {"map.voxel": 0.05, "calibration.beams": "perhaps"}
+
+    with pytest.raises(api.errors.ConfigError, match=r"map\.voxel.*calibration\.beams"):
+        api.process(sources(here / "recording"), tmp_path / "out", settings=wrong)
+    assert not (tmp_path / "out").exists()
+
+
+def test_values_of_settings_may_be_numbers_flags_and_words(here):
+    chosen = {"map.voxel_m": 0.05, "odometry.use_gnss": True, "map.surface": "fitted"}
+
+    project = api.process(sources(here / "recording"), here / "walk", settings=chosen)
+
+    stages = project.summary  # all of these are in force already: nothing ran again
+    assert stages.points == len(project.tiles) == api.open_project(here / "walk").summary.points
+
+
+def test_progress_is_reported_and_raising_in_it_stops_the_run(here, tmp_path):
+    seen = []
+
+    def watch(what, done, total):
+        seen.append((what, done, total))
+        if done >= 3:
+            raise api.errors.Cancelled("enough")
+
+    with pytest.raises(api.errors.Cancelled, match="enough"):
+        api.process(sources(here / "recording"), tmp_path / "out", on_progress=watch)
+    assert seen[0][1] == 0 and seen[-1][1] >= 3
+    with pytest.raises(api.errors.StoreError, match="has no finished run"):
+        api.open_project(tmp_path / "out")
+
+
+def test_a_project_of_an_earlier_version_opens(tmp_path):
+    with tarfile.open(ARCHIVE) as archive:
+        archive.extractall(tmp_path, filter="data")
+    signer = "0a5bf0639cc2939158dcc2f82c27995a755021f45d521d59a423cd32bae1ff50"
+    (tmp_path / ".recon4").mkdir()
+    main(["keys", "add", "Server before", signer, "--root", str(tmp_path)])
+
+    project = api.open_project(tmp_path / "format1")
+
+    assert project.summary.path_length_m == pytest.approx(9.2, abs=0.2)
+    assert project.summary.verdict.usability in ("good", "check", "do not use")
+    assert len(project.trajectory) > 92 and len(project.odometry) >= 92
+    assert len(project.tiles) == project.summary.points
+
+
+def test_the_graph_is_the_one_of_the_map(here):
+    project = api.open_project(here / "walk")
+
+    assert project.graph.verdict_counts() == dict(project.summary.edges)
+    at_nodes = project.trajectory.at(project.graph.t_ns)
+    assert np.abs(at_nodes.t - project.graph.T_map_body.t).max() < 0.05
+
+
+def test_points_that_were_changed_after_the_approval_are_refused(tmp_path):
+    root = tmp_path / "office"
+    build_project(root, points=2000)
+    approve_project(root, tmp_path / ".recon4" / "signing.key")
+    tiles = api.read_tiles(root)
+    assert sum(len(tile.xyz_m()) for tile in tiles) == 2000
+    column = read_artifacts(root)["map"] / "tiles" / column_file(tiles.tiles[0].folder, "xyz")
+    data = bytearray(column.read_bytes())
+    data[-5] ^= 1
+    column.write_bytes(data)
+
+    with pytest.raises(Altered):
+        [tile.xyz_m() for tile in api.read_tiles(root)]
+    plane = api.SlicePlane.horizontal(1.0, thickness_m=2.0)
+    with pytest.raises(Altered):
+        api.write_slice(root, plane, tmp_path / "slice.csv")
+    assert not (tmp_path / "slice.csv").exists()
+    assert api.write_slice(root, plane, tmp_path / "slice.csv", draft=True) > 0
+
+
+def test_a_project_that_another_process_works_on_can_be_read(here):
+    with Project.open(here / "walk"):
+        assert len(api.open_project(here / "walk").graph) > 1
+
+
+def test_the_unit_of_a_model_must_be_known(here):
+    model = here / "recording" / "model.ply"
+
+    with pytest.raises(api.errors.ConfigError, match="unit: expected one of m, dm"):
+        api.evaluate(here / "walk", here / "recording" / "truth.tum", model=model, unit="furlong")
