@@ -19,7 +19,9 @@ def main() -> None:
 
     summary = project.summary
     print(f"{summary.path_length_m:.2f} m in {summary.duration_s:.2f} s, {summary.points} points")
-    print(f"verdict: {summary.verdict.usability}", *summary.verdict.reasons, sep="\n  ")
+    print(f"verdict: {summary.verdict.usability}")
+    for finding in project.findings:
+        print(f"  {finding.level}: {finding.text}")
 
     poses = project.trajectory  # T_map_body at t_ns
     x, y, z = poses.T_a_b.t[-1]

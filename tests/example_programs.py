@@ -15,7 +15,15 @@ from tempfile import TemporaryDirectory
 
 ROOT = Path(__file__).parents[1]
 FOLDER = ROOT / "examples"
-LOCAL = ("process", "two_lidars", "own_reader", "read_tiles", "cut_slices", "evaluate")
+LOCAL = (
+    "process",
+    "two_lidars",
+    "own_reader",
+    "own_finding",
+    "read_tiles",
+    "cut_slices",
+    "evaluate",
+)
 """Programs that work in a folder with ``recording/``; those after the first need its ``walk/``."""
 REMOTE = "http_client"
 """Needs a server; `tests/service/test_client_example.py` runs it against several."""

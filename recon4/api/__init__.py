@@ -29,7 +29,7 @@ from recon4 import errors
 if TYPE_CHECKING:
     from recon4.api.evaluation import evaluate
     from recon4.api.maps import read_tiles
-    from recon4.api.project import MapProject, open_project
+    from recon4.api.project import MapFinding, MapProject, open_project
     from recon4.api.running import process
     from recon4.api.simulation import simulate
     from recon4.api.slices import cut_slice, write_slice
@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from recon4.slices.slice_plane import SlicePlane
 
 _HOMES = {
+    "MapFinding": "recon4.api.project",
     "MapProject": "recon4.api.project",
     "PoseGraph": "recon4.model.pose_graph",
     "SlicePlane": "recon4.slices.slice_plane",
@@ -57,6 +58,7 @@ _HOMES = {
 """Name -> the module it is loaded from."""
 
 __all__ = [
+    "MapFinding",
     "MapProject",
     "PoseGraph",
     "SlicePlane",

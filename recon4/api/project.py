@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
 from recon4.model.usability import MapVerdict, Usability
 
 if TYPE_CHECKING:
@@ -22,6 +24,25 @@ _PLANAR = "map_2d"
 """Stage that only recordings of a 2-D laser alone have."""
 
 _NO_VERDICT = MapVerdict(Usability.CHECK, ("It was made by a version that judged no maps.",))
+
+
+class MapFinding(Finding, frozen=True, kw_only=True):
+    """A finding of a project, in words too. ``recon4 explain CODE`` says what its kind means.
+
+    >>> findings = api.open_project("walk").findings
+    >>> worst = findings[0]
+    >>> isinstance(worst, api.MapFinding), worst.level in ("good", "note", "check", "do not use")
+    (True, True)
+    >>> [one.text[:21] for one in findings if one.kind == "TRACKING-KEPT"]
+    ['Tracking was not lost']
+    """
+
+    title: str = ""
+    """Two to five words."""
+    text: str = ""
+    """Its sentences."""
+    remedy: str = ""
+    """What to do about it; empty = nothing."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,7 +65,8 @@ class ProjectSummary:
     """Wall clock of all stages [s]."""
     verdict: MapVerdict = _NO_VERDICT
     """Whether the map may be used, and why not."""
-    warnings: tuple[str, ...] = ()
+    findings: tuple[MapFinding, ...] = ()
+    """What contradicts or confirms the map, worst first."""
     lost: int = 0
     """Multiframes or 2-D scans where tracking was lost."""
     points: int = 0
@@ -71,6 +93,11 @@ class MapProject:
 
     folder: Path
     summary: ProjectSummary
+
+    @property
+    def findings(self) -> tuple[MapFinding, ...]:
+        """What contradicts or confirms the map, worst first."""
+        return self.summary.findings
 
     @property
     def trajectory(self) -> Trajectory:
@@ -163,6 +190,18 @@ def open_project(folder: str | PathLike[str]) -> MapProject:
     if record is None:
         raise StoreError(f"{root} has no finished run: process its recording to the end first")
     try:
-        return MapProject(root, msgspec.convert(record, ProjectSummary))
+        summary = msgspec.convert(record, ProjectSummary)
+        if "findings" not in record:
+            summary = replace(summary, findings=_earlier_findings(record.get("warnings", [])))
+        return MapProject(root, summary)
     except msgspec.ValidationError as error:
         raise StoreError(f"{root / 'summary.json'} cannot be read: {error}") from error
+
+
+def _earlier_findings(warnings: object) -> tuple[MapFinding, ...]:
+    """Findings of ``summary.json`` before format 3: its warnings, which were sentences."""
+    kind, level = FindingKind.EARLIER_REMARK, Level.CHECK
+    texts = msgspec.convert(warnings, tuple[str, ...])
+    return tuple(
+        MapFinding(kind=kind, level=level, values={"text": text}, text=text) for text in texts
+    )

@@ -104,8 +104,8 @@ MAY_IMPORT = {
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
     "recon4": {"recon4"},
     "recon4/api": STAGE
-    | {f"recon4.{room}" for room in ("api", "evaluation", "mapping", "recording", "review")}
-    | {"recon4.simulation", "recon4.slices", "recon4.pose_graph.files"}
+    | {f"recon4.{room}" for room in ("api", "evaluation", "findings", "mapping", "recording")}
+    | {f"recon4.{room}" for room in ("review", "simulation", "slices", "pose_graph.files")}
     | {"recon4.pipeline", "recon4.results", "recon4.cli.kernel_cache"},
     "recon4/cli/main.py": {"recon4", "app.cli"},
     "app/cli/users.py": {"recon4.errors", "recon4.terminal", "recon4.verify", "app"},
