@@ -1,30 +1,28 @@
-"""The data flow on one screen: from recordings to a finished project folder."""
+"""The data flow on one screen: from recordings to a finished project folder.
+
+What happens between import and results is the *workflow* of the walk: `recon4.workflows.lidar`,
+`recon4.workflows.profiler` or `recon4.workflows.planar`. Read these three next.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from recon4 import stages, stages_2d
 from recon4.errors import ConfigError, RecordingError, StoreError
 from recon4.model.calibration_figures import CalibrationFigures
-from recon4.model.rig import Rig, format_rig, load_rig
-from recon4.pipeline_2d import audit_2d, is_2d, process_2d, remake_2d
+from recon4.model.rig import Rig, load_rig
 from recon4.progress import Progress, Silent
 from recon4.recording.kinds import located_sources
 from recon4.recording.sources import Sources
-from recon4.results import Summary, publish
-from recon4.results_2d import Summary2d
-from recon4.review.decisions import NOTHING_DECIDED, Decided
 from recon4.review.journal import read_decided
-from recon4.run_summary import About
 from recon4.settings import Settings
 from recon4.settings import preset as settings_of
 from recon4.store.frames import CALIBRATED_RIG
-from recon4.store.hashing import hash_json, size_of
-from recon4.store.inputs import input_file, input_files
+from recon4.store.hashing import size_of
+from recon4.store.inputs import input_file
 from recon4.store.project import (
     Project,
     ProjectDescription,
@@ -33,32 +31,20 @@ from recon4.store.project import (
     read_artifacts,
 )
 from recon4.store.recipes import settings_to_repeat
-from recon4.store.stage import Artifact, Input, Stage, StageRunner, figures_of
-
-BEFORE_REVIEW: tuple[Stage[Any], ...] = (
-    stages.FRAMES,
-    stages.ODOMETRY,
-    stages.GRAPH,
-    stages.VERIFICATION,
+from recon4.store.stage import Stage, StageRunner
+from recon4.workflows.choice import (
+    check_planar,
+    has_map,
+    import_inputs,
+    is_planar,
+    of_frames,
+    of_project,
 )
-"""What decisions of people do not change."""
-
-
-@dataclass(frozen=True, slots=True)
-class Measurements:
-    """The multiframes, and the rig they are placed with."""
-
-    frames: Artifact
-    calibration: Artifact | None
-    """None = the rig of the recording is used."""
-    audit: Artifact | None = None
-    """What contradicts the rig that is used; None = it was not compared, or is calibrated."""
-
-    @property
-    def inputs(self) -> dict[str, Artifact]:
-        """Inputs of a stage that places points; a calibration only where one is used."""
-        found = {"frames": self.frames}
-        return found | ({"calibration": self.calibration} if self.calibration else {})
+from recon4.workflows.line_stages import LINE_ODOMETRY
+from recon4.workflows.planar import PLANAR
+from recon4.workflows.stages import CALIBRATION, FRAMES, ODOMETRY
+from recon4.workflows.summary import About, RunSummary
+from recon4.workflows.workflow import Run, Workflow
 
 
 def process(
@@ -68,10 +54,8 @@ def process(
     settings: Settings | None = None,
     preset: str = "indoor",
     progress: Progress | None = None,
-) -> Summary | Summary2d:
+) -> RunSummary:
     """Make a map of recordings, or continue where an earlier call stopped.
-
-    Recordings of a 2-D laser alone become a 2-D map (`recon4.pipeline_2d`).
 
     Args:
         sources: The recordings of one walk, its rig, and CSV files in place of their samples.
@@ -85,6 +69,7 @@ def process(
 
     Raises:
         RecordingError: If a recording cannot be read.
+        ConfigError: If rig or CSV files are given with a recording of a 2-D laser alone.
         StoreError: If ``out`` is in use, damaged or cannot be written (`NoSpace`: disk full).
         Recon4Error: Whatever else stops a stage.
         Cancelled: If the watcher requested to stop; the next call continues from there.
@@ -92,12 +77,10 @@ def process(
     A new project that the recording or the rig keeps from its first stage is removed again.
     """
     sources = located_sources(sources)
-    progress = progress or Silent()
-    settings = settings or settings_of(preset)
+    progress, settings = progress or Silent(), settings or settings_of(preset)
     is_new = not is_project(out)
-    run = process_2d if is_2d(sources) else _process
     try:
-        return run(sources, out, settings=settings, preset=preset, progress=progress)
+        return _process(sources, out, settings=settings, preset=preset, progress=progress)
     except (RecordingError, ConfigError):
         if is_new:
             discard_unbegun(out)
@@ -106,20 +89,62 @@ def process(
 
 def _process(
     sources: Sources, out: Path, *, settings: Settings, preset: str, progress: Progress
-) -> Summary:
-    paths, rig = sources.paths, sources.rig
+) -> RunSummary:
+    planar = is_planar(sources)
+    if planar:
+        check_planar(sources)
     with Project.open(out) as project:
-        keys = {path: input_file(path, project.ledger, progress).key for path in paths}
-        project.describe(
-            preset=preset,
-            rig=rig.name if rig else "",
-            inputs=[{"name": p.name, "bytes": size_of(p), "sha256": keys[p]} for p in paths],
-        )
-        runner = StageRunner(project, settings, progress)
-        inputs = _inputs(project, sources, progress)
-        run_stages(runner, inputs, decided=read_decided(out))
-        about = About(ProjectDescription.read(out), settings)
-        return publish(out, runner.runs, about, progress=progress)
+        _describe(project, sources, preset=preset, progress=progress)
+        run = Run(StageRunner(project, settings, progress), read_decided(out))
+        inputs = import_inputs(sources, project.ledger, progress, planar=planar)
+        run.stage(PLANAR.imports if planar else FRAMES, **inputs)
+        frames = run.runner.runs[FRAMES.name].artifact.folder if not planar else None
+        workflow = PLANAR if frames is None else of_frames(frames)
+        workflow.run(run)
+        return _publish(out, workflow, run, settings=settings, progress=progress)
+
+
+def remake(out: Path, *, progress: Progress | None = None) -> RunSummary:
+    """Make the map of a project again with the current decisions.
+
+    The stages before them are kept as they are, so no recording is needed; the others run with the
+    settings the map was made with.
+
+    Args:
+        out: A project that was processed to its end.
+        progress: Who watches.
+
+    Raises:
+        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
+        Recon4Error: Whatever else stops a stage.
+        Cancelled: If the watcher requested to stop; the next call continues from there.
+    """
+    progress = progress or Silent()
+    workflow = _finished(out)
+    with _continued(out, workflow, kept=workflow.kept, progress=progress) as (run, settings):
+        workflow.run_from_review(run)
+        return _publish(out, workflow, run, settings=settings, progress=progress)
+
+
+def audit(out: Path, *, progress: Progress | None = None) -> RunSummary:
+    """Work out the findings of a finished project again, and write its results.
+
+    No other stage runs. New witnesses and new wordings reach a map this way that was made before.
+
+    Args:
+        out: A project that was processed to its end.
+        progress: Who watches.
+
+    Raises:
+        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
+        Recon4Error: Whatever else stops a stage.
+    """
+    progress = progress or Silent()
+    workflow = _finished(out)
+    kept = (*workflow.kept, *workflow.remade)
+    with _continued(out, workflow, kept=kept, progress=progress) as (run, settings):
+        workflow.run_audit(run)
+        return _publish(out, workflow, run, settings=settings, progress=progress)
 
 
 def calibrate_recording(
@@ -139,15 +164,12 @@ def calibrate_recording(
     Raises:
         Recon4Error: Whatever stops a stage.
     """
-    sources = located_sources(sources)
-    with Project.open(out) as project:
-        runner = StageRunner(project, settings, progress)
-        inputs = _inputs(project, sources, progress)
-        frames = runner.run(stages.FRAMES, **inputs)
-        odometry = runner.run(stages.ODOMETRY, frames=frames)
-        calibration = runner.run(stages.CALIBRATION, frames=frames, odometry=odometry)
-        figures = figures_of(runner.runs, stages.CALIBRATION)
-        return figures, load_rig(calibration.folder / CALIBRATED_RIG) if figures.applied else None
+    with _imported(sources, out, settings=settings, progress=progress) as run:
+        run.stage(ODOMETRY, frames="frames")
+        run.stage(CALIBRATION, frames="frames", odometry="odometry")
+        done = run.runner.runs[CALIBRATION.name]
+        rig = done.artifact.folder / CALIBRATED_RIG
+        return done.figures, load_rig(rig) if done.figures.applied else None
 
 
 def track_lines(sources: Sources, out: Path, *, settings: Settings, progress: Progress) -> None:
@@ -162,174 +184,58 @@ def track_lines(sources: Sources, out: Path, *, settings: Settings, progress: Pr
     Raises:
         Recon4Error: Whatever stops a stage.
     """
+    with _imported(sources, out, settings=settings, progress=progress) as run:
+        run.stage(LINE_ODOMETRY, frames="frames")
+
+
+@contextmanager
+def _imported(
+    sources: Sources, out: Path, *, settings: Settings, progress: Progress
+) -> Iterator[Run]:
+    """A run with the recording imported as multiframes."""
     sources = located_sources(sources)
     with Project.open(out) as project:
-        runner = StageRunner(project, settings, progress)
-        frames = runner.run(stages.FRAMES, **_inputs(project, sources, progress))
-        runner.run(stages.LINE_ODOMETRY, frames=frames)
+        run = Run(StageRunner(project, settings, progress))
+        run.stage(FRAMES, **import_inputs(sources, project.ledger, progress, planar=False))
+        yield run
 
 
-def _inputs(project: Project, sources: Sources, progress: Progress) -> dict[str, Input | None]:
-    """Inputs of the stage `frames`."""
-    rig, imu, gnss = sources.rig, sources.imu, sources.gnss
-    ledger = project.ledger
-    return {
-        "recordings": input_files(sources.recordings, ledger, progress),
-        "rig": Input(hash_json(format_rig(rig)), rig) if rig else None,
-        "imu": Input(input_file(imu, ledger, progress).key, imu) if imu else None,
-        "gnss": Input(input_file(gnss, ledger, progress).key, gnss) if gnss else None,
-    }
+def _describe(project: Project, sources: Sources, *, preset: str, progress: Progress) -> None:
+    paths, rig = sources.paths, sources.rig
+    keys = {path: input_file(path, project.ledger, progress).key for path in paths}
+    project.describe(
+        preset=preset,
+        rig=rig.name if rig else "",
+        inputs=[{"name": p.name, "bytes": size_of(p), "sha256": keys[p]} for p in paths],
+    )
 
 
-def remake(out: Path, *, progress: Progress | None = None) -> Summary | Summary2d:
-    """Make the map of a project again with the current decisions.
-
-    The stages before them are kept as they are, so no recording is needed; the others run with the
-    settings the map was made with.
-
-    Args:
-        out: A project that was processed to its end.
-        progress: Who watches.
-
-    Raises:
-        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
-        Recon4Error: Whatever else stops a stage.
-        Cancelled: If the watcher requested to stop; the next call continues from there.
-    """
-    progress = progress or Silent()
+def _finished(out: Path) -> Workflow:
     made = read_artifacts(out)
-    if stages_2d.MAP_2D.name in made:
-        return remake_2d(out, progress=progress)
-    if "map" not in made:
+    if not has_map(made):
         raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
-    settings = settings_to_repeat(made, BEFORE_REVIEW)
-    with Project.open(out) as project:
-        runner = StageRunner(project, settings, progress)
-        frames, odometry, _, graph = (runner.keep(stage) for stage in BEFORE_REVIEW)
-        calibration = runner.keep(stages.CALIBRATION) if stages.CALIBRATION.name in made else None
-        measurements = _measured(runner, frames, calibration)
-        run_from_review(
-            runner, measurements, odometry=odometry, graph=graph, decided=read_decided(out)
-        )
-        about = About(ProjectDescription.read(out), settings)
-        return publish(out, runner.runs, about, progress=progress)
+    return of_project(made)
 
 
-def audit(out: Path, *, progress: Progress | None = None) -> Summary | Summary2d:
-    """Work out the findings of a finished project again, and write its results.
-
-    No other stage runs. New witnesses and new wordings reach a map this way that was made before.
-
-    Args:
-        out: A project that was processed to its end.
-        progress: Who watches.
-
-    Raises:
-        StoreError: If a stage is missing or damaged, the project is in use or cannot be written.
-        Recon4Error: Whatever else stops a stage.
-    """
-    progress = progress or Silent()
+@contextmanager
+def _continued(
+    out: Path, workflow: Workflow, *, kept: tuple[Stage[Any], ...], progress: Progress
+) -> Iterator[tuple[Run, Settings]]:
+    """A run that begins with the artifacts of some stages, and the settings to go on with."""
     made = read_artifacts(out)
-    if stages_2d.MAP_2D.name in made:
-        return audit_2d(out, progress=progress)
-    if "map" not in made:
-        raise StoreError(f"{out.name} has no map yet: process its recording to the end first")
-    kept = [stage for stage in stages.OF_A_MAP if stage.name in made]
-    settings = settings_to_repeat(made, kept)
+    there = [stage for stage in kept if stage.name in made]
+    required = {stage.name for stage in workflow.kept} - {CALIBRATION.name}
+    settings = settings_to_repeat(made, there)
     with Project.open(out) as project:
-        runner = StageRunner(project, settings, progress)
+        run = Run(StageRunner(project, settings, progress), read_decided(out))
         for stage in kept:
-            runner.keep(stage)
-        run_audit(runner)
-        return publish(
-            out, runner.runs, About(ProjectDescription.read(out), settings), progress=progress
-        )
+            if stage.name in made or stage.name in required:
+                run.runner.keep(stage)
+        yield run, settings
 
 
-def run_stages(
-    runner: StageRunner,
-    inputs: Mapping[str, Input | None],
-    *,
-    decided: Decided = NOTHING_DECIDED,
-) -> None:
-    """Every stage in order; each is skipped when its artifact is there."""
-    measurements, odometry, graph = run_before_review(runner, inputs)
-    run_from_review(runner, measurements, odometry=odometry, graph=graph, decided=decided)
-
-
-def run_before_review(
-    runner: StageRunner, inputs: Mapping[str, Input | None]
-) -> tuple[Measurements, Artifact, Artifact]:
-    """The stages that decisions of people do not change: odometry and verified graph.
-
-    If the rig is calibrated, the odometry runs again with the calibrated rig.
-
-    Args:
-        runner: Runs them.
-        inputs: ``recordings``, ``rig``, ``imu`` and ``gnss``; None = there is none.
-    """
-    run = runner.run
-    frames = run(stages.FRAMES, **inputs)
-    if stages.has_profiler(frames.folder):
-        return _lines_before_review(runner, frames)
-    odometry = run(stages.ODOMETRY, frames=frames)
-    calibration = run(stages.CALIBRATION, frames=frames, odometry=odometry)
-    measurements = _measured(runner, frames, calibration)
-    if measurements.calibration:
-        odometry = run(stages.ODOMETRY, **measurements.inputs)
-    searched = run(stages.GRAPH, **measurements.inputs, odometry=odometry)
-    return measurements, odometry, run(stages.VERIFICATION, graph=searched)
-
-
-def _lines_before_review(
-    runner: StageRunner, frames: Artifact
-) -> tuple[Measurements, Artifact, Artifact]:
-    """The same of a rig with a profiler: 2-D SLAM with the IMU, then the turns of the head."""
-    runner.skip(stages.CALIBRATION)
-    odometry = runner.run(stages.LINE_ODOMETRY, frames=frames)
-    searched = runner.run(stages.TURN_GRAPH, frames=frames, odometry=odometry)
-    verified = runner.run(stages.VERIFICATION, graph=searched)
-    return Measurements(frames, None), odometry, verified
-
-
-def _measured(runner: StageRunner, frames: Artifact, calibration: Artifact | None) -> Measurements:
-    """The calibrated rig from here on if there is one, else what its audit found."""
-    if calibration is None:
-        return Measurements(frames, None)
-    if figures_of(runner.runs, stages.CALIBRATION).applied:
-        return Measurements(frames, calibration)
-    return Measurements(frames, None, audit=calibration)
-
-
-def run_from_review(
-    runner: StageRunner,
-    measurements: Measurements,
-    *,
-    odometry: Artifact,
-    graph: Artifact,
-    decided: Decided,
-) -> None:
-    """The stages that depend on decisions of people."""
-    run = runner.run
-    graph = stages.reviewed(runner, graph, decided)
-    level = run_trajectory(runner, measurements, odometry=odometry, graph=graph)
-    points = measurements.inputs | {"odometry": odometry, "level": level}
-    run(stages.MAP, **points, intensity=run(stages.INTENSITY, **points))
-    run_audit(runner)
-
-
-def run_audit(runner: StageRunner) -> None:
-    """The findings of a run, from the artifacts of all stages that have something to say."""
-    artifacts = {name: run.artifact for name, run in runner.runs.items() if name in stages.AUDITED}
-    runner.run(stages.AUDIT, **artifacts)
-
-
-def run_trajectory(
-    runner: StageRunner, measurements: Measurements, *, odometry: Artifact, graph: Artifact
-) -> Artifact:
-    """From the graph to the final trajectory: refined, leveled, georeferenced."""
-    lines = stages.has_profiler(measurements.frames.folder)
-    refine = stages.LINE_REFINE if lines else stages.REFINE
-    refined = runner.run(refine, **measurements.inputs, odometry=odometry, graph=graph)
-    inputs = measurements.inputs | {"refined": refined, "graph": graph, "odometry": odometry}
-    return runner.run(stages.LEVEL, **inputs, audit=measurements.audit)
+def _publish(
+    out: Path, workflow: Workflow, run: Run, *, settings: Settings, progress: Progress
+) -> RunSummary:
+    about = About(ProjectDescription.read(out), settings)
+    return workflow.publish(out, run.runner.runs, about, progress=progress)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import sys
 import time
 from types import TracebackType
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, TextIO, cast
 
 if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
     from recon4.model.events import Event, StageChanged
-    from recon4.results import Summary
-    from recon4.results_2d import Summary2d
-    from recon4.run_summary import RunSummary
+    from recon4.workflows.planar_results import Summary2d
+    from recon4.workflows.publish import Summary
+    from recon4.workflows.summary import RunSummary
 
 _LINE_EVERY_S = 5.0
 _MARKS = {"note": "·", "check": "▲", "do not use": "✕"}
@@ -171,11 +171,13 @@ def describe_event(event: Event) -> str:
     return ""
 
 
-def describe_summary(summary: Summary | Summary2d) -> str:
+def describe_summary(summary: RunSummary) -> str:
     """What a finished run came to, and where its results are."""
-    from recon4.results import Summary
+    from recon4.workflows.publish import Summary
 
-    return _describe_3d(summary) if isinstance(summary, Summary) else _describe_2d(summary)
+    if isinstance(summary, Summary):
+        return _describe_3d(summary)
+    return _describe_2d(cast("Summary2d", summary))
 
 
 def _describe_2d(summary: Summary2d) -> str:

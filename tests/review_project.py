@@ -15,18 +15,15 @@ import numpy as np
 
 from app.jobs.folder import JobFolder
 from app.jobs.worker import main
-from recon4 import stages
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import FrameFigures, GraphFigures
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.trajectory import Trajectory
-from recon4.pipeline import Measurements, remake, run_from_review
+from recon4.pipeline import remake
 from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
-from recon4.results import publish
 from recon4.review.journal import read_decided
-from recon4.run_summary import About
 from recon4.settings import MapSettings, RefineSettings, Settings
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
@@ -34,6 +31,11 @@ from recon4.store.frames import FrameStore, FrameWriter
 from recon4.store.project import SUMMARY, Project, ProjectDescription
 from recon4.store.seal import changing
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
+from recon4.workflows import stages
+from recon4.workflows.lidar import LIDAR
+from recon4.workflows.publish import publish
+from recon4.workflows.summary import About
+from recon4.workflows.workflow import Run
 from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import RIG, scan
 
@@ -66,15 +68,14 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         runner = StageRunner(project, SETTINGS, progress or Silent())
         walk = Input("two rounds", None)
         frames = runner.run(Stage("frames", 1, (), _frames, FrameFigures), walk=walk)
-        odometry = runner.run(Stage("odometry", 1, (), _odometry, OdometryFigures), frames=frames)
+        runner.run(Stage("odometry", 1, (), _odometry, OdometryFigures), frames=frames)
         searched = runner.run(Stage("graph", 1, (), _graph, GraphFigures), frames=frames)
-        graph = runner.run(stages.VERIFICATION, graph=searched)
-        decided = read_decided(root)
+        runner.run(stages.VERIFICATION, graph=searched)
+        run = Run(runner, read_decided(root))
         if graph_only:
-            stages.reviewed(runner, graph, decided)
+            run.review()
             return
-        measured = Measurements(frames, None)
-        run_from_review(runner, measured, odometry=odometry, graph=graph, decided=decided)
+        LIDAR.run_from_review(run)
         about = About(ProjectDescription.read(root), SETTINGS)
         publish(root, runner.runs, about, progress=progress or Silent())
 

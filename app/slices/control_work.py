@@ -11,7 +11,6 @@ from app.slices.work import Artifacts, map_frame, map_of, stamp_text, tiles_of
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.recording.tables.coordinates import ColumnChoice
-from recon4.result_files import covariances_of
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
@@ -21,6 +20,7 @@ from recon4.slices.measured import MeasuredPosition, orthonormal
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text
+from recon4.workflows.result_files import covariances_of
 
 
 def preview_control(data: bytes, name: str, choice: ColumnChoice) -> ControlPreview:

@@ -107,7 +107,7 @@ class MapProject:
             Altered: If it was approved and is not what was approved.
             StoreError: If it is missing or damaged.
         """
-        from recon4.results import final_trajectory
+        from recon4.export.map_files import final_trajectory
         from recon4.store.arrays import load_trajectory
 
         artifacts = self._artifacts()

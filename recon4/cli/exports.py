@@ -43,8 +43,8 @@ def export(
     Says whether the map is approved. An approval that cannot be trusted is refused.
     """
     confine_command(write=[file.parent])
-    from recon4.exports_3dtk import export_3dtk
-    from recon4.results import MapExport, export_map, export_poses
+    from recon4.export.map_files import MapExport, export_map, export_poses
+    from recon4.export.three_dtk import export_3dtk
     from recon4.terminal import watcher
 
     if file.suffix.lower() == ".txt":

@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from recon4 import stages, stages_2d
 from recon4.errors import StoreError
 from recon4.live.recorder.ports import check_sources
 from recon4.live.session import CaptureSession
@@ -20,6 +19,8 @@ from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
 from recon4.store.project import Project, is_project
 from recon4.store.stage import Input, StageContext, StageRunner, figures_of
+from recon4.workflows import planar_stages as stages_2d
+from recon4.workflows import stages
 
 
 def begin(project: Path, rig: Rig, **how: Any) -> CaptureSession:

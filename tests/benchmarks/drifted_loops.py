@@ -20,7 +20,6 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4 import stages
 from recon4.evaluation.table import number, text_table
 from recon4.geometry.se3 import SE3, Array, align_points, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
@@ -35,6 +34,7 @@ from recon4.simulation.simulate import record
 from recon4.store.frames import FrameStore
 from recon4.store.project import Project
 from recon4.store.stage import StageRunner
+from recon4.workflows import stages
 from tests.benchmarks.proving_ground import _inputs
 
 WALKS = ("office/12/100", "garage/1/60", "garage:1/2/80", "storeys/1/60", "staircase/3/60")

@@ -18,8 +18,8 @@ from recon4.evaluation.table import number, percentage, text_table
 from recon4.evaluation.trajectories import find_trajectory
 from recon4.pipeline import process
 from recon4.recording.sources import Sources
-from recon4.results_2d import Summary2d
 from recon4.settings import Settings, override
+from recon4.workflows.planar_results import Summary2d
 from tests.benchmarks.real_sequences import DATA
 
 _VARIANTS = {"": (), "no odometry": ("slam2d.use_odometry=false",)}

@@ -27,12 +27,9 @@ from recon4.findings.finding import Finding
 from recon4.findings.verdict import verdict_of
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.usability import MapVerdict, Usability
-from recon4.pipeline import run_before_review, run_trajectory
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.report.assessment import assess
-from recon4.results import report_facts
-from recon4.run_summary import About
 from recon4.settings import preset
 from recon4.simulation.crowd import Crowd
 from recon4.simulation.degradation import parse_degradations
@@ -42,6 +39,10 @@ from recon4.simulation.worlds import build_world
 from recon4.store.hashing import hash_json
 from recon4.store.project import Project, ProjectDescription, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
+from recon4.workflows.lidar import LIDAR, to_trajectory
+from recon4.workflows.publish import report_facts
+from recon4.workflows.summary import About
+from recon4.workflows.workflow import Run as WorkflowRun
 from tests.benchmarks.proving_errors import Errors, measure
 
 WALKS = (
@@ -175,8 +176,10 @@ def _process(
     with Project.open(work) as project:
         project.describe(preset=name, rig=rig.name, inputs=[])
         runner = StageRunner(project, settings, Silent())
-        measurements, odometry, graph = run_before_review(runner, _inputs(recording, rig))
-        run_trajectory(runner, measurements, odometry=odometry, graph=graph)
+        run = WorkflowRun(runner)
+        run.stage(LIDAR.imports, **_inputs(recording, rig))
+        LIDAR.before_review(run)
+        to_trajectory(run)
         about = About(ProjectDescription(recording.name, name), settings)
         return runner.runs, tuple(assess(report_facts(runner.runs, about, created="")).findings)
 

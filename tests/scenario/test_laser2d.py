@@ -13,8 +13,8 @@ from recon4.pipeline import process
 from recon4.recording.laser2d import read_laser2d
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
-from recon4.results_2d import Summary2d
 from recon4.settings import Settings, override
+from recon4.workflows.planar_results import Summary2d
 from tests.planar_walks import write_carmen
 
 PUBLISHED_M, PUBLISHED_DEG = 0.045, 0.6

@@ -8,9 +8,9 @@ import pytest
 
 from recon4.cli.main import main
 from recon4.evaluation.evaluate import evaluate
-from recon4.results import RESULTS
 from recon4.settings import preset, to_json
 from recon4.store.hashing import hash_file
+from recon4.workflows.publish import RESULTS
 
 FEW = ["--set", "map.voxel_m=0.05", "--set", "graph.node_stride=10"]
 
@@ -50,7 +50,7 @@ def test_the_summary_has_inputs_settings_and_stages(project):
     assert set(summary["hashes"]["inputs"]) == {"recording.pcap", "imu.csv"}
     assert [stage["stage"] for stage in summary["stages"]] == [
         *("frames", "odometry", "calibration", "graph", "verification"),
-        *("refine", "level", "intensity", "map"),
+        *("refine", "level", "intensity", "map", "audit"),
     ]
     assert all(stage["seconds"] > 0 and stage["peak_bytes"] > 0 for stage in summary["stages"])
     assert summary["lost"] == 0
@@ -97,7 +97,7 @@ def test_a_changed_map_setting_reruns_the_map_only(project, process):
     assert process(project, "--set", "map.voxel_m=0.1") == 0
 
     summary = json.loads((project / "summary.json").read_text())
-    assert [s["stage"] for s in summary["stages"] if not s["reused"]] == ["map"]
+    assert [s["stage"] for s in summary["stages"] if not s["reused"]] == ["map", "audit"]
 
 
 def test_verify_finds_the_project_whole(project, capsys):

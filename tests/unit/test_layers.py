@@ -47,7 +47,8 @@ MAY_IMPORT = {
     | {"recon4.recording.velodyne.models"}
     | {"recon4.slam2d"}
     | {f"recon4.findings.{name}" for name in ("finding", "kinds", "verdict", "wording")},
-    "recon4/live/project_files.py": STAGE | {"recon4.live", "recon4.stages", "recon4.stages_2d"},
+    "recon4/live/project_files.py": STAGE
+    | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar_stages"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL | {"recon4.registration", "recon4.store.arrays"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
@@ -81,6 +82,11 @@ MAY_IMPORT = {
     "recon4/mapping": STAGE | {"recon4.mapping"},
     "recon4/export": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},
+    "recon4/export/map_files.py": STAGE
+    | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
+    | {"recon4.recording.formats.poses"},
+    "recon4/export/three_dtk.py": STAGE
+    | {"recon4.mapping", "recon4.export", "recon4.pose_graph", "recon4.profiler"},
     "recon4/evaluation": STAGE
     | {"recon4.mapping", "recon4.evaluation", "recon4.simulation", "recon4.recording.tables"}
     | {f"recon4.recording.formats.{name}" for name in ("cloud_files", "cloud_headers", "poses")}
@@ -102,11 +108,12 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.pose_graph", "recon4.evaluation", "recon4.report"}
     | {"recon4.findings"},
     "recon4/simulation": STAGE | {"recon4.recording", "recon4.simulation"},
+    "recon4/workflows": {"recon4"},
     "recon4": {"recon4"},
     "recon4/api": STAGE
     | {f"recon4.{room}" for room in ("api", "evaluation", "findings", "mapping", "recording")}
     | {f"recon4.{room}" for room in ("review", "simulation", "slices", "pose_graph.files")}
-    | {"recon4.pipeline", "recon4.results", "recon4.cli.kernel_cache"},
+    | {"recon4.pipeline", "recon4.export.map_files", "recon4.cli.kernel_cache"},
     "recon4/cli/main.py": {"recon4", "app.cli"},
     "app/cli/users.py": {"recon4.errors", "recon4.terminal", "recon4.verify", "app"},
     "app": {"app", "recon4"},

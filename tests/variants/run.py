@@ -23,10 +23,10 @@ from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.info import describe
 from recon4.recording.sources import Sources
-from recon4.results_2d import Summary2d
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore
+from recon4.workflows.planar_results import Summary2d
 from tests.planar_walks import PlanarWalk
 from tests.variants.bags import write_bag
 from tests.variants.captures import write_capture

@@ -10,10 +10,10 @@ import pytest
 from recon4.cli.main import main
 from recon4.pipeline import remake
 from recon4.recording.formats.poses import read_tum
-from recon4.results import RESULTS
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import NAME, append
 from recon4.store.hashing import hash_file
+from recon4.workflows.publish import RESULTS
 from tests.g2o_reader import read_g2o
 from tests.review_project import LOST, judge, make
 from tests.service.review.reviewing import RIGHT, Reviewing, decide, keys_of, make_a_new_map

@@ -7,7 +7,6 @@ import pytest
 
 from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.model.rig import parse_rig
-from recon4.pipeline_2d import is_2d
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.line_refine import refine_lines
 from recon4.profiler.stage_odometry import run_line_odometry
@@ -22,6 +21,7 @@ from recon4.simulation.head import HeadModel
 from recon4.simulation.profiler import Laser2dModel, ProfilerModel
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_lines
+from recon4.workflows.choice import is_planar
 from tests.said import line_texts
 
 RIG = """\
@@ -88,7 +88,7 @@ def test_another_rig_is_mapped_by_its_rig_file(tmp_path, settings, name, turn_s)
     sources = walked(name, tmp_path / "walk")
     for folder in ("frames", "odometry", "graph"):
         (tmp_path / folder).mkdir()
-    assert not is_2d(sources)
+    assert not is_planar(sources)
     ingest(sources, tmp_path / "frames", settings=IngestSettings(), progress=Silent())
     frames = FrameStore.open(tmp_path / "frames")
 

@@ -9,7 +9,6 @@ import pytest
 
 from recon4.errors import ConfigError, CorruptFile, RecordingError, UnknownFormat
 from recon4.model.rig import load_rig
-from recon4.pipeline_2d import is_2d
 from recon4.progress import Silent
 from recon4.recording.formats.columns import read_columns
 from recon4.recording.info import describe
@@ -22,6 +21,7 @@ from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
+from recon4.workflows.choice import is_planar
 from tests.laser_rows import rows_of
 from tests.line_tables import SHOTS, laser_columns, line_columns, line_scans, write_csv, write_npz
 
@@ -85,8 +85,8 @@ def test_files_of_a_walk_come_in_any_order(tmp_path):
     walk = write_walk(tmp_path / "walk", scans=line_scans(290))
     paths = [walk / "laser2d.csv", walk / "lines.csv"]
 
-    assert not is_2d(Sources(tuple(paths)))
-    assert is_2d(Sources(tuple(paths[:1])))
+    assert not is_planar(Sources(tuple(paths)))
+    assert is_planar(Sources(tuple(paths[:1])))
     read(paths, tmp_path / "out")
 
     assert len(load_laser_scans(tmp_path / "out")) == 290

@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from recon4 import stages
 from recon4.findings.review_problems import problem_findings
 from recon4.geometry.se3 import SE3
 from recon4.model.plain import to_plain
@@ -21,6 +20,7 @@ from recon4.review.source import Source
 from recon4.settings import Settings
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageRunner
+from recon4.workflows import stages
 from tests.unit.review.graphs import two_rounds
 
 

@@ -21,13 +21,13 @@ from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.sources import Sources
-from recon4.results_2d import RESULTS_2D
 from recon4.settings import Settings, override
 from recon4.simulation.line_bag import open_line_bag
 from recon4.slam2d import occupancy
 from recon4.slam2d.map_files import read_map
 from recon4.store.hashing import hash_file
 from recon4.verify import verify
+from recon4.workflows.planar_results import RESULTS_2D
 from tests.g2o_reader import read_g2o
 from tests.laser_rows import rows_of, with_rows
 from tests.planar_walks import (

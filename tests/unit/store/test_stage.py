@@ -7,11 +7,11 @@ import pytest
 from recon4.errors import Recon4Error
 from recon4.model.events import ArtifactDamaged
 from recon4.progress import Silent
-from recon4.run_summary import spent
 from recon4.settings import Settings, override, to_json
 from recon4.store.package_versions import versions
 from recon4.store.project import Project, read_artifacts, read_stages
 from recon4.store.stage import Input, Stage, StageRunner, stage_key
+from recon4.workflows.summary import spent
 from tests.unit.store.small_pipeline import COUNT, TEXT, results, run_all
 
 SETTINGS = Settings()

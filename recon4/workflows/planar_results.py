@@ -20,17 +20,6 @@ from recon4.model.pose_graph import EdgeKind
 from recon4.progress import Progress, track
 from recon4.report.page_2d import GridImage, Page2d, write_page_2d
 from recon4.report.rows import imported_rows
-from recon4.result_files import write_graph, write_trajectory
-from recon4.run_summary import (
-    About,
-    RunSummary,
-    StageSummary,
-    duration_s,
-    hashes_of,
-    peak_bytes_of,
-    seconds_of,
-    timings,
-)
 from recon4.settings import values_by_group
 from recon4.slam2d.map_files import overview_name, read_overview
 from recon4.slam2d.stage import read_covariance
@@ -40,6 +29,17 @@ from recon4.store.package_versions import versions
 from recon4.store.project import SUMMARY
 from recon4.store.seal import changing
 from recon4.store.stage import StageRun
+from recon4.workflows.result_files import write_graph, write_trajectory
+from recon4.workflows.summary import (
+    About,
+    RunSummary,
+    StageSummary,
+    duration_s,
+    hashes_of,
+    peak_bytes_of,
+    seconds_of,
+    timings,
+)
 
 RESULTS_2D = (
     "map.png",

@@ -1,4 +1,4 @@
-"""The stages as the pipeline runs them: what each reads, and which version its code has.
+"""The stages of LiDARs, and those that all workflows share: what each reads, and its version.
 
 A version goes up whenever the same inputs give another result than before.
 """
@@ -6,7 +6,6 @@ A version goes up whenever the same inputs give another result than before.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
@@ -23,8 +22,8 @@ from recon4.model.figures import (
 from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
-from recon4.review.decisions import Decided, Standing
-from recon4.store.stage import Artifact, Input, Stage, StageContext, StageRunner
+from recon4.review.decisions import Standing
+from recon4.store.stage import Stage, StageContext
 
 _MATCHING = (
     "segments", "overlap", "registration", "planes", "odometry", "graph", "recognition",
@@ -214,10 +213,10 @@ def _map(
     from recon4.export.points import CRS_OF_MAP, OutputCrs
     from recon4.georeference.crs_file import read_crs
     from recon4.mapping.build import MapInputs, build_map
-    from recon4.result_files import covariances_of
     from recon4.sandbox.freed_memory import return_freed_memory
     from recon4.store.arrays import load_intensity_table, load_trajectory
     from recon4.store.frames import open_frames
+    from recon4.workflows.result_files import covariances_of
 
     return_freed_memory()
     store = open_frames(frames, calibration, odometry)
@@ -256,39 +255,6 @@ def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
     return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
 
 
-def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
-    from recon4.profiler.stage_odometry import run_line_odometry
-    from recon4.store.frames import FrameStore
-
-    return run_line_odometry(
-        FrameStore.open(frames), context.out, settings=context.settings, progress=context.progress
-    )
-
-
-def _turn_graph(context: StageContext, *, frames: Path, odometry: Path) -> GraphFigures:
-    from recon4.profiler.turn_graph import build_turn_graph
-    from recon4.store.frames import FrameStore
-
-    store = FrameStore.open(frames)
-    return build_turn_graph(
-        store, odometry, context.out, settings=context.settings, progress=context.progress
-    )
-
-
-def _refine_lines(
-    context: StageContext, *, frames: Path, odometry: Path, graph: Path
-) -> RefineFigures:
-    from recon4.pose_graph.files import load_graph
-    from recon4.profiler.line_refine import refine_lines
-    from recon4.store.frames import FrameStore
-
-    store = FrameStore.open(frames)
-    found = refine_lines(
-        store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
-    )
-    return found.save(context.out)
-
-
 FRAMES = Stage("frames", 27, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
@@ -313,64 +279,6 @@ REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
 LEVEL = Stage("level", 23, ("level", "gnss", "verification"), _level, LevelFigures)
-AUDITED = (
-    "frames",
-    "odometry",
-    "calibration",
-    "graph",
-    "verification",
-    "review",
-    "refine",
-    "level",
-)
-"""Stages whose artifacts the witnesses read, where they exist."""
 AUDIT = Stage("audit", 1, ("gnss", "rig"), _audit, AuditFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 9, ("map",), _map, MapFigures)
-
-_PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
-LINE_ODOMETRY = Stage(
-    "odometry", 104, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
-)
-"""The stages of rigs with a profiler have the names of those of LiDARs, and other versions."""
-TURN_GRAPH = Stage(
-    "graph",
-    102,
-    ("odometry", "lines", "graph", "planes", "registration"),
-    _turn_graph,
-    GraphFigures,
-)
-LINE_REFINE = Stage("refine", 103, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
-
-OF_A_MAP: tuple[Stage[Any], ...] = (
-    FRAMES,
-    ODOMETRY,
-    CALIBRATION,
-    GRAPH,
-    VERIFICATION,
-    REVIEW,
-    REFINE,
-    LEVEL,
-    INTENSITY,
-    MAP,
-)
-"""All stages before the audit, by name; those of line scans have the same names."""
-
-
-def reviewed(runner: StageRunner, graph: Artifact, decided: Decided) -> Artifact:
-    """The verified graph with the decisions of people.
-
-    Without decisions there is no stage ``review``, so that undoing all of them finds the artifacts
-    of before again.
-    """
-    if not decided:
-        runner.skip(REVIEW)
-        return graph
-    return runner.run(REVIEW, graph=graph, decisions=Input(decided.key, decided.standing))
-
-
-def has_profiler(frames: Path) -> bool:
-    """Whether the rig of a recording measures line scans; its stages are other ones."""
-    from recon4.model.rig import load_rig
-
-    return load_rig(frames / "rig.toml").row_of("profiler") is not None

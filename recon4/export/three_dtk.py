@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.export.map_files import final_trajectory
 from recon4.export.names import check_name
 from recon4.export.scans import ScanRows, export_scans
 from recon4.model.pose_graph import PoseGraph
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.turns import find_turns
 from recon4.progress import Progress
-from recon4.results import final_trajectory
 from recon4.store.atomic import atomic_folder
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.line_store import load_lines

@@ -1,0 +1,170 @@
+"""A finished map and its trajectory as files of other programs, with their approval."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from recon4.errors import ConfigError, StoreError
+from recon4.export.laz import export_laz
+from recon4.export.names import check_name
+from recon4.export.ply import export_ply
+from recon4.export.points import OutputCrs
+from recon4.georeference.crs_file import read_crs
+from recon4.mapping.tiles import TileSet
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress
+from recon4.recording.formats.poses import write_kitti
+from recon4.review.approval_state import WRITTEN_AS_DRAFT, ApprovalState, approval_state
+from recon4.review.approved import approval_of
+from recon4.review.stamp import stamp_file
+from recon4.store.arrays import load_trajectory
+from recon4.store.atomic import atomic_file
+from recon4.store.frames import FrameStore
+from recon4.store.project import read_artifacts
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapExport:
+    """What of a map is written to a file."""
+
+    crs: str = ""
+    """Code of a CRS; empty = that of the map, or its local frame."""
+    raw: bool = False
+    """Points where they were measured, not on their surfaces."""
+    strays: bool = False
+    """Also the stray returns, marked as noise; only as LAZ."""
+    draft: bool = False
+    """Without an approval, whether or not there is one."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExportedMap:
+    """What was written."""
+
+    points: int
+    """In the file."""
+    strays: int
+    """Stray returns of the map, in the file or left out of it."""
+    noise: bool
+    """Whether they are in the file, marked as noise."""
+    approval: ApprovalState
+    """Of the map in the file."""
+
+    @property
+    def text(self) -> str:
+        """Both numbers in words."""
+        if not self.strays:
+            return f"{self.points} points"
+        where = "of them marked as noise" if self.noise else "left out"
+        return f"{self.points} points, {self.strays} stray returns {where},"
+
+
+def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
+    """Write the map of a finished run as LAZ or PLY; the file notes an approval.
+
+    Args:
+        project: The project folder.
+        path: File to write; ``.laz`` or ``.ply``.
+        wanted: Coordinates and kinds of points.
+        progress: Counts points.
+
+    Returns:
+        How many points were written, and how many stray returns there are.
+
+    Raises:
+        Altered: If it was approved and is not what was approved, or its approval is not to be
+            trusted (`approval_of`), unless a draft is wanted; nothing is written.
+        ConfigError: If the ending is another.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
+        StoreError: If there is no map yet or the file cannot be written.
+    """
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project} has no map yet: run recon4 process")
+    ending = _ending_of_map(path, strays=wanted.strays)
+    keys = {name: folder.name for name, folder in artifacts.items()}
+    approval = None if wanted.draft else approval_of(project, keys)
+    checked = None
+    if approval:
+        approval.evidence.check_frame(artifacts)
+        checked = approval.evidence.artifact("map", artifacts["map"])
+    place = read_crs(artifacts["level"], wanted.crs)
+    to_crs = place.to_crs if place else None
+    tiles = TileSet.open(artifacts["map"], checked)
+    tiles = tiles.as_measured() if wanted.raw else tiles
+    # The stamp goes onto a file beside it, so that a file without one is never there.
+    with atomic_file(path) as temporary:
+        if ending == ".laz":
+            output = OutputCrs(place.wkt if place else None, to_crs)
+            count = export_laz(tiles, temporary, output, strays=wanted.strays, progress=progress)
+        else:
+            count = export_ply(tiles, temporary, map_to_crs=to_crs, progress=progress)
+        if approval:
+            stamp_file(temporary, temporary, approval.stamp)
+    state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
+    return ExportedMap(count, tiles.strays, wanted.strays, state)
+
+
+def _ending_of_map(path: Path, *, strays: bool) -> str:
+    """Ending of a file that can hold a map.
+
+    Raises:
+        ConfigError: If no map is written to such a file.
+    """
+    ending = path.suffix.lower()
+    if ending not in (".laz", ".ply"):
+        raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
+    if strays and ending != ".laz":
+        raise ConfigError(f"stray returns are written to .laz only, got {path.name}")
+    check_name(path, ending)
+    return ending
+
+
+def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:
+    """Write the poses ``T_map_body`` of all multiframes as KITTI poses, a line each.
+
+    The format has no times and no comments: an approval cannot be noted in it.
+
+    Args:
+        project: The project folder.
+        path: File to write, ``.txt``.
+        draft: Whatever the approval is.
+
+    Returns:
+        How many poses were written.
+
+    Raises:
+        Altered: If the trajectory was approved and is not what was approved; nothing is written.
+        ConfigError: If the ending is another.
+        StoreError: If there is no finished trajectory yet or the file cannot be written.
+    """
+    check_name(path, ".txt")
+    artifacts = read_artifacts(project)
+    dense = final_trajectory(project, artifacts, draft=draft)
+    t_ns = FrameStore.open(artifacts["frames"]).t_mid_ns
+    with atomic_file(path) as temporary:
+        write_kitti(temporary, Trajectory(t_ns, dense.at(t_ns)))
+    return len(t_ns)
+
+
+def final_trajectory(
+    project: Path, artifacts: Mapping[str, Path], *, draft: bool = False
+) -> Trajectory:
+    """The trajectory ``T_map_body`` of a finished run, compared with its approval if there is one.
+
+    A draft is not compared.
+
+    Raises:
+        Altered: If it was approved and is not what was approved.
+        StoreError: If there is none yet.
+    """
+    if not {"frames", "level"} <= artifacts.keys():
+        raise StoreError(f"{project} has no finished trajectory yet: run recon4 process")
+    keys = {name: folder.name for name, folder in artifacts.items()}
+    approval = None if draft else approval_of(project, keys)
+    if approval:
+        for stage in ("frames", "level"):
+            approval.evidence.artifact(stage, artifacts[stage]).check_all()
+    return load_trajectory(artifacts["level"] / "trajectory.npz")

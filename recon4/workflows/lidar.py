@@ -1,0 +1,56 @@
+"""A walk with LiDARs, in stages: multiframes, odometry, rig, pose graph, refinement, map."""
+
+from __future__ import annotations
+
+from recon4.workflows.publish import publish
+from recon4.workflows.stages import (
+    AUDIT,
+    CALIBRATION,
+    FRAMES,
+    GRAPH,
+    INTENSITY,
+    LEVEL,
+    MAP,
+    ODOMETRY,
+    REFINE,
+    REVIEW,
+    VERIFICATION,
+)
+from recon4.workflows.workflow import Run, Workflow
+
+
+def before_review(run: Run) -> None:
+    """Odometry and verified graph; a rig that is calibrated repeats the odometry."""
+    run.stage(ODOMETRY, frames="frames")
+    run.stage(CALIBRATION, frames="frames", odometry="odometry")
+    if run.rig_audit is None:
+        run.stage(ODOMETRY, **run.measurements)
+    run.stage(GRAPH, **run.measurements, odometry="odometry")
+    run.stage(VERIFICATION, graph="graph")
+
+
+def to_trajectory(run: Run) -> None:
+    """The final trajectory: refined, leveled, georeferenced."""
+    inputs = run.measurements | {"odometry": "odometry", "graph": run.graph}
+    run.stage(REFINE, **inputs)
+    run.stage(LEVEL, **inputs, refined="refine", audit=run.rig_audit)
+
+
+def from_review(run: Run) -> None:
+    """Trajectory and map."""
+    to_trajectory(run)
+    points = run.measurements | {"odometry": "odometry", "level": "level"}
+    run.stage(INTENSITY, **points)
+    run.stage(MAP, **points, intensity="intensity")
+
+
+LIDAR = Workflow(
+    "lidar",
+    imports=FRAMES,
+    before_review=before_review,
+    from_review=from_review,
+    kept=(FRAMES, ODOMETRY, CALIBRATION, GRAPH, VERIFICATION),
+    remade=(REVIEW, REFINE, LEVEL, INTENSITY, MAP),
+    audit=AUDIT,
+    publish=publish,
+)

@@ -1,0 +1,60 @@
+"""The stages of rigs with a profiler; they have the names of those of LiDARs.
+
+Readers find the trajectory of a walk in ``odometry`` and its graph in ``graph``, whatever made it.
+Their keys differ, because they read other settings.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.model.figures import GraphFigures, RefineFigures
+from recon4.model.odometry_figures import OdometryFigures
+from recon4.store.stage import Stage, StageContext
+
+
+def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
+    from recon4.profiler.stage_odometry import run_line_odometry
+    from recon4.store.frames import FrameStore
+
+    return run_line_odometry(
+        FrameStore.open(frames), context.out, settings=context.settings, progress=context.progress
+    )
+
+
+def _turn_graph(context: StageContext, *, frames: Path, odometry: Path) -> GraphFigures:
+    from recon4.profiler.turn_graph import build_turn_graph
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(frames)
+    return build_turn_graph(
+        store, odometry, context.out, settings=context.settings, progress=context.progress
+    )
+
+
+def _refine_lines(
+    context: StageContext, *, frames: Path, odometry: Path, graph: Path
+) -> RefineFigures:
+    from recon4.pose_graph.files import load_graph
+    from recon4.profiler.line_refine import refine_lines
+    from recon4.store.frames import FrameStore
+
+    store = FrameStore.open(frames)
+    found = refine_lines(
+        store, odometry, load_graph(graph), settings=context.settings, progress=context.progress
+    )
+    return found.save(context.out)
+
+
+_PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
+LINE_ODOMETRY = Stage(
+    "odometry", 5, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
+)
+TURN_GRAPH = Stage(
+    "graph",
+    3,
+    ("odometry", "lines", "graph", "planes", "registration"),
+    _turn_graph,
+    GraphFigures,
+)
+LINE_REFINE = Stage("refine", 4, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)

@@ -1,0 +1,47 @@
+"""A walk with a profiler: 2-D SLAM joined with the IMU, turns of the head, every line scan."""
+
+from __future__ import annotations
+
+from recon4.workflows.line_stages import LINE_ODOMETRY, LINE_REFINE, TURN_GRAPH
+from recon4.workflows.publish import publish
+from recon4.workflows.stages import (
+    AUDIT,
+    CALIBRATION,
+    FRAMES,
+    INTENSITY,
+    LEVEL,
+    MAP,
+    REVIEW,
+    VERIFICATION,
+)
+from recon4.workflows.workflow import Run, Workflow
+
+
+def before_review(run: Run) -> None:
+    """The first trajectory, and the graph of the turns of the head."""
+    run.runner.skip(CALIBRATION)
+    run.stage(LINE_ODOMETRY, frames="frames")
+    run.stage(TURN_GRAPH, frames="frames", odometry="odometry")
+    run.stage(VERIFICATION, graph="graph")
+
+
+def from_review(run: Run) -> None:
+    """Every line scan is moved; then the map, as of LiDARs."""
+    inputs = {"frames": "frames", "odometry": "odometry", "graph": run.graph}
+    run.stage(LINE_REFINE, **inputs)
+    run.stage(LEVEL, **inputs, refined="refine", audit=None)
+    points = {"frames": "frames", "odometry": "odometry", "level": "level"}
+    run.stage(INTENSITY, **points)
+    run.stage(MAP, **points, intensity="intensity")
+
+
+PROFILER = Workflow(
+    "profiler",
+    imports=FRAMES,
+    before_review=before_review,
+    from_review=from_review,
+    kept=(FRAMES, LINE_ODOMETRY, TURN_GRAPH, VERIFICATION),
+    remade=(REVIEW, LINE_REFINE, LEVEL, INTENSITY, MAP),
+    audit=AUDIT,
+    publish=publish,
+)

@@ -1,0 +1,119 @@
+"""What a kind of walk is: its stages, in order, and what a finished run leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Protocol
+
+from recon4.model.calibration_figures import CalibrationFigures
+from recon4.progress import Progress
+from recon4.review.decisions import NOTHING_DECIDED, Decided
+from recon4.store.stage import Input, Stage, StageRun, StageRunner
+from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
+from recon4.workflows.summary import About, RunSummary
+
+
+@dataclass(frozen=True, slots=True)
+class Run:
+    """Runs stages on the artifacts of others, by their names."""
+
+    runner: StageRunner
+    decided: Decided = field(default=NOTHING_DECIDED)
+    """Decisions of people in force."""
+
+    def stage(self, stage: Stage[Any], **inputs: str | Input | None) -> None:
+        """Run a stage, or reuse its artifact.
+
+        Args:
+            stage: The stage.
+            inputs: Argument of its function -> name of the stage whose artifact it is given, or a
+                value from outside; None = there is none.
+        """
+        runs = self.runner.runs
+        given = {
+            argument: runs[one].artifact if isinstance(one, str) else one
+            for argument, one in inputs.items()
+        }
+        self.runner.run(stage, **given)
+
+    def review(self) -> None:
+        """Apply the decisions of people to the verified graph.
+
+        Without decisions there is no stage ``review``, so that undoing all of them finds the
+        artifacts of before again.
+        """
+        if self.decided:
+            decisions = Input(self.decided.key, self.decided.standing)
+            self.stage(REVIEW, graph=VERIFICATION.name, decisions=decisions)
+        else:
+            self.runner.skip(REVIEW)
+
+    @property
+    def graph(self) -> str:
+        """Stage with the final graph before leveling."""
+        return REVIEW.name if self.decided else VERIFICATION.name
+
+    @property
+    def calibration(self) -> CalibrationFigures | None:
+        """What the recording says of its rig; None = they were not compared."""
+        found = self.runner.runs.get(CALIBRATION.name)
+        return found.figures if found else None
+
+    @property
+    def measurements(self) -> dict[str, str]:
+        """Inputs of a stage that places points: the multiframes, and the calibrated rig if used."""
+        found = {"frames": "frames"}
+        used = self.calibration is not None and self.calibration.applied
+        return found | ({"calibration": CALIBRATION.name} if used else {})
+
+    @property
+    def rig_audit(self) -> str | None:
+        """Stage that says what contradicts the rig that is used; None = nothing does."""
+        audited = self.calibration is not None and not self.calibration.applied
+        return CALIBRATION.name if audited else None
+
+
+class Publish(Protocol):
+    """Writes the result files of a finished run, ``summary.json`` last."""
+
+    def __call__(
+        self, root: Path, runs: Mapping[str, StageRun[Any]], about: About, *, progress: Progress
+    ) -> RunSummary:
+        """Write them into the project folder."""
+
+
+@dataclass(frozen=True, slots=True)
+class Workflow:
+    """A kind of walk: which stages it has, and what a finished run leaves."""
+
+    name: str
+    imports: Stage[Any]
+    """Reads the recording."""
+    before_review: Callable[[Run], None]
+    """The stages that decisions of people do not change, up to the verified graph."""
+    from_review: Callable[[Run], None]
+    """The stages from the reviewed graph to the map."""
+    kept: tuple[Stage[Any], ...]
+    """Stages that are kept as they are when decisions change, in order."""
+    remade: tuple[Stage[Any], ...]
+    """Stages that follow them, in order."""
+    audit: Stage[Any]
+    publish: Publish
+
+    def run(self, run: Run) -> None:
+        """All stages after the import; each is skipped when its artifact is there."""
+        self.before_review(run)
+        self.run_from_review(run)
+
+    def run_from_review(self, run: Run) -> None:
+        """The stages that depend on decisions of people."""
+        run.review()
+        self.from_review(run)
+        self.run_audit(run)
+
+    def run_audit(self, run: Run) -> None:
+        """The findings, from the artifacts of all other stages."""
+        others = {name: name for name in run.runner.runs if name != self.audit.name}
+        run.stage(self.audit, **others)
