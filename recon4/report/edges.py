@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -22,14 +22,17 @@ _REASONS = {
     Reason.OPERATOR: "decision of the operator",
 }
 """Text of each reason; others are shown as they are."""
+_MARKS = {Verdict.ACCEPTED: "\u2713", Verdict.REJECTED: "\u2715", Verdict.UNVERIFIED: "\u25cc"}
 
 
 @dataclass(frozen=True, slots=True)
 class EdgeRow:
-    """A row of the table: a verdict with its reason, and the number of edges of each kind."""
+    """A row of the table: a verdict with its reason and history, and the edges of each kind."""
 
     verdict: str
     reason: str
+    history: str
+    """Who judged these edges, in order, and how, as in ``search ✓ → verification ✕``."""
     counts: tuple[int, ...]
     """In the order of `EdgeKind`."""
 
@@ -40,23 +43,34 @@ class EdgeRow:
 
 
 def edge_rows(graph: PoseGraph, *, limit_m: float) -> list[EdgeRow]:
-    """Edges by verdict and reason, in the order of the enums; rows without edges are left out.
+    """Edges by verdict, reason and history; the most frequent history of a reason first.
 
     Args:
         graph: Its edges are counted.
         limit_m: Largest path discrepancy that verification accepts [m].
     """
-    count = Counter((edge.verdict, edge.reason, edge.kind) for edge in graph.edges)
-    rows = [
+    count: dict[tuple[Verdict, Reason, str], Counter[EdgeKind]] = defaultdict(Counter)
+    for edge in graph.edges:
+        count[edge.verdict, edge.reason, history_text(edge)][edge.kind] += 1
+    order = {word: k for words in (Verdict, Reason) for k, word in enumerate(words)}
+    rows = sorted(
+        count.items(),
+        key=lambda row: (order[row[0][0]], order[row[0][1]], -row[1].total(), row[0][2]),
+    )
+    return [
         EdgeRow(
             _verdict_text(verdict, reason),
             _reason_text(reason, limit_m),
-            tuple(count[verdict, reason, kind] for kind in EdgeKind),
+            history,
+            tuple(kinds[kind] for kind in EdgeKind),
         )
-        for verdict in Verdict
-        for reason in Reason
+        for (verdict, reason, history), kinds in rows
     ]
-    return [row for row in rows if row.total]
+
+
+def history_text(edge: Edge) -> str:
+    """Who judged an edge, in order, and how; people without their names."""
+    return " \u2192 ".join(f"{one.by} {_MARKS[one.verdict]}" for one in edge.judgments)
 
 
 def _verdict_text(verdict: Verdict, reason: Reason) -> str:

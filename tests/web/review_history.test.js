@@ -61,7 +61,7 @@ test("a decision that is not in the map yet is the last of the history", () => {
   assert.equal(historyOf([FOUND], FREE).length, 1);
 });
 
-test("a decision in the map stands once, and one taken back says so", () => {
+test("a decision in the map stands once, and one that was undone says so", () => {
   const row = { who: "Eva", why: "glass", state: "rejected" };
   assert.deepEqual(
     historyOf([FOUND, EVA], row).map((one) => one.by),

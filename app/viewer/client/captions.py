@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from urllib.parse import quote
 
@@ -15,6 +15,20 @@ from app.viewer.cloud.pick import PickedCell, PickedPoint
 from app.viewer.scene.build import GnssMarks
 from app.viewer.scene.layers import KIND_LABELS, EdgeTable
 from recon4.geometry.se3 import Array
+from recon4.model.pose_graph import Edge, Measure
+
+_MEASURES = {
+    Measure.NONE: "{}",
+    Measure.OVERLAP: "overlap {}",
+    Measure.ERROR: "error {} m",
+    Measure.MATCHES: "matches {}",
+    Measure.DEGENERACY: "degeneracy {}",
+    Measure.SEEN_THROUGH: "seen through {}",
+    Measure.CONFIRMED: "{} nodes confirm it",
+    Measure.CONTRADICTED: "{} nodes contradict it",
+    Measure.PATHS: "path discrepancy {} m",
+    Measure.CHI2: "chi² {}",
+}
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +59,21 @@ def edge_facts(table: EdgeTable, row: int, project: str) -> Facts:
             f"{edge.paths}, median {_number(edge.verification_m)} m" * (edge.paths > 0),
         ),
         ("chi²", _number(edge.chi2)),
-        ("Decided by", edge.decided_by),
+        *_history(edge),
     ]
     # seen from the viewer's page: the server may have a prefix
     link = f"../../{quote(project)}/review/?edge={edge.i}-{edge.j}"
     kept = tuple((label, value) for label, value in rows if value)
     return Facts(f"Edge {edge.i}\u2013{edge.j}", kept, ("Open in review", link))
+
+
+def _history(edge: Edge) -> Iterator[tuple[str, str]]:
+    """Who judged an edge, in order: the verdict, why, and by which figure."""
+    for count, one in enumerate(edge.judgments, start=1):
+        figure = _MEASURES[one.measure].format(_number(one.value)) if one.value is not None else ""
+        limit = f" of {_number(one.limit)}" if figure and one.limit is not None else ""
+        why = [str(one.verdict), str(one.reason), figure + limit, one.note]
+        yield f"{count}. {one.person or one.by}", ", ".join(filter(None, why))
 
 
 def gnss_facts(marks: GnssMarks, row: int, *, began_ns: int) -> Facts:

@@ -29,7 +29,7 @@ from app.viewer.scene.source import ProjectSource
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
-from recon4.model.pose_graph import Verdict, known_judgment
+from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, Reason, Verdict, known_judgment
 from tests.project_builder import build_project, loop_walk, verified_graph
 
 
@@ -225,6 +225,28 @@ def test_an_edge_picked_leads_to_its_review(content):
     assert ("Verdict", "rejected") in facts.rows
     assert ("Reason", str(edge.reason)) in facts.rows
     assert "Error" not in dict(facts.rows)
+
+
+def test_an_edge_picked_says_who_judged_it_in_order(content):
+    found = Judgment(Judge.SEARCH, Verdict.ACCEPTED, Reason.NONE, Measure.ERROR, 0.0123, 0.05)
+    paths = Judgment(
+        Judge.VERIFICATION, Verdict.REJECTED, Reason.VERIFICATION, Measure.PATHS, 0.4, 0.1
+    )
+    ada = Judgment(Judge.PERSON, Verdict.ACCEPTED, person="Ada", note="same door")
+    graph = content.edges.graph
+    first = graph.edges[0]
+    judged = Edge(
+        i=first.i, j=first.j, T_i_j=first.T_i_j, kind=first.kind, judgments=(found, paths, ada)
+    )
+
+    table = EdgeTable.of(graph.with_edges((judged, *graph.edges[1:])))
+    rows = dict(edge_facts(table, 0, "office").rows)
+
+    assert rows["1. search"] == "accepted, error 0.0123 m of 0.05"
+    assert rows["2. verification"] == (
+        "rejected, verification median > limit, path discrepancy 0.4 m of 0.1"
+    )
+    assert rows["3. Ada"] == "accepted, same door"
 
 
 def test_a_distance_has_its_components():
