@@ -7,7 +7,16 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges, seen_through_ratio
-from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
+from recon4.model.pose_graph import (
+    Edge,
+    EdgeKind,
+    Judge,
+    Measure,
+    PoseGraph,
+    Reason,
+    Verdict,
+    known_history,
+)
 from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density import make_density_image, overlays, yaws_within
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
@@ -169,6 +178,26 @@ def reasons(*chains, settings=SETTINGS, walk=WALK):
 
 def test_a_correction_within_the_uncertainty_is_accepted():
     assert reasons(chain(30, off_m=(2.0, 3.0, 0.1))) == [{Reason.NONE}]
+
+
+def test_the_group_says_how_many_nodes_confirm_a_correction():
+    few = chain(30, nodes=SETTINGS.min_places - 1)
+    doubted = chain(30, nodes=SETTINGS.min_places, bad=SETTINGS.min_places)
+    edges = [
+        judge_chains(places_of(WALK), [one], settings=SETTINGS)[0]
+        for one in (chain(30), few, doubted)
+    ]
+
+    assert all(edge.judgments[0].by is Judge.SEARCH for edge in edges)
+    last = [edge.judgments[-1] for edge in edges]
+    assert {one.by for one in last} == {Judge.PLACES}
+    assert [(one.verdict, one.measure) for one in last] == [
+        (Verdict.ACCEPTED, Measure.CONFIRMED),
+        (Verdict.REJECTED, Measure.CONFIRMED),
+        (Verdict.REJECTED, Measure.CONTRADICTED),
+    ]
+    assert last[0].value >= last[0].limit and last[1].value < last[1].limit
+    assert last[2].value > last[2].limit
 
 
 def test_a_correction_beyond_the_uncertainty_is_ambiguous():

@@ -197,6 +197,10 @@ def test_pairs_rejected_because_of_a_poor_pose_are_registered_again(stroll, tmp_
     assert sum(e.reason is Reason.NOT_CONVERGED for e in once.edges) >= 5
     assert not any(e.reason is Reason.NOT_CONVERGED for e in again.edges)
     assert sum(e.in_graph for e in again.edges) > sum(e.in_graph for e in once.edges)
+    # The history has what the first registration said.
+    earlier = [e for e in again.edges for one in e.judgments if one.reason is Reason.NOT_CONVERGED]
+    assert len(earlier) >= 5
+    assert all(len(e.judgments) >= 2 for e in earlier)
     # One edge per pair, that of the last registration; every registration was reported.
     pairs = [(e.i, e.j) for e in again.edges if e.kind is not EdgeKind.ODOMETRY]
     assert len(pairs) == len(set(pairs)) == len(once.edges) - len(once) + 1
