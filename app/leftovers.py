@@ -7,8 +7,8 @@ import shutil
 
 from app.settings import ServerSettings
 from app.viewer.pool import socket_folder
-from recon4.processes import ChildRegister
 from recon4.store.atomic import sweep
+from recon4.system.processes import ChildRegister
 
 log = logging.getLogger(__name__)
 

@@ -82,12 +82,12 @@ from app.uploads.store import UploadStore
 from app.viewer import page, proxy
 from app.viewer.pool import ViewerPool
 from recon4 import __version__
+from recon4.archive.verify import open_state, seal_state
 from recon4.errors import StoreError
 from recon4.review.newest_approval import judging_folders
 from recon4.review.trusted_keys import STATE, record_own_key
-from recon4.stopping import StopSignals
 from recon4.store.atomic import make_folders
-from recon4.verify import open_state, seal_state
+from recon4.system.stopping import StopSignals
 
 log = logging.getLogger(__name__)
 

@@ -6,7 +6,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator
 
-from recon4.names import check_name, check_note
+from recon4.untrusted.names import check_name, check_note
 
 
 def _name(text: str) -> str:

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from app.network.behind import PublicAddress
 from recon4.errors import ConfigError
-from recon4.names import is_unnameable, visible
 from recon4.sandbox import ONE_THREAD as ONE_THREAD
 from recon4.sandbox import allowed_environment
+from recon4.untrusted.names import is_unnameable, visible
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,7 +2,7 @@
 
 import sys
 
-from recon4.stopping import StopSignals, end_process
+from recon4.system.stopping import StopSignals, end_process
 
 
 def main() -> None:

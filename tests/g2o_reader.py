@@ -10,11 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.bounded import lines_limited, parse_float
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.pose_graph.relations import reverse
+from recon4.untrusted.bounded import lines_limited, parse_float
 
 _FIELDS = {"VERTEX_SE3:QUAT": 9, "EDGE_SE3:QUAT": 31, "VERTEX_SE2": 5, "EDGE_SE2": 12, "FIX": 2}
 """Number of fields in a line of each kind, its tag included."""

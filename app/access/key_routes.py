@@ -13,8 +13,8 @@ from app.access.people import Permission, Who, needs, recent_login
 from app.deps import Server, ServerParts
 from app.error_responses import ProblemDetail
 from app.names import Name
-from recon4.names import visible
 from recon4.review.trusted_keys import TrustedKey, TrustedKeys, add_key, read_keys, remove_key
+from recon4.untrusted.names import visible
 
 router = APIRouter(
     prefix="/api/keys",

@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from app.cli.users import this_user
+from recon4.cli.terminal import write
 from recon4.errors import ConfigError, StoreError
-from recon4.terminal import write
 
 if TYPE_CHECKING:
     from recon4.review.trusted_keys import TrustedKeys
@@ -117,8 +117,8 @@ def _changing(root: Path | None, action: str) -> Iterator[_Change]:
             yield change
         return
     from app.cli.users import access_of, note
+    from recon4.archive.verify import state_change
     from recon4.review.trusted_keys import SIGNING_KEY, TRUSTED_KEYS
-    from recon4.verify import state_change
 
     with _written(change), state_change(change.trusted.folder, SIGNING_KEY, TRUSTED_KEYS):
         yield change

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from recon4.cli.terminal import write
 from recon4.errors import ConfigError
-from recon4.stopping import StopSignals
-from recon4.terminal import write
+from recon4.system.stopping import StopSignals
 
 if TYPE_CHECKING:
     from app.settings import ServerSettings
@@ -79,12 +79,12 @@ def demo(
     headless: Annotated[bool, typer.Option("--headless", help="End after the report.")] = False,
 ) -> None:
     """Simulate a walk through an office, map it and show it in the browser."""
+    from recon4.cli.terminal import describe_summary, watcher
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as make_map
     from recon4.recording.sources import Sources
     from recon4.simulation.setup import prepare
     from recon4.simulation.simulate import simulate
-    from recon4.terminal import describe_summary, watcher
 
     recording, project = out / "recording", out / "office"
     out.mkdir(parents=True, exist_ok=True)

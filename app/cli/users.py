@@ -15,8 +15,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from recon4.cli.terminal import write
 from recon4.errors import StoreError
-from recon4.terminal import write
 
 if TYPE_CHECKING:
     from app.access.audit import AuditLog
@@ -136,7 +136,7 @@ def access_of(root: Path) -> Iterator[Access]:
     from app.errors import AppError
     from app.network.listen import make_state
     from app.settings import ServerSettings
-    from recon4.verify import state_change
+    from recon4.archive.verify import state_change
 
     settings = ServerSettings(root=root)
     make_state(settings)

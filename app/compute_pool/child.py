@@ -27,9 +27,9 @@ from app.compute_pool.messages import (
     encode_result,
 )
 from recon4.errors import Recon4Error
-from recon4.processes import die_with_parent
 from recon4.sandbox.private_cache import use_private_cache
-from recon4.stopping import leave_terminal_to_parent
+from recon4.system.processes import die_with_parent
+from recon4.system.stopping import leave_terminal_to_parent
 
 BACKGROUND_NICE = 10
 

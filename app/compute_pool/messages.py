@@ -19,7 +19,7 @@ from pydantic import BaseModel, TypeAdapter
 from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
-from recon4.names import is_unnameable
+from recon4.untrusted.names import is_unnameable
 
 LENGTH = struct.Struct("<Q")
 """Header of each message to a child: number of bytes that follow."""

@@ -15,7 +15,7 @@ from app.compute_pool.messages import Call, declared
 from app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from app.compute_pool.process import ChildProcess
 from app.errors import ComputeFailed
-from recon4.processes import ChildRegister
+from recon4.system.processes import ChildRegister
 
 T = TypeVar("T")
 

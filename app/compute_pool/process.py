@@ -27,7 +27,7 @@ from app.compute_pool.messages import (
 from app.compute_pool.model import FileAccess
 from app.errors import ComputeFailed
 from app.settings import worker_environment
-from recon4.processes import ChildRegister
+from recon4.system.processes import ChildRegister
 
 
 class ChildFailed(RuntimeError):

@@ -13,7 +13,7 @@ from app.access.people import Permission, needs
 from recon4.errors import WrongSettings
 from recon4.model.rig import rig_presets
 from recon4.settings import PRESET_TEXTS, PRESETS, override, preset, values_by_group
-from recon4.settings_help import GroupHelp, SettingHelp, describe_settings
+from recon4.settings.help import GroupHelp, SettingHelp, describe_settings
 
 router = APIRouter(prefix="/api", tags=["settings"], dependencies=[Depends(needs(Permission.LOOK))])
 

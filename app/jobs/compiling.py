@@ -1,8 +1,8 @@
 """Compile the kernels once, before the first worker reads a user's file.
 
 A confined process must not write code that other processes load, so what it compiles is lost with
-it (`recon4.compile_kernels`). A server of a new installation begins with that at once; a worker
-waits for it, outside its confinement.
+it (`recon4.system.compile_kernels`). A server of a new installation begins with that at once; a
+worker waits for it, outside its confinement.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import signal
 
-from recon4.stopping import SIGNALS
+from recon4.system.stopping import SIGNALS
 
 REASONS = {
     signal.SIGKILL: "was killed from outside; often the memory of the computer was not enough",

@@ -14,8 +14,8 @@ from dataclasses import dataclass
 
 from app.jobs.run_progress import AFTER
 from app.jobs.status import JobStatus
-from recon4.processes import waited_for_processor_s
 from recon4.store.stage import SAVING
+from recon4.system.processes import waited_for_processor_s
 
 COMPUTING_FACTOR = 10.0
 COMPUTING = frozenset({"graph", "verification", "review", "refine", "level", "map", AFTER, SAVING})

@@ -17,8 +17,8 @@ from app.errors import Conflict, NotFound, project_page
 from app.jobs.model import Inputs, Job, JobState
 from app.state_copies import StateCopies
 from recon4.errors import StoreError
-from recon4.names import visible
 from recon4.store.json_files import parse_object
+from recon4.untrusted.names import visible
 
 log = logging.getLogger(__name__)
 

@@ -19,9 +19,9 @@ from app.jobs.space import refuse_if_full
 from recon4.errors import Cancelled, ConfigError, NoSpace, Recon4Error, RecordingError
 from recon4.progress import Progress
 from recon4.sandbox import Policy
-from recon4.stopping import end_process
 from recon4.store.atomic import raise_if_full
 from recon4.store.project import Project, discard_unbegun, is_project
+from recon4.system.stopping import end_process
 
 log = logging.getLogger("recon4.job")
 

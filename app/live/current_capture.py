@@ -13,7 +13,6 @@ from app.errors import CAPTURE, Conflict, NotFound
 from app.live.capture import Capture, unfinished
 from app.live.power import Power, read_battery
 from app.network.streams import StreamLimits, Streams
-from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile, StoreError
 from recon4.live.ipc.line_client import is_listening
 from recon4.live.project_files import begin
@@ -21,6 +20,7 @@ from recon4.live.protocol import Mark, Stop
 from recon4.live.session import CaptureSession, load_session
 from recon4.model.rig import Rig, load_rig
 from recon4.store.json_files import parse_object
+from recon4.untrusted.bounded import read_text_limited
 
 log = logging.getLogger(__name__)
 

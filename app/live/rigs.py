@@ -9,10 +9,10 @@ from pathlib import Path
 from stat import S_ISREG
 
 from app.rigs.store import RIGS, newest_files
-from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import load_rig, rig_presets
-from recon4.names import is_unnameable
+from recon4.untrusted.bounded import read_text_limited
+from recon4.untrusted.names import is_unnameable
 
 MAX_FILES = 100
 LARGEST_BYTES = 1 << 17

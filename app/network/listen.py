@@ -51,7 +51,7 @@ class AnnouncingServer(uvicorn.Server):
 
     @contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Leave signals to `recon4.stopping`: uvicorn raises them again when it has ended."""
+        """Leave signals to `recon4.system.stopping`: uvicorn raises them again at its end."""
         yield
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from app.errors import NotFound, Refused
 from app.projects.model import FolderEntry
-from recon4.names import is_unnameable, visible
+from recon4.untrusted.names import is_unnameable, visible
 
 SYSTEM = tuple(map(Path, ("/boot", "/dev", "/etc", "/proc", "/run", "/sys")))
 """Never recordings, even where a folder of recordings contains them (``/``)."""

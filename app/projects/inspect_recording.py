@@ -6,7 +6,7 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.names import is_unnameable
+from recon4.untrusted.names import is_unnameable
 
 MAX_BESIDE = 50
 """In folders with more files, no IMU or GNSS file is searched for."""

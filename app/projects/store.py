@@ -26,7 +26,6 @@ from app.projects.model import (
 )
 from recon4.errors import StoreError
 from recon4.model.usability import Usability
-from recon4.names import visible
 from recon4.review.approval_state import ApprovalState, approval_state, not_valid
 from recon4.review.approved import approval_of
 from recon4.review.state import artifact_keys
@@ -35,6 +34,7 @@ from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage as StageRow
 from recon4.store.project import Project as Folder
 from recon4.store.project import is_project, read_artifacts, read_stages
+from recon4.untrusted.names import visible
 
 RESERVED = frozenset({"recordings", "rigs"})
 """Folders of uploads and of rigs, beside those of projects."""

@@ -6,8 +6,8 @@ import os
 from pathlib import Path
 
 from app.projects.store import PROJECT_ID
-from recon4.names import visible
 from recon4.store.project import is_project
+from recon4.untrusted.names import visible
 
 _MAX_SHOWN = 3
 

@@ -14,9 +14,9 @@ from app.projects.store import ProjectStore
 from app.rigs.model import AgreementView, CalibrationSlices, CalibrationView, ParameterView
 from app.rigs.uses import RigUses
 from recon4.errors import StoreError
-from recon4.names import visible
 from recon4.store.frames import CALIBRATED_RIG, CALIBRATION_SLICES
 from recon4.store.json_files import read_object
+from recon4.untrusted.names import visible
 
 MAX_CALIBRATION_BYTES = 4 << 20
 _SHOWN = {"rad": (math.degrees(1.0), "°", 3), "m": (100.0, " cm", 2), "s": (1e3, " ms", 2)}

@@ -21,7 +21,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, parse_beams
 from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
 from recon4.model.serial_device import parse_serial_device
-from recon4.names import visible
+from recon4.untrusted.names import visible
 
 LARGEST_M = 10.0
 """A sensor farther from the origin of a backpack is a mistake of the unit."""

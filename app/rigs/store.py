@@ -19,10 +19,10 @@ from app.rigs.model import RIG_ID, RigVersion
 from app.rigs.work import CheckedRig
 from recon4.errors import StoreError
 from recon4.model.rig import MAX_RIG_BYTES, rig_presets
-from recon4.names import visible
 from recon4.store.atomic import atomic_folder, make_folders, sweep, write_json, write_text
 from recon4.store.json_files import read_object
 from recon4.store.project import is_project
+from recon4.untrusted.names import visible
 
 RIGS = "rigs"
 """Folder of the rigs below that of the projects."""

@@ -11,9 +11,9 @@ from app.jobs.store import JobStore
 from app.projects.store import ProjectStore
 from app.rigs.model import RigUse, SavedRig
 from app.rigs.store import RigStore
-from recon4.bounded import read_bytes_limited
 from recon4.errors import StoreError
 from recon4.model.rig import MAX_RIG_BYTES, format_rig, load_rig, rig_presets
+from recon4.untrusted.bounded import read_bytes_limited
 
 _STORED = re.compile(r"/([^/]+)/([0-9]{1,3})/\1-v\2\.toml$")
 MAX_CACHED = 4096

@@ -9,11 +9,11 @@ from pydantic import BaseModel
 
 from app.rigs.content import content_of
 from app.rigs.model import RigContent
-from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError
 from recon4.model.rig import MAX_RIG_BYTES, format_rig, parse_rig
 from recon4.model.serial_device import parse_serial_device
-from recon4.names import visible
+from recon4.untrusted.bounded import read_text_limited
+from recon4.untrusted.names import visible
 
 
 class CheckedRig(BaseModel):

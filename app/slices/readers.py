@@ -8,9 +8,9 @@ import msgspec
 from pydantic import ValidationError
 
 from app.slices.model import WindowSpec
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.slices.double_places import DoubleReport
+from recon4.untrusted.bounded import read_json_object
 
 _MAX_BYTES = 64 << 20
 """A larger file was not written by us."""

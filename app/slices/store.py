@@ -24,7 +24,6 @@ from app.settings import ServerSettings
 from app.slices import work
 from app.slices.exports import Exports
 from app.slices.model import ControlState, ListedReference, OtherMap, Xyz
-from recon4.bounded import read_text_limited
 from recon4.errors import StoreError
 from recon4.review.approval_state import ApprovalState, approval_state
 from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
@@ -33,6 +32,7 @@ from recon4.review.trusted_keys import UnknownSigner
 from recon4.store.atomic import write_json
 from recon4.store.project import read_artifacts, read_stages
 from recon4.store.seal import begin_change, changing, check_sealed, end_change
+from recon4.untrusted.bounded import read_text_limited
 
 T = TypeVar("T")
 _KEY = re.compile(r"[0-9a-f]{16,64}")

@@ -28,7 +28,6 @@ from app.slices.model import (
 from recon4.errors import ConfigError, StoreError
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import to_plain
-from recon4.names import visible
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
@@ -51,6 +50,7 @@ from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
 from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import atomic_file, write_json
 from recon4.store.checked import CheckedArtifact
+from recon4.untrusted.names import visible
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""

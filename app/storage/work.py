@@ -14,7 +14,7 @@ from app.jobs.space import size_below
 from app.projects.trash import Deleted
 from app.storage.model import StorageView, StoredItem
 from app.uploads.store import UPLOADED
-from recon4.names import visible
+from recon4.untrusted.names import visible
 
 
 def read_storage(server: ServerParts) -> StorageView:

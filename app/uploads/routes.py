@@ -27,7 +27,7 @@ from app.network.behind import public_path
 from app.uploads import tus
 from app.uploads.model import Upload, UploadedFile
 from app.uploads.receive import receive
-from recon4.names import check_name
+from recon4.untrusted.names import check_name
 
 PREFIX = "/api/uploads/files"
 SETTLES_WITHIN_S = 3.0

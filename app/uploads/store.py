@@ -29,9 +29,9 @@ from app.settings import ServerSettings
 from app.uploads.model import Upload, UploadedFile
 from app.uploads.names import another, safe_path, slug
 from recon4.errors import StoreError
-from recon4.names import visible
 from recon4.store.atomic import make_folders, sweep, write_json
 from recon4.store.json_files import read_object
+from recon4.untrusted.names import visible
 
 log = logging.getLogger(__name__)
 

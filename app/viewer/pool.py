@@ -17,8 +17,8 @@ from app.errors import ViewerFailed
 from app.network.streams import Streams
 from app.settings import worker_environment
 from app.viewer.scratch import scratch_of, viewer_environment
-from recon4.processes import ChildRegister, first_line
-from recon4.runtime_folder import private_folder, runtime_folder
+from recon4.system.processes import ChildRegister, first_line
+from recon4.system.runtime_folder import private_folder, runtime_folder
 
 STARTS_WITHIN_S = 60.0
 """A viewer that does not listen after this much time of its own has failed [s]."""

@@ -21,11 +21,11 @@ from app.viewer.client.show import Viewer
 from app.viewer.cloud.palette import table
 from app.viewer.scene.source import ProjectSource
 from app.viewer.scratch import scratch_of
-from recon4.processes import die_with_parent
 from recon4.sandbox import Network, Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import cached_elsewhere
-from recon4.stopping import StopSignals, end_process, leave_terminal_to_parent
+from recon4.system.processes import die_with_parent
+from recon4.system.stopping import StopSignals, end_process, leave_terminal_to_parent
 
 MEMORY_FRACTION = 0.7
 LOOK_EVERY_S = 0.5

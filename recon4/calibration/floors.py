@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import read_text_limited
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.frames import RecordedFrames
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
+from recon4.untrusted.bounded import read_text_limited
 
 _MAX_BYTES = 4 << 20
 _REST_RAD_S, _REST_M_S2 = 0.05, 0.1

@@ -11,9 +11,9 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.bounded import read_text_limited
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, Array, so3_log
+from recon4.untrusted.bounded import read_text_limited
 
 _MAX_BYTES = 16 << 20
 _COLUMNS = 14

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from recon4.terminal import write
+from recon4.cli.terminal import write
 
 backups = typer.Typer()
 
@@ -33,8 +33,8 @@ def backup(
 
     Exit code 1: files were damaged before they were copied. The backup holds them as found.
     """
-    from recon4.backup import back_up, to_json
-    from recon4.terminal import watcher
+    from recon4.archive.backup import back_up, to_json
+    from recon4.cli.terminal import watcher
 
     with watcher() as progress:
         made = back_up(root, out, with_keys=with_keys, progress=progress)
@@ -60,8 +60,8 @@ def restore(
     with_keys: KeysOption = False,
 ) -> None:
     """Put a backup into an empty folder; a byte that differs is refused, and nothing is left."""
-    from recon4.backup import restore as put
-    from recon4.terminal import watcher
+    from recon4.archive.backup import restore as put
+    from recon4.cli.terminal import watcher
 
     with watcher() as progress:
         files = put(backup, root, with_keys=with_keys, progress=progress)

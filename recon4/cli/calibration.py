@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from recon4.cli.confinement import compile_first, confine_command, result_folder
+from recon4.cli.terminal import write
 from recon4.errors import CalibrationError, ConfigError
-from recon4.terminal import write
 
 if TYPE_CHECKING:
-    from recon4.calibration_methods import MethodResult
+    from recon4.workflows.calibration_methods import MethodResult
 
 calibration = typer.Typer()
 
@@ -47,11 +47,11 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     compile_first()
     confine_command(write=[result_folder(folder), out.parent])
 
-    from recon4 import calibration_methods as methods
+    from recon4.cli.terminal import watcher
     from recon4.model.rig import load_rig
     from recon4.recording.sources import Sources, require_files
     from recon4.report.calibration_page import write_calibration_page
-    from recon4.terminal import watcher
+    from recon4.workflows import calibration_methods as methods
 
     choice = methods.CalibrationChoice(method, sensors, beams)
     methods.check_choice(choice)

@@ -11,9 +11,9 @@ import typer
 
 from recon4.cli.confinement import confine_command
 from recon4.cli.tables import parse_choice
+from recon4.cli.terminal import write
 from recon4.errors import ConfigError
 from recon4.model.plain import to_plain
-from recon4.terminal import write
 
 if TYPE_CHECKING:
     from recon4.evaluation.density import Density

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.terminal import write
+from recon4.cli.terminal import write
 
 exports = typer.Typer()
 
@@ -43,9 +43,9 @@ def export(
     Says whether the map is approved. An approval that cannot be trusted is refused.
     """
     confine_command(write=[file.parent])
+    from recon4.cli.terminal import watcher
     from recon4.export.map_files import MapExport, export_map, export_poses
     from recon4.export.three_dtk import export_3dtk
-    from recon4.terminal import watcher
 
     if file.suffix.lower() == ".txt":
         if crs:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from recon4.cli.confinement import confine_command
-from recon4.terminal import write
+from recon4.cli.terminal import write
 
 findings = typer.Typer()
 
@@ -22,8 +22,8 @@ def audit(
 ) -> None:
     """Work out the findings of a finished map again, with the witnesses of this version."""
     confine_command(write=[project])
+    from recon4.cli.terminal import describe_summary, watcher
     from recon4.pipeline import audit as run
-    from recon4.terminal import describe_summary, watcher
 
     with watcher() as progress:
         summary = run(project, progress=progress)

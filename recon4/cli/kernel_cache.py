@@ -9,8 +9,8 @@ from __future__ import annotations
 import os
 
 from recon4.errors import ConfigError
-from recon4.runtime_folder import private_folder, runtime_folder
 from recon4.sandbox.private_cache import cache_in_use, planted
+from recon4.system.runtime_folder import private_folder, runtime_folder
 
 
 def settle_kernel_cache() -> None:

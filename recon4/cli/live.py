@@ -47,9 +47,9 @@ def replay(
     ] = None,
 ) -> None:
     """Replay a recording to the ports of a recorder as its sensors sent it."""
+    from recon4.cli.terminal import watcher
     from recon4.live.replay import replay as run
     from recon4.model.rig import load_rig
-    from recon4.terminal import watcher
 
     with watcher() as progress:
         sent = run(
@@ -86,7 +86,7 @@ def record(
     from recon4.live.session import CaptureSession
     from recon4.model.rig import load_rig
     from recon4.settings import preset as preset_named
-    from recon4.stopping import StoppedBySignal, StopSignals
+    from recon4.system.stopping import StoppedBySignal, StopSignals
 
     loaded = load_rig(rig)
     preset_named(preset)

@@ -30,9 +30,9 @@ from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
+from recon4.cli.terminal import write
 from recon4.errors import Cancelled, Recon4Error
-from recon4.stopping import StopSignals
-from recon4.terminal import write
+from recon4.system.stopping import StopSignals
 
 if TYPE_CHECKING:
     from recon4.settings import Settings
@@ -127,12 +127,12 @@ def process(  # noqa: PLR0913 - an argument for each option
     compile_first()
     confine_command(write=[result_folder(out)])
 
+    from recon4.cli.terminal import describe_summary, watcher
     from recon4.model.events import Warned
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
     from recon4.recording.kinds import located_elsewhere
     from recon4.recording.nearby_samples import unread_samples
-    from recon4.terminal import describe_summary, watcher
 
     with watcher() as progress:
         sources = Sources(tuple(recordings), load_rig(rig) if rig else None, imu, gnss)
@@ -159,8 +159,8 @@ def _calibrate(word: str) -> list[str]:
 @app.command("compile")
 def compile_command() -> None:
     """Compile the kernels, once after an installation; other commands do it when they need to."""
-    from recon4.compile_kernels import compile_kernels
-    from recon4.terminal import watcher
+    from recon4.cli.terminal import watcher
+    from recon4.system.compile_kernels import compile_kernels
 
     with watcher() as progress:
         new = compile_kernels(progress)
@@ -177,7 +177,7 @@ def settings(
 ) -> None:
     """Show every setting in force, with its meaning."""
     from recon4.settings import to_json
-    from recon4.settings_help import markdown as settings_page
+    from recon4.settings.help import markdown as settings_page
 
     chosen = _settings(preset, assignments)
     if markdown:
@@ -200,9 +200,9 @@ def verify(
     """Read every byte again; compare hashes, seals, the journal's chain and signatures."""
     from dataclasses import asdict
 
-    from recon4.terminal import watcher
-    from recon4.verify import accept as seal_again
-    from recon4.verify import verify as read_again
+    from recon4.archive.verify import accept as seal_again
+    from recon4.archive.verify import verify as read_again
+    from recon4.cli.terminal import watcher
 
     if accept and (state := seal_again(folder)):
         _note_accepted(state, folder)
@@ -244,7 +244,7 @@ def doctor(
     """Look at versions, cores, memory, disk and threads of this machine."""
     from dataclasses import asdict
 
-    from recon4.doctor import examine
+    from recon4.system.doctor import examine
 
     checks = examine(folder)
     if as_json:
@@ -362,7 +362,7 @@ def _settings(preset_name: str, assignments: list[str] | None) -> Settings:
 
 
 def _show_settings(chosen: Settings) -> None:
-    from recon4.settings_help import describe_settings, differences
+    from recon4.settings.help import describe_settings, differences
 
     changed = differences(chosen)
     for group in describe_settings():

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from recon4.terminal import write
+from recon4.cli.terminal import write
 
 simulation = typer.Typer()
 
@@ -38,13 +38,13 @@ def simulate(
     ] = None,
 ) -> None:
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
+    from recon4.cli.terminal import watcher
     from recon4.model.rig import load_rig
     from recon4.simulation.backpack import prepare_backpack, simulate_backpack
     from recon4.simulation.crowd import Crowd
     from recon4.simulation.degradation import parse_degradations
     from recon4.simulation.setup import models_with, prepare
     from recon4.simulation.simulate import simulate as run
-    from recon4.terminal import watcher
 
     degradations, mounted = parse_degradations(degrade or []), load_rig(rig)
     profiler = mounted.row_of("profiler") is not None

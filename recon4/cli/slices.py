@@ -69,11 +69,11 @@ def cut_map(  # noqa: PLR0913 - options of a command
 def double_walls(project: ProjectArgument) -> None:
     """Look for walls that two visits put at two places; exit code 1 if there are any."""
     confine_command()
+    from recon4.cli.terminal import watcher
     from recon4.mapping.tiles import TileSet
     from recon4.slices.doubles import find_double_walls
     from recon4.slices.frames import frame_of
     from recon4.store.project import read_artifacts
-    from recon4.terminal import watcher
 
     artifacts = read_artifacts(project)
     frame_of(artifacts)

@@ -8,11 +8,11 @@ from typing import Literal
 
 import numpy as np
 
-from recon4.bounded import read_bytes_limited
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, raise_question
 from recon4.recording.tables.points import TablePoint, read_point_table
+from recon4.untrusted.bounded import read_bytes_limited
 
 Role = Literal["control", "check"]
 _MAX_BYTES = 16 << 20

@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import lines_limited, open_regular
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.recording.formats.cloud_headers import HEADER_BYTES, is_ply, ply_layout, whole
+from recon4.untrusted.bounded import lines_limited, open_regular
 
 Corners = tuple[Array, NDArray[np.int64]]
 """Vertices [m], (V, 3), and triangles as rows of them, (T, 3)."""

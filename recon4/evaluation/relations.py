@@ -12,10 +12,10 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.bounded import lines_limited, parse_float
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
+from recon4.untrusted.bounded import lines_limited, parse_float
 
 _MAX_BYTES = 256 << 20
 _COLUMNS = 8

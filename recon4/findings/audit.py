@@ -8,7 +8,6 @@ from pathlib import Path
 
 import msgspec
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.findings.finding import Finding, Level, worst_first
 from recon4.findings.walk import WalkRecord
@@ -29,6 +28,7 @@ from recon4.findings.witnesses.weak_directions import WeakStretches
 from recon4.model.figures import AuditFigures
 from recon4.settings import Settings
 from recon4.store.atomic import write_json
+from recon4.untrusted.bounded import read_json_object
 
 FINDINGS = "findings.json"
 _MOST_OF_A_KIND = 200

@@ -73,6 +73,6 @@ def _readable(text: str) -> str:
 
 
 if __name__ == "__main__":
-    from recon4.terminal import write
+    from recon4.cli.terminal import write
 
     write(markdown(), end="")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.findings.walk import path_length_m
 from recon4.findings.witnesses.planar import PlanarRecord
@@ -15,6 +14,7 @@ from recon4.pose_graph.files import load_graph
 from recon4.slam2d.steps import Steps2d
 from recon4.store.arrays import load_record, load_trajectory
 from recon4.store.stage import read_figures
+from recon4.untrusted.bounded import read_json_object
 
 _MAX_REPORT_BYTES = 16 << 20
 

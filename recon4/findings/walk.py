@@ -14,7 +14,6 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
 from recon4.findings.placement import Placement, placement_in
 from recon4.geometry.se3 import Array
@@ -33,6 +32,7 @@ from recon4.store.arrays import load_arrays, load_record, load_trajectory
 from recon4.store.earlier_names import STEPS, current_names
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.stage import OfStage, read_figures, read_manifest
+from recon4.untrusted.bounded import read_json_object
 
 _MAX_JSON_BYTES = 64 << 20
 

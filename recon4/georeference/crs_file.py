@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.bounded import read_json_object
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.untrusted.bounded import read_json_object
 
 _MAX_JSON_BYTES = 16 << 20
 

@@ -13,7 +13,7 @@ from recon4.live.ipc.line_client import linked, started
 from recon4.live.newest import Newest
 from recon4.live.project_files import discard
 from recon4.live.session import CaptureSession
-from recon4.stopping import StopSignals
+from recon4.system.stopping import StopSignals
 
 REPORT_EVERY_S = 2.0
 _MAPPER_STARTS = 3

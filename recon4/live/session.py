@@ -15,9 +15,9 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.runtime_folder import runtime_folder
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.json_files import read_object
+from recon4.system.runtime_folder import runtime_folder
 
 _DAY_NS = 86_400_000_000_000
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from recon4.bounded import read_json_object
 from recon4.errors import StoreError
+from recon4.untrusted.bounded import read_json_object
 
 _MAX_BYTES = 256 << 20
 """``tiles.json`` has some 300 bytes per tile."""

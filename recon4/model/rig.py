@@ -12,11 +12,11 @@ from typing import Literal, get_args
 
 import numpy as np
 
-from recon4.bounded import read_text_limited
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
 from recon4.model.toml_tables import TomlTable, parse_toml
+from recon4.untrusted.bounded import read_text_limited
 
 IMU_PORT, GNSS_PORT = 8309, 8310
 """Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""

@@ -20,12 +20,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import lines_limited
 from recon4.errors import CorruptFile
 from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
 from recon4.recording.report import ImportReport
 from recon4.recording.stamps import strays
+from recon4.untrusted.bounded import lines_limited
 
 TIME_FILES = ("times.txt", "timestamps.txt")
 ASSUMED_NS = 100_000_000

@@ -11,7 +11,6 @@ from enum import StrEnum
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.names import LONGEST_NOTE, visible
 from recon4.review.approved import Approval, NotInJournal, approval_of
 from recon4.review.decisions import DecisionKind, fold
 from recon4.review.journal import JournalRow, read_rows
@@ -19,6 +18,7 @@ from recon4.review.newest_approval import Older
 from recon4.review.stamp import Stamp
 from recon4.review.trusted_keys import UnknownSigner
 from recon4.store.project import read_artifacts
+from recon4.untrusted.names import LONGEST_NOTE, visible
 
 MAX_NAME = 60
 """A longer name of a signer is cut [characters]."""

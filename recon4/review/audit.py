@@ -9,7 +9,6 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.model.usability import Usability
-from recon4.names import visible
 from recon4.progress import Progress, track
 from recon4.review.approved import VERSIONS, Approval, read_approval, versions_without_row
 from recon4.review.decisions import DecisionKind
@@ -18,6 +17,7 @@ from recon4.review.newest_approval import refuse_older
 from recon4.review.trusted_keys import TrustedKey, UnknownSigner, trusted_for
 from recon4.store.checked import Altered
 from recon4.store.hashing import hash_file
+from recon4.untrusted.names import visible
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,11 +22,11 @@ from pathlib import Path
 import msgspec
 
 from recon4.errors import ConfigError, StoreError
-from recon4.names import visible
 from recon4.review.signature import ensure_key, fingerprint, public_key_of
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.checked import Altered
 from recon4.store.json_files import read_object
+from recon4.untrusted.names import visible
 
 STATE = ".recon4"
 """Folder of a server's own files, in its folder of projects."""

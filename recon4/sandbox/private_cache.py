@@ -112,7 +112,7 @@ def _font_lists() -> Iterator[Path]:
 
 
 def is_compiled() -> bool:
-    """Whether `recon4.compile_kernels` has run with the kernels as they are now."""
+    """Whether `recon4.system.compile_kernels` has run with the kernels as they are now."""
     return any((cache / _mark()).exists() for cache in shared_caches())
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import read_text_limited
 from recon4.errors import StoreError
 from recon4.settings.slam2d import Grid2dSettings
 from recon4.slam2d.occupancy import OccupancyGrid
+from recon4.untrusted.bounded import read_text_limited
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 0
 """Gray values of map_saver."""

@@ -18,7 +18,6 @@ from recon4.mapping.normals import local_normals
 from recon4.mapping.tile import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
-from recon4.names import visible
 from recon4.recording.formats.cloud_crs import StatedCrs
 from recon4.recording.formats.reference_clouds import open_cloud
 from recon4.recording.tables.column_names import UNITS_M
@@ -28,6 +27,7 @@ from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.placement import FilePlacement, FrameAsked, check_extent, place_file
 from recon4.slices.reference import EarlierAlignment, ReferenceFacts, read_facts
 from recon4.store.atomic import atomic_folder, write_json
+from recon4.untrusted.names import visible
 
 TILE_M = 5.0
 NORMAL_CELLS_M = (0.05, 0.10, 0.20)

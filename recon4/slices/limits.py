@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from recon4.bounded import parse_float
 from recon4.errors import ConfigError
+from recon4.untrusted.bounded import parse_float
 
 LEAST_POINTS = 3
 """Fewer points are no sample: there is no verdict on what they measured."""

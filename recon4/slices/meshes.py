@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from pathlib import Path
 
-from recon4.bounded import open_regular
 from recon4.evaluation.reference_mesh import TriangleMesh, read_mesh
 from recon4.recording.formats.cloud_headers import HEADER_BYTES
+from recon4.untrusted.bounded import open_regular
 
 _FACES = re.compile(rb"element\s+face\s+(\d{1,18})\b")
 

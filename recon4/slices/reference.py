@@ -15,12 +15,12 @@ from recon4.errors import ConfigError, StoreError
 from recon4.evaluation.reference_mesh import TriangleMesh, scene_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
-from recon4.names import visible
 from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.slice_plane import SlicePlane
 from recon4.store.arrays import load_arrays
 from recon4.store.json_files import read_object
+from recon4.untrusted.names import visible
 
 if TYPE_CHECKING:
     from recon4.geometry.raycast import Scene

@@ -12,7 +12,6 @@ import numpy as np
 import recon4
 from recon4.errors import ConfigError
 from recon4.model.usability import Usability
-from recon4.names import visible
 from recon4.slices.colors import (
     LABELS,
     REFERENCE_COLOR,
@@ -26,6 +25,7 @@ from recon4.slices.points import SliceWindow
 from recon4.slices.slice_image import RasterGrid, SliceImage
 from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import atomic_file
+from recon4.untrusted.names import visible
 
 Size = Literal["a4", "a3", "a2", "a1"]
 SIZES_MM: dict[Size, tuple[float, float]] = {

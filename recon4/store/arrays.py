@@ -15,11 +15,11 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import check_file_size, open_regular
 from recon4.errors import StoreError
 from recon4.geometry.se3 import SE3
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
+from recon4.untrusted.bounded import check_file_size, open_regular
 
 Record = TypeVar("Record")
 

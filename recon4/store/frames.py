@@ -23,7 +23,6 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import read_json_object
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.beams import beam_change
 from recon4.model.hidden import MOVING_POINTS, HiddenPoints
@@ -32,6 +31,7 @@ from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.store.arrays import load_array, load_record, save_record
+from recon4.untrusted.bounded import read_json_object
 
 INDEX = np.dtype(
     [

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import RecordingError
-from recon4.names import is_unnameable, visible
 from recon4.progress import Progress
 from recon4.store.hashing import files_below, hash_file, hash_json
 from recon4.store.ledger import Ledger
 from recon4.store.stage import Input
+from recon4.untrusted.names import is_unnameable, visible
 
 
 def input_file(path: Path, ledger: Ledger, progress: Progress) -> Input:

@@ -9,8 +9,8 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from recon4.bounded import parse_json, read_bytes_limited
 from recon4.errors import StoreError
+from recon4.untrusted.bounded import parse_json, read_bytes_limited
 
 MAX_BYTES = 64 << 20
 """Larger files are not read; files of recon4 are much smaller [bytes]."""

@@ -11,12 +11,12 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import NoSpace, StoreError
-from recon4.names import visible
 from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
 from recon4.store.locks import open_lock_file, try_lock
 from recon4.store.seal import adopt, begin_change, end_change
+from recon4.untrusted.names import visible
 
 FORMAT = 1
 LEDGER = "ledger.sqlite"

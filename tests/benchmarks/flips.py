@@ -15,13 +15,13 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from recon4.archive.verify import verify
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.store.hashing import files_below
 from recon4.store.seal import changing
-from recon4.verify import verify
 from tests.project_builder import approve_project, build_project
 
 
@@ -109,8 +109,8 @@ def make_server_state(root: Path) -> None:
     """Files of a server: queue, users, an interrupted upload."""
     from app.access.login.login_service import open_access
     from app.jobs.store import JobStore
+    from recon4.archive.verify import seal_state
     from recon4.review.signature import sign
-    from recon4.verify import seal_state
 
     state = root / ".recon4"
     (state / "uploads" / ("a" * 12)).mkdir(parents=True)

@@ -29,7 +29,7 @@ COMMANDS = {
     "export": ("recon4.workflows.publish.export_map", ["export", "in", "out/a.laz"]),
     "slice": ("recon4.store.project.read_artifacts", ["slice", "in", "out/a.laz", "--z", "1"]),
     "doubles": ("recon4.store.project.read_artifacts", ["doubles", "in"]),
-    "verify": ("recon4.verify.verify", ["verify", "out"]),
+    "verify": ("recon4.archive.verify.verify", ["verify", "out"]),
     "calibrate": (
         "recon4.recording.sources.require_files",
         ["calibrate", "in/a.pcap", "--rig", "4recon", "--out", "out/rig.toml"],

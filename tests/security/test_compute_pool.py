@@ -23,7 +23,7 @@ from app.compute_pool.pool import ComputePool
 from app.compute_pool.process import ChildFailed
 from app.errors import AppError, ComputeFailed, TooMany
 from recon4.errors import Recon4Error
-from recon4.processes import ChildRegister
+from recon4.system.processes import ChildRegister
 from tests import pool_functions as work
 from tests.service.running import wait_for
 
@@ -156,7 +156,7 @@ def test_children_end_with_a_server_that_is_killed(root):
         "from pathlib import Path\n"
         "from app.compute_pool.model import FileAccess, Lane, Terms\n"
         "from app.compute_pool.pool import ComputePool\n"
-        "from recon4.processes import ChildRegister\n"
+        "from recon4.system.processes import ChildRegister\n"
         "from tests import pool_functions as work\n"
         "root = Path(sys.argv[1])\n"
         "terms = Terms(person='Eve', access=FileAccess(write=(root / 'mine',)))\n"

@@ -10,6 +10,7 @@ import shutil
 import httpx
 import pytest
 
+from recon4.archive.verify import verify
 from recon4.cli.main import main
 from recon4.pipeline import remake
 from recon4.progress import Silent
@@ -24,7 +25,6 @@ from recon4.store.checked import Altered
 from recon4.store.hashing import FileDigest, hash_json
 from recon4.store.project import Project, read_artifacts
 from recon4.store.seal import begin_change
-from recon4.verify import verify
 from tests.benchmarks.flips import flip_bits, make, make_server_state
 from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread

@@ -15,7 +15,7 @@ import psutil
 import pytest
 
 from app.viewer.pool import socket_folder
-from recon4.processes import ChildRegister, process_identity
+from recon4.system.processes import ChildRegister, process_identity
 from tests.processes import command_of
 from tests.project_builder import build_project
 from tests.service.killing import leftover_files
@@ -26,7 +26,7 @@ GONE_WITHIN_S = 5.0
 
 HOLDS_THE_INTERPRETER_LOCK = """
 import signal, sys
-from recon4.processes import die_with_parent
+from recon4.system.processes import die_with_parent
 signal.pthread_sigmask(signal.SIG_BLOCK, signal.valid_signals())
 die_with_parent(0)
 print("ready", flush=True)
@@ -93,7 +93,7 @@ def test_a_child_dies_with_its_parent_but_not_with_the_thread_that_started_it():
 def test_a_child_whose_parent_ended_before_it_asked_dies_at_once():
     ours, theirs = os.pipe()
     os.close(theirs)
-    code = "from recon4.processes import die_with_parent; die_with_parent(0); print('alive')"
+    code = "from recon4.system.processes import die_with_parent; die_with_parent(0); print('alive')"
 
     ended = subprocess.run(
         [sys.executable, "-c", code], stdin=ours, capture_output=True, check=False, cwd=ROOT

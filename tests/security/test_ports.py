@@ -27,10 +27,10 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMes
 from websockets.sync.client import connect
 
 from app.viewer import unix_socket
-from recon4 import runtime_folder as places
 from recon4.errors import StoreError
 from recon4.live.ipc.line_server import LineServer
 from recon4.live.protocol import Done
+from recon4.system import runtime_folder as places
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_process
 from tests.service.viser_client import PROTOCOL, camera, viewing

@@ -15,7 +15,7 @@ from tests.service.running import ROOT
 
 SWALLOWED = """
 import ctypes, os, signal, sys, weakref
-from recon4.stopping import StopSignals
+from recon4.system.stopping import StopSignals
 
 def send():
     os.kill(os.getpid(), signal.{signal})

@@ -27,8 +27,8 @@ from recon4.live.session import load_session
 from recon4.model.rig import load_rig
 from recon4.recording.velodyne.encode import PcapWriter
 from recon4.sandbox import ONE_THREAD
-from recon4.stopping import CLEANING_UP_S, SIGNALS
 from recon4.store.project import read_artifacts
+from recon4.system.stopping import CLEANING_UP_S, SIGNALS
 from tests.loopback import an_address
 from tests.project_builder import build_project
 from tests.service.running import ROOT, recording_with_gate, server_process, wait_for

@@ -10,6 +10,7 @@ import sqlite3
 
 import pytest
 
+from recon4.archive.verify import accept, verify
 from recon4.cli.main import main
 from recon4.progress import Silent
 from recon4.review.approval_state import ApprovalKind, latest_state
@@ -18,7 +19,6 @@ from recon4.review.journal import append, read_rows
 from recon4.review.signature import public_key_of, sign
 from recon4.store.atomic import write_json
 from recon4.store.hashing import hash_json
-from recon4.verify import accept, verify
 from tests.project_builder import add_multiframes, approve_project, build_project
 
 OUT = ("map.laz", "map.ply", "poses.txt")

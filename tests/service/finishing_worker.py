@@ -8,7 +8,7 @@ from pathlib import Path
 from app.jobs.folder import JobFolder
 from app.jobs.worker import main
 from recon4.progress import Progress
-from recon4.stopping import end_process
+from recon4.system.stopping import end_process
 from tests.project_builder import build_project
 
 

@@ -15,7 +15,7 @@ from app.jobs.worker import main, process
 from recon4.model.events import Event, StageChanged
 from recon4.progress import Progress
 from recon4.sandbox import Policy
-from recon4.stopping import end_process
+from recon4.system.stopping import end_process
 
 AT_GATE = "waiting at the gate"
 

@@ -31,7 +31,7 @@ from app.network.listen import (
     uvicorn_config,
 )
 from app.settings import ServerSettings, recording_folders_from_environment
-from recon4.stopping import StopSignals, end_process
+from recon4.system.stopping import StopSignals, end_process
 
 ROOT = Path(__file__).parents[2]
 SLOW = "tests.service.slow_worker"

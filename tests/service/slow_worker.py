@@ -23,9 +23,9 @@ from recon4.errors import EmptyRecording
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.settings import Settings
-from recon4.stopping import end_process
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
+from recon4.system.stopping import end_process
 
 
 def take_memory(_: Path) -> None:

@@ -1,9 +1,9 @@
 """A backup made while a server runs a job restores to something that goes on from there."""
 
+from recon4.archive.verify import verify
 from recon4.cli.main import main
 from recon4.progress import Silent
 from recon4.review.signature import public_key_of
-from recon4.verify import verify
 from tests.project_builder import approve_project, build_project
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 

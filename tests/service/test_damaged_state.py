@@ -12,8 +12,8 @@ from app.access.login.login_service import open_access
 from app.access.restoring import access_copies
 from app.metrics_routes import TOKEN_FILE, make_metrics_token
 from app.network.certificate import made_certificate
-from recon4.backup import back_up
-from recon4.backup_listing import newest, read_list
+from recon4.archive.backup import back_up
+from recon4.archive.listing import newest, read_list
 from recon4.progress import Silent
 from tests.service.running import wait_for
 from tests.service.secure import secure_server

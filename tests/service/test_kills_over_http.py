@@ -17,9 +17,9 @@ import httpx
 import psutil
 import pytest
 
+from recon4.archive.verify import verify
 from recon4.progress import Silent
 from recon4.review.journal import broken, read_rows
-from recon4.verify import verify
 from tests.processes import command_of
 from tests.project_builder import build_project
 from tests.service.running import WITHOUT_TLS, server_process

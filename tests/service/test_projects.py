@@ -10,9 +10,9 @@ from app.main import serve
 from app.network.listen import listening
 from app.settings import ServerSettings
 from recon4.errors import StoreError
-from recon4.stopping import StopSignals
 from recon4.store.atomic import write_json
 from recon4.store.seal import changing
+from recon4.system.stopping import StopSignals
 from tests.project_builder import build_project
 from tests.service.running import server_process, server_thread
 

@@ -7,13 +7,13 @@ import threading
 
 import pytest
 
-from recon4.backup import back_up, restore
-from recon4.backup_listing import newest, read_list
+from recon4.archive.backup import back_up, restore
+from recon4.archive.listing import newest, read_list
+from recon4.archive.verify import verify
 from recon4.cli.main import main
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Silent
 from recon4.store.hashing import files_below, hash_file, hash_json
-from recon4.verify import verify
 from tests.benchmarks.flips import make, make_server_state
 
 NOT_COPIED = (".lock", ".seals.lock", ".changes.lock", "seals.json", "audit.room")

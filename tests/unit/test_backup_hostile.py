@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from recon4.backup import _put, restore
-from recon4.backup_listing import newest, read_list
+from recon4.archive.backup import _put, restore
+from recon4.archive.listing import newest, read_list
 from recon4.errors import NoSpace, Recon4Error, StoreError
 from recon4.progress import Silent
 from recon4.store.hashing import hash_file, hash_json

@@ -4,7 +4,8 @@ import os
 
 import pytest
 
-from recon4.bounded import (
+from recon4.errors import ConfigError, CorruptFile, StoreError
+from recon4.untrusted.bounded import (
     MAX_DEPTH,
     MAX_LINE_BYTES,
     lines_limited,
@@ -14,7 +15,6 @@ from recon4.bounded import (
     read_text_limited,
     text_blocks,
 )
-from recon4.errors import ConfigError, CorruptFile, StoreError
 
 
 def sparse(path, size, head=b""):

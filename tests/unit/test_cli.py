@@ -11,8 +11,8 @@ import pytest
 
 import recon4
 from recon4.cli.main import main
-from recon4.doctor import examine
 from recon4.settings import preset, to_json
+from recon4.system.doctor import examine
 from tests.unit.store.small_pipeline import run_all
 
 ROOT = Path(__file__).parents[2]
@@ -144,7 +144,7 @@ def test_the_doctor_checks_the_machine(tmp_path, capsys):
 
 
 def test_the_doctor_reports_how_to_install_missing_parts(tmp_path, monkeypatch):
-    monkeypatch.setattr("recon4.doctor._PACKAGES", (("no-such-package", "flying"),))
+    monkeypatch.setattr("recon4.system.doctor._PACKAGES", (("no-such-package", "flying"),))
 
     check = examine(tmp_path)[-1]
 

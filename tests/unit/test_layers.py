@@ -17,8 +17,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parents[2]
 BASE = {
     "recon4.errors",
-    "recon4.bounded",
-    "recon4.names",
+    "recon4.untrusted",
     "recon4.progress",
     "recon4.settings",
 }
@@ -27,8 +26,10 @@ STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 
 MAY_IMPORT = {
     "recon4/errors.py": set(),
-    "recon4/bounded.py": {"recon4.errors"},
-    "recon4/names.py": {"recon4.errors"},
+    "recon4/untrusted": {"recon4.errors"},
+    "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
+    "recon4/system/compile_kernels.py": {"recon4"},
+    "recon4/archive": STAGE | {"recon4.archive", "recon4.review"},
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/geometry": {"recon4.geometry"},
@@ -38,8 +39,8 @@ MAY_IMPORT = {
     "recon4/store": MODEL | {"recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
     "recon4/live": STAGE
-    | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.runtime_folder"}
-    | {"recon4.processes", "recon4.stopping"}
+    | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}
+    | {"recon4.system.processes", "recon4.system.stopping"}
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
     | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
     | {"recon4.recording.formats.pcap"}
@@ -100,7 +101,7 @@ MAY_IMPORT = {
     "recon4/findings/planar_walk.py": STAGE
     | {"recon4.findings", "recon4.pose_graph", "recon4.slam2d"},
     "recon4/findings/accuracy.py": MODEL | {"recon4.findings", "recon4.evaluation"},
-    "recon4/findings/explain.py": MODEL | {"recon4.findings", "recon4.terminal"},
+    "recon4/findings/explain.py": MODEL | {"recon4.findings", "recon4.cli.terminal"},
     "recon4/slices": STAGE
     | {f"recon4.{room}" for room in ("recording", "mapping", "georeference", "export")}
     | {"recon4.evaluation", "recon4.slices"},
@@ -115,7 +116,7 @@ MAY_IMPORT = {
     | {f"recon4.{room}" for room in ("review", "simulation", "slices", "pose_graph.files")}
     | {"recon4.pipeline", "recon4.export.map_files", "recon4.cli.kernel_cache"},
     "recon4/cli/main.py": {"recon4", "app.cli"},
-    "app/cli/users.py": {"recon4.errors", "recon4.terminal", "recon4.verify", "app"},
+    "app/cli/users.py": {"recon4.errors", "recon4.cli.terminal", "recon4.archive.verify", "app"},
     "app": {"app", "recon4"},
 }
 """Place -> prefixes of our own modules it may import; the longest place that fits counts."""
@@ -126,8 +127,8 @@ NOBODY_IMPORTS = {
         "recon4/api/running.py",
         "recon4/cli/main.py",
         "recon4/cli/findings.py",
-        "recon4/calibration_methods.py",
-        "recon4/compile_kernels.py",
+        "recon4/workflows/calibration_methods.py",
+        "recon4/system/compile_kernels.py",
         "app/cli/serve.py",
         "app",
     },
@@ -159,8 +160,14 @@ ONLY_HERE = {
     "typer": {"recon4/cli", "app/cli"},
     "cryptography": {"app/network/certificate.py", "recon4/review/signature.py"},
     "argon2": {"app/access/login/passwords.py"},
-    "rich": {"recon4/terminal.py"},
-    "sqlite3": {"recon4/backup.py", "recon4/store", "recon4/recording", "recon4/review", "app"},
+    "rich": {"recon4/cli/terminal.py"},
+    "sqlite3": {
+        "recon4/archive/backup.py",
+        "recon4/store",
+        "recon4/recording",
+        "recon4/review",
+        "app",
+    },
 }
 """Heavy or revealing packages -> the only modules that may import them."""
 

@@ -12,7 +12,7 @@ import pytest
 from recon4 import settings as declared
 from recon4.errors import ConfigError, WrongSettings
 from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json
-from recon4.settings_help import describe_settings, differences, markdown
+from recon4.settings.help import describe_settings, differences, markdown
 
 ROOT = Path(__file__).parents[2]
 

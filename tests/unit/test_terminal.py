@@ -4,9 +4,9 @@ import io
 
 import pytest
 
+from recon4.cli.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
 from recon4.model.events import ArtifactDamaged, NodesPlaced, StageChanged, Warned
 from recon4.progress import track
-from recon4.terminal import Bars, PlainLines, describe_event, describe_progress, watcher
 
 
 class Tty(io.StringIO):

@@ -14,8 +14,8 @@ from recon4.errors import ConfigError
 from recon4.live.confinement import mapper_environment
 from recon4.live.protocol import Message, ProtocolError, Request, decode_message, encode
 from recon4.live.session import CaptureSession
-from recon4.processes import first_line
 from recon4.sandbox import ONE_THREAD, allowed_environment
+from recon4.system.processes import first_line
 
 log = logging.getLogger(__name__)
 

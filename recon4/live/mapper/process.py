@@ -44,8 +44,8 @@ from recon4.recording.ingest import LiveSource, ingest
 from recon4.recording.scan_capture import ScanCapture
 from recon4.recording.sources import Sources
 from recon4.settings import Settings, preset
-from recon4.stopping import StopSignals, end_process
 from recon4.store.atomic import write_json
+from recon4.system.stopping import StopSignals, end_process
 
 log = logging.getLogger(__name__)
 

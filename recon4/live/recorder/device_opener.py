@@ -17,7 +17,7 @@ from pathlib import Path
 from recon4.errors import Recon4Error
 from recon4.live.recorder.serial_port import DRIVERS, TERMINALS
 from recon4.sandbox import Policy, confine
-from recon4.stopping import SIGNALS
+from recon4.system.stopping import SIGNALS
 
 _MAX_WORDS = 1000
 

@@ -51,8 +51,8 @@ from recon4.model.rig import Rig, load_rig
 from recon4.model.serial_device import SerialDevice, parse_serial_device
 from recon4.recording.velodyne.models import DATA_SIZE
 from recon4.sandbox import refuse_new_sockets, restart_with_one_thread
-from recon4.stopping import StopSignals, end_process
 from recon4.store.atomic import write_json
+from recon4.system.stopping import StopSignals, end_process
 
 STATUS_EVERY_S = 0.5
 _MAX_SENDERS = 64

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from recon4.bounded import open_regular
 from recon4.errors import CorruptFile
 from recon4.recording.formats.e57_xml import e57_coordinate_metadata
 from recon4.recording.formats.las_check import check_las
+from recon4.untrusted.bounded import open_regular
 
 _PROJECTED, _GEOGRAPHIC, _VERTICAL = 3072, 2048, 4096
 _LINEAR_UNIT, _LINEAR_SIZE, _VERTICAL_UNIT = 3076, 3077, 4099

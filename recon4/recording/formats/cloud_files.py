@@ -16,7 +16,6 @@ from typing import Any, BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import MAX_LINE_BYTES, open_regular
 from recon4.errors import CorruptFile, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
 from recon4.recording.formats.cloud_headers import (
@@ -29,6 +28,7 @@ from recon4.recording.formats.cloud_headers import (
     ply_layout,
 )
 from recon4.recording.formats.three_dtk import SCAN_SUFFIX, read_scan, scan_fields
+from recon4.untrusted.bounded import MAX_LINE_BYTES, open_regular
 
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""

@@ -15,7 +15,6 @@ from typing import Literal
 
 import numpy as np
 
-from recon4.bounded import open_regular
 from recon4.errors import CorruptFile, Recon4Error, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
@@ -25,6 +24,7 @@ from recon4.recording.formats.e57_points import E57Points
 from recon4.recording.formats.las_check import check_las
 from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
+from recon4.untrusted.bounded import open_regular
 
 CHUNK = 1_000_000
 MAX_POINTS = 400_000_000

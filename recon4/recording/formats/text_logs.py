@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, BinaryIO
 
-from recon4.bounded import MAX_LINE_BYTES, open_regular
 from recon4.errors import CorruptFile
 from recon4.recording.formats.limits import MAX_RATIO, RATIO_FLOOR_BYTES
 from recon4.recording.report import ImportReport
+from recon4.untrusted.bounded import MAX_LINE_BYTES, open_regular
 
 MAX_LOG_BYTES = 4 << 30
 """A log of eight hours at 40 Hz with 1081 beams has 8 GB; decompressed logs are smaller."""

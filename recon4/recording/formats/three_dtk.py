@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.bounded import parse_float, read_text_limited, text_blocks
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3, Array
+from recon4.untrusted.bounded import parse_float, read_text_limited, text_blocks
 
 SCAN_SUFFIX, POSE_SUFFIX, FRAMES_SUFFIX = ".3d", ".pose", ".frames"
 MAX_SCAN_BYTES = 1 << 30

@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.bounded import lines_limited, parse_float
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
@@ -19,6 +18,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
+from recon4.untrusted.bounded import lines_limited, parse_float
 
 IMU_HEADER = ("t_ns", "gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2")
 GNSS_HEADER = (

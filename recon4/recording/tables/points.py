@@ -7,7 +7,6 @@ import math
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError, CorruptFile
-from recon4.names import check_name
 from recon4.recording.tables.coordinates import (
     AS_THE_TABLE_SAYS,
     ColumnChoice,
@@ -27,6 +26,7 @@ from recon4.recording.tables.layout import (
 from recon4.recording.tables.packed import unpacked
 from recon4.recording.tables.proposals import Purpose
 from recon4.recording.tables.text import decode_table, universal
+from recon4.untrusted.names import check_name
 
 _LARGEST_M = 1e8
 _LONGEST_ID = 64

@@ -13,8 +13,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from recon4.bounded import MAX_LINE_BYTES, check_file_size, open_regular
 from recon4.errors import CorruptFile
+from recon4.untrusted.bounded import MAX_LINE_BYTES, check_file_size, open_regular
 
 HEAD_BYTES = 64 * 1024
 BLOCK_CHARACTERS = 16 << 20

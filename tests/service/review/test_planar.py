@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from recon4.archive.verify import verify
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind
 from recon4.pipeline import process
@@ -13,7 +14,6 @@ from recon4.recording.sources import Sources
 from recon4.review.decisions import numbers_of, pose_of
 from recon4.review.pairs import LAYOUT
 from recon4.review.source import Source
-from recon4.verify import verify
 from tests.planar_walks import ring_corridor, ring_walk, scanned, write_carmen
 from tests.service.review.reviewing import Reviewing, decide, keys_of, make_a_new_map
 from tests.service.running import server_thread

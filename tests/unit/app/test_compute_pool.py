@@ -12,7 +12,7 @@ from app.compute_pool.model import FileAccess, Lane, Terms
 from app.compute_pool.pool import ComputePool
 from app.errors import ComputeFailed
 from recon4.errors import ConfigError, GraphError, WrongSettings
-from recon4.processes import ChildRegister
+from recon4.system.processes import ChildRegister
 from tests import pool_functions as work
 
 EVA = Terms(person="Eva")

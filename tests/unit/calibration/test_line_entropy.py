@@ -11,7 +11,6 @@ from recon4.calibration.line_entropy import (
     profiler_parameters,
     profiler_walk,
 )
-from recon4.calibration_methods import CalibrationChoice, calibrate_by
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import load_rig
@@ -23,6 +22,7 @@ from recon4.settings import IngestSettings
 from recon4.simulation.backpack import BackpackModels, prepare_backpack, simulate_backpack
 from recon4.simulation.profiler import Laser2dModel, ProfilerModel
 from recon4.store.frames import FrameStore
+from recon4.workflows.calibration_methods import CalibrationChoice, calibrate_by
 
 
 @pytest.fixture(scope="module")

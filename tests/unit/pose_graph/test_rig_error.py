@@ -1,6 +1,5 @@
 """Covariances of poses by errors of the rig file that an audit found."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -9,11 +8,10 @@ import pytest
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.odometry_figures import HeightDoubt
-from recon4.pipeline import _measured
 from recon4.pose_graph.known_errors import KnownErrors
 from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
 from recon4.pose_graph.uncertainty import pose_uncertainty
-from recon4.store.stage import Artifact
+from recon4.workflows.workflow import Run
 from tests.unit.pose_graph.test_uncertainty import chain
 
 
@@ -105,13 +103,12 @@ def test_poses_of_a_graph_state_it():
 
 @pytest.mark.parametrize("applied", [False, True])
 def test_an_audit_counts_unless_the_rig_was_calibrated(applied: bool):
-    frames, audit = (Artifact(name, name, Path(name)) for name in ("frames", "calibration"))
     runs = {"calibration": SimpleNamespace(figures=CalibrationFigures(applied=applied))}
 
-    measured = _measured(SimpleNamespace(runs=runs), frames, audit)
+    run = Run(SimpleNamespace(runs=runs))
 
-    assert measured.audit is (None if applied else audit)
-    assert measured.calibration is (audit if applied else None)
+    assert run.rig_audit == (None if applied else "calibration")
+    assert ("calibration" in run.measurements) is applied
 
 
 def test_a_ride_makes_the_heights_after_it_unknown():

@@ -12,6 +12,7 @@ from app.viewer.client.view import ViewState
 from app.viewer.scene.build import bounds, describe
 from app.viewer.scene.nodes import ImageNode
 from app.viewer.scene.source import ProjectSource
+from recon4.archive.verify import verify
 from recon4.cli.main import main
 from recon4.errors import ConfigError, EmptyRecording, StoreError
 from recon4.geometry.se2 import transform
@@ -26,7 +27,6 @@ from recon4.simulation.line_bag import open_line_bag
 from recon4.slam2d import occupancy
 from recon4.slam2d.map_files import read_map
 from recon4.store.hashing import hash_file
-from recon4.verify import verify
 from recon4.workflows.planar_results import RESULTS_2D
 from tests.g2o_reader import read_g2o
 from tests.laser_rows import rows_of, with_rows

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from recon4.live.recorder.process import main
 from recon4.live.recorder.serial_port import open_line
-from recon4.stopping import end_process
+from recon4.system.stopping import end_process
 
 RECEIVER = "receiver"
 

@@ -23,9 +23,9 @@ from recon4.live.recorder.serial_port import (
 )
 from recon4.model.rig import load_rig
 from recon4.model.serial_device import SerialDevice, parse_serial_device
-from recon4.processes import process_identity
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.report import ImportReport
+from recon4.system.processes import process_identity
 from tests.service.running import wait_for
 from tests.unit.live.recorder import recorder_of_a_terminal
 from tests.unit.live.recorder.recorder_process import recording

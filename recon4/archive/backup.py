@@ -24,7 +24,7 @@ from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
 
-from recon4.backup_listing import FORMAT, BackedUpFile, BackupListing, Entries, newest, read_list
+from recon4.archive.listing import FORMAT, BackedUpFile, BackupListing, Entries, newest, read_list
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.progress import Progress, track
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS

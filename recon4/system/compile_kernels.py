@@ -19,7 +19,6 @@ from recon4.pipeline import process
 from recon4.progress import Progress, Silent, track
 from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
-from recon4.runtime_folder import runtime_folder
 from recon4.sandbox.private_cache import is_compiled, mark_compiled
 from recon4.settings import override, preset
 from recon4.simulation.backpack import measured_seconds, prepare_backpack, simulate_backpack
@@ -34,6 +33,7 @@ from recon4.slices.slice_plane import SlicePlane
 from recon4.store.frames import FrameStore
 from recon4.store.locks import open_lock_file, wait_for_lock
 from recon4.store.project import read_artifacts
+from recon4.system.runtime_folder import runtime_folder
 
 _LIDAR_S, _PROFILER_S = 5.0, 8.0
 _FEW = ["map.voxel_m=0.1", "graph.node_stride=10", "segments.preserved=2"]
