@@ -5,6 +5,7 @@
 #   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
 #   make bench               benchmarks, by hand: they need a quiet machine
 #   make docs                write what is generated: docs/settings.md, web/shared/http_types.d.ts
+#   make examples            run the programs in examples/ and write their pages
 #   make constraints         pin the versions that are installed now
 #   make lock                write requirements/*.lock: every file of every version, with its hash
 #   make audit               known vulnerabilities of what is locked (needs the network)
@@ -31,7 +32,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test format lint types web kernels bytecode unit e2e bench docs constraints lock audit sbom clean
+.PHONY: demo test format lint types web kernels bytecode unit e2e bench docs examples constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run
@@ -79,6 +80,9 @@ docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/settings.md
 	$(BIN)/python -m recon4.findings.explain > docs/findings.md
 	$(BIN)/python -m tests.http_types
+
+examples: $(VENV)/installed-dev
+	$(BIN)/python -m tests.example_programs
 
 constraints: $(VENV)/installed-dev
 	$(BIN)/pip freeze --all --exclude-editable | grep '==' > constraints.txt

@@ -7,10 +7,15 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from recon4.errors import StoreError
+
 if TYPE_CHECKING:
     from recon4.mapping.tiles import Surface, TileSet
     from recon4.review.stamp import Stamp
     from recon4.slices.frames import MapFrame
+
+PLANAR = "map_2d"
+"""Stage that only recordings of a 2-D laser alone have."""
 
 
 def read_tiles(project: str | PathLike[str], *, surface: Surface = "fitted") -> TileSet:
@@ -57,7 +62,7 @@ def open_map(project: Path, *, draft: bool = False) -> OpenedMap:
 
     Raises:
         Altered: If it was approved and is not what was approved, or the approval does not count.
-        StoreError: If there is no map, or it is damaged.
+        StoreError: If there is no map, it is a 2-D map, or it is damaged.
     """
     from recon4.mapping.tiles import TileSet
     from recon4.review.approved import approval_of
@@ -65,6 +70,8 @@ def open_map(project: Path, *, draft: bool = False) -> OpenedMap:
     from recon4.store.project import read_artifacts
 
     artifacts = read_artifacts(project)
+    if PLANAR in artifacts:
+        raise StoreError(f"{project} has no points: it is a 2-D map, see map.png and map.yaml")
     keys = {stage: folder.name for stage, folder in artifacts.items()}
     approval = None if draft else approval_of(project, keys)
     if approval:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 import msgspec
 
+from recon4.api.maps import PLANAR, read_tiles
 from recon4.errors import StoreError
 from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
@@ -19,9 +20,6 @@ if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
     from recon4.model.pose_graph import PoseGraph
     from recon4.model.trajectory import Trajectory
-
-_PLANAR = "map_2d"
-"""Stage that only recordings of a 2-D laser alone have."""
 
 _NO_VERDICT = MapVerdict(Usability.CHECK, ("It was made by a version that judged no maps.",))
 
@@ -111,8 +109,8 @@ class MapProject:
         from recon4.store.arrays import load_trajectory
 
         artifacts = self._artifacts()
-        if _PLANAR in artifacts:
-            return load_trajectory(artifacts[_PLANAR] / "trajectory.npz")
+        if PLANAR in artifacts:
+            return load_trajectory(artifacts[PLANAR] / "trajectory.npz")
         return final_trajectory(self.folder, artifacts)
 
     @property
@@ -145,8 +143,6 @@ class MapProject:
             Altered: If the map was approved and is not what was approved.
             StoreError: If there is none (as of a 2-D laser), or it is damaged.
         """
-        from recon4.api.maps import read_tiles
-
         return read_tiles(self.folder)
 
     def _artifacts(self) -> dict[str, Path]:

@@ -62,16 +62,11 @@ def process(
     sources = recording if isinstance(recording, Sources) else Sources.of(recording)
     sources.require()
     chosen = override(
-        settings_of(preset), [_assignment(*item) for item in (settings or {}).items()]
+        settings_of(preset), [f"{name}={value}" for name, value in (settings or {}).items()]
     )
     progress = Reported(on_progress) if on_progress else Silent()
     pipeline.process(sources, Path(out), settings=chosen, preset=preset, progress=progress)
     return open_project(out)
-
-
-def _assignment(name: str, value: object) -> str:
-    text = str(value).lower() if isinstance(value, bool) else str(value)
-    return f"{name}={text}"
 
 
 @dataclass(slots=True)

@@ -1,5 +1,6 @@
 """Projects as Python programs see them: made, interrupted, opened, altered."""
 
+import json
 import tarfile
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from recon4.cli.main import main
 from recon4.mapping.columns import column_file
 from recon4.store.checked import Altered
 from recon4.store.project import Project, read_artifacts
+from tests.planar_walks import along, furnished_room, scanned, write_carmen
 from tests.project_builder import approve_project, build_project
 
 ARCHIVE = Path(__file__).parents[2] / "data" / "project-format1.tar.xz"
@@ -36,8 +38,11 @@ def test_values_of_settings_may_be_numbers_flags_and_words(here):
 
     project = api.process(sources(here / "recording"), here / "walk", settings=chosen)
 
-    stages = project.summary  # all of these are in force already: nothing ran again
-    assert stages.points == len(project.tiles) == api.open_project(here / "walk").summary.points
+    # All of these are in force already: nothing ran again.
+    record = json.loads((project.folder / "summary.json").read_text("utf-8"))
+    assert all(stage["reused"] for stage in record["stages"])
+    assert record["settings"]["map"]["voxel_m"] == 0.05
+    assert project.summary.points == len(project.tiles)
 
 
 def test_progress_is_reported_and_raising_in_it_stops_the_run(here, tmp_path):
@@ -65,9 +70,29 @@ def test_a_project_of_an_earlier_version_opens(tmp_path):
     project = api.open_project(tmp_path / "format1")
 
     assert project.summary.path_length_m == pytest.approx(9.2, abs=0.2)
-    assert project.summary.verdict.usability in ("good", "check", "do not use")
+    assert project.summary.verdict.reasons == ("It was made by a version that judged no maps.",)
     assert len(project.trajectory) > 92 and len(project.odometry) >= 92
     assert len(project.tiles) == project.summary.points
+
+
+def test_warnings_of_earlier_versions_are_findings(tmp_path):
+    build_project(tmp_path / "office", points=100)
+    path = tmp_path / "office" / "summary.json"
+    record = json.loads(path.read_text("utf-8")) | {"format": 2, "preset": "indoor"}
+    record.pop("findings", None)
+    path.write_text(json.dumps(record | {"name": "office", "created": "", "warnings": ["No IMU."]}))
+
+    (found,) = api.open_project(tmp_path / "office").findings
+
+    assert (found.kind, found.level, found.text) == ("EARLIER-REMARK", "check", "No IMU.")
+
+
+def test_a_summary_that_makes_no_sense_is_an_error(tmp_path):
+    build_project(tmp_path / "office", points=100)
+    (tmp_path / "office" / "summary.json").write_text('{"format": 3, "name": 7}')
+
+    with pytest.raises(api.errors.StoreError, match=r"summary\.json cannot be read.*name"):
+        api.open_project(tmp_path / "office")
 
 
 def test_the_graph_is_the_one_of_the_map(here):
@@ -108,3 +133,25 @@ def test_the_unit_of_a_model_must_be_known(here):
 
     with pytest.raises(api.errors.ConfigError, match="unit: expected one of m, dm"):
         api.evaluate(here / "walk", here / "recording" / "truth.tum", model=model, unit="furlong")
+
+
+def test_a_map_of_a_2d_laser_has_poses_and_a_graph_but_no_tiles(tmp_path):
+    corners = np.array([[-3.0, 0.0], [0.0, -1.0], [3.0, -2.0], [3.0, 1.0], [0.0, 1.0]])
+    walk = scanned(furnished_room(), along(corners))
+    write_carmen(tmp_path / "walk.log", walk.scans)
+
+    project = api.process(tmp_path / "walk.log", tmp_path / "out")
+
+    assert len(project.trajectory) == len(project.odometry) > 100
+    assert project.graph.verdict_counts() == dict(project.summary.edges)
+    assert project.findings and all(one.text for one in project.findings)
+    assert (project.folder / "map.png").is_file() and project.summary.points == 0
+    with pytest.raises(api.errors.StoreError, match="out has no points: it is a 2-D map"):
+        _ = project.tiles
+
+
+def test_a_project_without_a_map_says_so(tmp_path):
+    build_project(tmp_path / "begun", with_map=False)
+
+    with pytest.raises(api.errors.StoreError, match="no map yet"):
+        api.read_tiles(tmp_path / "begun")
