@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from os import PathLike
@@ -64,9 +65,19 @@ def process(
     chosen = override(
         settings_of(preset), [f"{name}={value}" for name, value in (settings or {}).items()]
     )
+    _warn_of(sources)
     progress = Reported(on_progress) if on_progress else Silent()
     pipeline.process(sources, Path(out), settings=chosen, preset=preset, progress=progress)
     return open_project(out)
+
+
+def _warn_of(sources: Sources) -> None:
+    """Warn the caller of `process` of files that are not read, or read in place of others."""
+    from recon4.recording.kinds import located_elsewhere
+    from recon4.recording.nearby_samples import unread_samples
+
+    for text in (*unread_samples(sources), *located_elsewhere(sources)):
+        warnings.warn(text, stacklevel=3)
 
 
 @dataclass(slots=True)

@@ -45,6 +45,18 @@ def test_values_of_settings_may_be_numbers_flags_and_words(here):
     assert project.summary.points == len(project.tiles)
 
 
+def test_samples_beside_the_recording_that_are_not_read_are_a_warning(here, tmp_path):
+    def stop(*_):
+        raise api.errors.Cancelled("enough")
+
+    recording = here / "recording" / "recording.pcap"
+    with (
+        pytest.warns(UserWarning, match=r"imu\.csv"),
+        pytest.raises(api.errors.Cancelled),
+    ):
+        api.process(recording, tmp_path / "out", on_progress=stop)
+
+
 def test_progress_is_reported_and_raising_in_it_stops_the_run(here, tmp_path):
     seen = []
 
