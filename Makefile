@@ -3,8 +3,9 @@
 #
 #   make demo [HEADLESS=1]   simulate a walk, map it, serve it in the browser
 #   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
+#   make quick               what a change needs before it is committed: two minutes
 #   make bench               benchmarks, by hand: they need a quiet machine
-#   make docs                write what is generated: docs/settings.md, web/shared/http_types.d.ts
+#   make docs                write what is generated: docs/settings.md, web/shared/http_types.d.ts, …
 #   make examples            run the programs in examples/ and write their pages
 #   make constraints         pin the versions that are installed now
 #   make lock                write requirements/*.lock: every file of every version, with its hash
@@ -32,7 +33,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test format lint types web kernels bytecode unit e2e bench docs examples constraints lock audit sbom clean
+.PHONY: demo test quick format lint types web kernels bytecode unit e2e bench docs examples constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run
@@ -43,6 +44,10 @@ test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
 	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint types bytecode
 	@$(MAKE) --no-print-directory -j2 $(SYNC) unit e2e
+
+# Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
+quick: format lint types
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not e2e' $$($(BIN)/python -m tools.touched)
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
@@ -79,7 +84,7 @@ bench: $(VENV)/installed-dev
 docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/settings.md
 	$(BIN)/python -m recon4.findings.explain > docs/findings.md
-	$(BIN)/python -m tests.http_types
+	$(BIN)/python -m tools.http_types
 
 examples: $(VENV)/installed-dev
 	$(BIN)/python -m tests.example_programs

@@ -18,18 +18,19 @@ from recon4.model.rig import parse_rig
 from recon4.settings import Settings
 
 ROOT = Path(__file__).parents[2]
-PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+IN_DOCS = sorted((ROOT / "docs").glob("*.md"))
+PAGES = [*sorted(ROOT.glob("*.md")), *IN_DOCS]
 COMMANDS = get_command(app)
 
 SOURCES = [
     f"/{path.relative_to(ROOT)}"
-    for top in ("recon4", "app", "tests", "examples")
+    for top in ("recon4", "app", "tests", "tools", "examples")
     for path in (ROOT / top).rglob("*.py")
 ]
 
 LINK = re.compile(r"\]\(([^)\s]+)\)|<img src=\"([^\"]+)\"")
 REPOSITORY_PATH = re.compile(
-    r"(?<![\w./-])(?:recon4|app|web|tests|docs|examples)/[\w./{},*-]*\w[}/]?"
+    r"(?<![\w./-])(?:recon4|app|web|tests|tools|docs|examples)/[\w./{},*-]*\w[}/]?"
 )
 PYTHON_FILE = re.compile(r"(?<![\w./*{},-])[\w/]+\.py\b")
 MODULE = re.compile(r"`((?:recon4|app)(?:\.\w+)+)")
@@ -42,7 +43,7 @@ SUFFIXES = {"json", "npz", "npy", "g2o", "laz", "csv", "tum", "toml", "py", "las
 CODE = re.compile(r"^```\w*\n(.*?)^```|`([^`\n]+)`|^ {4}(\S[^\n]*)$", re.MULTILINE | re.DOTALL)
 TYPED = re.compile(r"^recon4 ([a-z][^\n#]*)", re.MULTILINE)
 BENCHMARK = re.compile(
-    r"python -m (tests\.benchmarks\.\w+)|python (tests/\S+\.py|examples/\S+\.py)"
+    r"python -m ((?:tests\.benchmarks|tools)\.\w+)|python (tests/\S+\.py|examples/\S+\.py)"
 )
 
 
@@ -149,7 +150,7 @@ def test_architecture_names_every_top_level_module():
 @cache
 def all_code():
     """The Python and JavaScript files of the repository as one text."""
-    tops = [ROOT / top for top in ("recon4", "app", "web", "tests", "examples")]
+    tops = [ROOT / top for top in ("recon4", "app", "web", "tests", "tools", "examples")]
     files = [path for top in tops for path in top.rglob("*") if path.suffix in {".py", ".js"}]
     return "".join(path.read_text("utf-8") for path in files if path.name != "test_docs.py")
 
@@ -214,9 +215,9 @@ def test_the_rig_file_of_its_page_is_valid():
 
 
 def test_every_page_can_be_reached_from_the_readme():
-    readme = PAGES[0].read_text("utf-8")
+    readme = (ROOT / "README.md").read_text("utf-8")
 
-    assert [one.name for one in PAGES[1:] if f"(docs/{one.name}" not in readme] == []
+    assert [one.name for one in IN_DOCS if f"(docs/{one.name}" not in readme] == []
 
 
 def test_help_texts_contain_no_markup():

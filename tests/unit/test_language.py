@@ -3,7 +3,7 @@
 import ast
 from collections import defaultdict
 
-from tests.language import ROOT, lines_with
+from tools.language import ROOT, lines_with
 
 WORD = "".join(("an", "ew"))
 
@@ -13,8 +13,8 @@ def test_no_retired_word_is_used():
 
 
 def test_the_search_finds_retired_words(tmp_path, monkeypatch):
-    monkeypatch.setattr("tests.language.ROOT", tmp_path)
-    monkeypatch.setattr("tests.language.listed", lambda paths: ["page.md"])
+    monkeypatch.setattr("tools.language.ROOT", tmp_path)
+    monkeypatch.setattr("tools.language.listed", lambda paths: ["page.md"])
     (tmp_path / "page.md").write_text(f"The program was {WORD} so.\nFine.\nA {WORD}er.\n")
 
     assert [(number, word) for _, number, word, _ in lines_with([])] == [(1, WORD)]

@@ -1,8 +1,8 @@
-"""The shape of the code does not get worse: limits of `tests.structure`."""
+"""The shape of the code does not get worse: limits of `tools.structure`."""
 
 import pytest
 
-from tests.structure import (
+from tools.structure import (
     DICTS,
     FILES,
     FUNCTIONS,

@@ -8,7 +8,7 @@ from app.access.routes_check import declared
 from app.main import create_app
 from app.pages import WEB, html_of
 from app.settings import ServerSettings
-from tests.structure import ROOT
+from tools.structure import ROOT
 
 HELPERS = ("at", "wholeUrl", "socketUrl", "urlOf")
 """Functions of ``web/shared`` that put the prefix in front of an address."""

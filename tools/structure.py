@@ -1,4 +1,4 @@
-"""Counts of the shape of the code, with places: ``python -m tests.structure [KIND…]``.
+"""Counts of the shape of the code, with places: ``python -m tools.structure [KIND…]``.
 
 `tests/unit/test_structure.py` holds the counts at or below its limits.
 """
@@ -47,7 +47,7 @@ def places(root: Path = ROOT) -> list[Place]:
     for package in PACKAGES:
         for path in sorted((root / package).rglob("*.py")):
             found += places_in(path.read_text("utf-8"), path.relative_to(root).as_posix())
-    for path in sorted((root / "tests").rglob("*.py")):
+    for path in sorted([*(root / "tests").rglob("*.py"), *(root / "tools").rglob("*.py")]):
         found += _long_file(path.read_text("utf-8"), path.relative_to(root).as_posix())
     return found
 

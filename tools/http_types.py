@@ -1,4 +1,4 @@
-"""Types of the HTTP API for the pages: ``python -m tests.http_types`` writes them.
+"""Types of the HTTP API for the pages: ``python -m tools.http_types`` writes them.
 
 `web/shared/http_types.d.ts` has one interface for each record and one entry for each operation of
 ``openapi.json``. `web/shared/api.js` is written against it, so that ``make web`` finds a page that

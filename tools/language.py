@@ -1,4 +1,4 @@
-"""Words the project does not use, and what to use instead: ``python -m tests.language [PATH…]``.
+"""Words the project does not use, and what to use instead: ``python -m tools.language [PATH…]``.
 
 `docs/glossary.md` is the list for people; this is what a test can check.
 """
@@ -14,7 +14,7 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 SUFFIXES = {".py", ".js", ".html", ".css", ".md", ".jinja", ".toml"}
 ALLOWED = {
-    "tests/language.py",
+    "tools/language.py",
     "docs/glossary.md",
     "recon4/settings/renamed.py",
     "recon4/store/earlier_names.py",
