@@ -47,7 +47,7 @@ test:
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
 quick: format lint types
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m 'not e2e' $$($(BIN)/python -m tools.touched)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not e2e and not slow" $$($(BIN)/python -m tools.touched)
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
@@ -87,7 +87,7 @@ docs: $(VENV)/installed-dev
 	$(BIN)/python -m tools.http_types
 
 examples: $(VENV)/installed-dev
-	$(BIN)/python -m tests.example_programs
+	$(BIN)/python -m tools.example_programs
 
 constraints: $(VENV)/installed-dev
 	$(BIN)/pip freeze --all --exclude-editable | grep '==' > constraints.txt

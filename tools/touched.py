@@ -1,7 +1,7 @@
 """Which unit tests a change needs, for ``make quick``: ``python -m tools.touched`` prints them.
 
 A room is tested by the folder or the files of its name: `recon4/mapping/` by
-`tests/unit/mapping/`, `recon4/backup.py` by `tests/unit/test_backup*.py`. What a change breaks
+`tests/unit/mapping/`, `recon4/settings/` by `tests/unit/test_settings*.py`. What a change breaks
 elsewhere, ``make test`` says.
 """
 

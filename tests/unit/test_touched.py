@@ -13,10 +13,8 @@ from tools.touched import ALWAYS, ROOT, mirrors_of, touched, without_those_below
         ("recon4/mapping/tiles.py", ["tests/unit/mapping"]),
         ("recon4/findings/witnesses/imu.py", ["tests/unit/findings"]),
         ("recon4/settings/mapping.py", ["tests/unit/test_settings.py"]),
-        (
-            "recon4/backup.py",
-            ["tests/unit/test_backup.py", "tests/unit/test_backup_hostile.py"],
-        ),
+        ("recon4/cli/main.py", ["tests/unit/test_cli.py"]),
+        ("recon4/backup.py", ["tests/unit/test_backup.py", "tests/unit/test_backup_hostile.py"]),
         ("app/jobs/worker.py", ["tests/unit/app"]),
         ("web/live/live.js", ["tests/unit/test_web_addresses.py"]),
         ("tools/structure.py", ["tests/unit/test_structure.py"]),

@@ -4,8 +4,8 @@ import shutil
 
 import pytest
 
-from tests.example_programs import run
 from tests.made_once import made_once
+from tools.example_programs import run
 
 
 @pytest.fixture(scope="session")

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.example_programs import (
+from tools.example_programs import (
     FOLDER,
     LOCAL,
     REMOTE,

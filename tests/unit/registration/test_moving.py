@@ -239,6 +239,7 @@ def test_what_does_not_hold_the_trajectory_is_severe() -> None:
     assert found.is_severe and "does not hold the trajectory" in text_of(moving_finding(found))
 
 
+@pytest.mark.slow
 def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
     walk = Walk(GROUP[2:], ROWS, seconds=6.0)
 
@@ -255,6 +256,7 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
     assert any(f"{count} points are left out" in text for text in odometry_texts(figures.moving))
 
 
+@pytest.mark.slow
 def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
     walk, kept = Walk(GROUP, ROWS, seconds=6.0), OdometrySettings(leave_out_moving=False)
 

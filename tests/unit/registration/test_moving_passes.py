@@ -55,6 +55,7 @@ def processed(walk: Walk, aiding: GnssAiding) -> tuple[OdometryPass, Found]:
     return made, leave_out_moving(walk, made, register=register, aiding=aiding)
 
 
+@pytest.mark.slow
 def test_fixes_show_who_pulled_the_odometry_along() -> None:
     walk = Walk(GROUP, ROWS, seconds=4.5)
 
@@ -65,6 +66,7 @@ def test_fixes_show_who_pulled_the_odometry_along() -> None:
     assert found.hidden is not None and found.moving.outcome == MovingOutcome.LEFT_OUT
 
 
+@pytest.mark.slow
 def test_what_contradicts_the_fixes_without_them_is_not_said_to_hold() -> None:
     walk = Walk(GROUP, ROWS, seconds=4.5)
 
@@ -73,6 +75,7 @@ def test_what_contradicts_the_fixes_without_them_is_not_said_to_hold() -> None:
     assert found.moving.outcome == MovingOutcome.CONTRADICTED and found.moving.is_severe
 
 
+@pytest.mark.slow
 def test_wrong_fixes_hide_nothing_that_stands() -> None:
     walk = Walk(standing=ROWS, seconds=6.0)
 

@@ -40,6 +40,7 @@ def turn_error_rad(made: OdometryPass, office_recording) -> float:
     return float(np.max(left.angle()))
 
 
+@pytest.mark.slow
 def test_a_wrong_scale_is_corrected_from_the_start(frames, office_recording, monkeypatch):
     walk, progress = with_scale(frames, SCALE), Counted()
 

@@ -1,4 +1,4 @@
-"""Runs the programs in `examples/` and writes their pages: ``python -m tests.example_programs``.
+"""Runs the programs in `examples/` and writes their pages: ``python -m tools.example_programs``.
 
 A page has the text of the program's docstring, the program, and what it printed.
 """
