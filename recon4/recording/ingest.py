@@ -244,7 +244,7 @@ def _imu(
 ) -> ImuSamples | None:
     samples = join(given.imu or found.imu)
     if samples is None:
-        report.warn("no IMU: motion within a frame is estimated from the points alone")
+        report.derive("no IMU: motion within a frame is estimated from the points alone")
         return None
     if given.imu and found.imu:
         report.derive("IMU samples are those of the CSV file, not the recording's")

@@ -255,7 +255,7 @@ def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
     return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
 
 
-FRAMES = Stage("frames", 27, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 28, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     37,

@@ -24,6 +24,7 @@ import numpy as np
 
 from recon4.errors import Recon4Error
 from recon4.findings.finding import Finding
+from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.usability import MapVerdict, Usability
@@ -61,16 +62,12 @@ DEGRADATIONS = (
 OF_LIDARS = {"extrinsics", "lidar-clock", "swap-lidars", "wrong-model"}
 """What the audit of the rig finds of a LiDAR is part of the covariances."""
 ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss", "vehicles"}
-GENERIC = (
-    "No loop closure was accepted",
-    "no IMU: motion within a frame",
-    "Nothing says whether the heights",
-)
-"""Reasons that say only what the walk or the recording lacks, right or wrong."""
+GENERIC = {FindingKind.LOOPS_NONE, FindingKind.IMU_MISSING, FindingKind.HEIGHTS_UNSTATED}
+"""Findings that say only what the walk or the recording lacks, right or wrong."""
 _REASON_LENGTH = 160
 
 
-def judge(errors: Errors | None, verdict: MapVerdict) -> str:
+def judge(errors: Errors | None, findings: Sequence[Finding]) -> str:
     """The class of a run.
 
     ``right``: the trajectory is right. ``announced``: it is wrong or there is none, and the
@@ -80,10 +77,10 @@ def judge(errors: Errors | None, verdict: MapVerdict) -> str:
     """
     if errors is not None and errors.right:
         return "right"
-    if verdict.usability is Usability.GOOD or not verdict.reasons:
+    reasons = [finding for finding in findings if finding.is_reason]
+    if not reasons:
         return "SILENT"
-    generic = [any(text in reason for text in GENERIC) for reason in verdict.reasons]
-    return "vague" if all(generic) else "announced"
+    return "vague" if all(finding.kind in GENERIC for finding in reasons) else "announced"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -133,6 +130,7 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
     seconds = round(int(truth.t_ns[-1] - truth.t_ns[0]) / 1e9, 3)
     errors, lost, multiframes = None, 0, 0
     findings: tuple[Finding, ...] = ()
+    refused = False
     spent: Mapping[str, float] = {}
     audited = not quick or not OF_LIDARS.isdisjoint(degradation.split("+"))
     try:
@@ -146,6 +144,7 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
         multiframes = runs["frames"].figures.multiframes
         spent = {name: round(run.done.cpu_seconds, 1) for name, run in runs.items()}
     except Recon4Error as error:
+        refused = True
         verdict = MapVerdict(Usability.DO_NOT_USE, (f"refused: {error}",))
     return Run(
         walk=walk,
@@ -157,7 +156,7 @@ def prove(recording: Path, work: Path, *, walk: str, degradation: str, quick: bo
         kinds={str(one.kind): str(one.level) for one in reversed(findings)},
         verdict=str(verdict.usability),
         reasons=verdict.reasons,
-        outcome=judge(errors, verdict),
+        outcome="announced" if refused else judge(errors, findings),
         cpu_s=round(time.process_time() - begun, 1),
         stage_cpu_s=spent,
         audited=audited,

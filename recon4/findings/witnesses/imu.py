@@ -11,6 +11,7 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.imu_gravity import wrong_gravity
@@ -33,6 +34,8 @@ class ImuUse:
         figures = walk.odometry_figures
         if figures is None:
             return
+        if walk.frames is not None and not walk.frames.imu and figures.lines is None:
+            yield finding(FindingKind.IMU_MISSING, Level.NOTE, known_to(walk))
         if figures.imu_choice is not None and figures.imu_choice.outcome in _OUTCOMES:
             yield _choice(figures.imu_choice)
         for fault in figures.imu_faults:

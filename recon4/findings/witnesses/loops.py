@@ -12,6 +12,7 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.pose_graph import EdgeKind, Verdict
 
 _SMALL_M = 1.0
@@ -32,7 +33,8 @@ class Loops:
         if accepted:
             yield finding(FindingKind.LOOPS_ACCEPTED, Level.GOOD, {"accepted": accepted})
         else:
-            yield finding(FindingKind.LOOPS_NONE, Level.CHECK)
+            known = known_to(walk)
+            yield finding(FindingKind.LOOPS_NONE, Level.NOTE if known else Level.CHECK, known)
         if unverified > accepted:
             values = {"unverified": unverified, "accepted": accepted}
             yield finding(FindingKind.LOOPS_UNVERIFIED, Level.CHECK, values)

@@ -55,10 +55,15 @@ class Uncertainty:
 
 def is_known(walk: WalkRecord) -> bool:
     """Whether all positions are stated to be known well: lost multiframes count as unknown."""
+    known = known_to(walk)
+    return bool(known) and walk.final is not None and known["known_m"] <= _limit_m(walk.final)
+
+
+def known_to(walk: WalkRecord) -> dict[str, float]:
+    """How well the worst position is known, ``known_m``: 2σ [m]; empty = not stated."""
     if walk.uncertainty is None or walk.final is None or len(walk.final) < 2:
-        return False
-    found = uncertainty_figures(walk.uncertainty, walk.final)
-    return 2.0 * found.largest_sd_m <= _limit_m(walk.final)
+        return {}
+    return {"known_m": 2.0 * uncertainty_figures(walk.uncertainty, walk.final).largest_sd_m}
 
 
 def _level(known_m: float, limit_m: float) -> Level:

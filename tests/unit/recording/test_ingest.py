@@ -28,7 +28,7 @@ def test_a_pcap_becomes_frames_of_one_revolution(pcap, tmp_path):
     assert store.report["sensors"][0]["rotation_hz"] == pytest.approx(10.0, abs=0.02)
     assert store.report["points"] == store.points == store.report["sensors"][0]["points"]
     assert any("no rig given" in text for text in store.report["derived"])
-    assert any("no IMU" in text for text in store.report["warnings"])
+    assert any("no IMU" in text for text in store.report["derived"])
 
 
 def test_points_lie_on_the_walls_of_the_room(pcap, tmp_path):
@@ -106,7 +106,7 @@ def test_progress_and_warnings_are_reported(pcap, tmp_path):
             started.append((what, total, unit))
 
     watch = Watch()
-    run(pcap, out=tmp_path / "o", progress=watch)
+    run(pcap, out=tmp_path / "o", rig=load_rig("4recon"), progress=watch)
 
     assert started[0] == ("frames", 10, "multiframe")
     assert any(isinstance(event, Warned) for event in watch.events)

@@ -4,7 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from recon4.model.usability import MapVerdict, Usability
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
 from recon4.simulation.degradation import KINDS
 from recon4.simulation.worlds import build_world
 from tests.benchmarks.proving_errors import Errors
@@ -21,8 +22,6 @@ from tests.benchmarks.proving_ground import (
     values_of,
 )
 
-GOOD = MapVerdict(Usability.GOOD, ())
-CHECK = MapVerdict(Usability.CHECK, (f"{GENERIC[0]}: the drift is not corrected.", "Tilted."))
 FINE = Errors(
     length_m=50.0, ate_m=0.09, largest_m=0.2, closing_m=0.1, stated_m=0.2, nees=1.0,
     bad_places=3, bad_announced=2, placed_m=None,
@@ -45,17 +44,17 @@ def test_a_trajectory_is_right_within_its_limits(change, right):
     assert replace(FINE, **change).right is right
 
 
-def test_a_wrong_trajectory_is_silent_unless_the_verdict_says_why():
+def test_a_wrong_trajectory_is_silent_unless_a_finding_says_why():
     wrong = replace(FINE, ate_m=1.0)
-    vague = MapVerdict(Usability.CHECK, CHECK.reasons[:1])
+    vague = [Finding(kind=kind, level=Level.CHECK) for kind in sorted(GENERIC)]
+    noted = [Finding(kind=FindingKind.LOOPS_NONE, level=Level.NOTE)]
+    reason = Finding(kind=FindingKind.TRACKING_LOST, level=Level.CHECK)
 
-    assert judge(FINE, CHECK) == "right"
-    assert judge(wrong, CHECK) == "announced"
+    assert judge(FINE, [reason]) == "right"
+    assert judge(wrong, [*vague, reason]) == "announced"
     assert judge(wrong, vague) == "vague"
-    assert judge(wrong, MapVerdict(Usability.CHECK, GENERIC)) == "vague"
-    assert judge(wrong, GOOD) == "SILENT"
-    assert judge(wrong, MapVerdict(Usability.CHECK, ())) == "SILENT"
-    assert judge(None, MapVerdict(Usability.DO_NOT_USE, ("refused: no packets",))) == "announced"
+    assert judge(wrong, noted) == "SILENT"
+    assert judge(wrong, []) == "SILENT"
 
 
 def test_the_plan_has_240_runs_of_walks_and_degradations_that_exist():
