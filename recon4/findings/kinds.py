@@ -7,6 +7,10 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+AUDIT_VERSION = 1
+"""Raise it when witnesses find something else in the same walk: then finished projects are audited
+again."""
+
 
 class FindingKind(StrEnum):
     """Stable code of a kind of finding."""

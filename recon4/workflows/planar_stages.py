@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from recon4.findings.kinds import AUDIT_VERSION
 from recon4.model.figures import (
     AuditFigures,
     GraphFigures,
@@ -72,4 +73,4 @@ SCANS_2D = Stage("scans_2d", 11, ("ingest",), _scans, Scan2dFigures)
 ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d", "hector"), _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 2, ("slam2d", "loops2d"), _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 2, ("slam2d", "grid2d"), _map, Map2dFigures)
-AUDIT_2D = Stage("audit", 1, (), _audit, AuditFigures)
+AUDIT_2D = Stage("audit", AUDIT_VERSION, (), _audit, AuditFigures)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from recon4.findings.kinds import AUDIT_VERSION
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
     AuditFigures,
@@ -279,6 +280,6 @@ REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
 LEVEL = Stage("level", 23, ("level", "gnss", "verification"), _level, LevelFigures)
-AUDIT = Stage("audit", 1, ("gnss", "rig"), _audit, AuditFigures)
+AUDIT = Stage("audit", AUDIT_VERSION, ("gnss", "rig"), _audit, AuditFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 9, ("map",), _map, MapFigures)
