@@ -17,13 +17,17 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.assembler import TimeGap, drop_invalid
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
-from recon4.recording.formats.cloud_files import is_cloud_file, is_mesh, read_cloud
+from recon4.recording.formats.cloud_files import (
+    CLOUD_SUFFIXES,
+    is_cloud_file,
+    is_mesh,
+    read_cloud,
+)
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
 from recon4.recording.frame_times import ASSUMED_NS, frame_times
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
-CLOUD_SUFFIXES = (".pcd", ".ply", ".bin", SCAN_SUFFIX)
 _SHOWN_NAMES = 4
 _SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
 """Plausible intervals of frames [s]; outside them each frame counts as one revolution."""

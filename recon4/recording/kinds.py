@@ -9,10 +9,15 @@ from functools import cached_property
 from pathlib import Path
 
 from recon4.errors import EmptyRecording, RecordingError, UnknownFormat
-from recon4.recording.folders import CLOUD_SUFFIXES, natural
+from recon4.recording.folders import natural
 from recon4.recording.formats.bags import STORAGE_SUFFIXES
 from recon4.recording.formats.carmen import is_carmen
-from recon4.recording.formats.cloud_files import is_cloud_file, is_mesh
+from recon4.recording.formats.cloud_files import (
+    CLOUD_FORMATS,
+    CLOUD_SUFFIXES,
+    is_cloud_file,
+    is_mesh,
+)
 from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
@@ -28,7 +33,7 @@ class RecordingKind(StrEnum):
     PCAP = "Velodyne pcap"
     BAG1 = "rosbag1"
     BAG2 = "rosbag2"
-    FRAMES = "frames (PCD, PLY, KITTI BIN or 3DTK)"
+    FRAMES = f"frames ({CLOUD_FORMATS})"
     IMU_CSV = "IMU samples (CSV)"
     GNSS_CSV = "GNSS samples (CSV)"
     POSES = "poses (TUM or KITTI)"

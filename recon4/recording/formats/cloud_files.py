@@ -33,6 +33,10 @@ from recon4.untrusted.bounded import MAX_LINE_BYTES, open_regular
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
 
+CLOUD_SUFFIXES = (".pcd", ".ply", ".bin", SCAN_SUFFIX)
+"""Of files that are frames of a folder."""
+CLOUD_FORMATS = "PCD, PLY, KITTI BIN or 3DTK"
+"""Their formats, for messages."""
 MAX_FRAME_BYTES = 256 << 20
 """The points of a file that is read as a whole (one revolution, or a compressed block)."""
 _CHUNK_BYTES = 32 << 20
