@@ -11,8 +11,9 @@ from recon4.geometry.se3 import SE3
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
-from recon4.model.figures import MapFigures
+from recon4.model.figures import FrameFigures, LevelFigures, MapFigures
 from recon4.model.multiframe import Multiframe
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict, known_history
 from recon4.model.rig import Rig, Sensor
 from recon4.model.trajectory import Trajectory
@@ -35,6 +36,15 @@ TILE_M = 10.0
 BEGAN_NS = 1_700_000_000_000_000_000
 
 
+REMARK = "the gyroscope has a bias"
+
+
+class EarlierOdometry(OdometryFigures, frozen=True, kw_only=True):
+    """Figures of an odometry that was made before findings were records."""
+
+    warnings: tuple[str, ...] = ()
+
+
 def build_project(
     root: Path,
     *,
@@ -52,11 +62,11 @@ def build_project(
         project.describe(preset="indoor", rig="4RECON")
         runner = StageRunner(project, Settings(), Silent())
         walk = Input("walk", loop_walk())
-        runner.run(Stage("odometry", 1, (), _odometry), walk=walk)
+        runner.run(Stage("odometry", 1, (), _odometry, EarlierOdometry), walk=walk)
         if not with_map:
             return
         runner.run(Stage("verification", 1, (), _verification), walk=walk)
-        runner.run(Stage("level", 1, (), _level), walk=walk)
+        runner.run(Stage("level", 1, (), _level, LevelFigures), walk=walk)
         count = Input(f"points {points}", points)
         loose = Input(f"strays {strays}", strays)
         faces = Input(f"normals {normals}", normals)
@@ -105,7 +115,8 @@ def write_summary(root: Path, summary: dict[str, object]) -> None:
 def add_multiframes(root: Path) -> None:
     """Give a project the multiframes of the walk: few points each, seen from where it was."""
     with Project.open(root) as project:
-        StageRunner(project, Settings(), Silent()).run(Stage("frames", 1, (), _frames))
+        runner = StageRunner(project, Settings(), Silent())
+        runner.run(Stage("frames", 1, (), _frames, FrameFigures))
 
 
 def loop_walk() -> Trajectory:
@@ -165,7 +176,7 @@ def room_points(rng: np.random.Generator, count: int) -> np.ndarray:
     return p
 
 
-def _frames(context: StageContext) -> None:
+def _frames(context: StageContext) -> FrameFigures:
     rng, walk = np.random.default_rng(8), loop_walk()
     sensors = tuple(
         Sensor(
@@ -178,6 +189,7 @@ def _frames(context: StageContext) -> None:
     with FrameWriter(context.out, rig) as writer:
         for k, t_ns in enumerate(walk.t_ns[:-1].tolist()):
             writer.append(_multiframe(k, t_ns, walk.T_a_b[k], rig, rng))
+    return FrameFigures(multiframes=len(walk) - 1, points=0, rig=rig.name, imu=False, gnss=False)
 
 
 def _multiframe(
@@ -200,25 +212,27 @@ def _multiframe(
     )
 
 
-def _odometry(context: StageContext, *, walk: Trajectory) -> None:
+def _odometry(context: StageContext, *, walk: Trajectory) -> EarlierOdometry:
     drift = np.linspace(0.0, 1.0, len(walk))[:, None] * [0.4, -0.3, 0.1]
     save_trajectory(
         context.out / "trajectory.npz",
         Trajectory(walk.t_ns, SE3(walk.T_a_b.R, walk.T_a_b.t + drift)),
     )
+    return EarlierOdometry(multiframes=len(walk), lost=0, warnings=(REMARK,))
 
 
 def _verification(context: StageContext, *, walk: Trajectory) -> None:
     save_graph(context.out, verified_graph(walk))
 
 
-def _level(context: StageContext, *, walk: Trajectory) -> None:
+def _level(context: StageContext, *, walk: Trajectory) -> LevelFigures:
     save_trajectory(context.out / "trajectory.npz", walk)
     save_graph(context.out, verified_graph(walk))
     local = {"origin": None, "reason": "no positions"}
     write_json(
         context.out / "georeference.json", {"levelling": {}, "georeference": local, "crs": {}}
     )
+    return LevelFigures(leveled_by="imu", tilt_deg=0.0, crs="", local="no positions")
 
 
 def _map(context: StageContext, *, points: int, strays: int, normals: bool) -> MapFigures:

@@ -105,7 +105,9 @@ def test_on_request_the_receiver_is_corrected_and_its_fixes_are_shifted(
     found.save(tmp_path)
 
     assert found.figures.applied, found.figures.outcome
-    assert "the GNSS antenna differs from it. Its position differs by 1" in rig_texts(found.figures)[0]
+    assert (
+        "the GNSS antenna differs from it. Its position differs by 1" in rig_texts(found.figures)[0]
+    )
     assert "The calibrated rig is used for this map." in rig_texts(found.figures)[0]
     rig = load_rig(tmp_path / "rig.toml")
     assert np.all(np.abs(rig.p_body_antenna - ARM)[:2] < 0.01)

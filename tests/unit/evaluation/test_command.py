@@ -6,7 +6,7 @@ import pytest
 
 from recon4.cli.main import main
 from recon4.recording.formats.poses import write_tum
-from tests.project_builder import build_project, loop_walk, write_summary
+from tests.project_builder import REMARK, build_project, loop_walk, write_summary
 
 SURVEYED = "name,x_m,y_m,z_m,role\nA,1,2,3,check\nB,4,5,6,control\nC,7,8,9,check\n"
 MEASURED = "name,x_m,y_m,z_m\nA,1.03,2.04,3.1\nB,4,5,6\n"
@@ -100,7 +100,7 @@ def test_the_report_is_written_again_with_the_evaluation(tmp_path, capsys):
 
     page = report.read_text("utf-8")
     assert "Accuracy against ground truth" in page
-    assert "late" in page and "early" not in page
+    assert REMARK in page and "EARLIER-REMARK" in page
     assert "The absolute trajectory error is 0.0 cm" in page
 
 
