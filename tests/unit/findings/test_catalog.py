@@ -100,3 +100,9 @@ def test_the_page_of_the_findings_is_the_catalog():
     page = (ROOT / "docs" / "findings.md").read_text("utf-8")
 
     assert page == markdown(), "run make docs"
+
+
+def test_the_pages_have_the_headlines_of_the_catalog():
+    page = (ROOT / "web" / "shared" / "format.js").read_text("utf-8")
+
+    assert {text for text in catalog().headlines.values() if f'"{text}"' not in page} == set()
