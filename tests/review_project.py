@@ -81,10 +81,11 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
 
 
 def judge(root: Path, **verdict: object) -> None:
-    """Give the finished map another verdict, as its run would have written it."""
+    """Give the finished map another verdict, as a run of format 2 would have written it."""
     path = root / SUMMARY
     with changing(root, SUMMARY, compared=False):
         record = json.loads(path.read_text("utf-8")) | {"verdict": verdict}
+        record.pop("findings", None)
         path.unlink()
         write_json(path, record)
 

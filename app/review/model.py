@@ -8,6 +8,7 @@ from typing import Annotated, Literal
 from pydantic import BaseModel, ConfigDict, Field
 
 from app.names import Note
+from recon4.findings.notes import SaidFinding
 from recon4.model.usability import MapVerdict
 from recon4.review.approval_state import ApprovalState
 
@@ -113,6 +114,8 @@ class MapFacts:
     """Shortest reason that is accepted then."""
     notes: list[str]
     """Findings that do not change the verdict."""
+    findings: list[SaidFinding] | None
+    """All findings, worst first; null = an earlier version of recon4 made the map."""
     figures: dict[str, object]
     """The figures that an approval signs, by their names in ``summary.json``."""
 

@@ -37,7 +37,7 @@ from app.review.model import (
 )
 from app.review.records import record_signed
 from app.review.store import terms_of
-from recon4.findings.notes import notes_in
+from recon4.findings.notes import findings_in, notes_in
 from recon4.model.plain import finite_or_none
 from recon4.model.usability import verdict_in
 from recon4.review.approval import (
@@ -355,6 +355,7 @@ def _map_facts(root: Path) -> MapFacts | None:
         reason_needed=reason_needed(verdict),
         min_reason_characters=MIN_REASON_CHARACTERS,
         notes=notes_in(summary),
+        findings=findings_in(summary),
         figures=signed_figures(summary),
     )
 

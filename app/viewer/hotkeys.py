@@ -13,7 +13,8 @@ HOTKEYS: tuple[tuple[str, Any, str], ...] = (
     ("View from the east", "3", "east"),
     ("Narrow field of view, nearly orthographic", "O", "narrow"),
     ("Measure a distance between two points", "M", "measure"),
-    ("Stop measuring", "escape", "stop measuring"),
+    ("Stop measuring, clear the mark", "escape", "stop"),
+    ("Go to the marked stretch of the walk", "G", "stretch"),
     ("Play or stop", "P", "play"),
 )
 """Label, key, and name for `PanelCallbacks.command`."""

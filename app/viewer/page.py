@@ -30,6 +30,25 @@ addEventListener('pointerdown', (event) => {
 Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
+// A link names a stretch of the walk in the fragment. It is left where the viewer reads it, and the
+// key that reads it is pressed. viser puts its prefix before the name of what it reads.
+let stretchWaits = false;
+const showStretch = () => {
+  if (!stretchWaits || document.getElementById('cover')) return;
+  stretchWaits = false;
+  document.documentElement.dispatchEvent(
+    new KeyboardEvent('keydown', { key: 'g', code: 'KeyG', bubbles: true }));
+};
+const takeStretch = () => {
+  if (!location.hash) return;
+  const project = decodeURIComponent(location.pathname.split('/').at(-3));
+  localStorage.setItem('viser-user:recon4.stretch.' + project, location.hash.slice(1));
+  history.replaceState(null, '', location.pathname + location.search);
+  stretchWaits = true;
+  if (document.readyState !== 'loading') showStretch();
+};
+takeStretch();
+addEventListener('hashchange', takeStretch);
 // Until our controls exist, a cover hides viser's own page. On a phone the controls would
 // hide half of the map: collapse them.
 addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
@@ -39,6 +58,7 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   if (!title || !withText('Edges by')) return;
   watch.disconnect();
   document.getElementById('cover').remove();
+  showStretch();
   if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
 // The list of keys, by its key or button.

@@ -1,10 +1,48 @@
-"""What ``summary.json`` notes beside the verdict."""
+"""What ``summary.json`` says of the findings."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
-from recon4.findings.finding import Level
+import msgspec
+
+from recon4.errors import StoreError
+from recon4.findings.finding import Level, Point
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SaidFinding:
+    """A finding as `recon4.findings.wording.said` writes it, without its values."""
+
+    kind: str
+    """Its code; a later version may know more of them."""
+    level: Level
+    title: str
+    text: str
+    remedy: str = ""
+    """What to do about it; empty = nothing."""
+    span_s: tuple[float, float] | None = None
+    """Its stretch of the walk: after the first multiframe or scan [s]; null = the whole walk."""
+    place_m: tuple[Point, Point] | None = None
+    """Positions in the map at both ends of the stretch [m]; null = not known."""
+    direction: str = ""
+    sensor: str = ""
+
+
+def findings_in(summary: Mapping[str, object]) -> list[SaidFinding] | None:
+    """The findings in ``summary.json``; None before format 3, which has none.
+
+    Raises:
+        StoreError: If they cannot be read.
+    """
+    record = summary.get("findings")
+    if record is None:
+        return None
+    try:
+        return msgspec.convert(record, list[SaidFinding])
+    except msgspec.ValidationError as error:
+        raise StoreError(f"summary.json: its findings cannot be read: {error}") from error
 
 
 def notes_in(summary: Mapping[str, object]) -> list[str]:

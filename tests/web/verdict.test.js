@@ -3,7 +3,10 @@ import { test } from "node:test";
 
 import {
   factsIn,
+  firstText,
   isReason,
+  stretchOf,
+  stretchText,
   unobservedText,
   verdictLists,
   verdictState,
@@ -28,13 +31,14 @@ test("a map without a verdict is not good", () => {
 
 test("every note stands there once, findings first", () => {
   const verdict = { usability: "do not use", reasons: [LOST], unobserved: [CORRIDOR] };
-  const lists = verdictLists({ verdict, notes: [LOST, "half of the clocks are missing"] });
+  const notes = [LOST, "half of the clocks are missing"];
+  const lists = verdictLists({ verdict, notes, findings: null });
 
   assert.deepEqual(
     lists.map(([, texts]) => texts),
     [[LOST], [unobservedText(CORRIDOR)], ["half of the clocks are missing"]],
   );
-  assert.deepEqual(verdictLists({ verdict: null, notes: [] }), []);
+  assert.deepEqual(verdictLists({ verdict: null, notes: [], findings: null }), []);
 });
 
 test("what is not observable has time, direction and place", () => {
@@ -50,13 +54,34 @@ test("what is not observable has time, direction and place", () => {
 test("a project before its first map has no facts of one", () => {
   assert.equal(factsIn({}), null);
   assert.equal(factsIn(undefined), null);
-  assert.deepEqual(factsIn({ points: 3 }), { verdict: null, notes: [] });
+  assert.deepEqual(factsIn({ points: 3 }), { verdict: null, notes: [], findings: null });
   assert.deepEqual(factsIn({ points: 3, warnings: ["no IMU"] }).notes, ["no IMU"]);
   const findings = [
     { level: "good", text: "Tracking was not lost." },
     { level: "note", text: "The rig is old." },
   ];
   assert.deepEqual(factsIn({ points: 3, findings }).notes, ["The rig is old."]);
+});
+
+test("the bar says the worst finding, of earlier versions the first reason", () => {
+  const verdict = { usability: "check", reasons: [LOST], unobserved: [] };
+  const findings = /** @type {any} */ ([{ level: "check", text: "It is old." }]);
+  assert.equal(firstText({ verdict, notes: [], findings }), "It is old.");
+  assert.equal(firstText({ verdict, notes: [], findings: null }), LOST);
+  assert.equal(firstText({ verdict: null, notes: [], findings: [] }), "");
+});
+
+test("a finding names its stretch by times and places", () => {
+  const place_m = /** @type {any} */ ([
+    [1, 2, 0],
+    [3.5, -2, 0],
+  ]);
+  assert.equal(stretchOf({ span_s: [12, 15.25], place_m }), "span=12,15.25&place=1,2,0,3.5,-2,0");
+  assert.equal(stretchOf({ place_m }), "place=1,2,0,3.5,-2,0");
+  assert.equal(stretchOf({}), "");
+  assert.equal(stretchText({ span_s: [12, 15.25] }), "12.0 s to 15.3 s");
+  assert.equal(stretchText({ span_s: [12, 12] }), "12.0 s");
+  assert.equal(stretchText({ place_m }), "x 1.0, y 2.0, z 0.0 m");
 });
 
 test("blanks are no reason", () => {

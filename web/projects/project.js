@@ -12,13 +12,13 @@ import {
 } from "../shared/api.js";
 import { approvalLines, approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
-import { byId, fill, make, showError } from "../shared/dom.js";
+import { byId, fill, make, showError, targetOf } from "../shared/dom.js";
 import { checked } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
-import { verdictDetails } from "../shared/map_verdict.js";
-import { factsIn, verdictLists } from "../shared/verdict.js";
+import { FindingList } from "../shared/finding_list.js";
+import { factsIn, firstText } from "../shared/verdict.js";
 import "../shared/page_head.js";
 import "./project_tools.js";
 import "./rig_section.js";
@@ -69,8 +69,8 @@ function drawFigures() {
     ...rows.map(([text, value]) => make("div", {}, make("dt", {}, text), make("dd", {}, value))),
   );
   const facts = factsIn(project?.summary);
-  byId("verdict").hidden = !facts || verdictLists(facts).length === 0;
-  if (facts) fill(byId("reasons"), ...verdictDetails(facts));
+  byId("verdict").hidden = !facts || firstText(facts) === "";
+  if (facts) byId("reasons", FindingList).facts = facts;
 }
 
 function drawFiles() {
@@ -118,12 +118,21 @@ function showMap() {
   const walking =
     view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
   if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
-  const viewer = make("iframe", { src: viewerUrl(id), title: "Map in 3-D" });
+  const viewer = make("iframe", { src: viewerUrl(id) + location.hash, title: "Map in 3-D" });
   // Keys work without a click first: the viewer takes them unless another control has the focus.
   const takeKeys = () => document.activeElement === document.body && viewer.focus();
   viewer.addEventListener("load", takeKeys);
   viewer.addEventListener("pointerenter", takeKeys);
   byId("viewer").replaceChildren(viewer);
+}
+
+/** Has the viewer fly to the stretch of the walk in the fragment of the address. */
+function showStretch() {
+  const viewer = byId("viewer").querySelector("iframe");
+  if (!viewer || !location.hash) return;
+  byId("viewer").scrollIntoView({ block: "nearest" });
+  const { location: shown } = viewer.contentWindow; // viser adds a query to it
+  shown.replace(shown.href.split("#")[0] + location.hash);
 }
 
 function drawLog() {
@@ -161,6 +170,11 @@ function onJob(fresh) {
   drawLog();
 }
 
+addEventListener("hashchange", showStretch);
+byId("reasons").addEventListener("click", (event) => {
+  const again = targetOf(event).closest("a.stretch");
+  if (again && again.getAttribute("href").endsWith(location.hash)) showStretch();
+});
 document.querySelector("project-tools").addEventListener("renamed", (event) => {
   project = /** @type {CustomEvent} */ (event).detail;
   draw();

@@ -122,6 +122,10 @@ export const readOffset = async (url) =>
   Number((await tus("HEAD", url)).headers.get("Upload-Offset"));
 
 export const projectUrl = (id) => at(`/projects/${name(id)}/`);
+/** The page of a project with a stretch of its walk shown in the viewer. */
+export const stretchUrl = (id, stretch) => `${projectUrl(id)}#${stretch}`;
+/** What the code of a finding means. */
+export const findingHelpUrl = (kind) => at(`/docs/findings#${name(kind.toLowerCase())}`);
 export const viewerUrl = (id) => at(`/projects/${name(id)}/viewer/`);
 export const reportUrl = (id) => at(`/api/projects/${name(id)}/report`);
 export const thumbnailUrl = (id, version) =>

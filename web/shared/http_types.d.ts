@@ -460,6 +460,8 @@ export interface KeyView {
   removed_by: string;
 }
 
+export type Level = "good" | "note" | "check" | "do not use";
+
 export interface LidarSlicesView {
   name: string;
   before: Array<[number, number]>;
@@ -508,6 +510,7 @@ export interface MapFacts {
   reason_needed: string;
   min_reason_characters: number;
   notes: Array<string>;
+  findings: Array<SaidFinding> | null;
   figures: Record<string, any>;
 }
 
@@ -925,6 +928,18 @@ export interface RowView {
   frame_j: number | null;
   why: string;
   hash: string;
+}
+
+export interface SaidFinding {
+  kind: string;
+  level: Level;
+  title: string;
+  text: string;
+  remedy: string;
+  span_s: [number, number] | null;
+  place_m: [[number, number, number], [number, number, number]] | null;
+  direction: string;
+  sensor: string;
 }
 
 export interface SavedRig {

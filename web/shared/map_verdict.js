@@ -1,20 +1,14 @@
-// <map-verdict>: the verdict on a map with its reasons and notes, as a bar that opens.
+// <map-verdict>: the verdict on a map with its findings, as a bar that opens.
 
 import { badge } from "./badge.js";
 import { fill, make } from "./dom.js";
-import { verdictLists, verdictState } from "./verdict.js";
-
-/** Findings, what is not observable, and notes as titled lists. */
-export const verdictDetails = (facts) =>
-  verdictLists(facts).flatMap(([title, texts]) => [
-    make("h3", {}, title),
-    make("ul", {}, ...texts.map((text) => make("li", {}, text))),
-  ]);
+import { FindingList } from "./finding_list.js";
+import { firstText, verdictState } from "./verdict.js";
 
 export class MapVerdict extends HTMLElement {
   #line = make("summary");
-  #lists = make("div", { className: "verdict-lists" });
-  #details = make("details", {}, this.#line, this.#lists);
+  #list = new FindingList();
+  #details = make("details", {}, this.#line, this.#list);
 
   connectedCallback() {
     this.setAttribute("role", "status");
@@ -26,12 +20,11 @@ export class MapVerdict extends HTMLElement {
   set facts(/** @type {import("./verdict.js").MapFacts | null} */ facts) {
     this.hidden = facts === null;
     if (!facts) return;
-    const lists = verdictLists(facts);
-    const first = lists[0]?.[1][0] ?? "";
+    const first = firstText(facts);
     this.className = verdictState(facts.verdict);
     fill(this.#line, badge(this.className), make("span", { className: "first" }, first));
-    fill(this.#lists, ...verdictDetails(facts));
-    this.#details.inert = lists.length === 0;
+    this.#list.facts = facts;
+    this.#details.inert = first === "";
   }
 }
 

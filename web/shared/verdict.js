@@ -1,16 +1,30 @@
 // The verdict on a map as text. No DOM, no network.
 
 /**
+ * @typedef {import("./http_types").SaidFinding} MapFinding
  * @typedef {object} MapFacts what is known of a map
  * @property {any} verdict usability, reasons, what is not observable; null = none was worked out
  * @property {string[]} notes what does not change the verdict
+ * @property {MapFinding[] | null} findings worst first; null = an earlier version made the map
  */
+
+/** Captions of the levels of findings, the worst first. */
+export const LEVELS = {
+  "do not use": "Do not use",
+  check: "Check",
+  note: "Note",
+  good: "Confirms",
+};
 
 /** What a project's summary says of its map; null before there is one. */
 export const factsIn = (summary) =>
   summary?.points === undefined
     ? null
-    : { verdict: summary.verdict ?? null, notes: notesIn(summary) };
+    : {
+        verdict: summary.verdict ?? null,
+        notes: notesIn(summary),
+        findings: summary.findings ?? null,
+      };
 
 /** Texts of notes; before format 3 the run wrote warnings. */
 const notesIn = ({ findings, warnings }) =>
@@ -49,6 +63,23 @@ export function verdictLists({ verdict, notes }) {
     ["Notes", notes.filter((text) => !reasons.includes(text))],
   ];
   return lists.filter(([, texts]) => texts.length > 0);
+}
+
+/** The first of what is to be known of a map in one line; empty if there is nothing. */
+export const firstText = (/** @type {MapFacts} */ facts) =>
+  facts.findings ? (facts.findings[0]?.text ?? "") : (verdictLists(facts)[0]?.[1][0] ?? "");
+
+/** The stretch of a finding as the viewer reads it in a fragment; empty = the whole walk. */
+export const stretchOf = (/** @type {Partial<MapFinding>} */ { span_s, place_m }) =>
+  [span_s && `span=${span_s.join(",")}`, place_m && `place=${place_m.flat().join(",")}`]
+    .filter(Boolean)
+    .join("&");
+
+/** When or where the stretch of a finding is. */
+export function stretchText(/** @type {Partial<MapFinding>} */ { span_s, place_m }) {
+  if (!span_s) return place(place_m?.[0] ?? []);
+  const [start, end] = span_s.map((second) => second.toFixed(1));
+  return start === end ? `${start} s` : `${start} s to ${end} s`;
 }
 
 /** Whether a text is long enough as a reason to approve a map in spite of its verdict. */

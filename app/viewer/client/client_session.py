@@ -22,10 +22,11 @@ from app.viewer.client.panels import Panel, PanelCallbacks
 from app.viewer.client.point_budget import HOLD_S, PHONE_POINTS, PointBudget
 from app.viewer.client.pointer_tools import PointerTools
 from app.viewer.client.show import Screen
-from app.viewer.client.view import ViewState, view_from_json
+from app.viewer.client.view import ViewState, stretch_from_text, view_from_json
 from app.viewer.cloud.detail import Detail
 from app.viewer.cloud.pick import Ray
 from app.viewer.scene.build import Content, bounds, describe
+from app.viewer.scene.mark import stretch_bounds, stretch_nodes, stretch_positions
 from app.viewer.scene.nodes import Node, PointsNode
 from app.viewer.scene.source import ProjectSource
 from recon4.errors import Recon4Error
@@ -124,7 +125,10 @@ class ClientSession:
                 self._screen.follow(bounds(content))
         self._shown, self._content = view, content
         points = [*_preview(content, view), *_window(content, view)]
-        self._screen.show_nodes([*describe(content, view), *self._pointer.nodes(), *points])
+        marked = stretch_nodes(content, view.stretch)
+        self._screen.show_nodes(
+            [*describe(content, view), *marked, *self._pointer.nodes(), *points]
+        )
         self._panel.show(view, span_of(content, view))
         self._pointer.report(view)
 
@@ -162,8 +166,26 @@ class ClientSession:
                 self._screen.look_at(bounds(self._content), DIRECTIONS[name])
             case "narrow":
                 self._screen.toggle_narrow()
+            case "stretch":
+                self._go_to_stretch()
             case _:
                 self._pointer.command(name, self._view)
+
+    def _go_to_stretch(self) -> None:
+        """Mark the stretch that the page was asked for, or the marked one again, and fly there."""
+        asked = stretch_from_text(self._screen.asked_stretch(KEPT_VIEW_TIMEOUT_S))
+        stretch, content = asked or self._view.stretch, self._source.content
+        if stretch is None:
+            return
+        p_map = stretch_positions(content, stretch)
+        if not len(p_map):
+            self._screen.notify("Not in this map", f"The walk has no position: {stretch.text}.")
+            return
+        frames, moment = content.multiframes, self._view.moment
+        if frames is not None and stretch.span_s is not None:
+            moment = frames.at_time(stretch.span_s[0])
+        self._change(lambda view: replace(view, stretch=stretch, moment=moment))
+        self._screen.look_at(stretch_bounds(p_map))
 
 
 DIRECTIONS = {

@@ -84,8 +84,9 @@ class PointerTools:
         match name:
             case "measure":
                 self._measuring, self._first = not self._measuring, None
-            case "stop measuring":
+            case "stop":
                 self._measuring, self._first = False, None
+                self._change(lambda view: replace(view, stretch=None))
             case "keep point" if self._last is not None:
                 self._keep((self._last,))
             case "undo measure":

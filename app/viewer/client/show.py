@@ -35,6 +35,8 @@ from recon4.geometry.se3 import Array, matrix_from_quat
 PHONE_WIDTH_PX = 700
 STORAGE_PREFIX = "recon4.view."
 """Name under which a browser keeps the view of a project."""
+STRETCH_PREFIX = "recon4.stretch."
+"""Name under which the page leaves the stretch of the walk that it was asked to show."""
 NARROW_FOV_RAD, USUAL_FOV_RAD = np.deg2rad(6.0), np.deg2rad(75.0)
 REDRAW_GROWTH = 0.2
 """Relative growth of the map after which the camera is moved to fit it."""
@@ -66,6 +68,7 @@ class Screen:
         if _is_fresh(client.camera):
             self.look_at(begins_at)
         self._key = STORAGE_PREFIX + project
+        self._stretch_key = STRETCH_PREFIX + project
         self._shown: dict[str, tuple[Node, Any]] = {}
         self._points: OrderedDict[str, _Drawn] = OrderedDict()
         self._map = client.scene.add_frame("/map", show_axes=False)
@@ -185,6 +188,13 @@ class Screen:
         except (TimeoutError, RuntimeError):
             return None, None
         return kept, time.monotonic() - began_s
+
+    def asked_stretch(self, limit_s: float) -> str | None:
+        """The stretch that the page was last asked to show, as untrusted text."""
+        try:
+            return self._client.local_storage.get_item(self._stretch_key, timeout=limit_s)
+        except (TimeoutError, RuntimeError):
+            return None
 
     def keep_view(self, text: str) -> None:
         """Have the browser keep a view."""

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any, Literal, get_args
+from urllib.parse import parse_qs
 
 from app.viewer.cloud.palette import Palette, Range
 from app.viewer.scene.layers import Layer
@@ -39,6 +40,26 @@ Position = tuple[float, float, float]
 MAX_MEASUREMENTS = 200
 MAX_NUMBER = 1e12
 """Largest coordinate or end of a range: differences and squares of such numbers are finite."""
+_MAX_STRETCH_TEXT = 400
+"""Characters of a fragment that are read."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Stretch:
+    """A part of the walk that is marked, as that of a finding."""
+
+    span_s: tuple[float, float] | None = None
+    """After the first pose of the trajectory [s]; None = only its places are known."""
+    places: tuple[Position, ...] = ()
+    """Positions in the map [m], at most two."""
+
+    @property
+    def text(self) -> str:
+        """Its label in the scene."""
+        if self.span_s is None:
+            return "here"
+        start_s, end_s = self.span_s
+        return f"{start_s:.1f} s to {end_s:.1f} s" if end_s > start_s else f"{start_s:.1f} s"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,6 +87,8 @@ class ViewState:
     """Whether a slow browser gets fewer points."""
     measurements: tuple[tuple[Position, ...], ...] = ()
     """One point each, or two, in the map [m]."""
+    stretch: Stretch | None = None
+    """What is marked of the walk."""
 
     def shows(self, layer: Layer) -> bool:
         """Whether a layer is on."""
@@ -103,6 +126,37 @@ def view_from_json(text: str | None) -> ViewState | None:
         return None
 
 
+def stretch_from_text(text: str | None) -> Stretch | None:
+    """The stretch in a fragment of a link, ``span=12.5,15&place=x,y,z,x,y,z``; None if it has none.
+
+    The text is untrusted: a malformed one counts as none.
+    """
+    try:
+        fields = parse_qs((text or "")[:_MAX_STRETCH_TEXT])
+        span, place = (_numbers(fields.get(name, [""])[0]) for name in ("span", "place"))
+        places = [place[first : first + 3] for first in range(0, len(place), 3)]
+        return _stretch({"span_s": span or None, "places": places})
+    except (ValueError, OverflowError):
+        return None
+
+
+def _numbers(text: str) -> list[float]:
+    return [float(part) for part in text.split(",")] if text else []
+
+
+def _stretch(record: Any) -> Stretch | None:
+    if record is None:
+        return None
+    places = tuple((_number(x), _number(y), _number(z)) for x, y, z in record["places"])
+    span_s = record["span_s"]
+    if len(places) > 2 or not (places or span_s):
+        raise ValueError(f"expected a span or up to two places, got {record}")
+    if span_s is None:
+        return Stretch(places=places)
+    start_s, end_s = (_number(second) for second in span_s)
+    return Stretch(span_s=(min(start_s, end_s), max(start_s, end_s)), places=places)
+
+
 def _view(record: dict[str, Any]) -> ViewState:
     return ViewState(
         color_by=_one_of(record["color_by"], COLOR_BY),
@@ -121,6 +175,7 @@ def _view(record: dict[str, Any]) -> ViewState:
         detail=max(int(record["detail"]), 0),
         adapt=record["adapt"] is True,
         measurements=tuple(_measurement(m) for m in record["measurements"][:MAX_MEASUREMENTS]),
+        stretch=_stretch(record.get("stretch")),
     )
 
 

@@ -47,6 +47,11 @@ class Multiframes:
         except OutOfRange:
             return None
 
+    def at_time(self, since_start_s: float) -> int:
+        """The first multiframe whose middle is not before a time after the first one [s]."""
+        t_ns = self.t_mid_ns[0] + round(1e9 * since_start_s)
+        return min(int(np.searchsorted(self.t_mid_ns, t_ns)), len(self) - 1)
+
     def window(self, moment: int, window_s: float) -> range:
         """Rows of the multiframes from one on, as long as a window."""
         first = min(moment, len(self) - 1)

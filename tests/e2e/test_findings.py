@@ -1,0 +1,140 @@
+"""Findings on the pages: each leads to its place in the viewer, which marks its stretch."""
+
+import json
+
+import pytest
+from playwright.sync_api import expect
+
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.wording import remedy_of, said, text_of, title_of
+from recon4.store.seal import changing
+from tests.e2e.conftest import leave_out_viewer, looks
+from tests.project_builder import add_multiframes, build_project, loop_walk, write_summary
+from tests.service.running import server_thread
+
+pytestmark = pytest.mark.e2e
+
+WALK = loop_walk()
+
+
+def place_m(span_s):
+    """Positions at both ends of a stretch."""
+    return tuple(tuple(WALK.T_a_b.t[round(10 * second)].tolist()) for second in span_s)
+
+
+LOST = Finding(
+    kind=FindingKind.TRACKING_LOST,
+    level=Level.DO_NOT_USE,
+    span_s=(20.0, 25.0),
+    place_m=place_m((20.0, 25.0)),
+    values={"lost": 50, "multiframes": 600, "ratio": 0.083, "first_s": 20.0},
+)
+WEAK = Finding(
+    kind=FindingKind.WEAK_DIRECTION,
+    level=Level.CHECK,
+    span_s=(40.0, 44.0),
+    place_m=place_m((40.0, 44.0)),
+    direction="horizontal",
+    values={"known": True, "sd_m": 0.4},
+)
+OLD = Finding(kind=FindingKind.RIG_NOT_COMPARED, level=Level.NOTE)
+AGREES = Finding(kind=FindingKind.RIG_AGREES, level=Level.GOOD)
+FINDINGS = (LOST, WEAK, OLD, AGREES)
+
+
+@pytest.fixture(scope="module")
+def found(tmp_path_factory):
+    """A server with a project whose map has findings."""
+    root = tmp_path_factory.mktemp("projects")
+    build_project(root / "office", points=20_000)
+    add_multiframes(root / "office")
+    with changing(root / "office", "summary.json", compared=False):
+        summary = json.loads((root / "office/summary.json").read_text())
+        verdict = {"usability": "do not use", "reasons": [text_of(LOST)], "unobserved": []}
+        findings = [said(one) for one in FINDINGS]
+        write_summary(root / "office", summary | {"verdict": verdict, "findings": findings})
+    with server_thread(root) as running:
+        yield running
+
+
+def entry(page, finding):
+    """The list entry of a finding."""
+    return page.locator("finding-list li").filter(has_text=title_of(finding.kind))
+
+
+LOOKS_AT = """(middle) => {
+  const controls = window.__viserMutable?.cameraControl;
+  if (!controls || document.getElementById("cover")) return false;
+  const { x, y, z } = controls.getTarget(controls._target.clone());  // y up: x y z = -y z -x
+  return Math.hypot(-z - middle[0], -x - middle[1], y - middle[2]) < 0.05;
+}"""
+
+
+def looks_at(viewer, finding):
+    """Wait until the camera of the viewer looks at the middle of the box around a stretch."""
+    start_s, end_s = finding.span_s
+    part = WALK.T_a_b.t[round(10 * start_s) : round(10 * end_s) + 1]
+    middle = (part.min(axis=0) + part.max(axis=0)) / 2.0
+    viewer.wait_for_function(LOOKS_AT, arg=middle.tolist())
+
+
+def kept_stretch(viewer):
+    """The span that the viewer's view marks, as the browser keeps it."""
+    view = json.loads(viewer.evaluate("localStorage['viser-user:recon4.view.office']"))
+    return view["stretch"] and view["stretch"]["span_s"]
+
+
+@looks("desktop light", "phone dark")
+def test_a_finding_flies_to_its_stretch_in_the_viewer_and_marks_it(found, page, screenshot):
+    page.goto(f"{found.url}/projects/office/")
+    for finding, times in ((WEAK, "40.0 s to 44.0 s"), (LOST, "20.0 s to 25.0 s")):
+        entry(page, finding).get_by_role("link", name=f"Show in the map: {times}").click()
+        looks_at(page.frames[1], finding)
+    screenshot(page, "finding-in-the-viewer")
+
+    assert kept_stretch(page.frames[1]) == [20.0, 25.0]
+
+
+@looks("desktop dark")
+def test_the_link_of_a_finding_opens_where_it_is_and_escape_clears_the_mark(found, page):
+    page.goto(f"{found.url}/projects/office/#span=40,44")
+    expect(page.locator("iframe")).to_be_attached()
+    viewer = page.frames[1]
+    looks_at(viewer, WEAK)
+
+    page.locator("iframe").focus()
+    page.keyboard.press("7")
+    page.keyboard.press("g")
+    looks_at(viewer, WEAK)
+    page.keyboard.press("Escape")
+
+    viewer.wait_for_function(
+        "JSON.parse(localStorage['viser-user:recon4.view.office']).stretch === null"
+    )
+
+
+@looks("desktop light", "phone dark")
+def test_each_finding_has_its_level_code_text_and_remedy(found, page, screenshot):
+    leave_out_viewer(page)
+    page.goto(f"{found.url}/projects/office/")
+    for finding, level in ((LOST, "Do not use"), (WEAK, "Check"), (AGREES, "Confirms")):
+        expect(entry(page, finding)).to_contain_text(level)
+        expect(entry(page, finding)).to_contain_text(text_of(finding))
+        expect(entry(page, finding)).to_contain_text(remedy_of(finding))
+    screenshot(page, "project-findings")
+
+    code = entry(page, WEAK).get_by_role("link", name="WEAK-DIRECTION")
+    with page.expect_popup() as opened:
+        code.click()
+    expect(opened.value.locator("#weak-direction")).to_be_visible()
+
+
+@looks("desktop light")
+def test_the_bar_of_other_pages_links_to_the_stretch_on_the_page_of_the_project(found, page):
+    page.goto(f"{found.url}/projects/office/slices/")
+    page.locator("map-verdict summary").click()
+    with page.expect_popup() as opened:
+        entry(page, WEAK).get_by_role("link", name="Show in the map").click()
+
+    assert "/projects/office/#span=40,44&place=" in opened.value.url
