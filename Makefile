@@ -5,7 +5,7 @@
 #   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
 #   make quick               what a change needs before it is committed: two minutes
 #   make bench               benchmarks, by hand: they need a quiet machine
-#   make docs                write what is generated: docs/settings.md, web/shared/http_types.d.ts, …
+#   make docs                write what is generated: settings, findings, HTTP types, NOTICE
 #   make examples            run the programs in examples/ and write their pages
 #   make constraints         pin the versions that are installed now
 #   make lock                write requirements/*.lock: every file of every version, with its hash
@@ -85,6 +85,7 @@ docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/settings.md
 	$(BIN)/python -m recon4.findings.explain > docs/findings.md
 	$(BIN)/python -m tools.http_types
+	$(BIN)/python -m tools.notice
 
 examples: $(VENV)/installed-dev
 	$(BIN)/python -m tools.example_programs

@@ -5,7 +5,10 @@ import tomllib
 from importlib import metadata
 from pathlib import Path
 
+import pytest
 from packaging.requirements import Requirement
+
+from tools.notice import NOTICE, contained, license_of, locked, notice
 
 ROOT = Path(__file__).parents[2]
 STRONG_COPYLEFT = re.compile(r"\b(A?GPL|Affero|GNU General Public)", re.IGNORECASE)
@@ -63,3 +66,40 @@ def test_the_check_itself_knows_the_gpl_from_the_lgpl():
     assert not is_strong_copyleft("GNU Lesser General Public License v3 (LGPLv3)")
     assert not is_strong_copyleft("LGPL-2.1-or-later")
     assert is_strong_copyleft(licence_of("evo"))
+
+
+def test_the_notice_names_every_package_of_the_lock_with_its_version():
+    rows = re.findall(r"^(\S+) (\S+)  +\S", NOTICE.read_text("utf-8"), re.MULTILINE)
+
+    assert dict(rows) == locked()
+    assert len(rows) > 100
+
+
+def test_the_notice_is_what_the_packages_state_of_themselves():
+    assert NOTICE.read_text("utf-8") == notice(), "run `make docs`"
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [("numpy", "BSD-3-Clause"), ("matplotlib", "Python Software Foundation"), ("certifi", "MPL")],
+)
+def test_a_license_has_its_name_not_its_text(name, expected):
+    assert expected in license_of(name) and "\n" not in license_of(name)
+
+
+def test_a_package_without_a_known_license_is_refused():
+    with pytest.raises(LookupError, match="no-such-package"):
+        license_of("no-such-package")
+
+
+def test_code_of_others_in_the_pages_has_its_license_beside_it():
+    folders = [path for path in (ROOT / "web").rglob("vendor") if path.is_dir()]
+    others = [child for folder in folders for child in folder.iterdir()]
+
+    assert [one for one in others if not any(one in path.parents for path in contained())] == []
+
+
+def test_license_and_notice_go_with_every_distribution():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text("utf-8"))["project"]
+
+    assert project["license-files"] == ["LICENSE", "NOTICE"]
