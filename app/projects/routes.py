@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Literal
 
 from fastapi import APIRouter, Depends, Request
-from fastapi.responses import FileResponse
+from fastapi.responses import FileResponse, PlainTextResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
@@ -34,6 +35,8 @@ PROCESS = [Depends(needs(Permission.PROCESS))]
 REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"
 """A report is a file of the project: it may load nothing else."""
 
+
+FINDINGS_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json"}
 
 LOOK_LIMIT_S = 60.0
 COMPARED_WITHIN_S = 0.3
@@ -132,6 +135,24 @@ def report(project_id: str, server: Server) -> FileResponse:
     path = server.projects.result(project_id, "report.html")
     policy = {"Content-Security-Policy": REPORT_POLICY}
     return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
+
+
+@router.get(
+    "/projects/{project_id}/findings.{ending}",
+    response_class=PlainTextResponse,
+    summary="Findings as a table or for a GIS",
+)
+def findings(
+    project_id: str, ending: Literal["csv", "geojson"], server: Server
+) -> PlainTextResponse:
+    """Download the findings of the map: CSV in its CRS, or GeoJSON in longitude and latitude; of a
+    map that is not georeferenced both in its local frame.
+    """
+    from recon4.export.findings import findings_file  # brings pyproj
+
+    _, text = findings_file(server.projects.folder(project_id), f".{ending}")
+    head = {"Content-Disposition": f'attachment; filename="{project_id}-findings.{ending}"'}
+    return PlainTextResponse(text, media_type=FINDINGS_TYPES[ending], headers=head)
 
 
 @router.get("/projects/{project_id}/thumbnail", response_class=FileResponse, summary="Thumbnail")

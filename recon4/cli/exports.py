@@ -1,4 +1,4 @@
-"""The command ``recon4 export``: the map of a project, or its poses, as files."""
+"""The command ``recon4 export``: the map of a project, its poses or findings, as files."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ def export(
         Path,
         typer.Argument(
             help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses; "
-            ".3dtk = folder of scans with poses for 3DTK."
+            ".3dtk = folder of scans with poses for 3DTK; .csv, .geojson = the findings."
         ),
     ],
     *,
@@ -38,19 +38,23 @@ def export(
     ] = False,
     draft: DraftOption = False,
 ) -> None:
-    """Write the map of a project, in any CRS when it is georeferenced, or its poses.
+    """Write the map of a project, in any CRS when it is georeferenced, its poses or findings.
 
     Says whether the map is approved. An approval that cannot be trusted is refused.
     """
     confine_command(write=[file.parent])
     from recon4.cli.terminal import watcher
+    from recon4.export.findings import ENDINGS, export_findings
     from recon4.export.map_files import MapExport, export_map, export_poses
     from recon4.export.three_dtk import export_3dtk
 
-    if file.suffix.lower() == ".txt":
+    if file.suffix.lower() in (".txt", *ENDINGS):
         if crs:
-            raise typer.BadParameter("--crs is for maps; poses are written in the map's frame")
-        write(f"{export_poses(project, file, draft=draft)} poses in {file}")
+            raise typer.BadParameter("--crs is for maps: .laz and .ply")
+        if file.suffix.lower() == ".txt":
+            write(f"{export_poses(project, file, draft=draft)} poses in {file}")
+        else:
+            write(f"{export_findings(project, file)} findings in {file}")
         _write_approval(project, draft=draft)
         return
     with watcher() as progress:

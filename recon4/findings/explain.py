@@ -21,6 +21,12 @@ A code keeps its meaning in all versions. The verdict of a map is that of its wo
 *good*, *note* (the verdict stays good), *check* or *do not use*.
 `recon4 audit PROJECT` works the findings of a finished map out again, without a new map.
 
+On the pages each finding has a link to its place in the viewer. `recon4 export PROJECT FILE.csv`
+(or `.geojson`, also on the page of the project) writes all of them: as a table with both ends of
+each stretch in the CRS of the map, or as lines along the walk in longitude and latitude. If the map
+is not georeferenced, both are in its local frame, and the file says so. A finding about the whole
+map has no place there.
+
 This page is made from the catalog of the texts: `make docs`.
 """
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import msgspec
 
@@ -13,7 +13,7 @@ from recon4.findings.finding import Level, Point
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SaidFinding:
-    """A finding as `recon4.findings.wording.said` writes it, without its values."""
+    """A finding as `recon4.findings.wording.said` writes it."""
 
     kind: str
     """Its code; a later version may know more of them."""
@@ -28,6 +28,8 @@ class SaidFinding:
     """Positions in the map at both ends of the stretch [m]; null = not known."""
     direction: str = ""
     sensor: str = ""
+    values: dict[str, bool | int | float | str | None] = field(default_factory=dict)
+    """Figures and words that its text quotes, in SI units and radians."""
 
 
 def findings_in(summary: Mapping[str, object]) -> list[SaidFinding] | None:

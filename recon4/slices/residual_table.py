@@ -7,6 +7,7 @@ import io
 from dataclasses import astuple
 
 from recon4.evaluation.table import text_table
+from recon4.export.cells import safe_cell
 from recon4.slices.residuals import ControlReport, Residual, ResidualStatistics
 
 UNKNOWN = "–"
@@ -72,11 +73,6 @@ def residual_text(report: ControlReport) -> str:
         report.hint,
     ]
     return "\n".join(text for text in texts if text)
-
-
-def safe_cell(text: str) -> str:
-    """A cell that spreadsheets do not evaluate as a formula."""
-    return f"'{text}" if text[:1] in ("=", "+", "-", "@", "\t", "\r") else text
 
 
 def _cells(row: Residual) -> list[str]:

@@ -138,3 +138,13 @@ def test_the_bar_of_other_pages_links_to_the_stretch_on_the_page_of_the_project(
         entry(page, WEAK).get_by_role("link", name="Show in the map").click()
 
     assert "/projects/office/#span=40,44&place=" in opened.value.url
+
+
+@looks("desktop light")
+def test_the_findings_are_downloaded_as_a_table_and_for_a_gis(found, page):
+    leave_out_viewer(page)
+    page.goto(f"{found.url}/projects/office/")
+    for name, text in (("Findings, CSV", "WEAK-DIRECTION"), ("Findings, GeoJSON", "LineString")):
+        with page.expect_download() as download:
+            page.get_by_role("link", name=name).click()
+        assert text in download.value.path().read_text("utf-8")

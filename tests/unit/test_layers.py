@@ -86,6 +86,8 @@ MAY_IMPORT = {
     "recon4/export/map_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
     | {"recon4.recording.formats.poses"},
+    "recon4/export/findings.py": STAGE
+    | {"recon4.export", "recon4.findings.notes", "recon4.georeference", "recon4.review.state"},
     "recon4/export/three_dtk.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.pose_graph", "recon4.profiler"},
     "recon4/evaluation": STAGE

@@ -4,6 +4,7 @@ import { idHere } from "../shared/address.js";
 import {
   ApiError,
   fileUrl,
+  findingsUrl,
   listJobsOf,
   readProject,
   reportUrl,
@@ -87,8 +88,22 @@ function drawFiles() {
     return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
   };
   fill(byId("approval"), ...(project ? approvalLines(project.approval) : []));
-  fill(byId("files").querySelector("ul"), ...files.map(row));
+  const found = project?.summary?.findings ? ["csv", "geojson"] : [];
+  fill(byId("files").querySelector("ul"), ...files.map(row), ...found.map(findingsRow));
 }
+
+/** A download of the findings: a table, or for a GIS. */
+const findingsRow = (ending) =>
+  make(
+    "li",
+    {},
+    make(
+      "a",
+      { href: findingsUrl(id, ending), download: "" },
+      ending === "csv" ? "Findings, CSV" : "Findings, GeoJSON",
+    ),
+    make("small", {}, `findings.${ending}`),
+  );
 
 function drawStages() {
   const done = new Map((project?.stages ?? []).map((row) => [row.stage, row]));

@@ -128,6 +128,7 @@ export const stretchUrl = (id, stretch) => `${projectUrl(id)}#${stretch}`;
 export const findingHelpUrl = (kind) => at(`/docs/findings#${name(kind.toLowerCase())}`);
 export const viewerUrl = (id) => at(`/projects/${name(id)}/viewer/`);
 export const reportUrl = (id) => at(`/api/projects/${name(id)}/report`);
+export const findingsUrl = (id, ending) => at(`/api/projects/${name(id)}/findings.${ending}`);
 export const thumbnailUrl = (id, version) =>
   at(`/api/projects/${name(id)}/thumbnail?v=${name(version)}`);
 export const fileUrl = (id, file) => at(`/api/projects/${name(id)}/files/${name(file)}`);

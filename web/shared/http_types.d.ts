@@ -940,6 +940,7 @@ export interface SaidFinding {
   place_m: [[number, number, number], [number, number, number]] | null;
   direction: string;
   sensor: string;
+  values: Record<string, boolean | number | string | null>;
 }
 
 export interface SavedRig {
@@ -1305,6 +1306,10 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/files/{name}": {
     path: { project_id: string; name: string };
+    response: string;
+  };
+  "GET /api/projects/{project_id}/findings.{ending}": {
+    path: { project_id: string; ending: string };
     response: string;
   };
   "GET /api/projects/{project_id}/jobs": {

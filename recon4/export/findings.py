@@ -1,0 +1,146 @@
+"""The findings of a map as a table (CSV) and as geometries for a GIS (GeoJSON)."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import ConfigError, StoreError
+from recon4.export.cells import safe_cell
+from recon4.findings.notes import SaidFinding, findings_in
+from recon4.geometry.se3 import Array
+from recon4.georeference.crs import CrsTransform, to_geodetic
+from recon4.georeference.crs_file import read_crs
+from recon4.model.trajectory import Trajectory
+from recon4.review.state import read_summary
+from recon4.store.arrays import load_trajectory
+from recon4.store.atomic import write_text
+from recon4.store.project import read_artifacts
+
+ENDINGS = (".csv", ".geojson")
+_MAX_LINE_POINTS = 500
+"""A longer stretch is thinned out."""
+_STAGES = ("level", "map_2d")
+"""Whose trajectory the map has, of each kind of walk."""
+_COLUMNS = ("kind", "level", "title", "start_s", "end_s", "sensor", "direction", "text", "remedy")
+
+
+def export_findings(project: Path, path: Path) -> int:
+    """Write the findings of a finished map; returns how many.
+
+    Args:
+        project: The project folder.
+        path: File to write, ``.csv`` or ``.geojson``.
+
+    Raises:
+        ConfigError: If the ending is another.
+        StoreError: If there is no map yet, an earlier version made it, or the file cannot be
+            written.
+    """
+    found, text = findings_file(project, path.suffix.lower())
+    write_text(path, text)
+    return found
+
+
+def findings_file(project: Path, ending: str) -> tuple[int, str]:
+    """How many findings a finished map has, and the file as text; see `export_findings`."""
+    if ending not in ENDINGS:
+        raise ConfigError(f"findings are written as .csv or .geojson, got {ending or 'no ending'}")
+    findings = findings_in(read_summary(project) or {})
+    if findings is None:
+        raise StoreError(f"{project} has no findings yet: run recon4 process, or recon4 audit")
+    artifacts = read_artifacts(project)
+    place = read_crs(artifacts["level"]) if "level" in artifacts else None
+    lines = [_line(one, _walk(artifacts)) for one in findings]
+    if ending == ".csv":
+        return len(findings), _table(findings, lines, place)
+    return len(findings), _geometries(findings, lines, place)
+
+
+def _walk(artifacts: dict[str, Path]) -> Trajectory | None:
+    files = [artifacts[name] / "trajectory.npz" for name in _STAGES if name in artifacts]
+    return next((load_trajectory(file) for file in files if file.exists()), None)
+
+
+def _line(finding: SaidFinding, walk: Trajectory | None) -> Array:
+    """Positions along the stretch of a finding in the map [m], (N, 3); none if it has no place."""
+    if finding.span_s is None or walk is None or not len(walk):
+        return np.array(finding.place_m or ()).reshape(-1, 3)
+    ends_ns = walk.t_ns[0] + np.rint(1e9 * np.array(finding.span_s)).astype(np.int64)
+    ends_ns = np.clip(ends_ns, walk.t_ns[0], walk.t_ns[-1])
+    between = walk.T_a_b.t[(walk.t_ns > ends_ns[0]) & (walk.t_ns < ends_ns[1])]
+    first, last = walk.at(ends_ns).t
+    return np.concatenate(
+        [[first], between[:: max(1, -(-len(between) // _MAX_LINE_POINTS))], [last]]
+    )
+
+
+def _table(findings: list[SaidFinding], lines: list[Array], place: CrsTransform | None) -> str:
+    """One row a finding, with both ends of its stretch in the CRS of the map or its local frame."""
+    out = io.StringIO()
+    frame = f"easting, northing, height in {place.crs}" if place else "x, y, z in the map frame"
+    out.write(f"# recon4 findings; coordinates: {frame} [m]\n")
+    axes = ("easting", "northing", "height") if place else ("x", "y", "z")
+    ends = [f"{end}_{axis}_m" for end in ("from", "to") for axis in axes]
+    rows = csv.writer(out, lineterminator="\n")
+    rows.writerow([*_COLUMNS, *ends])
+    for finding, line in zip(findings, lines, strict=True):
+        start_s, end_s = finding.span_s or ("", "")
+        values = {"start_s": start_s, "end_s": end_s}
+        cells = [str(values.get(name, getattr(finding, name, ""))) for name in _COLUMNS]
+        p = line[[0, -1]] if len(line) else line
+        p = place.to_crs(p) if place and len(p) else p
+        rows.writerow([*map(safe_cell, cells), *(f"{value:.3f}" for value in p.ravel())])
+    return out.getvalue()
+
+
+def _geometries(findings: list[SaidFinding], lines: list[Array], place: CrsTransform | None) -> str:
+    """A feature a finding: its stretch of the walk, a point, or no geometry."""
+    frame = (
+        "WGS 84: longitude, latitude [deg], ellipsoidal height [m]"
+        if place
+        else "map frame: x, y, z [m]; the map is not georeferenced"
+    )
+    features = [
+        {
+            "type": "Feature",
+            "geometry": _geometry(line, place),
+            "properties": _properties(finding) | {"coordinates": frame},
+        }
+        for finding, line in zip(findings, lines, strict=True)
+    ]
+    whole = {"type": "FeatureCollection", "features": features}
+    return json.dumps(whole, ensure_ascii=False, indent=1) + "\n"
+
+
+def _geometry(line: Array, place: CrsTransform | None) -> dict[str, object] | None:
+    if not len(line):
+        return None
+    p = line
+    if place:
+        lat_rad, lon_rad, height_m = to_geodetic(place.origin, line)
+        p = np.stack([np.rad2deg(lon_rad), np.rad2deg(lat_rad), height_m], axis=1)
+    positions = [[round(x, 9), round(y, 9), round(z, 3)] for x, y, z in p.tolist()]
+    if np.ptp(line, axis=0).max() == 0.0:
+        return {"type": "Point", "coordinates": positions[0]}
+    return {"type": "LineString", "coordinates": positions}
+
+
+def _properties(finding: SaidFinding) -> dict[str, object]:
+    start_s, end_s = finding.span_s or (None, None)
+    return {
+        "kind": finding.kind,
+        "level": finding.level,
+        "title": finding.title,
+        "start_s": start_s,
+        "end_s": end_s,
+        "sensor": finding.sensor,
+        "direction": finding.direction,
+        "text": finding.text,
+        "remedy": finding.remedy,
+        "values": finding.values,
+    }
