@@ -69,7 +69,7 @@ def test_what_the_walk_shows_is_within_its_standard_deviation(calibrated):
     ]
 
     assert len(known) > 40
-    assert any("beams by up to" in text for text in rig_texts(found.figures))
+    assert any("beams differs by up to" in text for text in rig_texts(found.figures))
     assert np.mean(np.abs(error) < 3.0 * np.array([row.sd for row in known])) > 0.8
 
 
