@@ -7,6 +7,7 @@ import os
 import subprocess
 import sys
 import time
+from contextlib import suppress
 
 import pytest
 
@@ -59,7 +60,8 @@ async def line_of(code: str, *, within_s: float) -> bytes:
     try:
         return await first_line(process, within_s=within_s)
     finally:
-        process.kill()
+        with suppress(ProcessLookupError):  # it may have ended by itself
+            process.kill()
         await process.wait()
 
 
