@@ -52,10 +52,10 @@ FOREIGN = ('found["guesses"]', '"levelling"', '"levelled_by"', '"metre"', "node 
 
 
 def listed(paths: list[str]) -> list[str]:
-    """Tracked files below some paths; all without any."""
-    command = ["git", "ls-files", *paths]
+    """Files below some paths, all without any: those that git tracks, and new ones."""
+    command = ["git", "ls-files", "--cached", "--others", "--exclude-standard", *paths]
     found = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
-    return found.stdout.splitlines()
+    return [name for name in found.stdout.splitlines() if (ROOT / name).is_file()]
 
 
 def lines_with(paths: list[str]) -> Iterator[tuple[str, int, str, str]]:

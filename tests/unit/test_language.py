@@ -1,6 +1,7 @@
 """One language: no retired word, and one class for each class name."""
 
 import ast
+import subprocess
 from collections import defaultdict
 
 from tools.language import ROOT, lines_with
@@ -18,6 +19,14 @@ def test_the_search_finds_retired_words(tmp_path, monkeypatch):
     (tmp_path / "page.md").write_text(f"The program was {WORD} so.\nFine.\nA {WORD}er.\n")
 
     assert [(number, word) for _, number, word, _ in lines_with([])] == [(1, WORD)]
+
+
+def test_a_new_file_is_searched_before_it_is_committed(tmp_path, monkeypatch):
+    monkeypatch.setattr("tools.language.ROOT", tmp_path)
+    subprocess.run(["git", "init", "-q"], cwd=tmp_path, check=True)
+    (tmp_path / "page.md").write_text(f"{WORD}\n")
+
+    assert [name for name, *_ in lines_with([])] == ["page.md"]
 
 
 def test_each_class_name_stands_for_one_idea():
