@@ -89,9 +89,12 @@ def of_project(made: dict[str, Path]) -> Workflow:
     """The workflow of a project.
 
     Args:
-        made: Stage -> folder of its artifact; at least the import is there.
+        made: Stage -> folder of its artifact. Without an import it cannot go on: its runner says so.
     """
-    return PLANAR if PLANAR.imports.name in made else of_frames(made[LIDAR.imports.name])
+    if PLANAR.imports.name in made:
+        return PLANAR
+    frames = made.get(LIDAR.imports.name)
+    return of_frames(frames) if frames is not None else LIDAR
 
 
 def has_map(made: Container[str]) -> bool:

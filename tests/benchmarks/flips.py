@@ -15,6 +15,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from app.access.reserve import RESERVE_FILE
 from recon4.archive.verify import verify
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
@@ -51,9 +52,13 @@ def make(root: Path) -> Path:
 
 
 def flip_bits(root: Path, flips: int, *, seed: int = 1) -> Outcome:
-    """Flip, verify, and put back."""
+    """Flip, verify, and put back; disk space that is kept has no content."""
     rng, outcome = random.Random(seed), Outcome()
-    names = [name for name in files_below(root) if (root / name).stat().st_size]
+    names = [
+        name
+        for name in files_below(root)
+        if (root / name).stat().st_size and not name.endswith(RESERVE_FILE)
+    ]
     for _ in range(flips):
         path = root / rng.choice(names)
         whole, mode = path.read_bytes(), path.stat().st_mode
