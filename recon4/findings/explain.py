@@ -20,6 +20,8 @@ pages and in `summary.json`. `recon4 explain CODE` prints the same text.
 A code keeps its meaning in all versions. The verdict of a map is that of its worst finding:
 *good*, *note* (the verdict stays good), *check* or *do not use*.
 `recon4 audit PROJECT` works the findings of a finished map out again, without a new map.
+An approval covers the findings too: with other findings the map is a draft until it is approved
+again.
 
 On the pages each finding has a link to its place in the viewer. `recon4 export PROJECT FILE.csv`
 (or `.geojson`, also on the page of the project) writes all of them: as a table with both ends of

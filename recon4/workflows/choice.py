@@ -89,7 +89,7 @@ def of_project(made: dict[str, Path]) -> Workflow:
     """The workflow of a project.
 
     Args:
-        made: Stage -> folder of its artifact. Without an import it cannot go on: its runner says so.
+        made: Stage -> folder of its artifact; without an import its runner refuses to go on.
     """
     if PLANAR.imports.name in made:
         return PLANAR
