@@ -63,6 +63,7 @@ from app.projects.import_folders import ImportFolders
 from app.projects.store import ProjectStore
 from app.projects.thumbnail import Thumbnails
 from app.projects.trash import Trash
+from app.review import acknowledging
 from app.review import routes as review_routes
 from app.review.checks import ApprovalChecks
 from app.review.records import record_all
@@ -155,6 +156,7 @@ def _routes() -> list[BaseRoute]:
     more = (choices, server_routes, metrics_routes, reference_routes, align_routes, docs_pages)
     for part in more:
         router.include_router(part.router)
+    router.include_router(acknowledging.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
     for part in (review_routes, slice_routes, rig_routes, storage_routes):

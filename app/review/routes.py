@@ -49,7 +49,7 @@ from recon4.review.approval import (
 )
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval
-from recon4.review.decisions import Decided, Decision, DecisionKind, fold
+from recon4.review.decisions import ABOUT_MAPS, Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
 from recon4.review.newest_approval import judging_folders
 from recon4.review.pairs import (
@@ -368,5 +368,5 @@ def _busy(project_id: str, server: ServerParts) -> bool:
 def _now_and_before(rows: Sequence[JournalRow]) -> tuple[Decided, Decided]:
     """Decisions in force now, and before the last decision."""
     decisions = [row.decision() for row in rows]
-    decisions = [one for one in decisions if one.kind is not DecisionKind.APPROVE]
+    decisions = [one for one in decisions if one.kind not in ABOUT_MAPS]
     return fold(decisions), fold(decisions[:-1])

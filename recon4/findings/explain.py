@@ -23,7 +23,9 @@ A code keeps its meaning in all versions. The verdict of a map is that of its wo
 An approval covers the findings too: with other findings the map is a draft until it is approved
 again.
 
-On the pages each finding has a link to its place in the viewer. `recon4 export PROJECT FILE.csv`
+On the pages each finding has a link to its place in the viewer, and a reviewer can acknowledge it
+with a note ([review](review.md#acknowledging-a-finding)). More than four can be filtered by level
+and kind. `recon4 export PROJECT FILE.csv`
 (or `.geojson`, also on the page of the project) writes all of them: as a table with both ends of
 each stretch in the CRS of the map, or as lines along the walk in longitude and latitude. If the map
 is not georeferenced, both are in its local frame, and the file says so. A finding about the whole

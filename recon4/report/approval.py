@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from html import escape
 
 from recon4.model.usability import Usability
 
 _BEGIN, _END = "<!-- approval -->", "<!-- /approval -->"
+_LAST = f"</ul></section>{_END}"
 _BLOCK = re.compile(f"{re.escape(_BEGIN)}.*?{re.escape(_END)}", re.DOTALL)
 
 _LEVELS: dict[str, str] = {
@@ -49,8 +50,14 @@ def replace_block(page: str, block: str) -> str:
     return page + block
 
 
+def add_to_block(page: str, lines: Iterable[str]) -> str:
+    """Add lines of HTML to the block with the approval; escaping is up to the caller."""
+    items = "".join(f'<li><b class="note">acknowledged</b>{line}</li>' for line in lines)
+    return page.replace(_LAST, items + _LAST, 1)
+
+
 def _block(level: str, mark: str, words: str) -> str:
     return (
         f'{_BEGIN}<section class="verdict {level}"><ul>'
-        f'<li><b class="{level}">{mark}</b>{words}</li></ul></section>{_END}'
+        f'<li><b class="{level}">{mark}</b>{words}</li>{_LAST}'
     )

@@ -19,6 +19,7 @@ import msgspec
 
 from recon4.errors import StoreError
 from recon4.model.usability import MapVerdict, Usability, verdict_in
+from recon4.review.acknowledgments import signed_acknowledgments, write_into_report
 from recon4.review.approved import VERSIONS, Approval, approval_of, versions_without_row
 from recon4.review.decisions import ApprovalFacts, Decided, Decision, DecisionKind, fold
 from recon4.review.journal import JournalRow, append, broken, head, read_rows
@@ -32,8 +33,9 @@ from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import SUMMARY, Project
 from recon4.store.seal import changing, check_sealed
 
-FORMAT = 3
-"""Format of the statement. 2: it contains the manifest hash of every artifact. 3: the verdict."""
+FORMAT = 4
+"""Format of the statement. 2: it contains the manifest hash of every artifact. 3: the verdict.
+4: acknowledgments."""
 MIN_REASON_CHARACTERS = 10
 """A shorter text is no reason to approve a map in spite of its verdict."""
 _FIGURES = (
@@ -93,6 +95,8 @@ class ApprovalStatement(TypedDict):
     """File name -> SHA-256."""
     results: dict[str, str]
     journal: SignedJournal
+    acknowledgments: list[dict[str, object]]
+    """Notes of reviewers about findings of this map, fields of `Acknowledgment`; since format 4."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -308,6 +312,7 @@ def _issue(root: Path, asked: _ApprovalRequest, *, version: int, key_file: Path)
     with atomic_folder(folder) as made:
         for name in asked.summary["hashes"]["results"]:
             stamp_file(root / name, made / name, stamp)
+        write_into_report(made / "report.html", statement["acknowledgments"])
         _write_summary(made, asked.summary, stamp)
         issued = {path.name: hash_file(path) for path in sorted(made.iterdir())}
         signature = sign({"hash": stamp.hash, "issued": issued}, key_file)
@@ -354,6 +359,7 @@ def _statement(
             "head": head(asked.rows),
             "decisions": asked.decided.key,
         },
+        "acknowledgments": signed_acknowledgments(asked.rows, summary),
     }
 
 

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, replace
 from enum import StrEnum
-from typing import Any, TypedDict
+from typing import Any, NotRequired, TypedDict
 
 import msgspec
 import numpy as np
@@ -43,10 +43,14 @@ class DecisionKind(StrEnum):
     """Redo the decision that was undone last."""
     APPROVE = "approve"
     """A finished map was approved; changes no decision."""
+    ACKNOWLEDGE = "acknowledge"
+    """A finding of a map was acknowledged; changes no decision."""
 
 
 MEASURED = (DecisionKind.REPLACE, DecisionKind.ADD)
 """Kinds with a measurement of their own."""
+ABOUT_MAPS = (DecisionKind.APPROVE, DecisionKind.ACKNOWLEDGE)
+"""Kinds that change no decision, so they cannot be undone."""
 ABOUT_PAIRS = (DecisionKind.ACCEPT, DecisionKind.REJECT, DecisionKind.RESTORE, *MEASURED)
 
 
@@ -86,6 +90,20 @@ class ApprovalFacts:
     """On the map; empty before statement format 3."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SeenFinding:
+    """A finding as the journal keeps it: without wording and place; the fields are its keys."""
+
+    kind: str
+    """Its code."""
+    level: str
+    span_s: tuple[float, float] | None
+    """Its stretch of the walk [s]; None = the whole walk."""
+    direction: str
+    sensor: str
+    values: dict[str, bool | int | float | str | None]
+
+
 class DecisionBody(TypedDict):
     """Fields that the journal stores beside its columns, as JSON values."""
 
@@ -94,6 +112,8 @@ class DecisionBody(TypedDict):
     """Fields of `Measurement`; null = not a number."""
     facts: Mapping[str, object] | None
     """Fields of `ApprovalFacts`."""
+    finding: NotRequired[Mapping[str, object]]
+    """Fields of `SeenFinding`; only there in an acknowledgment."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,6 +131,8 @@ class Decision:
     """Of `REPLACE` and `ADD`."""
     facts: ApprovalFacts | None = None
     """Of `APPROVE`."""
+    finding: SeenFinding | None = None
+    """Of `ACKNOWLEDGE`."""
 
     def __post_init__(self) -> None:
         if self.who in ("", AUTOMATIC):
@@ -125,14 +147,20 @@ class Decision:
             raise ConfigError("a pose is x y z and a quaternion x y z w, all finite")
         if (self.measurement is None) == (self.kind in MEASURED):
             raise ConfigError(f"a decision to {self.kind} with or without a measurement")
+        acknowledges = self.kind is DecisionKind.ACKNOWLEDGE
+        if acknowledges != (self.finding is not None) or (acknowledges and not self.why.strip()):
+            raise ConfigError("an acknowledgment needs a finding and a note, no other decision one")
 
     def body(self) -> DecisionBody:
         """What the journal stores beside its columns."""
-        return {
+        body: DecisionBody = {
             "T_i_j": list(self.T_i_j),
             "measurement": to_plain(self.measurement),
             "facts": asdict(self.facts) if self.facts else None,
         }
+        if self.finding:
+            body["finding"] = to_plain(self.finding)
+        return body
 
     @staticmethod
     def of(kind: str, who: str, why: str, *, pair: Pair | None, body: DecisionBody) -> Decision:
@@ -151,6 +179,7 @@ class Decision:
                 T_i_j=tuple(body["T_i_j"]),
                 measurement=_measurement(record) if record else None,
                 facts=msgspec.convert(body["facts"], ApprovalFacts | None),
+                finding=msgspec.convert(body.get("finding"), SeenFinding | None),
             )
         except (KeyError, TypeError, ValueError, msgspec.ValidationError) as error:
             raise StoreError(f"the journal has a row that is no decision: {error}") from error
@@ -210,7 +239,7 @@ def fold(decisions: Iterable[Decision]) -> Decided:
             if not source:
                 raise StoreError(f"the journal is damaged: a row has nothing to {decision.kind}")
             target.append(source.pop())
-        elif decision.kind is not DecisionKind.APPROVE:
+        elif decision.kind not in ABOUT_MAPS:
             done.append(decision)
             undone.clear()
     standing: dict[Pair, Standing] = {}

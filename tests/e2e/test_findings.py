@@ -40,7 +40,8 @@ WEAK = Finding(
 )
 OLD = Finding(kind=FindingKind.RIG_NOT_COMPARED, level=Level.NOTE)
 AGREES = Finding(kind=FindingKind.RIG_AGREES, level=Level.GOOD)
-FINDINGS = (LOST, WEAK, OLD, AGREES)
+FAST = Finding(kind=FindingKind.TOO_FAST, level=Level.NOTE, span_s=(7.0, 7.0))
+FINDINGS = (LOST, WEAK, OLD, FAST, AGREES)
 
 
 @pytest.fixture(scope="module")
@@ -148,3 +149,34 @@ def test_the_findings_are_downloaded_as_a_table_and_for_a_gis(found, page):
         with page.expect_download() as download:
             page.get_by_role("link", name=name).click()
         assert text in download.value.path().read_text("utf-8")
+
+
+@looks("desktop light", "phone dark")
+def test_a_reviewer_acknowledges_a_finding_with_a_note_that_stays(found, page, screenshot):
+    leave_out_viewer(page)
+    page.goto(f"{found.url}/projects/office/")
+    one = entry(page, OLD)
+    one.get_by_text("Acknowledge…").click()
+    one.get_by_label("Note").fill("the rig is new, checked on the bench")
+    one.get_by_role("button", name="Acknowledge").click()
+
+    expect(one).to_contain_text("Acknowledged by local")
+    expect(one).to_contain_text("checked on the bench")
+    page.reload()
+    expect(one).to_contain_text("checked on the bench")
+    expect(entry(page, AGREES).get_by_text("Acknowledge…")).to_have_count(0)
+    expect(page.locator("#state")).to_contain_text("Do not use this map")
+    screenshot(page, "finding-acknowledged")
+
+
+@looks("desktop light")
+def test_findings_are_filtered_by_level_and_kind_with_the_keyboard(found, page):
+    leave_out_viewer(page)
+    page.goto(f"{found.url}/projects/office/")
+    page.get_by_label("Level of findings").focus()
+    page.keyboard.type("Note")
+
+    expect(page.locator("finding-list ul.findings > li:visible")).to_have_count(2)
+    page.get_by_label("Kind of findings").select_option("TOO-FAST")
+    expect(page.locator("finding-list ul.findings > li:visible")).to_have_count(1)
+    expect(entry(page, FAST)).to_be_visible()

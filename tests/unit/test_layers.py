@@ -78,7 +78,7 @@ MAY_IMPORT = {
         "recon4.slam2d",
     }
     | {"recon4.report.approval"}
-    | {f"recon4.findings.{name}" for name in ("review_problems", "wording")},
+    | {f"recon4.findings.{name}" for name in ("notes", "review_problems", "wording")},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.mapping"},
     "recon4/export": STAGE

@@ -17,6 +17,7 @@ export const KINDS = {
   undo: "undid",
   redo: "redid",
   approve: "approved the map",
+  acknowledge: "acknowledged a finding",
 };
 
 /** What each key does; the help sheet is made of this. */

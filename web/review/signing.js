@@ -3,7 +3,7 @@
 import { badge } from "../shared/badge.js";
 import { attempt, make } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
-import { findingList } from "../shared/finding_list.js";
+import { fixedFindingList } from "../shared/finding_list.js";
 import { isReason, verdictState } from "../shared/verdict.js";
 import { open } from "./dialogs.js";
 
@@ -17,7 +17,7 @@ const about = (map) =>
     "section",
     { className: "signed-map", tabIndex: 0, ariaLabel: "What is approved" },
     make("p", {}, badge(verdictState(map.verdict))),
-    findingList(map),
+    fixedFindingList(map),
     make(
       "dl",
       {},

@@ -183,6 +183,10 @@ export function watchJobs(onJob, onLink) {
 
 export const readReview = (project_id) =>
   request("GET /api/projects/{project_id}/review", { path: { project_id } });
+export const readAcknowledgments = (project_id) =>
+  request("GET /api/projects/{project_id}/review/acknowledgments", { path: { project_id } });
+export const acknowledge = (project_id, body) =>
+  request("POST /api/projects/{project_id}/review/acknowledgments", { path: { project_id }, body });
 export const readQueue = (project_id) =>
   request("GET /api/projects/{project_id}/review/queue", { path: { project_id } });
 export const readWalk = (project_id) =>

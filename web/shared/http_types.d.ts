@@ -7,6 +7,20 @@ export interface Account {
   created: string;
 }
 
+export interface Acknowledgment {
+  who: string;
+  time: string;
+  why: string;
+  kind: string;
+  span_s: [number, number] | null;
+  finding: number | null;
+}
+
+export interface AcknowledgmentsView {
+  may_acknowledge: boolean;
+  notes: Array<Acknowledgment>;
+}
+
 export interface AddReference {
   path: string;
   frame?: "auto" | "map" | "crs";
@@ -535,6 +549,13 @@ export interface Move {
   frame_id: number;
   t_ns: number;
   moved_m: number;
+}
+
+export interface NewAcknowledgment {
+  finding: number;
+  kind: string;
+  span_s?: [number, number] | null;
+  why: string;
 }
 
 export interface NewCapture {
@@ -1324,6 +1345,10 @@ export interface Operations {
     path: { project_id: string };
     response: ReviewView;
   };
+  "GET /api/projects/{project_id}/review/acknowledgments": {
+    path: { project_id: string };
+    response: AcknowledgmentsView;
+  };
   "GET /api/projects/{project_id}/review/effect": {
     path: { project_id: string };
     response: Effect | SupersededEffect;
@@ -1560,6 +1585,11 @@ export interface Operations {
   "POST /api/projects/{project_id}/remake": {
     path: { project_id: string };
     response: JobView;
+  };
+  "POST /api/projects/{project_id}/review/acknowledgments": {
+    path: { project_id: string };
+    body: NewAcknowledgment;
+    response: AcknowledgmentsView;
   };
   "POST /api/projects/{project_id}/review/align": {
     path: { project_id: string };

@@ -1,5 +1,6 @@
 """The fold over the journal."""
 
+import json
 import math
 
 import numpy as np
@@ -7,13 +8,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from recon4.errors import StoreError
+from recon4.errors import ConfigError, StoreError
 from recon4.review.decisions import (
+    ABOUT_MAPS,
     NOTHING_DECIDED,
     ApprovalFacts,
     Decision,
     DecisionKind,
     Measurement,
+    SeenFinding,
     fold,
     numbers_of,
     pose_of,
@@ -29,11 +32,21 @@ MEASURED = Measurement(
     degeneracy=math.nan,
     iterations=9,
 )
+SEEN = SeenFinding(
+    kind="WEAK-DIRECTION",
+    level="check",
+    span_s=(40.0, 44.0),
+    direction="horizontal",
+    sensor="",
+    values={"known": True, "sd_m": 0.4},
+)
 
 
 def decide(kind, pair=(2, 7), who="Eva", **more):
     if kind in (DecisionKind.UNDO, DecisionKind.REDO, DecisionKind.APPROVE):
         return Decision(kind=kind, who=who, **more)
+    if kind is DecisionKind.ACKNOWLEDGE:
+        return Decision(kind=kind, who=who, **{"why": "seen on site", "finding": SEEN, **more})
     if kind in (DecisionKind.REPLACE, DecisionKind.ADD):
         more.setdefault("measurement", MEASURED)
     return Decision(kind=kind, who=who, pair=pair, **more)
@@ -100,6 +113,29 @@ def test_an_approval_changes_nothing_and_is_not_undone():
     )
     with pytest.raises(StoreError, match="nothing to undo"):
         fold([decide(DecisionKind.APPROVE, facts=facts), decide(DecisionKind.UNDO)])
+
+
+def test_an_acknowledgment_comes_back_from_the_journal_and_changes_nothing():
+    note = decide(DecisionKind.ACKNOWLEDGE)
+    body = json.loads(json.dumps(note.body()))
+
+    assert Decision.of("acknowledge", "Eva", "seen on site", pair=None, body=body) == note
+    rows = [decide(DecisionKind.REJECT), note]
+    assert fold([*rows, decide(DecisionKind.UNDO)]).standing == ()
+    assert "finding" not in decide(DecisionKind.REJECT).body()
+
+
+@pytest.mark.parametrize(
+    ("kind", "more"),
+    [
+        (DecisionKind.ACKNOWLEDGE, {"why": " "}),
+        (DecisionKind.ACKNOWLEDGE, {"finding": None}),
+        (DecisionKind.ACCEPT, {"finding": SEEN}),
+    ],
+)
+def test_an_acknowledgment_has_a_finding_and_a_note_and_nothing_else_has(kind, more):
+    with pytest.raises(ConfigError, match="a finding and a note"):
+        decide(kind, **more)
 
 
 def test_the_key_depends_on_what_stands_and_not_on_how_it_came_about():
@@ -182,7 +218,7 @@ def test_a_thousand_operations_and_undoing_all_of_them_is_the_beginning(seed):
             undoable, redoable = undoable - 1, redoable + 1
         elif kind is DecisionKind.REDO:
             undoable, redoable = undoable + 1, redoable - 1
-        elif kind is not DecisionKind.APPROVE:
+        elif kind not in ABOUT_MAPS:
             undoable, redoable = undoable + 1, 0
     decided = fold(rows)
     assert (decided.undoable, decided.redoable) == (undoable, redoable)
