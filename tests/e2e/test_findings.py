@@ -1,7 +1,9 @@
 """Findings on the pages: each leads to its place in the viewer, which marks its stretch."""
 
 import json
+from urllib.parse import parse_qs, urlsplit
 
+import numpy as np
 import pytest
 from playwright.sync_api import expect
 
@@ -69,6 +71,21 @@ LOOKS_AT = """(middle) => {
   if (!controls || document.getElementById("cover")) return false;
   const { x, y, z } = controls.getTarget(controls._target.clone());  // y up: x y z = -y z -x
   return Math.hypot(-z - middle[0], -x - middle[1], y - middle[2]) < 0.05;
+}"""
+
+
+MARKED_PIXELS = """() => {
+  const canvas = document.querySelector("#views canvas");
+  const color = getComputedStyle(canvas).getPropertyValue("--bad").trim();
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.fillStyle = color;
+  pen.fillRect(0, 0, 1, 1);
+  const wanted = pen.getImageData(0, 0, 1, 1).data;
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4)
+    count += [0, 1, 2].every((k) => Math.abs(data[at + k] - wanted[k]) < 8);
+  return count;
 }"""
 
 
@@ -180,3 +197,20 @@ def test_findings_are_filtered_by_level_and_kind_with_the_keyboard(found, page):
     page.get_by_label("Kind of findings").select_option("TOO-FAST")
     expect(page.locator("finding-list ul.findings > li:visible")).to_have_count(1)
     expect(entry(page, FAST)).to_be_visible()
+
+
+@looks("desktop light", "phone dark")
+def test_a_finding_is_cut_and_marked_in_the_slices(found, page, screenshot):
+    page.goto(f"{found.url}/projects/office/slices/")
+    page.locator("map-verdict summary").first.click()
+    entry(page, WEAK).get_by_role("link", name="Cut here").click()
+
+    page.wait_for_url("**/slices/?*mark=*")
+    expect(page.locator(".facing")).to_contain_text("z = 1.200 m")
+    expect(page.locator("body.drawing")).to_have_count(0)
+    assert page.evaluate(MARKED_PIXELS) > 50
+    middle = np.mean(WEAK.place_m, axis=0)
+    query = parse_qs(urlsplit(page.url).query)
+    cut = [float(query[name][0]) for name in ("u", "v", "z")]
+    np.testing.assert_allclose(cut, middle, atol=1e-3)
+    screenshot(page, "slices-finding")

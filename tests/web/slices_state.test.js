@@ -13,6 +13,8 @@ import {
   normalOf,
   parse,
 } from "../../web/slices/state.js";
+import { stretchMark } from "../../web/slices/stretch_mark.js";
+import { sliceOf } from "../../web/shared/verdict.js";
 
 test("an image has the pixels of the screen, but no more than the server draws", () => {
   assert.deepEqual(imageSize(800, 600, 1), { width: 800, height: 600 });
@@ -82,4 +84,23 @@ test("a normal and its angles are the same thing", () => {
 test("a scale bar has a round length and its caption", () => {
   assert.deepEqual(scaleBar(40), { meters: 2, px: 80, text: "2 m" });
   assert.deepEqual(scaleBar(200), { meters: 0.5, px: 100, text: "50 cm" });
+});
+
+test("the slice at a finding is at its height, in the middle of its stretch, and marks it", () => {
+  const place_m = /** @type {any} */ ([
+    [1, 2, 1.2],
+    [31, 2, 1.4],
+  ]);
+  const state = parse(sliceOf({ place_m }));
+
+  assert.deepEqual(planeOf(state), { kind: "horizontal", z_m: 1.3, thickness_m: 0.1 });
+  assert.deepEqual([state.u, state.v, state.m], [16, 2, 0.09]);
+  assert.deepEqual(stretchMark(state).points, [
+    [1, 2],
+    [31, 2],
+  ]);
+  assert.deepEqual(stretchMark(parse(format(state))), stretchMark(state));
+  assert.deepEqual(stretchMark({ ...state, kind: "vertical" }).points, []);
+  assert.deepEqual(stretchMark(parse("mark=1,2,x")).points, []);
+  assert.deepEqual(stretchMark(parse("")).points, []);
 });

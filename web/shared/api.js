@@ -124,6 +124,7 @@ export const readOffset = async (url) =>
 export const projectUrl = (id) => at(`/projects/${name(id)}/`);
 /** The page of a project with a stretch of its walk shown in the viewer. */
 export const stretchUrl = (id, stretch) => `${projectUrl(id)}#${stretch}`;
+export const slicesUrl = (id) => `${projectUrl(id)}slices/`;
 /** What the code of a finding means. */
 export const findingHelpUrl = (kind) => at(`/docs/findings#${name(kind.toLowerCase())}`);
 export const viewerUrl = (id) => at(`/projects/${name(id)}/viewer/`);

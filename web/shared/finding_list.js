@@ -3,10 +3,17 @@
 // of a map of an earlier version its sentences.
 
 import { idHere } from "./address.js";
-import { acknowledge, findingHelpUrl, projectUrl, readAcknowledgments, stretchUrl } from "./api.js";
+import {
+  acknowledge,
+  findingHelpUrl,
+  projectUrl,
+  readAcknowledgments,
+  slicesUrl,
+  stretchUrl,
+} from "./api.js";
 import { attempt, make } from "./dom.js";
 import { when } from "./format.js";
-import { LEVELS, stretchOf, stretchText, verdictLists } from "./verdict.js";
+import { LEVELS, sliceOf, stretchOf, stretchText, verdictLists } from "./verdict.js";
 
 const MANY = 4;
 /** @type {import("./http_types").AcknowledgmentsView} */
@@ -158,6 +165,7 @@ const item = (finding, notes, form) =>
     make("p", {}, finding.text),
     finding.remedy ? make("p", { className: "remedy" }, finding.remedy) : null,
     placeLink(finding),
+    sliceLink(finding),
     ...notes.map(noteLine),
     form,
   );
@@ -176,6 +184,12 @@ function placeLink(finding) {
   const text = `Show in the map: ${stretchText(finding)}`;
   return make("a", here ? link : { ...link, ...BESIDE }, text);
 }
+
+/** On the page of slices a link to the slice at the place of a finding. */
+const sliceLink = (finding) =>
+  finding.place_m && location.pathname === slicesUrl(idHere())
+    ? make("a", { className: "button stretch", href: `?${sliceOf(finding)}` }, "Cut here")
+    : null;
 
 const sentences = (facts) =>
   verdictLists(facts).flatMap(([title, texts]) => [

@@ -75,6 +75,18 @@ export const stretchOf = (/** @type {Partial<MapFinding>} */ { span_s, place_m }
     .filter(Boolean)
     .join("&");
 
+const LEAST_VIEW_M = 10;
+const VIEW_PX = 500;
+
+/** The query of the slices page: a horizontal slice at the place of a finding, which it marks. */
+export function sliceOf(/** @type {Partial<MapFinding>} */ { place_m }) {
+  const [[x0, y0, z0], [x1, y1, z1]] = place_m;
+  const view_m = Math.max(LEAST_VIEW_M, 1.5 * Math.hypot(x1 - x0, y1 - y0));
+  const numbers = { z: (z0 + z1) / 2, u: (x0 + x1) / 2, v: (y0 + y1) / 2, m: view_m / VIEW_PX };
+  const fields = Object.entries(numbers).map(([name, value]) => `${name}=${value.toFixed(3)}`);
+  return `kind=horizontal&${fields.join("&")}&mark=${place_m.flat().join(",")}`;
+}
+
 /** When or where the stretch of a finding is. */
 export function stretchText(/** @type {Partial<MapFinding>} */ { span_s, place_m }) {
   if (!span_s) return place(place_m?.[0] ?? []);

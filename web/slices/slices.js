@@ -19,6 +19,7 @@ import { findings } from "./findings.js";
 import { legend } from "./legend.js";
 import { help } from "./help.js";
 import { isPlan, showPlan } from "./plan.js";
+import { stretchMark } from "./stretch_mark.js";
 import { COLORS, SURFACES, planeOf, format, moved, normalFrom, parse, unframed } from "./state.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
@@ -194,12 +195,8 @@ async function place({ u, v, reach }) {
 
 function mark() {
   const line = measured.length === 2 ? lengthText(measured[0], measured[1]) : "";
-  const marks =
-    measuring || measured.length
-      ? [{ points: measured.map((one) => one.uv), text: line }]
-      : picked
-        ? [{ points: [picked.uv] }]
-        : [];
+  const points = measuring || measured.length ? measured : [picked].filter(Boolean);
+  const marks = [stretchMark(state), { points: points.map((one) => one.uv), text: line }];
   first.marks = marks;
   second.marks = marks;
 }

@@ -11,6 +11,7 @@ const WORDS = {
   besideColor: "",
   source: "",
   surface: "fitted",
+  mark: "",
 };
 const MAYBE = ["lo", "hi", "u", "v", "m"];
 
