@@ -43,10 +43,11 @@ def captured(recording, path, rig=None):
 
 
 @contextmanager
-def robot_server(root):
-    """A server that receives captures, with the rig ``rigs/robot.toml`` of a 2-D laser alone."""
-    (root / "rigs").mkdir(parents=True)
-    (root / "rigs" / "robot.toml").write_text(format_rig(LASER))
+def capture_server(root, **rigs):
+    """A server that receives captures, with rigs by their names."""
+    (root / "rigs").mkdir()
+    for name, rig in rigs.items():
+        (root / "rigs" / f"{name}.toml").write_text(format_rig(rig))
     with server_thread(root, sensor_bind_address=an_address()) as running:
         yield running
 

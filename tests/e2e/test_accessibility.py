@@ -8,7 +8,8 @@ from app.pages import WEB
 from tests.e2e.conftest import leave_out_viewer
 from tests.project_builder import build_project
 from tests.review_project import make
-from tests.service.running import SLOW, server_thread
+from tests.served import served
+from tests.service.running import SLOW
 
 pytestmark = pytest.mark.e2e
 
@@ -33,13 +34,12 @@ ELSEWHERE = {"account/login.html", "account/account.html", "account/pair.html"}
 """Pages of a server with login."""
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
+def projects(root):
     make(root / "office")
     build_project(root / "hall")
-    with server_thread(root, worker_module=SLOW) as running:
-        yield running
+
+
+server = served(projects, worker_module=SLOW)
 
 
 @pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")

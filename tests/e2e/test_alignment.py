@@ -10,7 +10,7 @@ from recon4.geometry.se3 import SE3
 from tests.e2e.conftest import looks
 from tests.e2e.test_pages import fits
 from tests.project_builder import build_project, room_points
-from tests.service.running import server_thread
+from tests.served import served
 
 pytestmark = pytest.mark.e2e
 
@@ -23,13 +23,12 @@ CLICK = """(view, p) => {
 }"""
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("aligned")
+def projects(root):
     build_project(root / "office", points=120_000, normals=True)
     np.savetxt(root / "turned.xyz", TURNED @ room_points(np.random.default_rng(5), 60_000))
-    with server_thread(root) as running:
-        yield running
+
+
+server = served(projects)
 
 
 @looks("desktop light", "phone dark")

@@ -7,18 +7,12 @@ from playwright.sync_api import expect
 
 from tests.e2e.conftest import looks
 from tests.e2e.test_pages import fits
-from tests.project_builder import build_project
-from tests.service.running import server_thread
+from tests.served import office, served
 
 pytestmark = pytest.mark.e2e
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("surveyed")
-    build_project(root / "office", points=120_000)
-    with server_thread(root) as running:
-        yield running
+server = served(office(points=120_000))
 
 
 def opened(page, server, query=""):

@@ -9,19 +9,13 @@ from urllib.parse import urlsplit
 import pytest
 
 from app.compute_pool.model import Lane
-from tests.project_builder import build_project
 from tests.security.test_cross_site import EXPORT
-from tests.service.running import server_thread
+from tests.served import office, served
 
 pytestmark = pytest.mark.e2e
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=1000)
-    with server_thread(root) as running:
-        yield running
+server = served(office(points=1000))
 
 
 class ForeignPages(http.server.BaseHTTPRequestHandler):

@@ -18,16 +18,16 @@ from playwright.sync_api import expect
 from app.live.stream_state import BYTES_A_POINT
 from recon4.errors import Cancelled
 from recon4.live.replay import datagrams_of, replay
-from recon4.model.rig import format_rig, load_rig
+from recon4.model.rig import load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.sources import Sources
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from tests.e2e.conftest import EXPECTED_NOISE
-from tests.loopback import an_address
+from tests.scan_captures import capture_server
+from tests.served import served
 from tests.service.cuttable import cuttable
-from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
 SCREENSHOTS = os.environ.get("RECON4_SCREENSHOTS") == "1"
@@ -57,14 +57,7 @@ def walk(tmp_path_factory):
     return out
 
 
-@pytest.fixture
-def server(tmp_path):
-    root = tmp_path / "projects"
-    (root / "rigs").mkdir(parents=True)
-    (root / "rigs" / "ours.toml").write_text(format_rig(load_rig("4recon")))
-    address = an_address()
-    with server_thread(root, sensor_bind_address=address) as running:
-        yield running
+server = served(run=capture_server, fresh=True, below="projects", ours=load_rig("4recon"))
 
 
 @pytest.fixture

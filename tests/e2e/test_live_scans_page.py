@@ -14,16 +14,14 @@ from recon4.simulation.backpack import prepare_backpack, simulate_backpack
 from tests.e2e.conftest import SCREENSHOTS, looks
 from tests.e2e.test_live_page import fits, points, wait_for_points
 from tests.planar_walks import blank_corridor, scanned, write_carmen
-from tests.scan_captures import robot_server, sending
+from tests.scan_captures import LASER, capture_server, sending
+from tests.served import served
 
 pytestmark = pytest.mark.e2e
 SECONDS = 24.0 if SCREENSHOTS else 12.0
 
 
-@pytest.fixture
-def server(tmp_path):
-    with robot_server(tmp_path / "projects") as running:
-        yield running
+server = served(run=capture_server, fresh=True, below="projects", robot=LASER)
 
 
 def begin(page, server, rig):

@@ -6,19 +6,14 @@ import pytest
 from playwright.sync_api import Page, Route, expect
 
 from tests.e2e.conftest import EXPECTED_NOISE, browser_context, leave_out_viewer, looks
-from tests.project_builder import build_project
+from tests.served import office, served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, Secure, secure_server
 
 pytestmark = pytest.mark.e2e
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=20_000)
-    with secure_server(root) as running:
-        yield running
+server = served(office(points=20_000), run=secure_server)
 
 
 @pytest.fixture

@@ -8,6 +8,7 @@ from playwright.sync_api import Route, expect
 
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.project_builder import build_project
+from tests.served import served
 from tests.service.cuttable import cuttable
 from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
 
@@ -23,10 +24,7 @@ def finished(tmp_path_factory):
         yield running
 
 
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        yield running
+server = served(fresh=True, worker_module=SLOW)
 
 
 @pytest.fixture(scope="module")

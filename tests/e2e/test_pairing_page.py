@@ -6,16 +6,14 @@ import pytest
 from playwright.sync_api import expect
 
 from tests.e2e.conftest import browser_context
+from tests.served import served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, secure_server
 
 pytestmark = pytest.mark.e2e
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with secure_server(tmp_path_factory.mktemp("projects")) as running:
-        yield running
+server = served(run=secure_server)
 
 
 @pytest.fixture

@@ -12,16 +12,13 @@ from playwright.sync_api import expect
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
 from tests.project_builder import build_project
-from tests.service.running import SLOW, open_gate, recording_with_gate, server_thread
+from tests.served import served
+from tests.service.running import SLOW, open_gate, recording_with_gate
 
 pytestmark = pytest.mark.e2e
 
 
-@pytest.fixture
-def server(tmp_path):
-    (tmp_path / "server").mkdir()
-    with server_thread(tmp_path / "server", worker_module=SLOW) as running:
-        yield running
+server = served(fresh=True, below="server", worker_module=SLOW)
 
 
 @pytest.fixture

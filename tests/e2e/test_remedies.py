@@ -10,6 +10,7 @@ from playwright.sync_api import expect
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
 from tests.project_builder import build_project
+from tests.served import office, served
 from tests.service.running import SLOW, recording_with_gate, server_thread
 
 pytestmark = pytest.mark.e2e
@@ -18,11 +19,7 @@ ALL_OF_IT = 1 << 60
 """More bytes than any disk has: with this reserve every disk is full."""
 
 
-@pytest.fixture
-def server(tmp_path):
-    build_project(tmp_path / "office", points=120_000)
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        yield running
+server = served(office(points=120_000), fresh=True, worker_module=SLOW)
 
 
 @pytest.fixture

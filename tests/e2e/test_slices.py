@@ -12,6 +12,7 @@ from tests.e2e.conftest import looks
 from tests.e2e.test_pages import fits
 from tests.planar_walks import furnished_room, scanned, write_carmen
 from tests.project_builder import build_project
+from tests.served import served
 from tests.service.running import server_thread
 
 pytestmark = pytest.mark.e2e
@@ -19,15 +20,14 @@ pytestmark = pytest.mark.e2e
 STRAIGHT = np.stack([np.linspace(-2.0, 2.0, 40), np.zeros(40), np.zeros(40)], axis=1)
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("sliced")
+def projects(root):
     build_project(root / "office", points=120_000)
     build_project(root / "earlier", points=60_000)
     write_carmen(root / "walk.log", scanned(furnished_room(), STRAIGHT).scans)
     process(Sources((root / "walk.log",), None), root / "plan")
-    with server_thread(root) as running:
-        yield running
+
+
+server = served(projects)
 
 
 def opened(page, server, query=""):

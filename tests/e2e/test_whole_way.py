@@ -19,7 +19,8 @@ from recon4.simulation.simulate import simulate
 from recon4.store.hashing import hash_file
 from tests.e2e.conftest import browser_context
 from tests.e2e.test_pages import drawn
-from tests.service.running import server_thread, wait_for
+from tests.served import served
+from tests.service.running import wait_for
 
 pytestmark = pytest.mark.e2e
 SECONDS = 20.0
@@ -42,10 +43,7 @@ def walk(tmp_path_factory):
     return folder
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with server_thread(tmp_path_factory.mktemp("served"), viewer_points=100_000) as running:
-        yield running
+server = served(viewer_points=100_000)
 
 
 @pytest.fixture

@@ -12,8 +12,7 @@ from urllib.parse import quote
 
 import pytest
 
-from tests.project_builder import build_project
-from tests.service.running import server_thread
+from tests.served import office, served
 
 ASK = quote(json.dumps({"plane": {"kind": "horizontal", "z_m": 0.0, "thickness_m": 5.0}}))
 EXPORT = f"/api/projects/office/slices/export.csv?ask={ASK}"
@@ -21,12 +20,7 @@ CROSS = {"Sec-Fetch-Site": "cross-site"}
 NAVIGATION = {"Sec-Fetch-Mode": "navigate", "Sec-Fetch-Dest": "document"}
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=1000)
-    with server_thread(root) as running:
-        yield running
+server = served(office(points=1000))
 
 
 @pytest.mark.parametrize("site", ["cross-site", "same-site"])

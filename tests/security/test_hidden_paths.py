@@ -16,7 +16,8 @@ from app.main import create_app
 from app.projects.import_folders import ImportFolders
 from app.settings import ServerSettings
 from tests.project_builder import build_project
-from tests.service.running import SLOW, recording_with_gate, server_thread
+from tests.served import served
+from tests.service.running import SLOW, recording_with_gate
 
 FIELDS = {"path", "folder", "rig", "imu", "gnss", "recordings", "file", "filename"}
 """What a field that names a file of this computer is called."""
@@ -41,9 +42,7 @@ NO_PATHS = {
 RIG = '[rig]\nname = "secret rig"\n\n[[sensor]]\nname = "secret"\nmodel = "VLP-16"\n'
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
+def projects(root):
     build_project(root / "office", points=100)
     state = root / ".recon4"
     state.mkdir()
@@ -58,8 +57,9 @@ def server(tmp_path_factory):
     (root / "key.toml").symlink_to(state / "secret.toml")
     (root / ".hidden.toml").write_text(RIG)
     os.mkfifo(root / "pipe.pcap")
-    with server_thread(root, worker_module=SLOW) as running:
-        yield running
+
+
+server = served(projects, worker_module=SLOW)
 
 
 def hidden_paths(root):

@@ -13,6 +13,7 @@ from playwright.sync_api import expect
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from tests.review_project import make
+from tests.served import served
 from tests.service.secure import PASSWORD, secure_server
 
 pytestmark = pytest.mark.e2e
@@ -39,9 +40,7 @@ setInterval(unfold, 100);
 """
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
+def projects(root):
     make(root / "office")
     describe(root / "office")
     append(
@@ -49,8 +48,9 @@ def server(tmp_path_factory):
         Decision(kind=DecisionKind.REJECT, who=SHORT, why=PAYLOAD[:500], pair=(17, 77)),
     )
     (root / SHORT.replace("/", "")).mkdir()
-    with secure_server(root) as running:
-        yield running
+
+
+server = served(projects, run=secure_server)
 
 
 def describe(folder):

@@ -15,6 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from app.access.people import LOCAL, Person, Role
 from app.errors import TooMany
 from app.network.streams import StreamLimits, Streams
+from tests.served import served
 from tests.service.secure import secure_server
 
 LIMITS = StreamLimits(max_streams=10, max_per_person=3, max_per_address=5, reserved_for_capture=2)
@@ -84,10 +85,7 @@ def test_without_login_only_the_total_counts(opened):
         opened(streams, connection("local", who=LOCAL))
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with secure_server(tmp_path_factory.mktemp("streams")) as server:
-        yield server
+server = served(run=secure_server)
 
 
 def test_a_viewer_with_live_streams_does_not_lock_the_operator_out(server):

@@ -11,17 +11,11 @@ from app.access.people import Role
 from app.network.listen import make_state
 from app.settings import ServerSettings
 from tests.deadlines import BUSY_S
-from tests.project_builder import build_project
+from tests.served import office, served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, secure_server
 
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=1000)
-    with secure_server(root) as running:
-        yield running
+server = served(office(points=1000), run=secure_server)
 
 
 def cookies_of(answer):

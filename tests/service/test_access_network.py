@@ -9,13 +9,10 @@ import pytest
 
 from app.settings import ServerSettings
 from recon4.errors import ConfigError
+from tests.served import served
 from tests.service.secure import PASSWORD, secure_server
 
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with secure_server(tmp_path_factory.mktemp("projects")) as running:
-        yield running
+server = served(run=secure_server)
 
 
 def test_plain_http_is_not_spoken(server):

@@ -17,18 +17,12 @@ from app.access.routes_check import check_declared, declared
 from app.main import create_app
 from app.settings import ServerSettings
 from app.viewer.browser_messages import KINDS
-from tests.project_builder import build_project
+from tests.served import office, served
 from tests.service.running import SLOW, recording_with_gate, wait_for
 from tests.service.secure import ROLES, secure_server
 from tests.service.viser_client import ViserClient, camera
 
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=1000)
-    with secure_server(root) as running:
-        yield running
+server = served(office(points=1000), run=secure_server)
 
 
 @pytest.fixture(scope="module")

@@ -8,7 +8,7 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from tests.project_builder import build_project, room_points
-from tests.service.running import server_thread
+from tests.served import served
 
 BASE = "/api/projects/office/slices"
 TURNED = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[13.0, -3.0, 0.8])
@@ -16,13 +16,12 @@ TURNED = SE3.from_rpy(0.0, 0.0, np.pi / 2, t=[13.0, -3.0, 0.8])
 CORNERS_M = np.array([[0.0, 0.0, 1.0], [16.0, 0.0, 1.0], [16.0, 10.0, 1.0]])
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("aligned")
+def projects(root):
     build_project(root / "office", points=120_000, normals=True)
     np.savetxt(root / "turned.xyz", TURNED @ room_points(np.random.default_rng(5), 60_000))
-    with server_thread(root) as running:
-        yield running
+
+
+server = served(projects)
 
 
 @pytest.fixture

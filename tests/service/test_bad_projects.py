@@ -10,6 +10,7 @@ import httpx
 import pytest
 
 from tests.project_builder import build_project
+from tests.served import served
 from tests.service.running import server_thread
 from tests.service.tus_client import create
 
@@ -41,9 +42,7 @@ BAD_JSON = {
 }
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("bad")
+def projects(root):
     build_project(root / "good", points=20_000)
     for file in ("project", "summary"):
         for kind, text in BAD_JSON.items():
@@ -62,8 +61,9 @@ def server(tmp_path_factory):
     (odd / "summary.json").write_text(json.dumps({"path_length_m": 10**400, "points": True}))
     spoil_ledger(root)
     (root / ".recon4" / "trash" / "gone@99999999T999999999999").mkdir(parents=True)
-    with server_thread(root) as running:
-        yield running
+
+
+server = served(projects)
 
 
 def spoil_ledger(root):

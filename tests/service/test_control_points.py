@@ -9,18 +9,12 @@ import numpy as np
 import pytest
 
 from recon4.store.seal import changing
-from tests.project_builder import build_project
-from tests.service.running import server_thread
+from tests.served import office, served
 
 BASE = "/api/projects/office/slices"
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("surveyed")
-    build_project(root / "office", points=120_000)
-    with server_thread(root) as running:
-        yield running
+server = served(office(points=120_000))
 
 
 def sent(server, path, body):

@@ -5,15 +5,13 @@ from pathlib import Path
 
 import pytest
 
-from tests.service.running import ROOT, server_thread
+from tests.served import served
+from tests.service.running import ROOT
 
 PAGES = sorted(path.stem for path in (ROOT / "docs").glob("*.md"))
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with server_thread(tmp_path_factory.mktemp("projects")) as running:
-        yield running
+server = served()
 
 
 @pytest.mark.parametrize("name", PAGES)

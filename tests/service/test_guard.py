@@ -10,15 +10,9 @@ from websockets.sync.client import connect
 from app.settings import ServerSettings
 from recon4.errors import ConfigError
 from tests.project_builder import build_project
-from tests.service.running import server_thread
+from tests.served import office, served
 
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=1000)
-    with server_thread(root) as running:
-        yield running
+server = served(office(points=1000))
 
 
 def own(server):

@@ -7,6 +7,7 @@ import httpx
 import psutil
 import pytest
 
+from tests.served import served
 from tests.service.running import (
     SLOW,
     open_gate,
@@ -23,10 +24,7 @@ def recording(tmp_path):
     return recording_with_gate(tmp_path / "walk")
 
 
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        yield running
+server = served(fresh=True, worker_module=SLOW)
 
 
 def test_a_job_runs_reports_its_progress_and_ends(server, recording):

@@ -8,6 +8,7 @@ import psutil
 import pytest
 
 from tests.deadlines import BUSY_S
+from tests.served import served
 from tests.service.running import (
     SLOW,
     open_gate,
@@ -22,10 +23,7 @@ def recording(tmp_path):
     return recording_with_gate(tmp_path / "walk")
 
 
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW, max_job_attempts=1) as running:
-        yield running
+server = served(fresh=True, worker_module=SLOW, max_job_attempts=1)
 
 
 def after_word(server, recording, word):

@@ -16,8 +16,8 @@ from recon4.live.replay import replay
 from recon4.progress import Silent
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
-from tests.loopback import an_address
-from tests.service.running import server_thread
+from tests.scan_captures import capture_server
+from tests.served import served
 
 SECONDS = 8.0
 
@@ -29,13 +29,7 @@ def walk(tmp_path_factory):
     return out
 
 
-@pytest.fixture
-def server(tmp_path):
-    root = tmp_path / "projects"
-    root.mkdir()
-    address = an_address()
-    with server_thread(root, sensor_bind_address=address) as running:
-        yield running
+server = served(run=capture_server, fresh=True, below="projects")
 
 
 class Phone:

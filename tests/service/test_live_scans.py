@@ -20,14 +20,11 @@ from recon4.settings import IngestSettings
 from recon4.simulation.backpack import prepare_backpack, simulate_backpack
 from recon4.store.frames import FrameStore
 from tests.planar_walks import along, furnished_room, scanned, write_carmen
-from tests.scan_captures import robot_server, sending
+from tests.scan_captures import LASER, capture_server, sending
+from tests.served import served
 from tests.service.test_live import Phone
 
-
-@pytest.fixture
-def server(tmp_path):
-    with robot_server(tmp_path / "projects") as running:
-        yield running
+server = served(run=capture_server, fresh=True, below="projects", robot=LASER)
 
 
 @pytest.fixture(scope="module")

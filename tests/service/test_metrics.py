@@ -10,20 +10,16 @@ from typer.testing import CliRunner
 from websockets.asyncio.client import connect
 
 from recon4.cli.main import app as cli
+from tests.served import served
 from tests.service.running import (
     SLOW,
     open_gate,
     recording_with_gate,
-    server_thread,
     wait_for,
 )
 from tests.service.secure import secure_server
 
-
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        yield running
+server = served(fresh=True, worker_module=SLOW)
 
 
 @pytest.fixture(scope="module")

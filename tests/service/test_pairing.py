@@ -9,15 +9,11 @@ from urllib.parse import urlsplit
 import pytest
 
 from app.access.pairing.routes import is_served
+from tests.served import served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, secure_server
 
-
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    with secure_server(root) as running:
-        yield running
+server = served(run=secure_server)
 
 
 @pytest.fixture(autouse=True)

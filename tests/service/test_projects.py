@@ -14,20 +14,20 @@ from recon4.store.atomic import write_json
 from recon4.store.seal import changing
 from recon4.system.stopping import StopSignals
 from tests.project_builder import build_project
+from tests.served import served
 from tests.service.running import server_process, server_thread
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
+def projects(root):
     build_project(root / "office", points=20_000)
     build_project(root / "half", with_map=False)
     (root / "not a project").mkdir()
     (root / "broken").mkdir()
     (root / "broken" / "project.json").write_text("{")
     (root / "broken" / "ledger.sqlite").write_bytes(b"no database" * 100)
-    with server_thread(root) as running:
-        yield running
+
+
+server = served(projects)
 
 
 def test_the_list_shows_every_project_also_a_damaged_one(server):

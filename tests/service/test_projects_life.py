@@ -10,6 +10,7 @@ import pytest
 from app.projects.trash import Trash
 from recon4.settings import Settings
 from tests.project_builder import build_project
+from tests.served import served
 from tests.service.running import (
     SLOW,
     open_gate,
@@ -24,10 +25,7 @@ def recording(tmp_path):
     return recording_with_gate(tmp_path / "walk")
 
 
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        yield running
+server = served(fresh=True, worker_module=SLOW)
 
 
 def finish(server, recording, **changes):

@@ -8,14 +8,11 @@ import pytest
 from recon4.model.rig import format_rig, load_rig
 from tests.project_builder import build_project
 from tests.rig_projects import TOML, calibrated_project, tilted
+from tests.served import served
 from tests.service.running import server_thread
 from tests.service.secure import secure_server
 
-
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path) as running:
-        yield running
+server = served(fresh=True)
 
 
 @pytest.fixture(scope="module")

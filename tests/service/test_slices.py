@@ -15,20 +15,20 @@ import pytest
 from PIL import Image
 
 from tests.project_builder import ROOM_M, approve_project, build_project, write_summary
+from tests.served import served
 from tests.service.running import server_thread
 
 Z1 = {"kind": "horizontal", "z_m": 1.5, "thickness_m": 0.2}
 BASE = "/api/projects/office/slices"
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("slices")
+def projects(root):
     build_project(root / "office", points=120_000)
     build_project(root / "other", points=20_000)
     build_project(root / "young", with_map=False)
-    with server_thread(root) as running:
-        yield running
+
+
+server = served(projects)
 
 
 CUT_PLY = (

@@ -4,14 +4,11 @@ import httpx
 import pytest
 
 from tests.project_builder import build_project
-from tests.service.running import SLOW, recording_with_gate, server_thread
+from tests.served import served
+from tests.service.running import SLOW, recording_with_gate
 from tests.service.tus_client import CHUNK, TUS, create
 
-
-@pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        yield running
+server = served(fresh=True, worker_module=SLOW)
 
 
 def uploaded(server, name, content=b"12345"):

@@ -14,16 +14,14 @@ import pytest
 from app.settings import ServerSettings
 from app.uploads.model import UploadedFile
 from app.uploads.store import UploadStore
+from tests.served import served
 from tests.service.running import server_process, server_thread
 from tests.service.tus_client import CHUNK, TUS, create, offset, patch, patch_and_break_off
 
 DATA = random.Random(4).randbytes(300_000)
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    with server_thread(tmp_path_factory.mktemp("uploads")) as running:
-        yield running
+server = served()
 
 
 def upload_of(server, location):

@@ -9,19 +9,13 @@ from viser import _messages
 
 from app.viewer.browser_messages import KINDS, RefusedMessage, checked
 from app.viewer.proxy import Rate
-from tests.project_builder import build_project
-from tests.service.running import server_thread
+from tests.served import office, served
 from tests.service.viser_client import camera, viewing
 
 POINTS = 60_000
 
 
-@pytest.fixture(scope="module")
-def server(tmp_path_factory):
-    root = tmp_path_factory.mktemp("projects")
-    build_project(root / "office", points=POINTS)
-    with server_thread(root) as running:
-        yield running
+server = served(office(points=POINTS))
 
 
 def test_a_request_for_a_public_tunnel_is_dropped_and_the_session_goes_on(server, caplog):
