@@ -101,8 +101,8 @@ def live(server, process, known, rng):
         try:
             while True:
                 act(server, known)
-        except httpx.TransportError:
-            pass  # it was killed
+        except (httpx.TransportError, StopIteration):
+            pass  # it was killed, or nothing is left to remove
         except BaseException as error:
             errors.append(error)
 
