@@ -5,12 +5,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.placing import Mirrors
 from recon4.geometry.mesh import MIRROR
 from recon4.mapping.mirrors import Sight, find_mirrors
+from recon4.model.figures import LevelFigures
 from recon4.recording.velodyne.models import MODELS
 from recon4.simulation.setup import SimulationSetup, prepare
 from recon4.simulation.world import World
 from recon4.simulation.worlds import build_world
+from tests.said import texts
 
 EVERY_S = 1.0
 PACKETS = 76
@@ -63,7 +67,9 @@ def test_a_mirror_is_found_with_its_place_and_size(world: str) -> None:
     assert y == pytest.approx(0.08, abs=0.15)
     assert 0.4 * area_m2 < found[0].area_m2 < 1.3 * area_m2
     assert 0.02 < found[0].behind < 0.6
-    assert "doubles the room" in found[0].text
+    level = LevelFigures(leveled_by="imu", tilt_deg=0.0, crs="", local="", mirrors=tuple(found))
+    said = texts(Mirrors().check(WalkRecord(level=level)))
+    assert len(said) == len(found) and all("doubles the room" in text for text in said)
 
 
 def test_the_same_room_without_the_mirror_has_none() -> None:
