@@ -24,7 +24,8 @@ STAGE_PERCENT = {
     "level": 1.0,
     "intensity": 4.0,
     "map": 26.0,
-    AFTER: 6.0,
+    "audit": 1.0,
+    AFTER: 5.0,
 }
 """Stage -> its usual part of the time [%]."""
 

@@ -39,6 +39,7 @@ STAGE_ORDER = (
     "level",
     "intensity",
     "map",
+    "audit",
 )
 """As in docs/architecture.md; a stage not named here is shown last."""
 
