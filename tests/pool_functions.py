@@ -102,7 +102,7 @@ def answer_with_a_pickle() -> int:
     """Write past the protocol, as native code that was taken over would."""
     import pickle
 
-    from app.compute_pool.messages import HEAD, RESULT
+    from recon4_app.compute_pool.messages import HEAD, RESULT
 
     class Owned:
         def __reduce__(self):

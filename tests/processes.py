@@ -20,7 +20,7 @@ def viewer_process(root: Path) -> psutil.Process:
     mine = [
         process
         for process in psutil.Process().children(recursive=True)
-        if "app.viewer.process" in command_of(process)
+        if "recon4_app.viewer.process" in command_of(process)
         and str(root / "office") in command_of(process)
     ]
     assert len(mine) == 1

@@ -12,9 +12,9 @@ import sys
 from pathlib import Path
 
 import numpy as np
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.worker import main
 
-from app.jobs.folder import JobFolder
-from app.jobs.worker import main
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import FrameFigures, GraphFigures
 from recon4.model.odometry_figures import OdometryFigures

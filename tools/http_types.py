@@ -14,9 +14,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from app.description import description
-from app.main import create_app
-from app.settings import ServerSettings
+from recon4_app.description import description
+from recon4_app.main import create_app
+from recon4_app.settings import ServerSettings
 
 TYPES = Path(__file__).parents[1] / "web/shared/http_types.d.ts"
 HEAD = "// Generated from the server's OpenAPI description by `make docs`; do not edit.\n"

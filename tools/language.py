@@ -42,9 +42,9 @@ RETIRED = {
     r"\b(?:so-manieth|seems_still|hold_still|gap_m)\b": "the glossary's terms",
 }
 IN_FOLDER = {
-    r"\bdesks?\b": ("app/", "web/"),
-    r"\bdoors?\b": ("app/", "web/"),
-    r"\bhear[ds]?\b": ("app/", "recon4/live/"),
+    r"\bdesks?\b": ("app/recon4_app/", "web/"),
+    r"\bdoors?\b": ("app/recon4_app/", "web/"),
+    r"\bhear[ds]?\b": ("app/recon4_app/", "recon4/live/"),
 }
 """Words with a meaning of their own elsewhere."""
 FOREIGN = ('found["guesses"]', '"levelling"', '"levelled_by"', '"metre"', "node a; metres;")

@@ -15,11 +15,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+from recon4_app.cli.keys import keys
+from recon4_app.cli.serve import server
+from recon4_app.cli.users import users
 
 import recon4
-from app.cli.keys import keys
-from app.cli.serve import server
-from app.cli.users import users
 from recon4.cli.backup import backups
 from recon4.cli.calibration import calibration
 from recon4.cli.confinement import compile_first, confine_command, result_folder
@@ -230,7 +230,7 @@ def verify(
 
 def _note_accepted(state: Path, project: Path) -> None:
     """Enter in the server's audit log that its record of the newest approval gave way."""
-    from app.cli.users import access_of, note
+    from recon4_app.cli.users import access_of, note
 
     with access_of(state.parent) as access:
         note(access, "accept project as it is", project.resolve().name)

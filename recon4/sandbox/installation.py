@@ -19,7 +19,8 @@ _SYSTEM = (
 )
 WRITABLE = ("/dev/null", "/dev/zero", "/dev/full", "/proc/self/clear_refs")
 """Folders without data of users."""
-_PACKAGES = ("recon4", "app", "web")
+_PACKAGES = ("recon4", "recon4_app", "recon4_web", "app", "web")
+"""As installed, and in a checkout."""
 
 
 def readable_paths() -> tuple[Path, ...]:

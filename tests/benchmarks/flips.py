@@ -15,7 +15,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from app.access.reserve import RESERVE_FILE
+from recon4_app.access.reserve import RESERVE_FILE
+
 from recon4.archive.verify import verify
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
@@ -112,8 +113,9 @@ def main() -> int:
 
 def make_server_state(root: Path) -> None:
     """Files of a server: queue, users, an interrupted upload."""
-    from app.access.login.login_service import open_access
-    from app.jobs.store import JobStore
+    from recon4_app.access.login.login_service import open_access
+    from recon4_app.jobs.store import JobStore
+
     from recon4.archive.verify import seal_state
     from recon4.review.signature import sign
 

@@ -26,9 +26,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from recon4_app.settings import ServerSettings
+from recon4_app.uploads.store import UploadStore
 
-from app.settings import ServerSettings
-from app.uploads.store import UploadStore
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
 from recon4.review.approval import approve

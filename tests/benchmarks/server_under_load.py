@@ -101,7 +101,9 @@ def measure(root: Path, given: argparse.Namespace) -> bool:
     """Run everything for the given time; whether the requirements held."""
     address, seconds = an_address(), 60.0 * given.minutes
     spawn = multiprocessing.get_context("spawn")
-    with server_process(root, worker_module="app.jobs.worker", sensor_bind_address=address) as (
+    with server_process(
+        root, worker_module="recon4_app.jobs.worker", sensor_bind_address=address
+    ) as (
         server,
         process,
     ):

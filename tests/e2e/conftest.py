@@ -34,7 +34,7 @@ EXPECTED_NOISE = (
 @pytest.fixture(autouse=True)
 def room_on_the_disk(monkeypatch):
     """The free space of the machine that runs the tests does not matter."""
-    monkeypatch.setattr("app.server_routes.LITTLE_ROOM", 0.0)
+    monkeypatch.setattr("recon4_app.server_routes.LITTLE_ROOM", 0.0)
 
 
 @pytest.fixture(params=["desktop light", "desktop dark", "phone light", "phone dark"])

@@ -14,8 +14,8 @@ from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import expect
+from recon4_app.live.stream_state import BYTES_A_POINT
 
-from app.live.stream_state import BYTES_A_POINT
 from recon4.errors import Cancelled
 from recon4.live.replay import datagrams_of, replay
 from recon4.model.rig import load_rig

@@ -8,10 +8,10 @@ import numpy as np
 import psutil
 import pytest
 from playwright.sync_api import expect
+from recon4_app.viewer.client.show import start_m
+from recon4_app.viewer.cloud.parts import Cloud
+from recon4_app.viewer.scene.build import Content, bounds
 
-from app.viewer.client.show import start_m
-from app.viewer.cloud.parts import Cloud
-from app.viewer.scene.build import Content, bounds
 from recon4.model.pose_graph import Reason
 from tests.e2e.conftest import looks
 from tests.processes import command_of
@@ -131,7 +131,7 @@ def test_a_viewer_that_is_killed_comes_back_with_camera_and_colors(finished, vie
     process = next(
         one
         for one in psutil.Process().children(recursive=True)
-        if "app.viewer.process" in command_of(one)
+        if "recon4_app.viewer.process" in command_of(one)
     )
     legend = viewer.get_by_text("Points by raw intensity")
     legend.evaluate(
@@ -175,7 +175,7 @@ def test_a_viewer_that_does_not_start_says_so_over_the_thumbnail_and_is_tried_ag
 ):
     build_project(finished.root / "hall", points=POINTS)
     with monkeypatch.context() as patch:
-        patch.setattr("app.viewer.pool.STARTS_WITHIN_S", 0.0)
+        patch.setattr("recon4_app.viewer.pool.STARTS_WITHIN_S", 0.0)
         page.goto(f"{finished.url}/projects/hall/viewer/")
         cover = page.locator("#cover")
         expect(cover).to_contain_text("the viewer of hall does not start")

@@ -22,9 +22,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from app.jobs.folder import JobFolder
-from app.jobs.limits import prepare_worker, worker_policy
-from app.viewer.process import viewer_policy
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.limits import prepare_worker, worker_policy
+from recon4_app.viewer.process import viewer_policy
+
 from recon4.live.confinement import confine_mapper, confine_recorder
 from recon4.live.session import CaptureSession
 from recon4.sandbox import confine, refuse_new_sockets, restart_with_one_thread

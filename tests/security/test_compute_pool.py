@@ -16,12 +16,12 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+from recon4_app.compute_pool.fair_queue import MAX_PASSED, FairQueue
+from recon4_app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
+from recon4_app.compute_pool.pool import ComputePool
+from recon4_app.compute_pool.process import ChildFailed
+from recon4_app.errors import AppError, ComputeFailed, TooMany
 
-from app.compute_pool.fair_queue import MAX_PASSED, FairQueue
-from app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
-from app.compute_pool.pool import ComputePool
-from app.compute_pool.process import ChildFailed
-from app.errors import AppError, ComputeFailed, TooMany
 from recon4.errors import Recon4Error
 from recon4.system.processes import ChildRegister
 from tests import pool_functions as work
@@ -154,8 +154,8 @@ def test_children_end_with_a_server_that_is_killed(root):
     program = (
         "import asyncio, sys\n"
         "from pathlib import Path\n"
-        "from app.compute_pool.model import FileAccess, Lane, Terms\n"
-        "from app.compute_pool.pool import ComputePool\n"
+        "from recon4_app.compute_pool.model import FileAccess, Lane, Terms\n"
+        "from recon4_app.compute_pool.pool import ComputePool\n"
         "from recon4.system.processes import ChildRegister\n"
         "from tests import pool_functions as work\n"
         "root = Path(sys.argv[1])\n"

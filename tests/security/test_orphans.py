@@ -13,8 +13,8 @@ import time
 
 import psutil
 import pytest
+from recon4_app.viewer.pool import socket_folder
 
-from app.viewer.pool import socket_folder
 from recon4.system.processes import ChildRegister, process_identity
 from tests.processes import command_of
 from tests.project_builder import build_project
@@ -133,7 +133,9 @@ def test_a_viewer_that_was_killed_leaves_no_socket_and_no_record(root):
                 client.send(camera())
                 client.until(lambda c: "/grid" in c.nodes)
                 viewers = psutil.Process(process.pid).children()
-                (viewer,) = [one for one in viewers if "app.viewer.process" in command_of(one)]
+                (viewer,) = [
+                    one for one in viewers if "recon4_app.viewer.process" in command_of(one)
+                ]
                 viewer.kill()
                 psutil.wait_procs([viewer], timeout=GONE_WITHIN_S)
         with viewing(server.url) as client:

@@ -9,11 +9,10 @@ import itertools
 import time
 
 import pytest
+from recon4_app.access.login import passwords
+from recon4_app.access.login.passwords import require_strong
+from recon4_app.errors import WeakPassword
 from zxcvbn.frequency_lists import FREQUENCY_LISTS
-
-from app.access.login import passwords
-from app.access.login.passwords import require_strong
-from app.errors import WeakPassword
 
 NAME = "Anna Kowalska"
 WORDS = (
@@ -132,7 +131,7 @@ def test_one_estimate_at_a_time_as_the_estimator_keeps_its_words_in_a_global(mon
         locked.append(passwords._estimating.locked())
         return estimate(*args, **options)
 
-    monkeypatch.setattr("app.access.login.passwords.zxcvbn", watched)
+    monkeypatch.setattr("recon4_app.access.login.passwords.zxcvbn", watched)
     require_strong("copper violin under seven hedges", NAME)
 
     assert locked == [True, True]

@@ -10,13 +10,13 @@ import sys
 from pathlib import Path
 
 import pytest
+from recon4_app.jobs.supervisor import _spawn
 
-from app.jobs.supervisor import _spawn
 from recon4.sandbox.private_cache import KERNELS, cached_elsewhere, planted, private_cache
 from recon4.sandbox.private_cache import _numba_name as numba_name
 
 ROOT = Path(__file__).parents[2]
-PLANTED = ("numpy.py", "json.py", "logging.py", "recon4.py", "app.py", "signal.py")
+PLANTED = ("numpy.py", "json.py", "logging.py", "recon4.py", "recon4_app.py", "signal.py")
 OTHER_USER = 65534
 needs_root = pytest.mark.skipif(os.geteuid() != 0, reason="gives a file to another user")
 
@@ -40,7 +40,7 @@ def test_a_worker_imports_nothing_from_the_working_folder(working_folder, tmp_pa
     job = tmp_path / "job"
     job.mkdir()
     with (tmp_path / "lock").open("wb") as lock:
-        worker = _spawn("app.jobs.worker", job, lock.fileno())
+        worker = _spawn("recon4_app.jobs.worker", job, lock.fileno())
         worker.wait(60.0)
 
     assert not ran(tmp_path), (job / "log.txt").read_text()

@@ -22,11 +22,11 @@ from urllib.parse import urlsplit
 import psutil
 import pytest
 import viser
+from recon4_app.viewer import unix_socket
 from viser import _messages
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMessage
 from websockets.sync.client import connect
 
-from app.viewer import unix_socket
 from recon4.errors import StoreError
 from recon4.live.ipc.line_server import LineServer
 from recon4.live.protocol import Done
@@ -221,7 +221,7 @@ def test_the_code_of_the_public_tunnel_cannot_be_reached(tmp_path):
 import viser, pytest
 from pathlib import Path
 from viser import _messages
-from app.viewer.client.show import Viewer
+from recon4_app.viewer.client.show import Viewer
 viewer = Viewer(Path({str(tmp_path)!r}) / "s", on_client=print, on_leave=print)
 handlers = viewer._server._websock_server._incoming_handlers
 assert not handlers.get(_messages.ShareUrlRequest)

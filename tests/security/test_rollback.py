@@ -8,9 +8,9 @@ import shutil
 
 import httpx
 import pytest
+from recon4_app.projects.trash import Trash
+from recon4_app.review.records import record_all, record_signed
 
-from app.projects.trash import Trash
-from app.review.records import record_all, record_signed
 from recon4.cli.main import main
 from recon4.review.approval_state import ApprovalKind, latest_state
 from recon4.review.decisions import Decision, DecisionKind

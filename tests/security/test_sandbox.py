@@ -15,10 +15,10 @@ import tempfile
 from pathlib import Path
 
 import pytest
+from recon4_app.jobs.folder import JobFolder, Limits
+from recon4_app.jobs.model import Inputs
+from recon4_app.settings import worker_environment
 
-from app.jobs.folder import JobFolder, Limits
-from app.jobs.model import Inputs
-from app.settings import worker_environment
 from recon4.sandbox import kernel, landlock
 from recon4.sandbox.private_cache import KERNELS
 from recon4.sandbox.syscalls import number

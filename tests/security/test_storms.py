@@ -223,7 +223,9 @@ def test_a_stormed_viewer_ends_at_sigterm_only_and_removes_its_files(tmp_path):
     arguments = [tmp_path / "office", "60", "50000", jobs, sockets / "v"]
 
     ended = stormed(
-        [sys.executable, "-P", "-m", "app.viewer.process", *arguments], says("ready"), seed=11
+        [sys.executable, "-P", "-m", "recon4_app.viewer.process", *arguments],
+        says("ready"),
+        seed=11,
     )
 
     assert_in_order(ended, (0,))

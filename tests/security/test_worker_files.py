@@ -4,10 +4,9 @@ import subprocess
 import sys
 
 import pytest
-
-from app.jobs.events import MAX_BYTES, read_events
-from app.jobs.folder import JobFolder, Limits
-from app.jobs.model import Inputs
+from recon4_app.jobs.events import MAX_BYTES, read_events
+from recon4_app.jobs.folder import JobFolder, Limits
+from recon4_app.jobs.model import Inputs
 
 LIMITS = Limits(memory_bytes=1 << 30, reserve_bytes=0)
 

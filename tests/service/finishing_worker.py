@@ -5,8 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from app.jobs.folder import JobFolder
-from app.jobs.worker import main
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.worker import main
+
 from recon4.progress import Progress
 from recon4.system.stopping import end_process
 from tests.project_builder import build_project

@@ -9,9 +9,10 @@ import fcntl
 import sys
 from pathlib import Path
 
-from app.jobs.folder import JobFolder
-from app.jobs.limits import worker_policy
-from app.jobs.worker import main, process
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.limits import worker_policy
+from recon4_app.jobs.worker import main, process
+
 from recon4.model.events import Event, StageChanged
 from recon4.progress import Progress
 from recon4.sandbox import Policy

@@ -20,10 +20,10 @@ from typing import Any, TextIO
 import httpx
 import numpy as np
 import psutil
+from recon4_app.jobs.run_progress import AFTER, BEFORE, STAGE_PERCENT
+from recon4_app.viewer.pool import socket_folder
 from websockets.exceptions import ConnectionClosed
 
-from app.jobs.run_progress import AFTER, BEFORE, STAGE_PERCENT
-from app.viewer.pool import socket_folder
 from tests.processes import command_of
 from tests.service.gated_worker import AT_GATE
 from tests.service.running import WITHOUT_TLS, Running, end_workers, server_process, wait_for
@@ -145,7 +145,7 @@ def _kill_viewer(server: Running, process: subprocess.Popen[str]) -> None:
         client.send(camera())
         client.until(lambda c: "/grid" in c.nodes)
         children = psutil.Process(process.pid).children()
-        (viewer,) = [one for one in children if "app.viewer.process" in command_of(one)]
+        (viewer,) = [one for one in children if "recon4_app.viewer.process" in command_of(one)]
         viewer.kill()
         with contextlib.suppress(ConnectionClosed):
             client.until(lambda c: False)
@@ -168,7 +168,7 @@ def _kill_pool_child(server: Running, process: subprocess.Popen[str]) -> None:
 
     def children() -> list[psutil.Process]:
         below = psutil.Process(process.pid).children(recursive=True)
-        return [one for one in below if "app.compute_pool.child" in command_of(one)]
+        return [one for one in below if "recon4_app.compute_pool.child" in command_of(one)]
 
     with ThreadPoolExecutor(1) as thread:
         answer = thread.submit(ask)
@@ -221,7 +221,7 @@ def run(root: Path, request: dict[str, Any], *, kills: int, seed: int) -> Surviv
     plan = [((k + rng.random()) / kills, victim) for k, victim in enumerate(victims)]
     try:
         while True:
-            with server_process(root, worker_module="app.jobs.worker") as (server, process):
+            with server_process(root, worker_module="recon4_app.jobs.worker") as (server, process):
                 if not survived.jobs:
                     survived.jobs.append(_started(server, request))
                 if _live(server, process, survived, plan):

@@ -20,17 +20,17 @@ from typing import Any
 import httpx
 import numpy as np
 from fastapi import FastAPI
-
-from app.jobs.folder import JobFolder
-from app.main import create_app, serve
-from app.network.listen import (
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.main import create_app, serve
+from recon4_app.network.listen import (
     AnnouncingServer,
     certificate_of,
     listening,
     make_state,
     uvicorn_config,
 )
-from app.settings import ServerSettings, recording_folders_from_environment
+from recon4_app.settings import ServerSettings, recording_folders_from_environment
+
 from recon4.system.stopping import StopSignals, end_process
 
 ROOT = Path(__file__).parents[2]

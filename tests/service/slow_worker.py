@@ -15,10 +15,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.limits import worker_policy
+from recon4_app.jobs.worker import main, titled
 
-from app.jobs.folder import JobFolder
-from app.jobs.limits import worker_policy
-from app.jobs.worker import main, titled
 from recon4.errors import EmptyRecording
 from recon4.progress import Progress
 from recon4.sandbox import Policy

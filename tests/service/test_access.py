@@ -4,12 +4,12 @@ import time
 from urllib.parse import urlsplit
 
 import pytest
+from recon4_app.access.login.login_service import open_access
+from recon4_app.access.people import Role
+from recon4_app.network.listen import make_state
+from recon4_app.settings import ServerSettings
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
-from app.access.login.login_service import open_access
-from app.access.people import Role
-from app.network.listen import make_state
-from app.settings import ServerSettings
 from tests.deadlines import BUSY_S
 from tests.served import office, served
 from tests.service.running import server_thread

@@ -5,11 +5,11 @@ import re
 from urllib.parse import quote, urlsplit
 
 import pytest
+from recon4_app.access.middleware.origin import SAFE_METHODS
+from recon4_app.access.routes_check import declared
+from recon4_app.main import create_app
+from recon4_app.settings import ServerSettings
 
-from app.access.middleware.origin import SAFE_METHODS
-from app.access.routes_check import declared
-from app.main import create_app
-from app.settings import ServerSettings
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 
@@ -106,7 +106,7 @@ def test_a_failure_reveals_neither_path_nor_code(server, monkeypatch):
     def fail(*_):
         raise RuntimeError(f"secret in {server.root}")
 
-    monkeypatch.setattr("app.projects.store.ProjectStore.all", fail)
+    monkeypatch.setattr("recon4_app.projects.store.ProjectStore.all", fail)
     answer = server.get("/api/projects")
 
     assert answer.status_code == 500

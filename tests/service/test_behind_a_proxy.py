@@ -6,12 +6,12 @@ import re
 import httpx
 import pytest
 import viser
+from recon4_app.network.behind import public_address
+from recon4_app.settings import ServerSettings
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
-from app.network.behind import public_address
-from app.settings import ServerSettings
 from recon4.errors import ConfigError
 from tests.service.behind_nginx import behind_nginx, needs_nginx, sign_in
 from tests.service.secure import PASSWORD

@@ -106,12 +106,12 @@ def test_a_job_the_disk_has_no_room_for_is_refused_with_figures(tmp_path, record
 def test_room_is_asked_for_again_when_the_turn_comes(tmp_path):
     """The real worker: what was free when the job was taken may be gone."""
     (tmp_path / "walk.pcap").write_bytes(b"no capture")
-    with server_process(tmp_path, worker_module="app.jobs.worker") as (server, process):
+    with server_process(tmp_path, worker_module="recon4_app.jobs.worker") as (server, process):
         job = server.start("office", tmp_path / "walk.pcap")
         first = server.wait_state(job, "failed")
         request = tmp_path / ".recon4" / "jobs" / job / "request.json"
         request.write_text(request.read_text().replace("2147483648", str(1 << 60)))
-        worker = [process.args[0], "-m", "app.jobs.worker", str(request.parent)]
+        worker = [process.args[0], "-m", "recon4_app.jobs.worker", str(request.parent)]
         subprocess.run(worker, check=True, capture_output=True)
         full = server.get(f"/api/jobs/{job}").json()
 

@@ -188,7 +188,7 @@ def export(server):
 
 def children(process):
     below = psutil.Process(process.pid).children(recursive=True)
-    return [one for one in below if "app.compute_pool.child" in command_of(one)]
+    return [one for one in below if "recon4_app.compute_pool.child" in command_of(one)]
 
 
 def answered(server, kill):

@@ -23,9 +23,9 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
+from recon4_app.errors import Conflict
+from recon4_app.live.current_capture import CurrentCapture
 
-from app.errors import Conflict
-from app.live.current_capture import CurrentCapture
 from recon4.errors import StoreError
 from recon4.live.replay import ReplayDatagram, replay
 from recon4.live.session import load_session

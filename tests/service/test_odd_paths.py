@@ -8,8 +8,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from recon4_app.settings import ServerSettings
 
-from app.settings import ServerSettings
 from recon4.errors import ConfigError, RecordingError
 from recon4.progress import Silent
 from recon4.store.inputs import input_file

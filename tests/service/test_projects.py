@@ -5,10 +5,10 @@ import socket
 
 import httpx
 import pytest
+from recon4_app.main import serve
+from recon4_app.network.listen import listening
+from recon4_app.settings import ServerSettings
 
-from app.main import serve
-from app.network.listen import listening
-from app.settings import ServerSettings
 from recon4.errors import StoreError
 from recon4.store.atomic import write_json
 from recon4.store.seal import changing

@@ -6,8 +6,8 @@ import time
 
 import httpx
 import pytest
+from recon4_app.projects.trash import Trash
 
-from app.projects.trash import Trash
 from recon4.settings import Settings
 from tests.project_builder import build_project
 from tests.served import served

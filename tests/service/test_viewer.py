@@ -9,10 +9,10 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
+from recon4_app.jobs.events import EventWriter
+from recon4_app.viewer.page import SHIMS
 from websockets.exceptions import ConnectionClosed
 
-from app.jobs.events import EventWriter
-from app.viewer.page import SHIMS
 from recon4.model.events import EdgeTried, NodesPlaced, StageChanged, VerdictsChanged
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from tests.processes import viewer_process

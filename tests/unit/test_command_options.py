@@ -10,9 +10,14 @@ import pytest
 ROOT = Path(__file__).parents[2]
 OPTION = re.compile(r"(?<![\w-])--[a-z]")
 OF_COMMANDS = (
-    *("recon4/cli/", "app/cli/", "recon4/system/doctor.py", "recon4/cli/terminal.py"),
+    *("recon4/cli/", "app/recon4_app/cli/", "recon4/system/doctor.py", "recon4/cli/terminal.py"),
     *("recon4/settings/help.py", "recon4/archive/backup.py"),
-    *("app/settings.py", "app/network/", "app/access/startup_notice.py", "app/access/restoring.py"),
+    *(
+        "app/recon4_app/settings.py",
+        "app/recon4_app/network/",
+        "app/recon4_app/access/startup_notice.py",
+        "app/recon4_app/access/restoring.py",
+    ),
 )
 """Their messages appear in the terminal where a command was given, or the server started."""
 

@@ -7,12 +7,12 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from recon4_app.access.routes_check import declared
+from recon4_app.main import create_app
+from recon4_app.settings import ServerSettings
 from rich.text import Text
 from typer.main import get_command
 
-from app.access.routes_check import declared
-from app.main import create_app
-from app.settings import ServerSettings
 from recon4.cli.main import app
 from recon4.model.rig import parse_rig
 from recon4.settings import Settings
@@ -33,7 +33,7 @@ REPOSITORY_PATH = re.compile(
     r"(?<![\w./-])(?:recon4|app|web|tests|tools|docs|examples)/[\w./{},*-]*\w[}/]?"
 )
 PYTHON_FILE = re.compile(r"(?<![\w./*{},-])[\w/]+\.py\b")
-MODULE = re.compile(r"`((?:recon4|app)(?:\.\w+)+)")
+MODULE = re.compile(r"`((?:recon4|recon4_app)(?:\.\w+)+)")
 ROUTE = re.compile(r"(?:^|`)(GET|HEAD|POST|PUT|PATCH|DELETE) +(/api[\w/<>{}-]*)", re.MULTILINE)
 SETTING = re.compile(r"`(?:--set )?(\w+)\.(\w+)(?: ?=[^`]*)?`")
 IDENTIFIER = re.compile(r"`([A-Za-z_][\w.]*(?:\([^`\n]*)?)`")
@@ -104,14 +104,16 @@ def test_modules_and_their_names_a_page_names_exist(page):
 
 
 def is_module(name):
-    path = ROOT.joinpath(*name.split("."))
+    home = ROOT / "app" if name.startswith("recon4_app") else ROOT
+    path = home.joinpath(*name.split("."))
     return path.is_dir() or path.with_suffix(".py").is_file()
 
 
 def is_defined(name):
     """Whether a module defines the last part of a dotted name at its top level."""
     module, _, last = name.rpartition(".")
-    file = ROOT.joinpath(*module.split(".")).with_suffix(".py")
+    home = ROOT / "app" if name.startswith("recon4_app") else ROOT
+    file = home.joinpath(*module.split(".")).with_suffix(".py")
     defined = rf"^(?:def |class |async def )?{last}\b"
     return file.is_file() and re.search(defined, file.read_text("utf-8"), re.MULTILINE) is not None
 
@@ -142,7 +144,9 @@ def test_names_of_the_code_in_a_page_exist(page):
 
 def test_architecture_names_every_top_level_module():
     page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
-    modules = {path.name for top in ("recon4", "app") for path in (ROOT / top).glob("[!_]*.py")}
+    modules = {
+        path.name for top in ("recon4", "app/recon4_app") for path in (ROOT / top).glob("[!_]*.py")
+    }
 
     assert sorted(name for name in modules if not re.search(rf"[ `/]{name}[ `]", page)) == []
 
@@ -239,9 +243,11 @@ def test_the_patterns_of_these_tests_find_what_they_should():
     assert not known("slice walk cut.png --height 1.5")
     assert typed("a `recon4 fly` and\n    recon4 walk  # x\nrecon4 reads") == ["fly", "walk  "]
     assert typed("```sh\nrecon4 run\n```\nrecon4 reads") == ["run"]
-    assert REPOSITORY_PATH.findall("see recon4/geometry/{se3,mesh}.py, app/live/ and /app/x") == [
+    assert REPOSITORY_PATH.findall(
+        "see recon4/geometry/{se3,mesh}.py, app/recon4_app/live/ and /app/x"
+    ) == [
         "recon4/geometry/{se3,mesh}.py",
-        "app/live/",
+        "app/recon4_app/live/",
     ]
     assert expanded("recon4/{a,b}.py") == ["recon4/a.py", "recon4/b.py"]
     assert PYTHON_FILE.findall("se3.py, velodyne/models.py; test_x*.py") == [

@@ -117,9 +117,14 @@ MAY_IMPORT = {
     | {f"recon4.{room}" for room in ("api", "evaluation", "findings", "mapping", "recording")}
     | {f"recon4.{room}" for room in ("review", "simulation", "slices", "pose_graph.files")}
     | {"recon4.pipeline", "recon4.export.map_files", "recon4.cli.kernel_cache"},
-    "recon4/cli/main.py": {"recon4", "app.cli"},
-    "app/cli/users.py": {"recon4.errors", "recon4.cli.terminal", "recon4.archive.verify", "app"},
-    "app": {"app", "recon4"},
+    "recon4/cli/main.py": {"recon4", "recon4_app.cli"},
+    "app/recon4_app/cli/users.py": {
+        "recon4.errors",
+        "recon4.cli.terminal",
+        "recon4.archive.verify",
+        "recon4_app",
+    },
+    "app": {"recon4_app", "recon4"},
 }
 """Place -> prefixes of our own modules it may import; the longest place that fits counts."""
 
@@ -131,7 +136,7 @@ NOBODY_IMPORTS = {
         "recon4/cli/findings.py",
         "recon4/workflows/calibration_methods.py",
         "recon4/system/compile_kernels.py",
-        "app/cli/serve.py",
+        "app/recon4_app/cli/serve.py",
         "app",
     },
 }
@@ -145,23 +150,23 @@ ONLY_HERE = {
     | {f"recon4/recording/formats/{name}.py" for name in ("reference_clouds", "cloud_crs")},
     "ctypes": {"recon4/sandbox"},
     "viser": {
-        "app/viewer/client/show.py",
-        "app/viewer/client/panels.py",
-        "app/viewer/client/widget_values.py",
-        "app/viewer/unix_socket.py",
+        "app/recon4_app/viewer/client/show.py",
+        "app/recon4_app/viewer/client/panels.py",
+        "app/recon4_app/viewer/client/widget_values.py",
+        "app/recon4_app/viewer/unix_socket.py",
     },
     "matplotlib": {
         "recon4/report",
         "recon4/slices/colors.py",
         "recon4/slices/sheet.py",
-        "app/viewer/cloud/palette.py",
+        "app/recon4_app/viewer/cloud/palette.py",
     },
     "ezdxf": {"recon4/slices/export.py"},
     "fastapi": {"app"},
     "uvicorn": {"app"},
-    "typer": {"recon4/cli", "app/cli"},
-    "cryptography": {"app/network/certificate.py", "recon4/review/signature.py"},
-    "argon2": {"app/access/login/passwords.py"},
+    "typer": {"recon4/cli", "app/recon4_app/cli"},
+    "cryptography": {"app/recon4_app/network/certificate.py", "recon4/review/signature.py"},
+    "argon2": {"app/recon4_app/access/login/passwords.py"},
     "rich": {"recon4/cli/terminal.py"},
     "sqlite3": {
         "recon4/archive/backup.py",
@@ -175,7 +180,7 @@ ONLY_HERE = {
 
 NEVER = {"pickle", "marshal", "shelve", "yaml", "cPickle", "dill", "cloudpickle"}
 """Loading these from a file of unknown origin runs its code."""
-ONLY_TO_CHILDREN = Path("app/compute_pool/messages.py")
+ONLY_TO_CHILDREN = Path("app/recon4_app/compute_pool/messages.py")
 """The server sends calls to its children as pickles; nothing comes back as one."""
 
 SOURCES = [
@@ -197,7 +202,8 @@ def imported(path: Path) -> frozenset[str]:
 
 
 def _module(package: str, name: str) -> str:
-    whole = ROOT.joinpath(*package.split("."), name)
+    home = ROOT / "app" if package.startswith("recon4_app") else ROOT
+    whole = home.joinpath(*package.split("."), name)
     return f"{package}.{name}" if whole.with_suffix(".py").exists() or whole.is_dir() else package
 
 
@@ -223,7 +229,7 @@ def test_imports_follow_the_layers():
         (str(path), name)
         for path in SOURCES
         for name in imported(path)
-        if name.split(".")[0] in {"recon4", "app", "web"}
+        if name.split(".")[0] in {"recon4", "recon4_app", "recon4_web"}
         and not allowed(name, MAY_IMPORT[layer[path]])
     ] == []
 
@@ -262,7 +268,9 @@ def test_nothing_imports_the_whole_of_scipy_stats():
 def test_the_page_names_every_package():
     page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
     packages = {
-        path.parent.name for top in ("recon4", "app") for path in (ROOT / top).glob("*/__init__.py")
+        path.parent.name
+        for top in ("recon4", "app/recon4_app")
+        for path in (ROOT / top).glob("*/__init__.py")
     }
 
     assert {package for package in packages if not re.search(rf"\b{package}/", page)} == set()
@@ -274,7 +282,7 @@ def test_every_package_imported_is_named_in_pyproject():
     homes = metadata.packages_distributions()
 
     used = {name.split(".")[0] for path in SOURCES for name in imported(path)}
-    foreign = used - sys.stdlib_module_names - {"recon4", "app"}
+    foreign = used - sys.stdlib_module_names - {"recon4", "recon4_app"}
 
     found = {name: {_distribution(home) for home in homes.get(name, [])} for name in foreign}
     assert {name for name, distributions in found.items() if not distributions & named} == set()
@@ -313,7 +321,7 @@ def test_server_and_viewer_start_without_what_only_computing_needs():
         "matplotlib",
         "ezdxf",
     ]
-    load = "import sys, app.main, app.viewer.process"
+    load = "import sys, recon4_app.main, recon4_app.viewer.process"
     program = f"{load}; print([n for n in {heavy} if n in sys.modules])"
 
     assert _output_of(program) == "[]\n"

@@ -15,7 +15,7 @@ from tools.touched import ALWAYS, ROOT, mirrors_of, touched, without_those_below
         ("recon4/settings/mapping.py", ["tests/unit/test_settings.py"]),
         ("recon4/cli/main.py", ["tests/unit/test_cli.py"]),
         ("recon4/backup.py", ["tests/unit/test_backup.py", "tests/unit/test_backup_hostile.py"]),
-        ("app/jobs/worker.py", ["tests/unit/app"]),
+        ("app/recon4_app/jobs/worker.py", ["tests/unit/app"]),
         ("web/live/live.js", ["tests/unit/test_web_addresses.py"]),
         ("tools/structure.py", ["tests/unit/test_structure.py"]),
         ("examples/process.py", ["tests/unit/api"]),

@@ -22,7 +22,7 @@ from typing import Any
 from recon4.sandbox.private_cache import KERNELS
 from tests.security.fuzz.runner import GOOD, fast_folder
 
-_INSTRUMENTED = ["recon4", "app.live"]
+_INSTRUMENTED = ["recon4", "recon4_app.live"]
 _COMPILED = [f"recon4.kernels.{path.stem}" for path in KERNELS.glob("*.py")]
 """Numba cannot compile what is instrumented."""
 _HANG_S = 60

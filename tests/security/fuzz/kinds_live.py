@@ -14,8 +14,8 @@ from pathlib import Path
 from typing import IO, cast
 
 import numpy as np
+from recon4_app.live.current_capture import marks_of
 
-from app.live.current_capture import marks_of
 from recon4.errors import Recon4Error
 from recon4.live.mapper.gnss_watch import GnssWatch
 from recon4.live.mapper.scan_map import ScanMap

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from recon4_app.review.store import Reviews
 
-from app.review.store import Reviews
 from recon4.review.decisions import Decision, DecisionKind, fold
 from recon4.review.journal import append, read_rows
 from recon4.review.source import Source

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import pytest
-
-from app.access.login.login_service import LoginService, open_access
+from recon4_app.access.login.login_service import LoginService, open_access
 
 
 class Clock:
@@ -24,9 +23,12 @@ def clock() -> Clock:
 @pytest.fixture
 def access(tmp_path, clock, monkeypatch):
     # One round of little memory: what is tested here is not how dear a hash is.
-    monkeypatch.setattr("app.access.login.passwords.hashed", lambda password: f"hash of {password}")
     monkeypatch.setattr(
-        "app.access.login.passwords.fits", lambda password, stored: stored == f"hash of {password}"
+        "recon4_app.access.login.passwords.hashed", lambda password: f"hash of {password}"
+    )
+    monkeypatch.setattr(
+        "recon4_app.access.login.passwords.fits",
+        lambda password, stored: stored == f"hash of {password}",
     )
     opened = open_access(tmp_path, login=True, clock=clock)
     yield opened

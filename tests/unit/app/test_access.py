@@ -6,12 +6,11 @@ import re
 import threading
 
 import pytest
-
-from app.access.login.login_service import LoginOrigin
-from app.access.login.sessions import LIVES, form_token
-from app.access.middleware import session as session_middleware
-from app.access.people import Role
-from app.errors import Conflict, NotFound, Refused, WeakPassword, WrongPassword
+from recon4_app.access.login.login_service import LoginOrigin
+from recon4_app.access.login.sessions import LIVES, form_token
+from recon4_app.access.middleware import session as session_middleware
+from recon4_app.access.people import Role
+from recon4_app.errors import Conflict, NotFound, Refused, WeakPassword, WrongPassword
 
 PASSWORD = "three green owls dance"
 HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")

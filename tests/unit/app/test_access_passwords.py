@@ -1,9 +1,8 @@
 """Which passwords are refused, and how they are kept."""
 
 import pytest
-
-from app.access.login import passwords
-from app.errors import WeakPassword
+from recon4_app.access.login import passwords
+from recon4_app.errors import WeakPassword
 
 
 @pytest.mark.parametrize(

@@ -3,11 +3,10 @@
 import threading
 
 import pytest
-
-from app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
-from app.access.login.login_service import LoginOrigin
-from app.access.people import Role
-from app.errors import TooMany, WrongPassword
+from recon4_app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
+from recon4_app.access.login.login_service import LoginOrigin
+from recon4_app.access.people import Role
+from recon4_app.errors import TooMany, WrongPassword
 
 PASSWORD = "three green owls dance"
 HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")

@@ -5,10 +5,9 @@ import threading
 from dataclasses import replace
 
 import pytest
-
-from app.access.audit import entry_hash
-from app.access.login.login_service import LoginOrigin, open_access
-from app.access.people import LOCAL
+from recon4_app.access.audit import entry_hash
+from recon4_app.access.login.login_service import LoginOrigin, open_access
+from recon4_app.access.people import LOCAL
 
 PASSWORD = "three green owls dance"
 HERE = LoginOrigin(address="192.0.2.1", agent="Firefox", browser="")

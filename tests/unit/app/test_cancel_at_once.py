@@ -1,12 +1,11 @@
 """A job canceled while it is being started: no traceback, and it stops."""
 
 import pytest
-
-from app.jobs.folder import JobFolder
-from app.jobs.model import Inputs, Job, JobState
-from app.jobs.store import JobStore
-from app.jobs.supervisor import Supervisor
-from app.settings import ServerSettings
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.model import Inputs, Job, JobState
+from recon4_app.jobs.store import JobStore
+from recon4_app.jobs.supervisor import Supervisor
+from recon4_app.settings import ServerSettings
 
 
 @pytest.fixture

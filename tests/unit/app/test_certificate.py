@@ -1,9 +1,9 @@
 """The certificate of this computer: made once, replaced when damaged."""
 
 import pytest
+from recon4_app.network.certificate import made_certificate, own_certificate
+from recon4_app.network.hosts import own_names
 
-from app.network.certificate import made_certificate, own_certificate
-from app.network.hosts import own_names
 from recon4.errors import ConfigError
 
 

@@ -7,10 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from recon4_app.compute_pool.model import FileAccess, Lane, Terms
+from recon4_app.compute_pool.pool import ComputePool
+from recon4_app.errors import ComputeFailed
 
-from app.compute_pool.model import FileAccess, Lane, Terms
-from app.compute_pool.pool import ComputePool
-from app.errors import ComputeFailed
 from recon4.errors import ConfigError, GraphError, WrongSettings
 from recon4.system.processes import ChildRegister
 from tests import pool_functions as work

@@ -5,9 +5,8 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from app.projects.folder_names import folder_name, free_folder_name
-from app.projects.store import PROJECT_ID
+from recon4_app.projects.folder_names import folder_name, free_folder_name
+from recon4_app.projects.store import PROJECT_ID
 
 
 @pytest.mark.parametrize(

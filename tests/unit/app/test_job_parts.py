@@ -3,13 +3,13 @@
 import sqlite3
 
 import pytest
+from recon4_app.errors import Conflict, IllegalTransition, NotFound
+from recon4_app.jobs.events import EventWriter, event_of, read_events
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.model import TRANSITIONS, Inputs, Job, JobState
+from recon4_app.jobs.status import JobStatus, after
+from recon4_app.jobs.store import JobStore
 
-from app.errors import Conflict, IllegalTransition, NotFound
-from app.jobs.events import EventWriter, event_of, read_events
-from app.jobs.folder import JobFolder
-from app.jobs.model import TRANSITIONS, Inputs, Job, JobState
-from app.jobs.status import JobStatus, after
-from app.jobs.store import JobStore
 from recon4.errors import Cancelled
 from recon4.model.events import NodesPlaced, RunStarted, StageChanged
 

@@ -10,10 +10,11 @@ import sys
 import time
 from contextlib import suppress
 
-from app.errors import AppError
-from app.projects.trash import Trash
-from app.settings import ServerSettings
-from app.uploads.store import UploadStore
+from recon4_app.errors import AppError
+from recon4_app.projects.trash import Trash
+from recon4_app.settings import ServerSettings
+from recon4_app.uploads.store import UploadStore
+
 from recon4.review.newest_approval import record_path
 from recon4.store.atomic import make_folders
 

@@ -4,7 +4,7 @@ import asyncio
 import socket
 import threading
 
-from app.network.listen import AnnouncingServer, uvicorn_config
+from recon4_app.network.listen import AnnouncingServer, uvicorn_config
 
 
 async def endless(scope, receive, send):

@@ -2,7 +2,8 @@
 
 import asyncio
 
-from app.live.capture import Capture, unfinished
+from recon4_app.live.capture import Capture, unfinished
+
 from recon4.live.protocol import Done, encode
 from recon4.live.session import CaptureSession
 from tests.live_messages import pose

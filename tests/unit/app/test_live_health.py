@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from recon4_app.live.current_capture import marks_of
+from recon4_app.live.health import lidars
+from recon4_app.live.power import Battery, Power, battery_findings, read_battery
+from recon4_app.live.rigs import rig_files, rigs_in, shipped_rigs
 
-from app.live.current_capture import marks_of
-from app.live.health import lidars
-from app.live.power import Battery, Power, battery_findings, read_battery
-from app.live.rigs import rig_files, rigs_in, shipped_rigs
 from recon4.live.mapper.notes import NotesWatch
 from recon4.live.newest import Newest
 from recon4.live.session import CaptureSession

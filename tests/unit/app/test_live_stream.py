@@ -2,8 +2,8 @@
 
 import numpy as np
 from msgspec import UNSET
+from recon4_app.live.stream_state import Cursor, StreamState
 
-from app.live.stream_state import Cursor, StreamState
 from recon4.live.protocol import Mark, Points
 from tests import live_messages
 

@@ -6,11 +6,10 @@ import sys
 import threading
 
 import pytest
-
-from app.access.login.login_backoff import MAX_KEYS, LoginBackoff, TokenBuckets
-from app.access.login.login_service import WAITING_LOGINS, LoginOrigin
-from app.access.people import Role
-from app.errors import TooMany, WrongPassword
+from recon4_app.access.login.login_backoff import MAX_KEYS, LoginBackoff, TokenBuckets
+from recon4_app.access.login.login_service import WAITING_LOGINS, LoginOrigin
+from recon4_app.access.people import Role
+from recon4_app.errors import TooMany, WrongPassword
 
 PASSWORD = "three green owls dance"
 

@@ -8,10 +8,9 @@ import sys
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from app import logs as module
-from app.jobs.folder import JobFolder
-from app.logs import Logs, RepeatFilter, printable, rotate_grown
+from recon4_app import logs as module
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.logs import Logs, RepeatFilter, printable, rotate_grown
 
 
 class Clock:
@@ -21,7 +20,7 @@ class Clock:
         return self.now_s
 
 
-def record(message, *args, name="app.test"):
+def record(message, *args, name="recon4_app.test"):
     return logging.LogRecord(name, logging.WARNING, "", 0, message, args, None)
 
 
@@ -52,7 +51,7 @@ def test_one_noisy_logger_does_not_silence_another():
     for n in range(1000):
         judge.filter(record(f"message {n}"))
 
-    assert judge.filter(record("disk full", name="app.jobs"))
+    assert judge.filter(record("disk full", name="recon4_app.jobs"))
 
 
 @given(st.text())
@@ -78,12 +77,12 @@ def test_the_file_holds_an_object_a_line_with_the_traceback(logged):
     try:
         raise ValueError("no\x1b such \u202e thing")
     except ValueError:
-        logging.getLogger("app.test").exception("failed %s", "a\nb")
+        logging.getLogger("recon4_app.test").exception("failed %s", "a\nb")
     (line,) = file.read_text("ascii").splitlines()
 
     fields = json.loads(line)
     assert fields["level"] == "ERROR"
-    assert fields["logger"] == "app.test"
+    assert fields["logger"] == "recon4_app.test"
     assert fields["message"] == "failed a\\nb"
     assert "ValueError" in fields["exception"]
     assert "\x1b" not in fields["exception"]
@@ -93,7 +92,7 @@ def test_the_file_holds_an_object_a_line_with_the_traceback(logged):
 def test_both_outputs_agree_on_what_repeats(logged, capsys):
     logs, file = logged
     for _ in range(100):
-        logging.getLogger("app.test").warning("again")
+        logging.getLogger("recon4_app.test").warning("again")
 
     assert len(file.read_text().splitlines()) == module.REPEATS_A_MINUTE
     assert logs.dropped == 100 - module.REPEATS_A_MINUTE
@@ -105,7 +104,7 @@ def test_the_file_rotates(tmp_path, monkeypatch):
     logs = Logs(tmp_path / "server.log")
     with logs.installed():
         for n in range(2000):
-            logging.getLogger("app.test").warning(f"message {n}")
+            logging.getLogger("recon4_app.test").warning(f"message {n}")
     files = list(tmp_path.iterdir())
 
     assert len(files) == module.KEPT_LOGS
@@ -118,7 +117,7 @@ def test_a_full_disk_is_counted_and_causes_no_output(monkeypatch, capfd):
     logs = Logs(Path("/dev/full"))
     monkeypatch.setattr(module.QuietRotatingFile, "shouldRollover", lambda *_: False)
     with logs.installed():
-        logging.getLogger("app.test").warning("one")
+        logging.getLogger("recon4_app.test").warning("one")
 
     assert logs.failures == 1
     assert "Traceback" not in capfd.readouterr().err

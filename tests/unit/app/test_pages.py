@@ -3,8 +3,7 @@
 import re
 
 import pytest
-
-from app.pages import HEAD_HERE, WEB, html_of
+from recon4_app.pages import HEAD_HERE, WEB, html_of
 
 PAGES = sorted(
     path.relative_to(WEB).as_posix() for path in WEB.rglob("*.html") if path.name != "head.html"

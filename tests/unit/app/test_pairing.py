@@ -4,8 +4,7 @@ import contextlib
 import threading
 
 import pytest
-
-from app.access.pairing.grants import (
+from recon4_app.access.pairing.grants import (
     INVITATION_S,
     MAX_OPEN,
     MAX_OPEN_A_NETWORK,
@@ -14,8 +13,8 @@ from app.access.pairing.grants import (
     Pairings,
     roles_for,
 )
-from app.access.people import Person, Role
-from app.errors import NotFound, Refused, TooMany
+from recon4_app.access.people import Person, Role
+from recon4_app.errors import NotFound, Refused, TooMany
 
 OTTO = Person("otto", Role.OPERATOR)
 VERA = Person("vera", Role.VIEWER)

@@ -5,10 +5,10 @@ import asyncio
 import httpx
 import pytest
 from fastapi import FastAPI
+from recon4_app.access.people import Person, Role
+from recon4_app.error_responses import install
+from recon4_app.errors import STORAGE, Conflict, NoRoom, project_page
 
-from app.access.people import Person, Role
-from app.error_responses import install
-from app.errors import STORAGE, Conflict, NoRoom, project_page
 from recon4.errors import ConfigError, NoSpace
 
 

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import numpy as np
+from recon4_app.rigs.content import content_of, problems_of, rig_of
 
-from app.rigs.content import content_of, problems_of, rig_of
 from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
 

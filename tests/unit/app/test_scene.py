@@ -2,20 +2,19 @@
 
 import numpy as np
 import pytest
-
-from app.viewer.client.captions import (
+from recon4_app.viewer.client.captions import (
     Facts,
     edge_facts,
     gnss_facts,
     measurement_facts,
     measurements_csv,
 )
-from app.viewer.client.legend import legend
-from app.viewer.client.legend_html import facts_html, legend_html
-from app.viewer.client.view import ViewState
-from app.viewer.cloud.palette import Range, distinct_colors, paint, table, usual_range
-from app.viewer.cloud.parts import Cloud
-from app.viewer.scene.build import (
+from recon4_app.viewer.client.legend import legend
+from recon4_app.viewer.client.legend_html import facts_html, legend_html
+from recon4_app.viewer.client.view import ViewState
+from recon4_app.viewer.cloud.palette import Range, distinct_colors, paint, table, usual_range
+from recon4_app.viewer.cloud.parts import Cloud
+from recon4_app.viewer.scene.build import (
     Content,
     GnssMarks,
     bounds,
@@ -23,9 +22,10 @@ from app.viewer.scene.build import (
     grid_cell_m,
     measurement_label,
 )
-from app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
-from app.viewer.scene.nodes import LinesNode
-from app.viewer.scene.source import ProjectSource
+from recon4_app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
+from recon4_app.viewer.scene.nodes import LinesNode
+from recon4_app.viewer.scene.source import ProjectSource
+
 from recon4.mapping.notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter

@@ -10,8 +10,8 @@ import time
 from contextlib import suppress
 
 import pytest
+from recon4_app.jobs.silence import SilenceClock
 
-from app.jobs.silence import SilenceClock
 from recon4.system.processes import first_line, waited_for_processor_s
 from tests.service.running import wait_for
 

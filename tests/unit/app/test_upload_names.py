@@ -5,9 +5,8 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
-
-from app.errors import BadRequest
-from app.uploads.names import another, safe_name, safe_path, slug
+from recon4_app.errors import BadRequest
+from recon4_app.uploads.names import another, safe_name, safe_path, slug
 
 FIT = re.compile(r"[A-Za-z0-9_+~-][A-Za-z0-9._+~-]*")
 

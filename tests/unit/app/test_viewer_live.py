@@ -6,10 +6,10 @@ import time
 
 import numpy as np
 import pytest
+from recon4_app.jobs.events import EventWriter, event_of
+from recon4_app.viewer.scene.live import JobWatch, LiveGraph
+from recon4_app.viewer.scene.source import ProjectSource
 
-from app.jobs.events import EventWriter, event_of
-from app.viewer.scene.live import JobWatch, LiveGraph
-from app.viewer.scene.source import ProjectSource
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
 from recon4.pose_graph.files import load_graph

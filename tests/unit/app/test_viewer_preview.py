@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from recon4_app.viewer.cloud.multiframes import Multiframes
+from recon4_app.viewer.cloud.palette import paint
+from recon4_app.viewer.cloud.preview import HEIGHTS, PIECE, JobPreview
+from recon4_app.viewer.scene.source import ProjectSource
 
-from app.viewer.cloud.multiframes import Multiframes
-from app.viewer.cloud.palette import paint
-from app.viewer.cloud.preview import HEIGHTS, PIECE, JobPreview
-from app.viewer.scene.source import ProjectSource
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.store.frames import FrameStore

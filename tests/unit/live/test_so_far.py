@@ -1,8 +1,8 @@
 """What the phone says of the map while the walk goes on."""
 
 import pytest
+from recon4_app.live.stream_state import StreamState
 
-from app.live.stream_state import StreamState
 from recon4.live.so_far import WalkSoFar
 from tests.live_messages import pose
 

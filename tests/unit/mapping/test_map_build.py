@@ -8,8 +8,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from recon4_app.viewer.cloud.parts import Cloud
 
-from app.viewer.cloud.parts import Cloud
 from recon4.errors import OutOfRange, StoreError
 from recon4.export.laz import export_laz
 from recon4.mapping.build import MapInputs, build_map

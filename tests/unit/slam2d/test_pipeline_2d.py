@@ -5,13 +5,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from recon4_app.projects.import_folders import ImportFolders
+from recon4_app.projects.store import ProjectStore
+from recon4_app.viewer.client.view import ViewState
+from recon4_app.viewer.scene.build import bounds, describe
+from recon4_app.viewer.scene.nodes import ImageNode
+from recon4_app.viewer.scene.source import ProjectSource
 
-from app.projects.import_folders import ImportFolders
-from app.projects.store import ProjectStore
-from app.viewer.client.view import ViewState
-from app.viewer.scene.build import bounds, describe
-from app.viewer.scene.nodes import ImageNode
-from app.viewer.scene.source import ProjectSource
 from recon4.archive.verify import verify
 from recon4.cli.main import main
 from recon4.errors import ConfigError, EmptyRecording, StoreError

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from recon4_app.slices.model import PickRequest, SliceImageRequest, SlicePlaneSpec, WindowSpec
+from recon4_app.slices.work import pick_point, slice_image
+from recon4_app.viewer.client.legend import legend
+from recon4_app.viewer.client.view import ViewState, view_from_json
+from recon4_app.viewer.cloud.parts import Cloud
+from recon4_app.viewer.scene.build import Content
 
-from app.slices.model import PickRequest, SliceImageRequest, SlicePlaneSpec, WindowSpec
-from app.slices.work import pick_point, slice_image
-from app.viewer.client.legend import legend
-from app.viewer.client.view import ViewState, view_from_json
-from app.viewer.cloud.parts import Cloud
-from app.viewer.scene.build import Content
 from recon4.mapping.tiles import surface_text
 from tests.unit.slices.room_map import write_map
 

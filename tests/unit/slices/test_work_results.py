@@ -4,14 +4,13 @@ import inspect
 
 import numpy as np
 import pytest
+import recon4_app.review.work
 from pydantic import TypeAdapter
+from recon4_app.compute_pool.messages import declared, decode_result, encode_result
+from recon4_app.review.work import pair_facts, preview
+from recon4_app.slices.control_work import control_report
+from recon4_app.slices.work import comparison
 
-import app.review.work
-import app.slices.work
-from app.compute_pool.messages import declared, decode_result, encode_result
-from app.review.work import pair_facts, preview
-from app.slices.control_work import control_report
-from app.slices.work import comparison
 from recon4.evaluation.slices import SliceError
 from recon4.model.pose_graph import Judge, Judgment, Measure, Reason, Verdict
 from recon4.review.pairs import PairFacts
@@ -27,7 +26,7 @@ from recon4.slices.signed import SignedFigures
 
 WORK = [
     function
-    for module in (app.review.work, app.slices.work)
+    for module in (recon4_app.review.work, recon4_app.slices.work)
     for name, function in inspect.getmembers(module, inspect.isfunction)
     if not name.startswith("_")
     if function.__module__ == module.__name__ or name in getattr(module, "__all__", ())

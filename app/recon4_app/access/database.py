@@ -1,0 +1,126 @@
+"""``access.sqlite``: people, sessions, known browsers and the audit log, in a file of mode 0600.
+
+The server and the command ``recon4 users`` both write to it, so a change begins by taking the
+write lock. Readers never wait.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import sqlalchemy as sa
+from alembic.util import CommandError
+
+from recon4.errors import StoreError
+from recon4.store.atomic import is_full
+from recon4.store.sqlite_files import connect_to_read
+from recon4_app.access.reserve import Reserve
+from recon4_app.databases import migrate, open_engine
+from recon4_app.errors import NoRoom
+
+METADATA = sa.MetaData()
+PEOPLE = sa.Table(
+    "people",
+    METADATA,
+    sa.Column("key", sa.String, primary_key=True),
+    sa.Column("name", sa.String, nullable=False),
+    sa.Column("role", sa.String, nullable=False),
+    sa.Column("password", sa.String, nullable=False),
+    sa.Column("disabled", sa.Boolean, nullable=False),
+    sa.Column("created", sa.String, nullable=False),
+)
+"""``key`` is the name folded, so that Anna and anna are one; ``password`` is an argon2 hash."""
+
+SESSIONS = sa.Table(
+    "sessions",
+    METADATA,
+    sa.Column("id", sa.String, primary_key=True),
+    sa.Column("token_hash", sa.String, unique=True, nullable=False),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("began_s", sa.Float, nullable=False),
+    sa.Column("proved_s", sa.Float, nullable=False),
+    sa.Column("seen_s", sa.Float, nullable=False),
+    sa.Column("address", sa.String, nullable=False),
+    sa.Column("agent", sa.String, nullable=False),
+    sa.Column("phone_role", sa.String, nullable=True),
+)
+"""``person`` is a key of `PEOPLE`; times are in seconds since 1970; ``phone_role`` is the
+role of a phone that the person paired, NULL for a login."""
+
+KNOWN_BROWSERS = sa.Table(
+    "browsers",
+    METADATA,
+    sa.Column("token_hash", sa.String, primary_key=True),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("known_s", sa.Float, nullable=False),
+)
+"""Browsers a person once signed in with: failed logins of others do not delay them."""
+
+AUDIT = sa.Table(
+    "audit",
+    METADATA,
+    sa.Column("number", sa.Integer, primary_key=True),
+    sa.Column("time", sa.String, nullable=False),
+    sa.Column("person", sa.String, nullable=False),
+    sa.Column("address", sa.String, nullable=False),
+    sa.Column("action", sa.String, nullable=False),
+    sa.Column("object", sa.String, nullable=False),
+    sa.Column("outcome", sa.String, nullable=False),
+    sa.Column("hash", sa.String, nullable=False),
+)
+"""Triggers reject changes and deletions of a row."""
+
+
+def open_database(path: Path) -> sa.Engine:
+    """Open the database; create it or migrate it to the newest schema.
+
+    Raises:
+        StoreError: If it is of another kind or version, or cannot be read; if the disk is full.
+    """
+    os.close(os.open(path, os.O_RDWR | os.O_CREAT | os.O_CLOEXEC, 0o600))
+    path.chmod(0o600)
+    engine = open_engine(path)
+    try:
+        with writing(engine) as connection:
+            migrate(connection, Path(__file__).parent)
+    except (sa.exc.DatabaseError, CommandError) as error:
+        engine.dispose()
+        raise StoreError(f"{path} cannot be used: {getattr(error, 'orig', error)}") from error
+    except NoRoom as error:
+        engine.dispose()
+        raise StoreError(str(error)) from error
+    return engine
+
+
+def open_to_read(path: Path) -> sa.Engine:
+    """Open an existing database to read it, also on a full disk and on read-only media."""
+    return sa.create_engine(
+        "sqlite://", creator=lambda: connect_to_read(path), poolclass=sa.pool.NullPool
+    )
+
+
+def reserve_of(engine: sa.Engine) -> Reserve:
+    """The disk space that is kept for a database."""
+    assert engine.url.database is not None
+    return Reserve(Path(engine.url.database).parent)
+
+
+@contextmanager
+def writing(engine: sa.Engine) -> Iterator[sa.Connection]:
+    """An exclusive write transaction; committed at the end.
+
+    Raises:
+        NoRoom: If the disk is full, and the reserve used up.
+    """
+    reserve_of(engine).give_way()
+    try:
+        with engine.begin() as connection:
+            connection.exec_driver_sql("BEGIN IMMEDIATE")
+            yield connection
+    except sa.exc.OperationalError as error:  # a quota, or others were faster
+        if is_full(error):
+            raise NoRoom("the disk is full: make room and try again") from error
+        raise

@@ -1,0 +1,253 @@
+"""Sessions: an opaque random token in a cookie, everything else in the database.
+
+Only the hash of a token is stored: a person who reads the database cannot sign in with it.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import math
+import secrets
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import Any
+
+import sqlalchemy as sa
+
+from recon4_app.access.audit import printable
+from recon4_app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
+from recon4_app.access.login.accounts import lookup_key
+from recon4_app.access.people import Person, Role
+from recon4_app.errors import NoRoom, NotFound
+
+HOUR_S = 3600.0
+
+
+@dataclass(frozen=True, slots=True)
+class Life:
+    """Limits of a session's duration."""
+
+    whole_s: float
+    """From the login [s]."""
+    idle_s: float
+    """Since the last request [s]."""
+
+
+LIVES = {
+    Role.VIEWER: Life(12 * HOUR_S, 12 * HOUR_S),
+    Role.OPERATOR: Life(12 * HOUR_S, 2 * HOUR_S),
+    Role.REVIEWER: Life(12 * HOUR_S, 2 * HOUR_S),
+    Role.ADMIN: Life(8 * HOUR_S, 0.5 * HOUR_S),
+}
+PHONE_LIFE = Life(12 * HOUR_S, 12 * HOUR_S)
+"""A phone stays in a pocket for hours of a walk."""
+CLOCK_STEP_S = 60.0
+"""A password given later than this from now was given before the clock was set back [s]."""
+CACHED_S = 2.0
+"""Lifetime of a cached session: one ended by another process ends after that [s]."""
+NOTED_EVERY_S = 30.0
+"""Interval at which the last use of a session is written [s]."""
+BROWSER_KNOWN_S = 365 * 24 * HOUR_S
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Session:
+    """A login of a person on a device."""
+
+    id: str
+    """Public identifier of the session; not the secret."""
+    person: str
+    role: Role
+    began_s: float
+    """Login, seconds since 1970."""
+    proved_s: float
+    """When the password was last given, seconds since 1970."""
+    seen_s: float
+    """Last request, seconds since 1970."""
+    address: str
+    agent: str
+    """User-Agent header of the browser."""
+    phone: bool = False
+    """Whether it is a paired phone; ``person`` paired it, ``role`` is the phone's own."""
+
+    def over(self, now_s: float) -> bool:
+        """Whether the session has expired."""
+        life = PHONE_LIFE if self.phone else LIVES[self.role]
+        return now_s - self.began_s > life.whole_s or now_s - self.seen_s > life.idle_s
+
+
+@dataclass(frozen=True, slots=True)
+class AuthenticatedSession:
+    """The session of a request, with the hash of its token."""
+
+    session: Session
+    token_hash: str
+
+    @property
+    def person(self) -> Person:
+        """The person of the session."""
+        return Person(self.session.person, self.session.role)
+
+
+class Sessions:
+    """All sessions of a server; thread-safe."""
+
+    def __init__(self, engine: sa.Engine, clock: Callable[[], float] = time.time) -> None:
+        self._engine = engine
+        self._clock = clock
+        self._cached: dict[str, tuple[float, AuthenticatedSession]] = {}
+        self._lock = threading.Lock()
+
+    def begin(self, name: str, *, address: str, agent: str, phone_role: Role | None = None) -> str:
+        """Begin a session of a person, or of a phone a person paired.
+
+        Returns:
+            Its token, which is stored nowhere.
+        """
+        token, now_s = new_token(), self._clock()
+        row = {
+            "id": secrets.token_hex(8),
+            "token_hash": hash_of(token),
+            "person": lookup_key(name),
+            "address": address,
+            "agent": printable(agent[:120]),
+            "phone_role": phone_role,
+            **dict.fromkeys(("began_s", "proved_s", "seen_s"), now_s),
+        }
+        longest_s = max(life.whole_s for life in LIVES.values())
+        with writing(self._engine) as connection:
+            old = SESSIONS.delete().where(SESSIONS.c.began_s < now_s - longest_s)
+            connection.execute(old)
+            connection.execute(SESSIONS.insert().values(**row))
+        return token
+
+    def cached_sessions(self, token: str) -> AuthenticatedSession | None:
+        """The session of a token from the cache, without a database query; None if not cached."""
+        until_s, found_session = self._cached.get(hash_of(token), (0.0, None))
+        fresh = (
+            found_session
+            and time.monotonic() < until_s
+            and not found_session.session.over(self._clock())
+        )
+        return found_session if fresh else None
+
+    def find(self, token: str) -> AuthenticatedSession | None:
+        """The session of a token; None if missing, expired or of a disabled person."""
+        token_hash = hash_of(token)
+        with self._lock:  # an end that comes between reading and caching waits
+            found = self._select(SESSIONS.c.token_hash == token_hash)
+            if not found or found[0].over(self._clock()):
+                self._cached.pop(token_hash, None)
+                return None
+            if len(self._cached) > 1000:
+                self._cached.clear()
+            found_session = AuthenticatedSession(found[0], token_hash)
+            self._cached[token_hash] = (time.monotonic() + CACHED_S, found_session)
+            return found_session
+
+    def alive(self, session_id: str) -> Session | None:
+        """A session that has not expired, by its identifier."""
+        found = self._select(SESSIONS.c.id == session_id)
+        return found[0] if found and not found[0].over(self._clock()) else None
+
+    def unnoted(self, session: Session) -> bool:
+        """Whether the last use of a session is due to be written."""
+        return self._clock() - session.seen_s > NOTED_EVERY_S
+
+    def note(self, session: Session) -> None:
+        """Write that a session is in use now; on a full disk it is left out."""
+        now_s = self._clock()
+        with suppress(NoRoom):
+            self._write(SESSIONS.update().where(SESSIONS.c.id == session.id).values(seen_s=now_s))
+
+    def prove(self, session_id: str) -> str:
+        """A new token for the same session, after the password was given again."""
+        token = new_token()
+        values = {"token_hash": hash_of(token), "proved_s": self._clock()}
+        self._write(SESSIONS.update().where(SESSIONS.c.id == session_id).values(**values))
+        return token
+
+    def age_s(self, session: Session) -> float:
+        """Seconds since the password was last given."""
+        age_s = self._clock() - session.proved_s
+        return max(0.0, age_s) if age_s > -CLOCK_STEP_S else math.inf
+
+    def all(self, *, person: str | None = None) -> list[Session]:
+        """Sessions that have not expired, the latest first; of one person, or of all."""
+        mine = SESSIONS.c.person == lookup_key(person) if person is not None else sa.true()
+        now_s = self._clock()
+        return [session for session in self._select(mine) if not session.over(now_s)]
+
+    def end(self, session_id: str, *, person: str | None = None) -> None:
+        """End a session; with ``person`` only one of that person.
+
+        Raises:
+            NotFound: If there is no such session.
+        """
+        mine = SESSIONS.c.id == session_id
+        if person is not None:
+            mine &= SESSIONS.c.person == lookup_key(person)
+        if self._write(SESSIONS.delete().where(mine)) == 0:
+            raise NotFound(f"no session {session_id[:32]!r}")
+
+    def forget_cached(self) -> None:
+        """Empty the cache, because sessions may have ended."""
+        with self._lock:
+            self._cached.clear()
+
+    # -- known browsers
+
+    def know_browser(self, name: str) -> str:
+        """A new token for a browser with which the person signed in."""
+        token, now_s = new_token(), self._clock()
+        row = {"token_hash": hash_of(token), "person": lookup_key(name), "known_s": now_s}
+        with writing(self._engine) as connection:
+            old = KNOWN_BROWSERS.delete().where(KNOWN_BROWSERS.c.known_s < now_s - BROWSER_KNOWN_S)
+            connection.execute(old)
+            connection.execute(KNOWN_BROWSERS.insert().values(**row))
+        return token
+
+    def knows_browser(self, token: str, name: str) -> bool:
+        """Whether the person has signed in with this browser before."""
+        columns = KNOWN_BROWSERS.c
+        mine = (columns.token_hash == hash_of(token)) & (columns.person == lookup_key(name))
+        with self._engine.connect() as connection:
+            known_s = connection.execute(sa.select(columns.known_s).where(mine)).scalar()
+        return known_s is not None and self._clock() - known_s < BROWSER_KNOWN_S
+
+    def _select(self, condition: sa.ColumnElement[bool]) -> list[Session]:
+        join = sa.join(SESSIONS, PEOPLE, SESSIONS.c.person == PEOPLE.c.key)
+        left_out = ("token_hash", "person", "phone_role")
+        own = [column for column in SESSIONS.c if column.name not in left_out]
+        role = sa.func.coalesce(SESSIONS.c.phone_role, PEOPLE.c.role).label("role")
+        phone = SESSIONS.c.phone_role.is_not(None).label("phone")
+        query = sa.select(*own, PEOPLE.c.name.label("person"), role, phone)
+        query = query.select_from(join).where(condition, ~PEOPLE.c.disabled)
+        with self._engine.connect() as connection:
+            rows = connection.execute(query.order_by(SESSIONS.c.began_s.desc())).mappings()
+            return [Session(**{**row, "role": Role(row["role"])}) for row in rows]
+
+    def _write(self, statement: sa.Update | sa.Delete) -> int:
+        with self._lock, writing(self._engine) as connection:
+            changed: Any = connection.execute(statement)
+            self._cached.clear()
+            return int(changed.rowcount)
+
+
+def new_token() -> str:
+    """256 random bits."""
+    return secrets.token_urlsafe(32)
+
+
+def hash_of(token: str) -> str:
+    """The stored hash of a token; a token is random, so one round of SHA-256 is enough."""
+    return hashlib.sha256(token.encode("utf-8", "replace")).hexdigest()
+
+
+def form_token(session_token: str) -> str:
+    """The CSRF token a page sends with every change; bound to the session."""
+    return hmac.new(session_token.encode(), b"recon4 form token", hashlib.sha256).hexdigest()

@@ -1,0 +1,205 @@
+"""Session middleware: requires a session, and ends requests that outlive their session."""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import re
+from dataclasses import dataclass
+from urllib.parse import quote
+
+from starlette.datastructures import Headers
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from recon4_app.access.login.login_backoff import TokenBuckets
+from recon4_app.access.login.login_service import Access
+from recon4_app.access.login.sessions import AuthenticatedSession, Session, form_token
+from recon4_app.access.middleware.rejection import Rejection, note
+from recon4_app.access.people import NOBODY, SAFE_METHODS
+from recon4_app.network.behind import prefix_of, public_path, route_path
+
+FORM_HEADER = "X-Recon4-Token"
+
+PAIRING = frozenset({"/pair", "/api/pairing/redeem", "/api/pairing/requests", "/api/pairing/claim"})
+OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metrics"}
+"""Paths answered without a session, besides the files of `OPEN_FOLDER`; tested."""
+OPEN_FOLDER = "/web/"
+
+LOOK_AGAIN_S = 2.0
+"""An open WebSocket or stream ends at most this long after its session [s]."""
+CANCEL_AGAIN_S = 1.0
+TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
+
+
+@dataclass(frozen=True, slots=True)
+class CookieNames:
+    """Cookies of this server; servers on other paths of the host have others."""
+
+    session: str
+    browser: str
+    path: str
+    """Path below which browsers send them."""
+
+
+def cookie_names(prefix: str) -> CookieNames:
+    """The cookies of a server.
+
+    Browsers accept a ``__Host-`` cookie only over TLS, for this host alone and its root path, a
+    ``__Secure-`` cookie only over TLS. Below a prefix the path alone is not enough: a server at
+    ``/maps/old/`` is sent the cookies of ``/maps/``, too.
+
+    Args:
+        prefix: As ``/recon4``; empty = the server has the host for itself.
+    """
+    if not prefix:
+        return CookieNames("__Host-sid", "__Host-browser", "/")
+    place = prefix[1:].replace("/", "~")
+    return CookieNames(f"__Secure-sid-{place}", f"__Secure-browser-{place}", f"{prefix}/")
+
+
+class SessionMiddleware:
+    """Finds the session of each request; used where there is a login."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+        self._requests = TokenBuckets(burst=60, per_s=20.0)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] not in ("http", "websocket"):
+            await self._app(scope, receive, send)
+            return
+        access: Access = scope["app"].state.parts.access
+        token = cookie(scope, cookie_names(prefix_of(scope)).session)
+        authenticated = await find(access, token)
+        state = scope["state"]
+        state.update(person=NOBODY, signed_in_s=float("inf"), session=None)
+        if authenticated is not None:
+            session = authenticated.session
+            signed_in_s = access.sessions.age_s(session)
+            state.update(person=authenticated.person, signed_in_s=signed_in_s, session=session)
+            state["form_token"] = form_token(token)
+        if (rejection := self._judge(scope, authenticated)) is not None:
+            if rejection.status == 403:
+                await note(scope, rejection)
+            await rejection.answer(scope, receive, send)
+        elif authenticated is None:
+            await self._app(scope, receive, send)
+        else:
+            if access.sessions.unnoted(authenticated.session):
+                await asyncio.to_thread(access.sessions.note, authenticated.session)
+            await SessionMonitor(access, authenticated.session, scope).run(self._app, receive, send)
+
+    def _judge(self, scope: Scope, authenticated: AuthenticatedSession | None) -> Rejection | None:
+        path = route_path(scope)
+        if path.startswith(OPEN_FOLDER) or (authenticated is None and path in OPEN_PATHS):
+            return None
+        if authenticated is None:
+            return sign_in_first(scope)
+        if wait_s := self._requests.take(authenticated.session.id):
+            retry = {"Retry-After": str(int(wait_s) + 1)}
+            return Rejection(429, "TooMany", "too many requests at a time", retry)
+        if scope["type"] == "http" and scope["method"] not in SAFE_METHODS:
+            given = Headers(scope=scope).get(FORM_HEADER, "")
+            if not hmac.compare_digest(given.encode(), scope["state"]["form_token"].encode()):
+                detail = f"the header {FORM_HEADER} must carry the token of /api/me"
+                return Rejection(403, "StaleToken", detail)
+        return None
+
+
+class SessionMonitor:
+    """Runs the application for one request, and ends it if it outlives its session."""
+
+    def __init__(self, access: Access, session: Session, scope: Scope) -> None:
+        self._access, self._session, self._scope = access, session, scope
+        self._begun = self._ended = self._sized = False
+        self._active = False
+
+    async def run(self, app: ASGIApp, receive: Receive, send: Send) -> None:
+        """Run the application until it is done or the session has ended."""
+
+        async def receive_and_note() -> Message:
+            message = await receive()
+            self._active |= message["type"] == "websocket.receive"
+            return message
+
+        async def send_and_note(message: Message) -> None:
+            self._notice(message)
+            await send(message)
+
+        running = asyncio.ensure_future(app(self._scope, receive_and_note, send_and_note))
+        try:
+            while not (await asyncio.wait({running}, timeout=LOOK_AGAIN_S))[0]:
+                if self._begun and not await asyncio.to_thread(self._still):
+                    await cancelled(running)
+                    await self._end(send)
+                    return
+        finally:
+            running.cancel()
+        await running
+
+    def _still(self) -> bool:
+        """Whether the session is still valid; messages of a browser keep it from going idle."""
+        session = self._access.sessions.alive(self._session.id)
+        if session is not None and self._active and self._access.sessions.unnoted(session):
+            self._active = False
+            self._access.sessions.note(session)
+        return session is not None
+
+    def _notice(self, message: Message) -> None:
+        kind = message["type"]
+        if kind == "http.response.start":
+            names = {name.lower() for name, _ in message.get("headers", [])}
+            self._begun, self._sized = True, b"content-length" in names
+        elif kind == "websocket.accept":
+            self._begun = True
+        elif kind == "websocket.close" or (
+            kind == "http.response.body" and not message.get("more_body", False)
+        ):
+            self._ended = True
+
+    async def _end(self, send: Send) -> None:
+        if self._ended:
+            return
+        if self._scope["type"] == "websocket":
+            await send({"type": "websocket.close", "code": 1008, "reason": "signed out"})
+        elif not self._sized:  # else the server closes the connection: the file is incomplete
+            await send({"type": "http.response.body", "body": b"", "more_body": False})
+
+
+async def cancelled(running: asyncio.Future[None]) -> None:
+    """Cancel a task until it has ended: a library may lose a cancellation."""
+    while not running.done():
+        running.cancel()
+        await asyncio.wait({running}, timeout=CANCEL_AGAIN_S)
+
+
+async def find(access: Access, token: str) -> AuthenticatedSession | None:
+    """The session of a token; the database is queried in a thread."""
+    if not TOKEN.fullmatch(token):
+        return None
+    return access.sessions.cached_sessions(token) or await asyncio.to_thread(
+        access.sessions.find, token
+    )
+
+
+def cookie(scope: Scope, name: str) -> str:
+    """The value of a cookie; empty if there is none, or more than one."""
+    pairs = (
+        pair.strip().partition("=")
+        for line in Headers(scope=scope).getlist("cookie")
+        for pair in line.split(";")
+    )
+    values = [value for key, _, value in pairs if key == name]
+    return values[0] if len(values) == 1 else ""
+
+
+def sign_in_first(scope: Scope) -> Rejection:
+    """Redirect a browser to the login; answer a program with status 401."""
+    accept = Headers(scope=scope).get("accept", "")
+    page = scope["type"] == "http" and scope["method"] == "GET" and "text/html" in accept
+    if not page:
+        return Rejection(401, "Unknown", "sign in first: POST /api/login")
+    # A paired phone knows no password: the pairing page offers both.
+    path = route_path(scope)
+    there = "/pair" if path == "/live" else f"/login#next={quote(path)}"
+    return Rejection(303, "Unknown", "sign in first", {"Location": public_path(scope, there)})

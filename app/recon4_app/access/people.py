@@ -1,0 +1,143 @@
+"""The person behind a request: role and permissions."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import Awaitable, Callable
+from dataclasses import dataclass
+from enum import StrEnum
+from typing import Annotated
+
+from fastapi import Depends
+from starlette.requests import HTTPConnection
+
+from recon4_app.access.audit import AuditLog, audit
+from recon4_app.errors import LOGIN, Refused, SignInAgain
+
+
+class Permission(StrEnum):
+    """What a route requires; deny by default: every route names one."""
+
+    LOOK = "look"
+    """See projects, maps, reports; measure and cut slices."""
+    REVIEW = "review"
+    """Decide loop closures, approve."""
+    PROCESS = "process"
+    """Upload recordings, start and stop jobs."""
+    CAPTURE = "capture"
+    """Start and stop live captures."""
+    ADMINISTER = "administer"
+    """People, sessions, audit log."""
+
+
+class Role(StrEnum):
+    """Role of a person on this server."""
+
+    NOBODY = "nobody"
+    """Not signed in; never assigned to an account."""
+    VIEWER = "viewer"
+    OPERATOR = "operator"
+    REVIEWER = "reviewer"
+    ADMIN = "admin"
+
+
+MAY: dict[Role, frozenset[Permission]] = {
+    Role.NOBODY: frozenset(),
+    Role.VIEWER: frozenset({Permission.LOOK}),
+    Role.OPERATOR: frozenset({Permission.LOOK, Permission.PROCESS, Permission.CAPTURE}),
+    Role.REVIEWER: frozenset({Permission.LOOK, Permission.PROCESS, Permission.REVIEW}),
+    Role.ADMIN: frozenset(Permission),
+}
+
+RECENT_LOGIN_S = 900.0
+"""Signing with one's name requires a password given within this time [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Person:
+    """The person behind a request."""
+
+    name: str
+    role: Role
+
+    def may(self, what: Permission) -> bool:
+        """Whether the role of this person has a permission."""
+        return what in MAY[self.role]
+
+
+LOCAL = Person("local", Role.ADMIN)
+"""The person at this computer, when the server listens on loopback only."""
+READER = Person("local", Role.VIEWER)
+"""The same person, when the folder of the projects cannot be written."""
+NOBODY = Person("nobody", Role.NOBODY)
+"""A caller who has not signed in."""
+
+
+def person(connection: HTTPConnection) -> Person:
+    """The person behind a request, as `SessionMiddleware` determined it."""
+    found: Person = connection.scope["state"]["person"]
+    return found
+
+
+def signed_in_s(connection: HTTPConnection) -> float:
+    """Seconds since this person last gave the password; 0 where there is no login."""
+    found: float = connection.scope["state"]["signed_in_s"]
+    return found
+
+
+SAFE_METHODS = frozenset({"GET", "HEAD", "OPTIONS"})
+"""Of requests that change nothing."""
+
+Who = Annotated[Person, Depends(person)]
+
+
+def needs(what: Permission) -> Callable[[HTTPConnection], Awaitable[Person]]:
+    """A dependency that requires a permission: ``dependencies=[Depends(needs(Permission.LOOK))]``.
+
+    Raises (when called by the framework):
+        Refused: If the person lacks the permission; the audit log gets an entry.
+        NoRoom: If the request changes something and the disk is too full for that entry.
+    """
+
+    async def check(connection: HTTPConnection) -> Person:
+        who = person(connection)
+        log: AuditLog = connection.app.state.parts.access.log
+        if not who.may(what):
+            path = connection.scope["path"]
+            await asyncio.to_thread(audit, connection, what, path, outcome="refused")
+            if who is READER:
+                raise Refused("the folder of the projects cannot be written: nothing can change")
+            raise Refused(f"{who.name} is a {who.role} here and may not {what}; ask an admin")
+        if connection.scope.get("method", "GET") not in SAFE_METHODS:
+            await asyncio.to_thread(log.require_room)
+        return who
+
+    check.needs = what  # type: ignore[attr-defined]  # read by `recon4_app.access.routes_check`
+    return check
+
+
+def allow_anonymous() -> None:
+    """The dependency of the few routes without login: ``Depends(allow_anonymous)``."""
+
+
+def interactive_login(connection: HTTPConnection) -> Person:
+    """A dependency that rejects paired phones, for actions such as ending their owner's sessions.
+
+    Raises:
+        Refused: If the session is that of a paired phone.
+    """
+    session = connection.scope["state"].get("session")
+    if session is not None and session.phone:
+        raise Refused("a paired phone may not do that; sign in with your password", remedy=LOGIN)
+    return person(connection)
+
+
+def recent_login(connection: HTTPConnection) -> Person:
+    """A dependency for what is signed with one's name: requires a recent password.
+
+    Raises:
+        SignInAgain: If it was given more than `RECENT_LOGIN_S` ago: ``POST /api/login/again``.
+    """
+    if signed_in_s(connection) > RECENT_LOGIN_S:
+        raise SignInAgain("give your password again: this is signed with your name")
+    return person(connection)

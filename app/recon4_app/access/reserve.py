@@ -1,0 +1,86 @@
+"""Disk space that is kept for the audit log and for signing in.
+
+What is done is in the audit log, and its entry is written after the deed. On a full disk it could
+not be. So some megabytes are kept in a file of their own, and given up bit by bit where the disk is
+full: a person can still sign in and delete what takes space, and the log has it. When they are used
+up, too, whatever would change something is refused before it is done.
+"""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from pathlib import Path
+
+from recon4_app.errors import NoRoom
+
+RESERVE_FILE = "audit.room"
+RESERVE_BYTES = 8 << 20
+"""The write-ahead log grows to 4 MiB before its space is used again."""
+NEEDED_BYTES = 128 << 10
+"""For one transaction."""
+
+
+class Reserve:
+    """The reserved space of one server."""
+
+    def __init__(self, state: Path) -> None:
+        """Look after a reserve; no file is made yet.
+
+        Args:
+            state: The folder of the server's own files.
+        """
+        self._state, self._file = state, state / RESERVE_FILE
+
+    def require(self) -> None:
+        """Have enough for the entry of an action that is about to be done.
+
+        Raises:
+            NoRoom: If the reserve is used up and the disk still full.
+        """
+        if self._size() < NEEDED_BYTES:
+            self._fill()
+        if self._size() < NEEDED_BYTES:
+            raise self._full()
+
+    def give_way(self) -> None:
+        """Give up as much as a transaction needs, if the disk is full.
+
+        Raises:
+            NoRoom: If that is not enough.
+        """
+        missing = NEEDED_BYTES - self._free()
+        if missing <= 0:
+            return
+        with suppress(FileNotFoundError):
+            os.truncate(self._file, max(0, self._size() - missing))
+        if self._free() < NEEDED_BYTES:
+            raise self._full()
+
+    def _fill(self) -> None:
+        file = os.open(self._file, os.O_WRONLY | os.O_CREAT | os.O_CLOEXEC, 0o600)
+        try:
+            before = os.fstat(file).st_size
+            with suppress(OSError):
+                os.lseek(file, before, os.SEEK_SET)
+                os.write(file, bytes(RESERVE_BYTES - before))
+            if os.fstat(file).st_size < RESERVE_BYTES:  # no room for all: others need it more
+                os.ftruncate(file, before)
+        finally:
+            os.close(file)
+
+    def _size(self) -> int:
+        with suppress(OSError):
+            return self._file.stat().st_size
+        return 0
+
+    def _free(self) -> int:
+        disk = os.statvfs(self._state)
+        blocks = disk.f_bfree if os.geteuid() == 0 else disk.f_bavail
+        return blocks * disk.f_frsize
+
+    def _full(self) -> NoRoom:
+        return NoRoom(
+            "the disk is full, also the space kept for the audit log: nothing can be changed until "
+            f"there is room; remove other files from the disk of {self._state.parent}"
+        )

@@ -1,0 +1,73 @@
+"""Copies of ``access.sqlite``, and what the server does when the file is damaged.
+
+A server never starts without the people that it had: that would open it to the first who comes.
+Either the newest intact copy replaces the file, or the server does not start.
+"""
+
+from __future__ import annotations
+
+import logging
+from pathlib import Path
+
+from recon4.errors import StoreError
+from recon4_app.state_copies import StateCopies
+
+log = logging.getLogger(__name__)
+
+ACCESS_FILE = "access.sqlite"
+
+
+def access_copies(state: Path) -> StateCopies:
+    """The copies of the access database; without sessions, so that none comes back to life."""
+    return StateCopies(state / ACCESS_FILE, without=("sessions", "browsers"))
+
+
+def restore_access(state: Path) -> str:
+    """Replace a damaged access database by its newest intact copy.
+
+    Returns:
+        A notice about what was restored and lost; empty when nothing was damaged.
+
+    Raises:
+        StoreError: If there is no intact copy.
+    """
+    copies = access_copies(state)
+    check_access(state, advice=copies.newest_intact() is None)
+    restored = copies.restore()
+    if restored is None:
+        return ""
+    kept = f"; it is kept as {restored.aside}" if restored.aside else ""
+    notice = (
+        f"The file of people and of the audit log, {ACCESS_FILE}, was damaged ({restored.damage})"
+        f"{kept}. The copy of {restored.day} replaces it: people, roles and passwords are those of "
+        "that day, later entries of the audit log are missing, and everybody has to sign in again. "
+        "An admin should look through the list of people."
+    )
+    log.error(notice)
+    return notice
+
+
+def check_access(state: Path, *, advice: bool = True) -> None:
+    """Refuse a damaged access database.
+
+    Args:
+        state: The server's own folder.
+        advice: False = do nothing: there is a copy to restore.
+
+    Raises:
+        StoreError: If it is damaged.
+    """
+    copies = access_copies(state)
+    if not advice or not (damage := copies.damage()):
+        return
+    path = state / ACCESS_FILE
+    if copies.newest_intact() is not None:
+        raise StoreError(
+            f"{path} is damaged ({damage}): start the server, which puts back its newest copy"
+        )
+    raise StoreError(
+        f"{path} is damaged ({damage}) and there is no intact copy of it, so it is not known who "
+        "may sign in: the server does not start. Put the file back from a backup that was made "
+        "with --with-keys; or, to begin without people, move it and "
+        f"backups/{path.stem}-*.sqlite away: the next start shows the link for a first admin"
+    )

@@ -1,0 +1,65 @@
+"""Limits of a worker: files, memory, processor time."""
+
+from __future__ import annotations
+
+import faulthandler
+import os
+import shutil
+from pathlib import Path
+
+from recon4.review.newest_approval import judging_folders
+from recon4.review.trusted_keys import STATE
+from recon4.sandbox import Confinement, Policy, confine, restart_with_one_thread
+from recon4.sandbox.limits import physical_memory_bytes
+from recon4.sandbox.private_cache import use_private_cache
+from recon4_app.jobs.compiling import compile_kernels_once
+from recon4_app.jobs.folder import JobFolder
+
+MEMORY_FRACTION = 0.7
+MAX_FILES = 4096
+MAX_CPU_S = 96 * 3600
+"""Of all threads together; a day of recording takes less."""
+MIN_FILE_BYTES = 1 << 30
+NICENESS = 10
+"""Workers run at low priority, so that the pages stay responsive."""
+
+
+def allowed_memory(setting_bytes: int) -> int:
+    """Memory limit of a worker [bytes]: 70 % of this computer's, or the setting if that is less."""
+    most = int(MEMORY_FRACTION * physical_memory_bytes())
+    return min(most, setting_bytes) if setting_bytes > 0 else most
+
+
+def worker_policy(folder: JobFolder) -> Policy:
+    """The sandbox policy: read the job's inputs and the kernels, write the project and its folder.
+
+    ``RLIMIT_DATA`` limits written memory, not mapped memory: mapping a recording larger than the
+    memory is harmless. One file may be as large as the free disk space.
+    """
+    project, inputs = folder.request()
+    limits = folder.limits()
+    rig = inputs.rig if os.path.isabs(inputs.rig) else ""  # else a shipped one
+    given = [Path(path) for path in (*inputs.recordings, inputs.imu, inputs.gnss, rig) if path]
+    times = [path.parent / "times.txt" for path in given if path.is_dir()]
+    free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
+    return Policy(
+        read=(*given, *times, *judging_folders(project.parent / STATE)),
+        write=(project, folder.path),
+        temporary=folder.temporary,
+        memory_bytes=limits.memory_bytes,
+        cpu_s=MAX_CPU_S,
+        file_bytes=max(MIN_FILE_BYTES, free),
+        open_files=MAX_FILES,
+    )
+
+
+def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
+    """Confine this process to the policy of its job, before it opens a file of a user."""
+    restart_with_one_thread()
+    os.nice(NICENESS)
+    faulthandler.enable()  # a crash in native code writes its stack to the log
+    project, _ = folder.request()
+    project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist
+    compile_kernels_once(folder.path / "heartbeat")
+    cached = use_private_cache(folder.temporary / "caches")
+    return confine(policy.adding(read=cached))

@@ -1,0 +1,88 @@
+"""A job: one run of the pipeline on one project."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from typing import Any
+
+from recon4_app.errors import IllegalTransition
+
+
+class JobState(StrEnum):
+    """State of a job."""
+
+    QUEUED = "queued"
+    """Waits for its turn."""
+    RUNNING = "running"
+    """Has a worker."""
+    SUCCEEDED = "succeeded"
+    FAILED = "failed"
+    CANCELLED = "cancelled"
+
+
+TRANSITIONS: dict[JobState, frozenset[JobState]] = {
+    JobState.QUEUED: frozenset({JobState.RUNNING, JobState.CANCELLED}),
+    JobState.RUNNING: frozenset(
+        {JobState.QUEUED, JobState.SUCCEEDED, JobState.FAILED, JobState.CANCELLED}
+    ),
+    JobState.SUCCEEDED: frozenset(),
+    JobState.FAILED: frozenset(),
+    JobState.CANCELLED: frozenset(),
+}
+"""A running job goes back to the queue when its worker died."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Inputs:
+    """Inputs of a job, with paths of this computer."""
+
+    recordings: tuple[str, ...]
+    """Files or folders."""
+    preset: str = "indoor"
+    rig: str = ""
+    """Name of a shipped rig or path of a rig file; empty = detected from the recording."""
+    imu: str = ""
+    """CSV file; empty = what the recording has."""
+    gnss: str = ""
+    """CSV file; empty = what the recording has."""
+    settings: tuple[str, ...] = ()
+    """``group.field=value`` texts over the preset."""
+    title: str = ""
+    """Display name of a new project; empty = the name of its folder."""
+    remake: bool = False
+    """Only make the map again with the current decisions; the other inputs are unchanged."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """One row of the queue."""
+
+    id: str
+    project: str
+    """Name of the project's folder."""
+    inputs: Inputs
+    created: str
+    """UTC, ISO 8601."""
+    state: JobState = JobState.QUEUED
+    attempt: int = 0
+    """Number of workers it has had."""
+    started: str = ""
+    finished: str = ""
+    note: str = ""
+    """What went wrong and what to do, as text for users."""
+
+    @property
+    def over(self) -> bool:
+        """Whether the state is final."""
+        return not TRANSITIONS[self.state]
+
+    def to(self, state: JobState, **changes: Any) -> Job:
+        """The job in its next state.
+
+        Raises:
+            IllegalTransition: If that state cannot follow the present one.
+        """
+        if state not in TRANSITIONS[self.state]:
+            raise IllegalTransition(f"job {self.id} is {self.state} and cannot become {state}")
+        return replace(self, state=state, **changes)

@@ -1,0 +1,176 @@
+"""The queue on disk: SQLite, written only by the server process."""
+
+from __future__ import annotations
+
+import json
+import logging
+from collections.abc import Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import sqlalchemy as sa
+from sqlalchemy.exc import IntegrityError
+
+from recon4.errors import StoreError
+from recon4.store.json_files import parse_object
+from recon4.untrusted.names import visible
+from recon4_app.databases import migrate, open_engine
+from recon4_app.errors import Conflict, NotFound, project_page
+from recon4_app.jobs.model import Inputs, Job, JobState
+from recon4_app.state_copies import StateCopies
+
+log = logging.getLogger(__name__)
+
+METADATA = sa.MetaData()
+JOBS = sa.Table(
+    "jobs",
+    METADATA,
+    sa.Column("number", sa.Integer, primary_key=True),
+    sa.Column("id", sa.String, unique=True, nullable=False),
+    sa.Column("project", sa.String, nullable=False),
+    sa.Column("inputs", sa.String, nullable=False),
+    sa.Column("created", sa.String, nullable=False),
+    sa.Column("state", sa.String, nullable=False),
+    sa.Column("attempt", sa.Integer, nullable=False),
+    sa.Column("started", sa.String, nullable=False),
+    sa.Column("finished", sa.String, nullable=False),
+    sa.Column("note", sa.String, nullable=False),
+)
+"""The table as the newest migration leaves it; ``number`` is the order of the queue. ``inputs`` is
+JSON that `_job` reads itself: in a list, SQLAlchemy's own type fails over one damaged row."""
+
+
+class JobStore:
+    """All jobs, finished ones too."""
+
+    def __init__(self, path: Path) -> None:
+        self._copies = StateCopies(path)
+        self.notice = _restore(self._copies)
+        """Notice for users: set when the file was damaged, else empty."""
+        self._engine = open_engine(path)
+        with self._engine.begin() as connection:
+            migrate(connection, Path(__file__).parent)
+
+    def close(self) -> None:
+        """Close the database."""
+        self._engine.dispose()
+
+    def back_up(self) -> None:
+        """Make today's backup, unless there is one."""
+        self._copies.make()
+
+    def add(self, job: Job) -> Job:
+        """Append a job to the queue.
+
+        Raises:
+            Conflict: If the project has a job that waits or runs.
+        """
+        try:
+            with self._engine.begin() as connection:
+                connection.execute(JOBS.insert().values(**_row(job)))
+        except IntegrityError as error:
+            raise Conflict(
+                f"project {job.project} already has a job that waits or runs; cancel it first",
+                remedy=project_page(job.project),
+            ) from error
+        return job
+
+    def change(self, before: Job, after: Job) -> Job:
+        """Store the next state of a job.
+
+        Raises:
+            Conflict: If the job is no longer in the state of ``before``.
+        """
+        mine = (JOBS.c.id == before.id) & (JOBS.c.state == before.state)
+        with self._engine.begin() as connection:
+            if connection.execute(JOBS.update().where(mine).values(**_row(after))).rowcount != 1:
+                raise Conflict(f"job {before.id} is no longer {before.state}")
+        return after
+
+    def get(self, job_id: str) -> Job:
+        """One job.
+
+        Raises:
+            NotFound: If there is no such job.
+        """
+        found = self._select(JOBS.select().where(JOBS.c.id == job_id))
+        if not found:
+            raise NotFound(f"no job {job_id}")
+        return found[0]
+
+    def in_state(self, *states: JobState) -> list[Job]:
+        """Jobs in any of the states, oldest first."""
+        return self._select(JOBS.select().where(JOBS.c.state.in_(states)).order_by(JOBS.c.number))
+
+    def counts(self) -> dict[JobState, int]:
+        """Number of jobs in each state; states without jobs are left out."""
+        query = sa.select(JOBS.c.state, sa.func.count()).group_by(JOBS.c.state)
+        with self._engine.connect() as connection:
+            return {JobState(state): count for state, count in connection.execute(query)}
+
+    def latest(self) -> dict[str, Job]:
+        """The newest job of each project."""
+        newest = sa.select(sa.func.max(JOBS.c.number)).group_by(JOBS.c.project)
+        jobs = self._select(JOBS.select().where(JOBS.c.number.in_(newest)))
+        return {job.project: job for job in jobs}
+
+    def of_project(self, project: str) -> list[Job]:
+        """Jobs of one project, newest first."""
+        mine = JOBS.select().where(JOBS.c.project == project)
+        return self._select(mine.order_by(JOBS.c.number.desc()))
+
+    def has_project(self, project: str) -> bool:
+        """Whether a job has a project, which may not exist yet."""
+        return bool(self.of_project(project))
+
+    def _select(self, query: sa.Select[Any]) -> list[Job]:
+        with self._engine.connect() as connection:
+            return [_job(row) for row in connection.execute(query).mappings()]
+
+
+def _restore(copies: StateCopies) -> str:
+    """Replace a damaged queue; a notice about what was restored and lost, or empty."""
+    restored = copies.restore()
+    if restored is None:
+        return ""
+    kept = f"; it is kept as {restored.aside}" if restored.aside else ""
+    replaced = (
+        f"The backup of {restored.day} replaces it: jobs started later are no longer listed."
+        if restored.day
+        else "There is no intact backup, so the list is empty."
+    )
+    notice = (
+        f"The list of jobs was damaged ({restored.damage}){kept}. {replaced} Projects and "
+        "recordings are unchanged; start such a job again and it continues after its last "
+        "finished stage."
+    )
+    log.error(notice)
+    return notice
+
+
+def _row(job: Job) -> dict[str, object]:
+    row = asdict(job)
+    return row | {"inputs": json.dumps(row["inputs"])}
+
+
+def _job(row: sa.RowMapping) -> Job:
+    """A row as a job; a damaged row is a failed job with a note."""
+    try:
+        return _whole_job(row)
+    except (ValueError, KeyError, TypeError, StoreError) as error:
+        return Job(
+            id=visible(str(row["id"])),
+            project=visible(str(row["project"])),
+            inputs=Inputs(recordings=()),
+            created=visible(str(row["created"])),
+            state=JobState.FAILED,
+            note=f"this row of jobs.sqlite is damaged: {visible(repr(error))}",
+        )
+
+
+def _whole_job(row: sa.RowMapping) -> Job:
+    inputs = parse_object(row["inputs"], "inputs")
+    tuples: dict[str, Sequence[str]] = {n: tuple(inputs[n]) for n in ("recordings", "settings")}
+    fields = {name: row[name] for name in row if name not in ("number", "inputs", "state")}
+    return Job(**fields, inputs=Inputs(**{**inputs, **tuples}), state=JobState(row["state"]))

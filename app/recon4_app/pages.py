@@ -1,0 +1,51 @@
+"""The pages in `web/`: HTML files with a common head."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from fastapi import Request
+from fastapi.responses import HTMLResponse
+
+from recon4_app.network.behind import prefix_of
+
+
+def _folder() -> Path:
+    """Of an installed package beside it, else of the checkout."""
+    installed = Path(__file__).parents[1] / "recon4_web"
+    return installed if installed.is_dir() else Path(__file__).parents[2] / "web"
+
+
+WEB = _folder()
+HEAD_HERE = "<!-- shared/head.html -->"
+"""Stands in each page where the common elements of the heads belong."""
+_ADDRESS = re.compile(r"""(?<=\s)((?:href|src|action)=")(?=/)""")
+"""In front of each address of this server in a page; all of them begin with a slash."""
+
+
+def html_of(file: str, prefix: str = "") -> str:
+    """A page as HTML, with the shared head.
+
+    Args:
+        file: Path of the page, relative to `web/`.
+        prefix: Path of the server on its host, as ``/recon4``; it is put in front of all addresses.
+    """
+    head = (WEB / "shared" / "head.html").read_text("utf-8")
+    page = (WEB / file).read_text("utf-8").replace(HEAD_HERE, head)
+    return _ADDRESS.sub(rf"\g<1>{prefix}", page)
+
+
+def page_response(file: str, request: Request, fills: Mapping[str, str] = {}) -> HTMLResponse:
+    """A page as the response to a request.
+
+    Args:
+        file: Path of the page, relative to `web/`.
+        request: Its server may have a prefix.
+        fills: HTML for the places of the page: ``title`` for ``{title}``.
+    """
+    page = html_of(file, prefix_of(request.scope))
+    for place, content in fills.items():
+        page = page.replace(f"{{{place}}}", content)
+    return HTMLResponse(page)

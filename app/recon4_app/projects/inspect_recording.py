@@ -1,0 +1,166 @@
+"""Inspection of a recording, with suitable settings: runs in a child of the compute pool."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from recon4.untrusted.names import is_unnameable
+
+MAX_BESIDE = 50
+"""In folders with more files, no IMU or GNSS file is searched for."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorSummary:
+    """One LiDAR of a recording."""
+
+    label: str
+    model: str
+    content: str
+    count: int
+    rate_hz: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecordingSummary:
+    """Content of a recording, and suitable settings."""
+
+    path: str
+    kind: str
+    bytes: int
+    seconds: float
+    """Duration [s]; 0 = unknown."""
+    estimated: bool
+    """Only the beginning was read: counts and duration are estimates."""
+    sensors: tuple[SensorSummary, ...]
+    samples: tuple[str, ...]
+    """IMU, GNSS and poses, as text."""
+    derived: tuple[str, ...]
+    """What the pipeline derives because it is not in the recording."""
+    missing: tuple[str, ...]
+    warnings: tuple[str, ...]
+    project: str
+    """Proposed name of the project."""
+    preset: str
+    rig: str
+    """A rig file in the same folder; empty = detected from the recording."""
+    imu: str
+    """An IMU file in the same folder."""
+    gnss: str
+    """A GNSS file in the same folder."""
+
+
+def files_beside(path: Path) -> tuple[Path, ...]:
+    """Regular files in the folder of a recording: `inspect_recording` may read them too.
+
+    With more than `MAX_BESIDE` files only those of the recording's own name (``x.db3-wal``).
+    """
+    folder = path if path.is_dir() else path.parent
+    with os.scandir(folder) as entries:
+        files = sorted(Path(one.path) for one in entries if one.is_file(follow_symlinks=False))
+    files = [file for file in files if file != path and not is_unnameable(file)]
+    if len(files) > MAX_BESIDE:
+        return tuple(file for file in files if file.name.startswith(path.stem))[:MAX_BESIDE]
+    return tuple(files)
+
+
+def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
+    """Inspect a recording.
+
+    Args:
+        path: File or folder.
+        beside: Result of `files_beside`.
+
+    Raises:
+        RecordingError: If it cannot be read or has an unknown format.
+    """
+    from recon4.model.plain import finite_or_none
+    from recon4.recording.info import describe
+
+    info = describe(path)
+    suited = _suited(beside)
+    samples = " ".join(info.samples)
+    located = "GNSS" in samples or "GNSS" in suited
+    return RecordingSummary(
+        path=str(path),
+        kind=info.kind,
+        bytes=info.bytes,
+        seconds=max(0.0, info.seconds),
+        estimated=info.estimated,
+        sensors=tuple(
+            SensorSummary(
+                label=sensor.label,
+                model=sensor.model,
+                content=sensor.content,
+                count=sensor.count,
+                rate_hz=finite_or_none(sensor.rate_hz),
+            )
+            for sensor in info.sensors
+        ),
+        samples=info.samples,
+        derived=tuple(text for text in info.derived if not _is_detected_rig(text, suited)),
+        missing=tuple(text for text in info.missing if not _is_in(text, suited)),
+        warnings=(*info.warnings, *_gap_warnings([gap.seconds for gap in info.gaps])),
+        project=_project_name(path),
+        preset="outdoor" if located else "indoor",
+        rig=suited.get("rig", ""),
+        imu=suited.get("IMU", ""),
+        gnss=suited.get("GNSS", ""),
+    )
+
+
+def _suited(files: tuple[Path, ...]) -> dict[str, str]:
+    """Rig, IMU and GNSS files, recognized by their content."""
+    from recon4.errors import Recon4Error
+    from recon4.model.rig import load_rig
+    from recon4.recording.kinds import RecordingKind, recognize
+
+    found: dict[str, str] = {}
+    for file in files:
+        try:
+            if file.suffix == ".toml":
+                load_rig(str(file))
+                found.setdefault("rig", str(file))
+            elif file.suffix == ".csv":
+                kind = recognize(file)
+                name = {RecordingKind.IMU_CSV: "IMU", RecordingKind.GNSS_CSV: "GNSS"}.get(kind)
+                if name:
+                    found.setdefault(name, str(file))
+        except Recon4Error:
+            continue  # another kind of file
+    return found
+
+
+def _is_in(text: str, beside: dict[str, str]) -> bool:
+    """Whether a missing input is among the files beside the recording."""
+    return any(text.startswith(kind) for kind in beside) or (
+        text.startswith("rig") and "rig" in beside
+    )
+
+
+def _is_detected_rig(text: str, beside: dict[str, str]) -> bool:
+    """Whether a text is about a detected rig that a file beside the recording replaces."""
+    return "rig" in beside and text.startswith("no rig given")
+
+
+def _gap_warnings(seconds: list[float]) -> list[str]:
+    """Sentences about gaps, which are negative where a clock goes back."""
+    back = sum(length < 0 for length in seconds)
+    texts = [f"{len(seconds) - back} gaps in the data"] * (len(seconds) > back)
+    return [*texts, *[f"the clock goes back {back} times"] * (back > 0)]
+
+
+def _project_name(path: Path) -> str:
+    import re
+
+    from recon4_app.uploads.names import slug
+
+    name = path.name
+    if path.is_file() and re.fullmatch(r"(recording|data|capture|dump|out)\.\w+", name, re.I):
+        name = path.parent.name
+    # the folder of an uploaded recording has its name and an id
+    if path.parent.name == "recordings" or path.parent.parent.name == "recordings":
+        name = re.sub(r"-[0-9a-f]{12}$", "", name)
+    return slug(name)

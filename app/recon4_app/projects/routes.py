@@ -1,0 +1,212 @@
+"""HTTP routes of the projects."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Literal
+
+from fastapi import APIRouter, Depends, Request
+from fastapi.responses import FileResponse, PlainTextResponse
+from pydantic import BaseModel, ConfigDict, Field
+from starlette.concurrency import run_in_threadpool
+
+from recon4.review.state import artifact_keys
+from recon4_app.access.audit import audit
+from recon4_app.access.people import Permission, needs
+from recon4_app.compute_pool.model import FileAccess, Lane, Terms
+from recon4_app.deps import Server, ServerParts
+from recon4_app.error_responses import ProblemDetail
+from recon4_app.errors import Conflict
+from recon4_app.jobs.model import JobState
+from recon4_app.names import Name
+from recon4_app.network.request_caller import CalledBy
+from recon4_app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
+from recon4_app.projects.model import MAP_IMAGES, FolderEntry, ProjectCard, ProjectView
+from recon4_app.projects.trash import Deleted
+
+router = APIRouter(
+    prefix="/api",
+    tags=["projects"],
+    dependencies=[Depends(needs(Permission.LOOK))],
+    responses={404: {"model": ProblemDetail}},
+)
+
+PROCESS = [Depends(needs(Permission.PROCESS))]
+REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src data:"
+"""A report is a file of the project: it may load nothing else."""
+
+
+FINDINGS_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json"}
+
+LOOK_LIMIT_S = 60.0
+COMPARED_WITHIN_S = 0.3
+"""The page of a project waits this long for the comparison with its signature [s]."""
+
+
+class Rename(BaseModel):
+    """A new display name."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    name: Name = Field(min_length=1, max_length=100)
+    """Display name; any letters."""
+
+
+class Restored(BaseModel):
+    """A restored project or recording."""
+
+    project: str
+    """Name of its folder."""
+
+
+@router.get("/projects", summary="Projects")
+def list_projects(server: Server) -> list[ProjectCard]:
+    """List all projects, the newest first."""
+    root = server.settings.root.resolve()
+    return [
+        replace(card, approval=server.checks.known(root / card.id, card.approval))
+        for card in server.projects.all()
+    ]
+
+
+@router.get("/projects/{project_id}", summary="One project")
+def read_project(project_id: str, server: Server) -> ProjectView:
+    """Read a project with its results and finished stages."""
+    return _compared(server, server.projects.get(project_id))
+
+
+@router.patch("/projects/{project_id}", dependencies=PROCESS, summary="Rename a project")
+def rename_project(
+    project_id: str, new: Rename, server: Server, *, request: Request
+) -> ProjectView:
+    """Change the display name of a project; its folder and URLs stay. Not while a job runs."""
+    server.projects.rename(project_id, new.name.strip())
+    audit(request, "rename project", f"{project_id}: {new.name}")
+    return _compared(server, server.projects.get(project_id))
+
+
+@router.delete("/projects/{project_id}", dependencies=PROCESS, summary="Delete a project")
+def delete_project(project_id: str, server: Server, request: Request) -> Deleted:
+    """Move a project to the trash; it can be restored for a week. Not while a job runs."""
+    folder = server.projects.folder(project_id)
+    _refuse_while_busy(server, project_id)
+    deleted = server.trash.put(folder)
+    audit(request, "delete project", project_id)
+    return deleted
+
+
+@router.get("/trash", dependencies=PROCESS, summary="Trash")
+def list_trash(server: Server) -> list[Deleted]:
+    """List deleted projects and recordings that can be restored."""
+    return server.trash.all()
+
+
+@router.post("/trash/{deleted_id}/restore", dependencies=PROCESS, summary="Restore from the trash")
+def restore_project(deleted_id: str, server: Server, request: Request) -> Restored:
+    """Restore a deleted project or recording under its old name."""
+    project = server.trash.restore(deleted_id)
+    audit(request, "restore", project)
+    return Restored(project=project)
+
+
+@router.delete(
+    "/trash/{deleted_id}", status_code=204, dependencies=PROCESS, summary="Remove from the trash"
+)
+def remove_project(deleted_id: str, server: Server, request: Request) -> None:
+    """Remove a deleted project or recording permanently."""
+    server.trash.remove(deleted_id)
+    audit(request, "remove", deleted_id)
+
+
+@router.get(
+    "/projects/{project_id}/files/{name}", response_class=FileResponse, summary="Download a result"
+)
+def download(project_id: str, name: str, server: Server) -> FileResponse:
+    """Download a result file."""
+    path = server.projects.result(project_id, name)
+    return FileResponse(
+        path, filename=f"{project_id}-{name}", media_type="application/octet-stream"
+    )
+
+
+@router.get("/projects/{project_id}/report", response_class=FileResponse, summary="Report")
+def report(project_id: str, server: Server) -> FileResponse:
+    """Show the quality report."""
+    path = server.projects.result(project_id, "report.html")
+    policy = {"Content-Security-Policy": REPORT_POLICY}
+    return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
+
+
+@router.get(
+    "/projects/{project_id}/findings.{ending}",
+    response_class=PlainTextResponse,
+    summary="Findings as a table or for a GIS",
+)
+def findings(
+    project_id: str, ending: Literal["csv", "geojson"], server: Server
+) -> PlainTextResponse:
+    """Download the findings of the map: CSV in its CRS, or GeoJSON in longitude and latitude; of a
+    map that is not georeferenced both in its local frame.
+    """
+    from recon4.export.findings import findings_file  # brings pyproj
+
+    _, text = findings_file(server.projects.folder(project_id), f".{ending}")
+    head = {"Content-Disposition": f'attachment; filename="{project_id}-findings.{ending}"'}
+    return PlainTextResponse(text, media_type=FINDINGS_TYPES[ending], headers=head)
+
+
+@router.get("/projects/{project_id}/thumbnail", response_class=FileResponse, summary="Thumbnail")
+async def thumbnail(project_id: str, server: Server, caller: CalledBy) -> FileResponse:
+    """The map from above as PNG image, made at the first request; a 2-D map is its own image."""
+    artifact = await run_in_threadpool(server.projects.map_of_any_kind, project_id)
+    for image in MAP_IMAGES:
+        if (artifact / image).is_file():
+            return FileResponse(artifact / image, media_type="image/png")
+    return FileResponse(await caller.wait(server.thumbnails.of(artifact, person=caller.name)))
+
+
+@router.get(
+    "/recordings",
+    dependencies=[Depends(needs(Permission.PROCESS))],
+    responses={403: {"model": ProblemDetail}},
+    summary="Folders of this computer",
+)
+def browse(server: Server, folder: str = "") -> list[FolderEntry]:
+    """List files and folders of this computer to select a recording."""
+    return server.projects.browse(folder)
+
+
+@router.get(
+    "/look",
+    dependencies=PROCESS,
+    responses={
+        403: {"model": ProblemDetail},
+        422: {"model": ProblemDetail},
+        503: {"model": ProblemDetail},
+    },
+    summary="Inspect a recording",
+)
+async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
+    """Inspect a recording on this computer: content and suitable settings."""
+    real = await run_in_threadpool(server.projects.importable, path)
+    beside = await run_in_threadpool(files_beside, real)
+    terms = Terms(person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S)
+    return await caller.wait(
+        server.compute_pool.run_background(Lane.INSPECT, terms, inspect_recording, real, beside)
+    )
+
+
+def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
+    """A project with the outcome of the comparison of its files with their signature."""
+    found = project.approval
+    if not found.hash:
+        return project
+    root, keys = server.projects.folder(project.id), artifact_keys(project.summary)
+    found = server.checks.compared(root, keys, found, within_s=COMPARED_WITHIN_S)
+    return replace(project, approval=found)
+
+
+def _refuse_while_busy(server: ServerParts, project_id: str) -> None:
+    active = (JobState.QUEUED, JobState.RUNNING)
+    if any(job.state in active for job in server.jobs.of_project(project_id)):
+        raise Conflict(f"a job of {project_id} waits or runs; cancel it first")

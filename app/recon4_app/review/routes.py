@@ -1,0 +1,372 @@
+"""HTTP routes of the review."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, TypeVar
+
+import numpy as np
+from fastapi import APIRouter, Depends, Query, Response
+from fastapi.responses import HTMLResponse
+from starlette.concurrency import run_in_threadpool
+from starlette.requests import Request
+
+from recon4.findings.notes import findings_in, notes_in
+from recon4.model.plain import finite_or_none
+from recon4.model.usability import verdict_in
+from recon4.review.approval import (
+    MIN_REASON_CHARACTERS,
+    NotApprovable,
+    make_read_only,
+    reason_needed,
+    signed_figures,
+)
+from recon4.review.approval import approve as sign
+from recon4.review.approved import Approval
+from recon4.review.decisions import ABOUT_MAPS, Decided, Decision, DecisionKind, fold
+from recon4.review.journal import JournalChanged, JournalRow, NothingToUndo, append, read_rows
+from recon4.review.newest_approval import judging_folders
+from recon4.review.pairs import (
+    PairFacts,
+    TrajectoryNodes,
+    align,
+    fit_points,
+    pair_facts,
+    pair_points,
+    trajectory_nodes,
+)
+from recon4.review.preview import Effect
+from recon4.review.source import Source, graph_key
+from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
+from recon4_app.access.audit import audit
+from recon4_app.access.people import Permission, Person, Who, needs, recent_login
+from recon4_app.compute_pool.model import FileAccess, Lane, Terms
+from recon4_app.deps import Server, ServerParts
+from recon4_app.error_responses import ProblemDetail
+from recon4_app.errors import Conflict, project_page
+from recon4_app.jobs.model import JobState
+from recon4_app.network.request_caller import CalledBy, Caller
+from recon4_app.pages import page_response
+from recon4_app.review.model import (
+    AlignmentView,
+    Approve,
+    Frame,
+    MapFacts,
+    NewDecision,
+    PointPairs,
+    PredictedPose,
+    ReviewView,
+    RowView,
+    StandingView,
+    Step,
+    SupersededEffect,
+)
+from recon4_app.review.records import record_signed
+from recon4_app.review.store import terms_of
+
+T = TypeVar("T")
+
+LOOK = [Depends(needs(Permission.LOOK))]
+REVIEW = [Depends(needs(Permission.REVIEW))]
+SIGN = [Depends(needs(Permission.REVIEW)), Depends(recent_login)]
+PREFIX = "/api/projects/{project_id}/review"
+SIGNING_LIMIT_S = 1800.0
+"""A map of tens of gigabytes is read and written once for its approval."""
+
+router = APIRouter(
+    prefix=PREFIX,
+    tags=["review"],
+    responses={
+        403: {"model": ProblemDetail},
+        404: {"model": ProblemDetail},
+        409: {"model": ProblemDetail},
+    },
+)
+page = APIRouter()
+
+
+@page.get("/projects/{project_id}/review/", include_in_schema=False, dependencies=LOOK)
+def review_page(project_id: str, request: Request, server: Server) -> HTMLResponse:
+    server.projects.folder(project_id)
+    return page_response("review/review.html", request)
+
+
+@router.get("", dependencies=LOOK, summary="State of the review")
+def read_review(project_id: str, server: Server, who: Who) -> ReviewView:
+    """Decisions in force, undo and redo counts, and whether the map includes the decisions."""
+    return _view(project_id, server, who)
+
+
+@router.get("/queue", dependencies=LOOK, summary="Pairs to decide about")
+async def read_queue(project_id: str, server: Server, caller: CalledBy) -> Response:
+    """All pairs except odometry: good registrations first, then weak ones, by influence.
+
+    ``columns`` names the values of each of the ``rows``. Figures are those before any decision.
+    """
+    root = server.projects.folder(project_id)
+    source = await run_in_threadpool(Source.of, root)
+    record = await caller.wait(server.reviews.queue(root, source, person=caller.name))
+    return Response(record, media_type="application/json")
+
+
+def _pair(frame_i: Frame, frame_j: Frame) -> tuple[int, int]:
+    """The multiframes of a pair, from the query."""
+    return frame_i, frame_j
+
+
+@router.get("/walk", dependencies=LOOK, summary="Nodes along the trajectory")
+async def read_walk(project_id: str, server: Server, caller: CalledBy) -> TrajectoryNodes:
+    """Nodes of the graph: multiframe, seconds since the start, position."""
+    return await _of_pairs(server, caller, trajectory_nodes, project_id=project_id)
+
+
+@router.get("/pair", dependencies=LOOK, summary="One pair")
+async def read_pair(
+    project_id: str, server: Server, caller: CalledBy, *, frame_i: Frame, frame_j: Frame
+) -> PairFacts:
+    """Poses of a pair, registered or not, and its alternative paths."""
+    return await _of_pairs(server, caller, pair_facts, (frame_i, frame_j), project_id=project_id)
+
+
+@router.get("/points", dependencies=LOOK, summary="Points of a pair")
+async def read_points(
+    project_id: str,
+    server: Server,
+    caller: CalledBy,
+    *,
+    pair: Annotated[tuple[int, int], Depends(_pair)],
+    reach: Annotated[int, Query(ge=0, le=10)] = 0,
+) -> Response:
+    """Points of two multiframes and ``reach`` others before and after each, at most 30 000 each.
+
+    Little-endian: ``R4PP``, uint32 version (1), uint32 numbers of points of i and of j, then
+    float32 x y z of the points of i in the body frame at i, then of j at j [m].
+    """
+    record = await _of_pairs(server, caller, pair_points, pair, reach, project_id=project_id)
+    return Response(record, media_type="application/octet-stream")
+
+
+@router.post("/align", dependencies=REVIEW, summary="Register a pair")
+async def align_pair(
+    project_id: str, predicted: PredictedPose, server: Server, *, caller: CalledBy
+) -> AlignmentView:
+    """Register two multiframes like the loop closure search, from a predicted pose.
+
+    The journal is not changed.
+    """
+    root, pair = server.projects.folder(project_id), (predicted.frame_i, predicted.frame_j)
+    found = await _of_pairs(
+        server, caller, align, pair, tuple(predicted.T_i_j), project_id=project_id
+    )
+    measured = found.measurement
+    return AlignmentView(
+        measurement=server.reviews.remember(root, pair, found) if found.converged else "",
+        T_i_j=list(measured.T_i_j),
+        converged=found.converged,
+        reason=found.reason,
+        overlap=finite_or_none(measured.overlap),
+        error_m=finite_or_none(measured.error_m),
+        limit_m=finite_or_none(measured.limit_m),
+        degeneracy=finite_or_none(measured.degeneracy),
+        iterations=measured.iterations,
+    )
+
+
+@router.post("/fit", dependencies=REVIEW, summary="Fit picked points")
+def fit_picked(picked: PointPairs) -> list[float]:
+    """``T_i_j`` that aligns the points of the second multiframe with those of the first.
+
+    The journal is not changed.
+    """
+    return list(fit_points(np.array(picked.p_i), np.array(picked.p_j)))
+
+
+@router.post("/decisions", status_code=201, dependencies=REVIEW, summary="Decide")
+def decide(project_id: str, new: NewDecision, server: Server, *, who: Who) -> ReviewView:
+    """Append a decision to the journal; it is on disk before the response is sent."""
+    root, pair = server.projects.folder(project_id), (new.frame_i, new.frame_j)
+    measured = new.kind in ("replace", "add")
+    decision = Decision(
+        kind=DecisionKind(new.kind),
+        who=who.name,
+        why=new.why,
+        pair=pair,
+        T_i_j=tuple(new.T_i_j),
+        measurement=server.reviews.measurement(root, pair, new.measurement) if measured else None,
+    )
+    try:
+        append(root, decision, seen_seq=new.seen_seq)
+    except JournalChanged as error:
+        raise Conflict(str(error)) from error
+    return _view(project_id, server, who)
+
+
+@router.post("/undo", status_code=201, dependencies=REVIEW, summary="Undo")
+def undo(project_id: str, step: Step, server: Server, *, who: Who) -> ReviewView:
+    """Undo the last decision, by any reviewer."""
+    return _step(DecisionKind.UNDO, project_id, step, server=server, who=who)
+
+
+@router.post("/redo", status_code=201, dependencies=REVIEW, summary="Redo")
+def redo(project_id: str, step: Step, server: Server, *, who: Who) -> ReviewView:
+    """Redo the decision that was undone last."""
+    return _step(DecisionKind.REDO, project_id, step, server=server, who=who)
+
+
+@router.get("/effect", dependencies=LOOK, summary="Effect of the decisions")
+async def read_effect(
+    project_id: str, server: Server, caller: CalledBy
+) -> Effect | SupersededEffect:
+    """The graph solved with the decisions in force: chi², moves, conflicts. The map is not rebuilt.
+
+    The response is ``{"superseded": true}`` when a newer decision was made meanwhile.
+    """
+    root = server.projects.folder(project_id)
+    source = await run_in_threadpool(Source.of, root)
+    decided, before = _now_and_before(await run_in_threadpool(read_rows, root))
+    effect = await caller.wait(
+        server.reviews.effect(root, source, decided=decided, before=before, person=caller.name)
+    )
+    return effect or SupersededEffect()
+
+
+@router.get("/journal", dependencies=LOOK, summary="Journal")
+def read_journal(
+    project_id: str, server: Server, most: Annotated[int, Query(ge=1, le=1000)] = 200
+) -> list[RowView]:
+    """Reviewer, decision, time and reason of each row; the newest first."""
+    rows = read_rows(server.projects.folder(project_id))
+    names = ("seq", "time", "who", "kind", "frame_i", "frame_j", "why", "hash")
+    return [RowView(**{n: getattr(row, n) for n in names}) for row in reversed(rows[-most:])]
+
+
+@router.post("/approve", status_code=201, dependencies=SIGN, summary="Approve map")
+async def approve(
+    project_id: str, asked: Approve, request: Request, *, server: Server, who: Who
+) -> ReviewView:
+    """Sign the current results; no later run or decision changes the approved version.
+
+    409 if they cannot be signed as they are, or if ``map.reason_needed`` of the state is not empty
+    and ``why`` is shorter than ``map.min_reason_characters``.
+    """
+    root = server.projects.folder(project_id)
+    if await run_in_threadpool(_busy, project_id, server):
+        raise Conflict(
+            "a job of this project is queued or running; approve when it is done",
+            remedy=project_page(project_id),
+        )
+    signer = {"who": who.name, "role": str(who.role), "why": asked.why}
+    key = server.settings.state / SIGNING_KEY
+    try:
+        approval = await _sign(root, key, signer, asked=asked, server=server)
+    except NotApprovable as error:
+        raise Conflict(str(error)) from error
+    await run_in_threadpool(make_read_only, approval)
+    await run_in_threadpool(record_signed, root, key.parent)
+    what = f"{project_id} version {approval.version} {approval.hash}"
+    await run_in_threadpool(audit, request, "approve", what)
+    return await run_in_threadpool(_view, project_id, server, who)
+
+
+async def _of_pairs(
+    server: ServerParts, caller: Caller, function: Callable[..., T], *args: object, project_id: str
+) -> T:
+    """Run a function of the project's graph in the compute pool and return its result."""
+    root = server.projects.folder(project_id)
+    source = await run_in_threadpool(Source.of, root)
+    terms = terms_of(root, caller.name)
+    return await caller.wait(
+        server.compute_pool.run_interactive(Lane.PAIR, terms, function, source, *args)
+    )
+
+
+async def _sign(
+    root: Path, key: Path, signer: dict[str, str], *, asked: Approve, server: ServerParts
+) -> Approval:
+    """Sign in a separate child process, the only one that may read the key.
+
+    It is not canceled when the client disconnects: an approval is complete or absent.
+    """
+    await run_in_threadpool(ensure_own_key, key.parent)
+    terms = Terms(
+        person=signer["who"],
+        access=FileAccess(read=(key, *judging_folders(key.parent)), write=(root,)),
+        limit_s=SIGNING_LIMIT_S,
+    )
+    seen = (asked.after_seq, asked.graph)
+    return await server.compute_pool.run_background(
+        Lane.SIGN, terms, sign, root, key, signer, confirmed=asked.confirmed, seen=seen
+    )
+
+
+def _step(
+    kind: DecisionKind, project_id: str, step: Step, *, server: ServerParts, who: Person
+) -> ReviewView:
+    root = server.projects.folder(project_id)
+    try:
+        append(root, Decision(kind=kind, who=who.name, why=step.why), after_seq=step.after_seq)
+    except (NothingToUndo, JournalChanged) as error:
+        raise Conflict(str(error)) from error
+    return _view(project_id, server, who)
+
+
+def _view(project_id: str, server: ServerParts, who: Person) -> ReviewView:
+    root = server.projects.folder(project_id)
+    rows = read_rows(root)
+    decided = fold(row.decision() for row in rows)
+    in_map = decisions_in_map(root)
+    return ReviewView(
+        seq=len(rows),
+        key=decided.key,
+        graph=graph_key(root),
+        undoable=decided.undoable,
+        redoable=decided.redoable,
+        standing=[
+            StandingView(
+                frame_i=one.pair[0],
+                frame_j=one.pair[1],
+                accepted=one.accepted,
+                who=one.who,
+                why=one.why,
+                measured=one.measurement is not None,
+                T_i_j=list(one.measurement.T_i_j) if one.measurement else [],
+            )
+            for one in decided.standing
+        ],
+        in_map=in_map == decided.key,
+        finished=in_map is not None,
+        map=_map_facts(root),
+        busy=_busy(project_id, server),
+        may_review=who.may(Permission.REVIEW),
+        may_process=who.may(Permission.PROCESS),
+        approval=server.checks.state(root, artifact_keys(read_summary(root) or {})),
+    )
+
+
+def _map_facts(root: Path) -> MapFacts | None:
+    summary = read_summary(root)
+    if summary is None:
+        return None
+    verdict = verdict_in(summary)
+    return MapFacts(
+        verdict=verdict,
+        reason_needed=reason_needed(verdict),
+        min_reason_characters=MIN_REASON_CHARACTERS,
+        notes=notes_in(summary),
+        findings=findings_in(summary),
+        figures=signed_figures(summary),
+    )
+
+
+def _busy(project_id: str, server: ServerParts) -> bool:
+    jobs = server.jobs.of_project(project_id)
+    return any(job.state in (JobState.QUEUED, JobState.RUNNING) for job in jobs)
+
+
+def _now_and_before(rows: Sequence[JournalRow]) -> tuple[Decided, Decided]:
+    """Decisions in force now, and before the last decision."""
+    decisions = [row.decision() for row in rows]
+    decisions = [one for one in decisions if one.kind not in ABOUT_MAPS]
+    return fold(decisions), fold(decisions[:-1])

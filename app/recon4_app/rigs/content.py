@@ -1,0 +1,269 @@
+"""Rigs as the pages edit them: conversion, and what is wrong with one."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from ipaddress import IPv4Address
+
+import numpy as np
+
+from recon4.errors import ConfigError, WrongSettings
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.beams import BeamCorrections, parse_beams
+from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
+from recon4.model.serial_device import parse_serial_device
+from recon4.untrusted.names import visible
+from recon4_app.rigs.model import (
+    BeamsContent,
+    GnssContent,
+    ImuContent,
+    RigContent,
+    SensorContent,
+    Triple,
+)
+
+LARGEST_M = 10.0
+"""A sensor farther from the origin of a backpack is a mistake of the unit."""
+LARGEST_DEG = 360.0
+_LARGEST_HEAD_DEG_S = 3600.0
+_LARGEST_PORT = 65535
+_GIMBAL_LOCK = 1e-9
+Problem = tuple[str, str]
+"""Field, and what is wrong with it."""
+
+
+def content_of(rig: Rig) -> RigContent:
+    """A rig in the units of its file."""
+    return RigContent(
+        name=visible(rig.name),
+        sensors=[_sensor_content(sensor) for sensor in rig.sensors],
+        imu=ImuContent(
+            xyz_m=_triple(rig.T_body_imu.t),
+            rpy_deg=rpy_deg(rig.T_body_imu.R),
+            time_offset_s=rig.imu_time_offset_s,
+            port=rig.imu_port,
+            topic=visible(rig.imu_topic),
+        ),
+        gnss=GnssContent(
+            lever_arm_m=_triple(rig.p_body_antenna),
+            time_offset_s=rig.gnss_time_offset_s,
+            port=rig.gnss_port,
+            serial=visible(rig.gnss_serial),
+            topic=visible(rig.gnss_topic),
+        ),
+    )
+
+
+def rig_of(content: RigContent) -> Rig:
+    """The rig that a content describes.
+
+    Raises:
+        WrongSettings: With the problem of each field.
+    """
+    problems = problems_of(content)
+    if problems:
+        raise WrongSettings(problems)
+    return Rig(
+        name=content.name.strip(),
+        sensors=tuple(_sensor(one) for one in content.sensors),
+        T_body_imu=_mount(content.imu.xyz_m, content.imu.rpy_deg),
+        imu_time_offset_s=content.imu.time_offset_s,
+        p_body_antenna=np.array(content.gnss.lever_arm_m),
+        gnss_time_offset_s=content.gnss.time_offset_s,
+        imu_port=content.imu.port,
+        gnss_port=content.gnss.port,
+        gnss_serial=content.gnss.serial.strip(),
+        imu_topic=content.imu.topic.strip(),
+        gnss_topic=content.gnss.topic.strip(),
+    )
+
+
+def problems_of(content: RigContent) -> dict[str, str]:
+    """Field -> the problem, the expected and the found value; empty = the rig is valid."""
+    found: dict[str, str] = {}
+    for field, text in _problems(content):
+        found.setdefault(field, text)
+    return found
+
+
+def warnings_of(content: RigContent) -> list[str]:
+    """What can be wrong with a valid rig."""
+    found = []
+    ports: dict[int, list[SensorContent]] = {}
+    for sensor in content.sensors:
+        ports.setdefault(sensor.port, []).append(sensor)
+    for port, sensors in ports.items():
+        addresses = {sensor.address for sensor in sensors}
+        if len(sensors) > 1 and (len(addresses) < len(sensors) or "" in addresses):
+            names = ", ".join(sensor.name for sensor in sensors)
+            found.append(
+                f"{names} all send to port {port}: a live capture needs an address for each, or "
+                "a port of its own"
+            )
+    if not any(sensor.enabled for sensor in content.sensors):
+        found.append("no sensor is enabled: there is nothing to map")
+    places = [(sensor.xyz_m, sensor.rpy_deg) for sensor in content.sensors]
+    if len(set(places)) < len(places):
+        found.append("two sensors have the same pose")
+    return found
+
+
+def rpy_deg(R: Array) -> Triple:
+    """Roll, pitch, yaw [deg] of ``Rz Ry Rx``; with the pitch at 90° the yaw is 0.
+
+    Args:
+        R: A rotation, (3, 3).
+    """
+    level = float(np.hypot(R[0, 0], R[1, 0]))
+    pitch = np.arctan2(-R[2, 0], level)
+    if level < _GIMBAL_LOCK:
+        angles = (np.arctan2(np.sign(pitch) * R[0, 1], R[1, 1]), pitch, 0.0)
+    else:
+        angles = (np.arctan2(R[2, 1], R[2, 2]), pitch, np.arctan2(R[1, 0], R[0, 0]))
+    roll, pitch_deg, yaw = (round(float(np.rad2deg(angle)), 9) + 0.0 for angle in angles)
+    return roll, pitch_deg, yaw
+
+
+def _problems(content: RigContent) -> Iterator[Problem]:
+    if not content.name.strip():
+        yield "name", "the rig needs a name"
+    taken: set[str] = set()
+    for k, sensor in enumerate(content.sensors):
+        where = f"sensors.{k}"
+        label = sensor.name.strip() or f"sensor {k + 1}"
+        yield from _sensor_problems(sensor, where, label)
+        if sensor.name.strip() in taken:
+            yield f"{where}.name", f"{label}: another sensor has this name"
+        taken.add(sensor.name.strip())
+        yield from _mount_problems(sensor.xyz_m, sensor.rpy_deg, where=where, label=label)
+        yield from _port_problems(sensor.port, f"{where}.port", label)
+    yield from _mount_problems(content.imu.xyz_m, content.imu.rpy_deg, where="imu", label="IMU")
+    yield from _port_problems(content.imu.port, "imu.port", "IMU")
+    yield from _distance_problems(content.gnss.lever_arm_m, "gnss.lever_arm_m", "GNSS antenna")
+    yield from _port_problems(content.gnss.port, "gnss.port", "GNSS")
+    yield from _serial_problems(content.gnss)
+
+
+def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[Problem]:
+    if not sensor.name.strip():
+        yield f"{where}.name", f"{label}: each sensor needs a name"
+    models = SENSOR_MODELS if sensor.kind == "lidar" else ("generic",)
+    if sensor.model not in models:
+        expected = ", ".join(models)
+        yield f"{where}.model", f"{label}: expected {expected}, got {visible(sensor.model)!r}"
+    if sensor.kind != "profiler" and (sensor.head_topic or sensor.head_rate_deg_s):
+        yield f"{where}.head_topic", f"{label}: only a profiler has a head"
+    if abs(sensor.head_rate_deg_s) > _LARGEST_HEAD_DEG_S:
+        yield f"{where}.head_rate_deg_s", f"{label}: expected at most {_LARGEST_HEAD_DEG_S:g} °/s"
+    yield from _beams_problems(sensor, f"{where}.beams", label)
+    if sensor.address and not _is_address(sensor.address):
+        got = visible(sensor.address)
+        yield f"{where}.address", f"{label}: expected an address like 192.168.1.201, got {got!r}"
+
+
+def _beams_problems(sensor: SensorContent, field: str, label: str) -> Iterator[Problem]:
+    if sensor.beams is not None and sensor.kind != "lidar":
+        yield field, f"{label}: only a lidar has corrections of beams"
+        return
+    try:
+        _beams(sensor)
+    except ConfigError as error:
+        yield field, visible(str(error), most=300)
+
+
+def _mount_problems(xyz_m: Triple, rpy: Triple, *, where: str, label: str) -> Iterator[Problem]:
+    yield from _distance_problems(xyz_m, f"{where}.xyz_m", label)
+    if any(abs(angle) > LARGEST_DEG for angle in rpy):
+        yield f"{where}.rpy_deg", f"{label}: expected angles within ±{LARGEST_DEG:g}°, got {rpy}"
+
+
+def _distance_problems(xyz_m: Triple, field: str, label: str) -> Iterator[Problem]:
+    if any(abs(value) > LARGEST_M for value in xyz_m):
+        yield field, f"{label}: expected a position within ±{LARGEST_M:g} m, got {xyz_m}"
+
+
+def _port_problems(port: int, field: str, label: str) -> Iterator[Problem]:
+    if not 0 <= port <= _LARGEST_PORT:
+        yield field, f"{label}: port must be 0 to {_LARGEST_PORT}, got {port}"
+
+
+def _serial_problems(gnss: GnssContent) -> Iterator[Problem]:
+    if not gnss.serial.strip():
+        return
+    try:
+        parse_serial_device(gnss.serial.strip())
+    except ConfigError as error:
+        yield "gnss.serial", visible(str(error), most=300)
+    if not gnss.port:
+        yield "gnss.serial", "GNSS: a serial line needs a port, to which its sentences are recorded"
+
+
+def _is_address(text: str) -> bool:
+    try:
+        IPv4Address(text)
+    except ValueError:
+        return False
+    return True
+
+
+def _sensor(content: SensorContent) -> Sensor:
+    return Sensor(
+        name=content.name.strip(),
+        model=content.model,
+        T_body_sensor=_mount(content.xyz_m, content.rpy_deg),
+        kind=content.kind,
+        head_topic=content.head_topic.strip(),
+        head_rate_rad_s=math.radians(content.head_rate_deg_s),
+        time_offset_s=content.time_offset_s,
+        address=content.address,
+        port=content.port,
+        topic=content.topic.strip(),
+        enabled=content.enabled,
+        serial=content.serial.strip(),
+        beams=_beams(content),
+    )
+
+
+def _beams(content: SensorContent) -> BeamCorrections | None:
+    table = content.beams and content.beams.model_dump()
+    return parse_beams(table, f"{content.name}: beams", model=content.model)
+
+
+def _sensor_content(sensor: Sensor) -> SensorContent:
+    return SensorContent(
+        name=visible(sensor.name),
+        kind=sensor.kind,
+        model=sensor.model,
+        xyz_m=_triple(sensor.T_body_sensor.t),
+        rpy_deg=rpy_deg(sensor.T_body_sensor.R),
+        time_offset_s=sensor.time_offset_s,
+        address=visible(sensor.address),
+        port=sensor.port,
+        topic=visible(sensor.topic),
+        head_topic=visible(sensor.head_topic),
+        head_rate_deg_s=math.degrees(sensor.head_rate_rad_s),
+        enabled=sensor.enabled,
+        serial=visible(sensor.serial),
+        beams=_beams_content(sensor.beams),
+    )
+
+
+def _beams_content(beams: BeamCorrections | None) -> BeamsContent | None:
+    if beams is None:
+        return None
+    return BeamsContent(
+        range_m=beams.range_m.tolist(),
+        elevation_deg=np.rad2deg(beams.elevation_rad).tolist(),
+        azimuth_deg=np.rad2deg(beams.azimuth_rad).tolist(),
+    )
+
+
+def _mount(xyz_m: Triple, rpy: Triple) -> SE3:
+    roll, pitch, yaw = (math.radians(angle) for angle in rpy)
+    return SE3.from_rpy(roll, pitch, yaw, t=xyz_m)
+
+
+def _triple(values: Array) -> Triple:
+    x, y, z = (float(value) for value in values)
+    return x, y, z

@@ -1,0 +1,109 @@
+"""Work of the control points in child processes."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.geometry.se3 import Array
+from recon4.recording.tables.coordinates import ColumnChoice
+from recon4.slices.acceptance import AcceptanceText, render_acceptance
+from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
+from recon4.slices.error_ellipses import place_covariance
+from recon4.slices.frames import MapFrame
+from recon4.slices.limits import ControlLimits
+from recon4.slices.measured import MeasuredPosition, orthonormal
+from recon4.slices.residual_table import residual_csv
+from recon4.slices.residuals import ControlContext, ControlReport, residuals
+from recon4.slices.sheet import source_text
+from recon4.workflows.result_files import covariances_of
+from recon4_app.slices.model import ControlState, ExportContext
+from recon4_app.slices.work import Artifacts, map_frame, map_of, stamp_text, tiles_of
+
+
+def preview_control(data: bytes, name: str, choice: ColumnChoice) -> ControlPreview:
+    """Points and open questions of a survey file."""
+    return read_control(data, name=name, choice=choice)
+
+
+def control_report(artifacts: Artifacts, state: ControlState) -> ControlReport:
+    """Residuals of the points found in the map."""
+    return _residuals(artifacts, state)
+
+
+def control_file(
+    artifacts: Artifacts, state: ControlState, ending: str, *, context: ExportContext
+) -> str:
+    """The residuals as CSV or as an HTML sheet.
+
+    Raises:
+        Altered: If the map or its georeference differs from the approved one.
+    """
+    evidence = context.evidence
+    if evidence:
+        map_of(artifacts, evidence)
+        evidence.artifact("map", Path(artifacts["map"])).check_all()  # points were found in it
+    found, sources = _residuals(artifacts, state), source_text(Path(artifacts["map"]).name)
+    text = AcceptanceText(
+        project=context.project,
+        frame=map_frame(artifacts).text,
+        sources=sources,
+        approval=stamp_text(evidence),
+    )
+    if ending == "html":
+        return render_acceptance(found, text)
+    line = f"of {text.project}, {text.sources}, {text.frame}. {text.approval}"
+    return residual_csv(found, comment=line)
+
+
+def _residuals(artifacts: Artifacts, state: ControlState) -> ControlReport:
+    own = map_frame(artifacts)
+    here = state.of_map(Path(artifacts["map"]).name)
+    measured = {
+        name: MeasuredPosition(np.array(p_map), orthonormal(state.along[name]))
+        for name, p_map in here.items()
+    }
+    covariances = _covariances(artifacts, measured)
+    if state.frame == "crs":
+        if own.to_crs is None:
+            raise ConfigError("the map is local: CRS coordinates cannot be converted")
+        for name, found in measured.items():
+            steps = own.to_crs(found.xyz_m + np.vstack([np.zeros(3), np.eye(3)]))
+            R = (steps[1:] - steps[0]).T  # of the axes, within the ppm of the CRS
+            measured[name] = found.turned(R, steps[0])
+            if name in covariances:
+                covariances[name] = R @ covariances[name] @ R.T
+    return residuals(
+        [ControlPoint(**point.model_dump()) for point in state.points],
+        measured,
+        ControlContext(
+            covariances=covariances,
+            outdated=state.picks.keys() - here.keys(),
+            map_heights_m=_heights(artifacts, own if state.frame == "crs" else None),
+            limits=ControlLimits(**state.limits.model_dump()),
+        ),
+    )
+
+
+def _heights(artifacts: Artifacts, frame: MapFrame | None) -> tuple[float, float] | None:
+    """Lowest and highest height of the map, in a CRS if a frame is given; None = it is empty."""
+    corners = np.array(tiles_of(artifacts["map"]).bounds_m)
+    if not np.isfinite(corners).all():
+        return None
+    low, high = (frame.to_crs(corners) if frame and frame.to_crs else corners)[:, 2]
+    return float(low), float(high)
+
+
+def _covariances(artifacts: Artifacts, measured: dict[str, MeasuredPosition]) -> dict[str, Array]:
+    """Covariances of the map at places; none where the map states none."""
+    covariances_at = covariances_of(Path(artifacts["level"])) if "level" in artifacts else None
+    if covariances_at is None:
+        return {}
+    tiles = tiles_of(artifacts["map"])
+    places = {
+        name: place_covariance(tiles, found.xyz_m, covariances_at)
+        for name, found in measured.items()
+    }
+    return {name: cov for name, cov in places.items() if cov is not None}

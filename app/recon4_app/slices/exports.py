@@ -1,0 +1,130 @@
+"""Slice exports: made once, kept for a day, downloadable in ranges.
+
+The name of an export is the hash of its inputs. The same request after an interrupted connection
+finds the finished file, and ``Range`` with ``If-Range`` continues the download.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hashlib
+import json
+import shutil
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+
+from recon4_app.compute_pool.model import Lane, Terms
+from recon4_app.compute_pool.pool import ComputePool
+from recon4_app.errors import NoRoom
+from recon4_app.slices import export_work
+from recon4_app.slices.model import ExportContext, SliceExportRequest
+
+LIMIT_S = 1800.0
+"""Longest time an export may take [s]."""
+KEPT_S = 86_400.0
+"""A finished export is kept at least this long, unless all exceed `MAX_KEPT_BYTES` [s]."""
+MAX_KEPT_BYTES = 20 << 30
+"""Limit for all kept exports; the oldest are removed first."""
+LARGE_THICKNESS_M = 0.5
+"""A thicker slice may hold most of the map [m]."""
+_POINTS = ("laz", "csv", "dxf")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportRequest:
+    """Everything that determines the bytes of an export."""
+
+    ending: str
+    ask: SliceExportRequest
+    artifacts: Mapping[str, str]
+    """Stage -> folder of its artifact."""
+    reference: str
+    """Folder of the reference; empty = none."""
+    context: ExportContext
+
+    @property
+    def key(self) -> str:
+        """Hash of the request, including the alignment of the reference."""
+        facts = Path(self.reference) / "reference.json" if self.reference else None
+        determines = {
+            "ending": self.ending,
+            "ask": self.ask.model_dump(mode="json"),
+            "artifacts": dict(self.artifacts),
+            "reference": [str(facts), facts.stat().st_mtime_ns] if facts else None,
+            "context": asdict(self.context),
+        }
+        return hashlib.sha256(json.dumps(determines, sort_keys=True).encode()).hexdigest()
+
+    @property
+    def large(self) -> bool:
+        """Whether it may take minutes: many points, written one by one, or many slices."""
+        ask = self.ask
+        points = self.ending in _POINTS and ask.window is None
+        return ask.count > 1 or points or ask.plane.thickness_m > LARGE_THICKNESS_M
+
+
+class Exports:
+    """Makes exports and keeps them, so that interrupted downloads can continue."""
+
+    def __init__(self, pool: ComputePool, folder: Path, *, reserve_bytes: int) -> None:
+        self._pool, self._folder = pool, folder
+        self._reserve_bytes = reserve_bytes
+        self._making: dict[Path, asyncio.Lock] = {}
+
+    async def make(self, request: ExportRequest, terms: Terms) -> Path:
+        """The file of an export; it is made if it does not exist.
+
+        Raises:
+            NoRoom: If the disk is nearly full.
+            TooMany: If this person has too many exports waiting.
+            ComputeFailed, Recon4Error: If it cannot be made.
+        """
+        place = self._folder / f"{request.key}.{request.ending}"
+        async with self._making.setdefault(place, asyncio.Lock()):
+            if not place.exists():
+                await asyncio.to_thread(self._refuse_if_full)
+                name = f"export.{request.ending}"
+                pool = self._pool
+                # A pooled child process has fonts and map loaded: a sheet takes 1 s instead of 5 s.
+                run = pool.run_background if request.large else pool.run_interactive
+                await run(
+                    Lane.EXPORT,
+                    replace(terms, outputs={name: place}, large=request.large, limit_s=LIMIT_S),
+                    export_work.export,
+                    dict(request.artifacts),
+                    request.ask,
+                    name,
+                    reference=request.reference,
+                    context=request.context,
+                )
+        self._making.pop(place, None)
+        return place
+
+    def sweep(self, now_s: float) -> int:
+        """Remove exports older than a day, and the oldest if all together are too large.
+
+        Returns:
+            How many were removed.
+        """
+        if not self._folder.is_dir():
+            return 0
+        files = sorted(
+            ((path.stat().st_mtime, path.stat().st_size, path) for path in self._folder.iterdir()),
+            reverse=True,
+        )
+        total, removed = 0, 0
+        for changed_s, size, path in files:
+            total += size
+            if now_s - changed_s > KEPT_S or total > MAX_KEPT_BYTES:
+                path.unlink(missing_ok=True)
+                removed += 1
+        return removed
+
+    def _refuse_if_full(self) -> None:
+        self._folder.mkdir(parents=True, exist_ok=True)
+        free = shutil.disk_usage(self._folder).free
+        if free < self._reserve_bytes:
+            raise NoRoom(
+                f"an export needs {self._reserve_bytes} bytes free on the disk, there are {free}"
+            )

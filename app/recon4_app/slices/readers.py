@@ -1,0 +1,41 @@
+"""Readers of what child processes of slices wrote."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import msgspec
+from pydantic import ValidationError
+
+from recon4.errors import StoreError
+from recon4.slices.double_places import DoubleReport
+from recon4.untrusted.bounded import read_json_object
+from recon4_app.slices.model import WindowSpec
+
+_MAX_BYTES = 64 << 20
+"""A larger file was not written by us."""
+
+
+def read_window(path: Path) -> WindowSpec:
+    """Read the window of an image that a child process wrote.
+
+    Raises:
+        StoreError: If it is damaged or too large.
+    """
+    try:
+        return WindowSpec.model_validate(read_json_object(path, _MAX_BYTES, failure=StoreError))
+    except ValidationError as error:
+        raise StoreError(f"{path.name}: {error}") from error
+
+
+def read_double_walls(path: Path) -> DoubleReport:
+    """Read what `double_walls` wrote.
+
+    Raises:
+        StoreError: If it is damaged or too large.
+    """
+    try:
+        record = read_json_object(path, _MAX_BYTES, failure=StoreError)
+        return msgspec.convert(record, DoubleReport)
+    except msgspec.ValidationError as error:
+        raise StoreError(f"{path.name} cannot be read: {error}") from error

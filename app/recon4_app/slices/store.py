@@ -1,0 +1,389 @@
+"""Maps, references and control points of slice requests, and the newest request per page."""
+
+from __future__ import annotations
+
+import asyncio
+import re
+import secrets
+import shutil
+import threading
+from collections import OrderedDict
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, TypeVar
+
+from starlette.concurrency import run_in_threadpool
+
+from recon4.errors import StoreError
+from recon4.review.approval_state import ApprovalState, approval_state
+from recon4.review.approved import Approval, NotInJournal, approval_of, approval_of_map
+from recon4.review.evidence import Evidence
+from recon4.review.trusted_keys import UnknownSigner
+from recon4.store.atomic import write_json
+from recon4.store.project import read_artifacts, read_stages
+from recon4.store.seal import begin_change, changing, check_sealed, end_change
+from recon4.untrusted.bounded import read_text_limited
+from recon4_app.compute_pool.model import FileAccess, Lane, Terms
+from recon4_app.compute_pool.pool import ComputePool
+from recon4_app.errors import Conflict, NotFound
+from recon4_app.projects.store import PROJECT_ID, ProjectStore
+from recon4_app.review.checks import ApprovalChecks
+from recon4_app.settings import ServerSettings
+from recon4_app.slices import work
+from recon4_app.slices.exports import Exports
+from recon4_app.slices.model import ControlState, ListedReference, OtherMap, Xyz
+
+T = TypeVar("T")
+_KEY = re.compile(r"[0-9a-f]{16,64}")
+_REFERENCE = re.compile(r"[0-9a-f]{12}")
+MAX_REFERENCES = 20
+CONTROL = "slices/control.json"
+MAX_PAGES = 256
+MAX_CONTROL_BYTES = 16 << 20
+
+
+class Superseded(Conflict):
+    """A newer request of the same page replaced this one."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceFolder:
+    """Where a reference of a project is, or is going to be."""
+
+    project_id: str
+    folder: Path
+
+
+@dataclass(frozen=True, slots=True)
+class Asking:
+    """Position of a request among those of its page."""
+
+    page: str
+    """Id of the page; empty = a single request."""
+    turn: int
+    """The greatest is the latest; of equal ones the last to arrive."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Latest:
+    """The newest request of a page, and the work on it."""
+
+    turn: int
+    work: asyncio.Future[Any]
+
+
+class Slices:
+    """Slices of all projects; caches images from above and map checks."""
+
+    def __init__(
+        self,
+        pool: ComputePool,
+        projects: ProjectStore,
+        checks: ApprovalChecks,
+        *,
+        settings: ServerSettings,
+    ) -> None:
+        self._pool, self._checks = pool, checks
+        self._projects = projects
+        self._kept = settings.state / "slices"
+        self.exports = Exports(
+            pool, self._kept / "exports", reserve_bytes=settings.free_disk_reserve_bytes
+        )
+        self._newest: OrderedDict[tuple[str, str], _Latest] = OrderedDict()
+        self._keeping = threading.Lock()
+        self._making: dict[Path, asyncio.Lock] = {}
+
+    # -- which map
+
+    def artifacts(self, project_id: str, source: str = "") -> dict[str, str]:
+        """Artifact folders of the requested map.
+
+        Raises:
+            NotFound: If there is no such map.
+        """
+        kind, _, name = source.partition(":")
+        if kind == "project" and PROJECT_ID.fullmatch(name):
+            return self._latest(name)
+        if kind == "map" and _KEY.fullmatch(name):
+            found = self._latest(project_id)
+            earlier = self._projects.folder(project_id) / "artifacts" / name
+            if not (earlier / "tiles.json").is_file():
+                raise NotFound(f"project {project_id} has no map {name[:16]} any more")
+            return found | {"map": str(earlier)}
+        if source:
+            raise NotFound(f"no map {source[:80]!r}")
+        return self._latest(project_id)
+
+    def sources(self, project_id: str) -> list[OtherMap]:
+        """Other maps to compare with the latest: earlier ones, and those of other projects."""
+        root = self._projects.folder(project_id)
+        current = Path(self._latest(project_id)["map"]).name
+        rows = [row for row in read_stages(root) if row.stage == "map" and row.key != current]
+        earlier = [
+            OtherMap(f"map:{row.key}", f"Map of {row.finished[:16].replace('T', ' ')}")
+            for row in sorted(rows, key=lambda row: row.finished, reverse=True)
+            if (root / "artifacts" / row.key / "tiles.json").is_file()
+        ]
+        others = [
+            OtherMap(f"project:{card.id}", f"Project {card.name}")
+            for card in self._projects.all()
+            if card.points and card.id != project_id
+        ]
+        return earlier[:20] + others[:200]
+
+    def evidence(
+        self, project_id: str, source: str = "", *, draft: bool = False
+    ) -> Evidence | None:
+        """Approval of the requested map and the expected hashes; None = not approved, or a draft.
+
+        Raises:
+            Altered: If an approval was changed, or does not count.
+        """
+        if draft:
+            return None
+        _, found = self._approval(project_id, source)
+        return found.evidence if found else None
+
+    def evidence_to_show(self, project_id: str, source: str = "") -> Evidence | None:
+        """As `evidence`; a map whose approval does not count is shown as one without.
+
+        Raises:
+            Altered: If an approval was changed.
+        """
+        try:
+            return self.evidence(project_id, source)
+        except (UnknownSigner, NotInJournal):
+            return None
+
+    def approval(self, project_id: str, source: str = "") -> ApprovalState:
+        """State of the approval of the requested map, with the outcome of the comparison."""
+        try:
+            root, found = self._approval(project_id, source)
+        except StoreError:
+            root, found = self._root(project_id, source), None
+        if found is not None:
+            return self._checks.state(root, found.artifacts)
+        return approval_state(root, {} if source.startswith("map:") else _keys(root))
+
+    def _root(self, project_id: str, source: str) -> Path:
+        kind, _, name = source.partition(":")
+        return self._projects.folder(name if kind == "project" else project_id)
+
+    def _approval(self, project_id: str, source: str) -> tuple[Path, Approval | None]:
+        root = self._root(project_id, source)
+        kind, _, name = source.partition(":")
+        if kind == "map":
+            return root, approval_of_map(root, name)
+        return root, approval_of(root, _keys(root))
+
+    def approved_artifacts(
+        self, project_id: str, source: str, evidence: Evidence | None
+    ) -> dict[str, str]:
+        """Artifact folders of the requested map; an approved earlier map has its own frame.
+
+        Raises:
+            NotFound: If there is no such map.
+        """
+        found = self.artifacts(project_id, source)
+        if evidence is None or not source.startswith("map:"):
+            return found
+        level = Path(found["map"]).parent / evidence.artifacts.get("level", "")
+        without = {stage: folder for stage, folder in found.items() if stage != "level"}
+        return without | ({"level": str(level)} if "level" in evidence.artifacts else {})
+
+    def references(self, project_id: str) -> list[ListedReference]:
+        """References of a project."""
+        return work.references_in(self._folder(project_id) / "references")
+
+    def reference(self, project_id: str, reference_id: str) -> str:
+        """Folder of a reference; empty for an empty id.
+
+        Raises:
+            NotFound: If there is no such reference.
+        """
+        if not reference_id:
+            return ""
+        folder = self._folder(project_id) / "references" / reference_id
+        if not _REFERENCE.fullmatch(reference_id) or not (folder / "reference.json").is_file():
+            raise NotFound(f"no reference {reference_id[:20]!r} in project {project_id}")
+        root = self._projects.folder(project_id)
+        check_sealed(root, _name_of(folder))
+        return str(folder)
+
+    def new_reference(self, project_id: str) -> Path:
+        """Folder for a new reference.
+
+        Raises:
+            Conflict: If there are too many.
+        """
+        if len(self.references(project_id)) >= MAX_REFERENCES:
+            raise Conflict(f"a project has at most {MAX_REFERENCES} references; remove one first")
+        folder = self._folder(project_id) / "references"
+        folder.mkdir(parents=True, exist_ok=True)
+        return folder / secrets.token_hex(6)
+
+    async def write_reference(
+        self,
+        reference: ReferenceFolder,
+        terms: Terms,
+        function: Callable[..., T],
+        *args: object,
+        **kwargs: object,
+    ) -> T:
+        """Run a function that writes a reference in a child process, and seal the files."""
+        root = self._projects.folder(reference.project_id)
+        names = (_name_of(reference.folder),)
+        await run_in_threadpool(begin_change, root, names)
+        try:
+            return await self.run_background(terms, function, *args, **kwargs)
+        finally:
+            await run_in_threadpool(end_change, root, names)
+
+    def remove_reference(self, project_id: str, reference_id: str) -> None:
+        """Remove a reference; the imported source file stays."""
+        folder = Path(self.reference(project_id, reference_id))
+        gone = folder.with_name(f".tmp-{secrets.token_hex(6)}-{folder.name}")
+        with changing(self._projects.folder(project_id), _name_of(folder), compared=False):
+            folder.rename(gone)
+        shutil.rmtree(gone)
+
+    def control(self, project_id: str) -> ControlState:
+        """Control and check points of a project; none at first.
+
+        Raises:
+            StoreError: If the file is damaged.
+        """
+        root = self._projects.folder(project_id)
+        check_sealed(root, CONTROL)  # an acceptance sheet is made of it
+        path = root / CONTROL
+        if not path.exists():
+            return ControlState(version=0)
+        try:
+            text = read_text_limited(path, MAX_CONTROL_BYTES, failure=StoreError)
+            state = ControlState.model_validate_json(text)
+        except (StoreError, ValueError) as error:
+            raise StoreError(f"{path.name} cannot be read: {error}") from error
+        return state.model_copy(update={"version": state.version or 0})
+
+    def keep_control(self, project_id: str, state: ControlState) -> ControlState:
+        """Store control points on disk; new positions are those of the latest map.
+
+        Raises:
+            Conflict: If another user stored control points since this state was read.
+        """
+        with self._keeping:
+            return self._keep_control(project_id, state)
+
+    def _keep_control(self, project_id: str, state: ControlState) -> ControlState:
+        before, key = self.control(project_id), Path(self._latest(project_id)["map"]).name
+        assert before.version is not None
+        if state.version not in (None, before.version):
+            raise Conflict("the control points were changed by another user; read them again")
+        kept = state.model_copy(
+            update={
+                "found_in": {
+                    name: before.found_in.get(name, "") if before.picks.get(name) == at else key
+                    for name, at in state.picks.items()
+                },
+                "along": _measured_along(before, state),
+                "version": before.version + 1,
+            }
+        )
+        folder = self._folder(project_id)
+        folder.mkdir(exist_ok=True)
+        with changing(self._projects.folder(project_id), CONTROL):
+            write_json(folder / "control.json", kept.model_dump(mode="json"))
+        return kept
+
+    # -- work
+
+    def terms(self, project_id: str, person: str, source: str = "") -> Terms:
+        """Terms of work that may read the requested map and the references of its project."""
+        kind, _, name = source.partition(":")
+        of_map = self._projects.folder(name if kind == "project" else project_id)
+        references = self._folder(project_id) / "references"
+        return Terms(person=person, access=FileAccess(read=(of_map / "artifacts", references)))
+
+    async def run_interactive(
+        self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
+    ) -> T:
+        """Run interactive work in the compute pool."""
+        return await self._pool.run_interactive(Lane.SLICE, terms, function, *args, **kwargs)
+
+    async def run_latest(
+        self,
+        asking: Asking,
+        terms: Terms,
+        function: Callable[..., T],
+        *args: object,
+        **kwargs: object,
+    ) -> T:
+        """Run interactive work; of several requests of a page only the latest is completed.
+
+        Raises:
+            Superseded: If the page sent a newer request.
+        """
+        if not asking.page:
+            return await self.run_interactive(terms, function, *args, **kwargs)
+        page = (terms.person, asking.page)
+        before = self._newest.get(page)
+        if before is not None and before.turn > asking.turn:
+            raise Superseded("a newer image was requested")
+        if before is not None:
+            before.work.cancel()
+        work = asyncio.ensure_future(self.run_interactive(terms, function, *args, **kwargs))
+        self._newest[page] = _Latest(asking.turn, work)
+        self._newest.move_to_end(page)
+        while len(self._newest) > MAX_PAGES:
+            self._newest.popitem(last=False)
+        try:
+            return await work
+        except asyncio.CancelledError:
+            if self._newest.get(page) != _Latest(asking.turn, work):
+                raise Superseded("a newer image was requested") from None
+            raise
+
+    async def run_background(
+        self, terms: Terms, function: Callable[..., T], *args: object, **kwargs: object
+    ) -> T:
+        """Run work that may take minutes, or reads a user's file, in a separate child process."""
+        return await self._pool.run_background(Lane.SURVEY, terms, function, *args, **kwargs)
+
+    async def kept(self, name: str, make: Callable[[Path], Any]) -> Path:
+        """A cached file, made once per map."""
+        path = self._kept / name
+        async with self._making.setdefault(path, asyncio.Lock()):
+            if not path.exists():
+                await make(path)
+        self._making.pop(path, None)
+        return path
+
+    def _folder(self, project_id: str) -> Path:
+        return self._projects.folder(project_id) / "slices"
+
+    def _latest(self, project_id: str) -> dict[str, str]:
+        self._projects.map_artifact(project_id)  # raises if there is no map
+        found = read_artifacts(self._projects.folder(project_id))
+        return {stage: str(folder) for stage, folder in found.items()}
+
+
+def _measured_along(before: ControlState, state: ControlState) -> dict[str, list[Xyz]]:
+    """The directions in which each position was measured.
+
+    A position that was there before without directions is of an earlier version: it stays without.
+    """
+    every: list[Xyz] = [(1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)]
+    usual = {name: every for name, at in state.picks.items() if before.picks.get(name) != at}
+    known = before.along | usual | state.along
+    return {name: known[name] for name in state.picks if name in known}
+
+
+def _keys(root: Path) -> dict[str, str]:
+    """Stage -> key of its artifact in the latest run."""
+    return {stage: folder.name for stage, folder in read_artifacts(root).items()}
+
+
+def _name_of(reference: Path) -> str:
+    """Path of a reference's folder below its project."""
+    return f"slices/references/{reference.name}"

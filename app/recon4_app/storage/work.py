@@ -1,0 +1,98 @@
+"""Measures what takes space on the disk of the projects, and deletes uploaded recordings."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+from recon4.untrusted.names import visible
+from recon4_app.deps import ServerParts
+from recon4_app.errors import Conflict, NotFound, project_page
+from recon4_app.jobs.model import JobState
+from recon4_app.jobs.space import size_below
+from recon4_app.projects.trash import Deleted
+from recon4_app.storage.model import StorageView, StoredItem
+from recon4_app.uploads.store import UPLOADED
+
+
+def read_storage(server: ServerParts) -> StorageView:
+    """Everything in the folder of the projects with its size; reads the size of every file."""
+    disk = shutil.disk_usage(server.settings.root)
+    items = [*_projects(server), *_recordings(server), *_uploads(server), *_deleted(server)]
+    listed_state = sum(item.bytes for item in items if item.kind in ("upload", "deleted"))
+    return StorageView(
+        disk_bytes=disk.total,
+        free_bytes=disk.free,
+        items=tuple(sorted(items, key=lambda item: item.bytes, reverse=True)),
+        server_bytes=max(0, size_below(server.settings.state) - listed_state),
+    )
+
+
+def delete_recording(server: ServerParts, name: str) -> Deleted:
+    """Move an uploaded recording to the trash.
+
+    Raises:
+        NotFound: If no upload became a recording of that name.
+        Conflict: If a job that waits or runs reads it.
+    """
+    folder = server.uploads.recordings / name
+    if not UPLOADED.fullmatch(name) or not folder.is_dir() or folder.is_symlink():
+        raise NotFound(f"no uploaded recording {name[:64]!r}")
+    for job in server.jobs.in_state(JobState.QUEUED, JobState.RUNNING):
+        if any(Path(path).is_relative_to(folder) for path in job.inputs.recordings):
+            raise Conflict(
+                f"a job of {job.project} reads this recording; cancel it first",
+                remedy=project_page(job.project),
+            )
+    deleted = server.trash.put(folder)
+    server.uploads.forget(name)
+    return deleted
+
+
+def _projects(server: ServerParts) -> Iterator[StoredItem]:
+    for card in server.projects.all():
+        size = size_below(server.settings.root / card.id)
+        yield StoredItem(kind="project", id=card.id, name=card.name, bytes=size)
+
+
+def _recordings(server: ServerParts) -> Iterator[StoredItem]:
+    folder = server.uploads.recordings
+    jobs = server.jobs.latest().values()
+    known = {card.id: card.name for card in server.projects.all()}
+    for path in sorted(folder.iterdir()) if folder.is_dir() else ():
+        if not UPLOADED.fullmatch(path.name) or path.is_symlink():
+            continue
+        used_by = tuple(
+            known[job.project]
+            for job in jobs
+            if job.project in known
+            and any(Path(one).is_relative_to(path) for one in job.inputs.recordings)
+        )
+        yield StoredItem(
+            kind="recording",
+            id=path.name,
+            name=visible(path.name[:-13]),
+            bytes=size_below(path),
+            used_by=used_by,
+        )
+
+
+def _uploads(server: ServerParts) -> Iterator[StoredItem]:
+    for upload in server.uploads.all():
+        if not upload.finished:
+            expires = datetime.fromtimestamp(server.uploads.expires(upload), UTC)
+            yield StoredItem(
+                kind="upload",
+                id=upload.id,
+                name=upload.name,
+                bytes=upload.received,
+                expires=expires.isoformat(timespec="seconds"),
+            )
+
+
+def _deleted(server: ServerParts) -> Iterator[StoredItem]:
+    for one in server.trash.all():
+        size = size_below(server.trash.folder(one.id))
+        yield StoredItem(kind="deleted", id=one.id, name=one.project, bytes=size, expires=one.goes)

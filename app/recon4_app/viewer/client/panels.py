@@ -1,0 +1,235 @@
+"""The control panel: widgets change an immutable `ViewState`.
+
+With `show` and `widget_values` the only viser modules.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, get_args
+
+import viser
+
+from recon4.mapping.tiles import Surface
+from recon4_app.viewer.client.captions import Facts
+from recon4_app.viewer.client.legend import Legend
+from recon4_app.viewer.client.legend_html import counted, facts_html, legend_html
+from recon4_app.viewer.client.view import EdgeColor, Points, ViewState
+from recon4_app.viewer.client.widget_values import only_fitting_values
+from recon4_app.viewer.cloud.palette import Palette, Range
+from recon4_app.viewer.hotkeys import HOTKEYS
+from recon4_app.viewer.scene.build import Content
+from recon4_app.viewer.scene.layers import Layer
+
+Update = Callable[[ViewState], ViewState]
+
+LIE: dict[str, Surface] = {
+    "on fitted surfaces": "fitted",
+    "as measured": "raw",
+    "stray returns only": "strays",
+}
+"""Where points lie, or which they are, as on screen."""
+
+
+def _lie(view: ViewState) -> str:
+    return next(text for text, surface in LIE.items() if surface == view.surface)
+
+
+@dataclass(frozen=True, slots=True)
+class PanelCallbacks:
+    """Callbacks of the controls."""
+
+    change: Callable[[Update], None]
+    command: Callable[[str], None]
+
+
+class Panel:
+    """The controls of one client."""
+
+    def __init__(self, gui: viser.GuiApi, callbacks: PanelCallbacks) -> None:
+        self._gui, self._callbacks = gui, callbacks
+        only_fitting_values(gui)
+        self._legend = gui.add_html("", order=0.0)
+        self._picked = gui.add_html("", order=0.5)
+        self._widgets: dict[str, Any] = {}
+        self._folders: dict[str, tuple[object, viser.GuiFolderHandle]] = {}
+        self._shown: dict[str, object] = {}
+        for label, key, name in HOTKEYS:
+            gui.add_command(label, hotkey=key).on_trigger(self._commanding(name))
+        self._measure_folder()
+
+    def offer(self, content: Content, view: ViewState, max_points: int) -> None:
+        """Create the folders of controls for the content; unchanged folders stay as they are."""
+        if content.cloud is not None:
+            offered = (content.colors, content.cloud.tiles.surface, max_points)
+            self._fold("points", offered, lambda: self._point_folder(content, view, max_points))
+        if content.multiframes is not None:
+            frames = len(content.multiframes)
+            self._fold("time", frames, lambda: self._time_folder(frames, view))
+        layers = content.layers
+        keys = tuple(layer.key for layer in layers)
+        self._fold("layers", keys, lambda: self._layer_folder(layers, view))
+        for layer in layers:
+            self._set(f"layer {layer.key}", view.shows(layer), counted(layer))
+
+    def show(self, view: ViewState, span: Range) -> None:
+        """Set the widgets to a view that was changed by a key or a click."""
+        values = {
+            "color": view.color_by, "palette": view.palette, "size": view.point_size_m,
+            "adapt": view.adapt, "low": span.low, "high": span.high, "points": view.points,
+            "surface": _lie(view), "moment": view.moment, "window": view.window_s,
+            "edges": view.edge_color,
+        }  # fmt: skip
+        for name, value in values.items():
+            self._set(name, value)
+
+    def explain(self, legend: Legend) -> None:
+        """Show the legend."""
+        if self._shown.get("legend") != legend:
+            self._shown["legend"] = legend
+            self._legend.content = legend_html(legend)
+
+    def show_picked(self, facts: Facts | None) -> None:
+        """Show the facts of the picked object."""
+        self._picked.content = facts_html([facts] if facts else [])
+
+    def show_measured(self, facts: list[Facts], *, measuring: bool) -> None:
+        """List the measurements."""
+        record = (tuple(facts), measuring)
+        if self._shown.get("measured") != record:
+            self._shown["measured"] = record
+            self._widgets["measured"].content = facts_html(facts)
+            self._widgets["measure"].label = (
+                "Stop measuring (M)" if measuring else "Measure a distance (M)"
+            )
+
+    def _fold(self, name: str, key: object, make: Callable[[], viser.GuiFolderHandle]) -> None:
+        before = self._folders.get(name)
+        if before is not None:
+            if before[0] == key:
+                return
+            before[1].remove()
+        self._folders[name] = (key, make())
+
+    def _set(self, name: str, value: object, label: str | None = None) -> None:
+        widget = self._widgets.get(name)
+        if widget is None:
+            return
+        if widget.value != value:
+            widget.value = value
+        if label is not None and widget.label != label:
+            widget.label = label
+
+    def _bind(self, name: str, widget: Any, update: Callable[[ViewState, Any], ViewState]) -> None:
+        """Bind a widget to the view; changes made by the program itself are ignored."""
+        self._widgets[name] = widget
+
+        @widget.on_update
+        def record(event: Any) -> None:
+            if event.client_id is not None:
+                self._callbacks.change(lambda view: update(view, widget.value))
+
+    def _button(self, label: str, command: str, *, name: str = "") -> None:
+        button = self._gui.add_button(label)
+        self._widgets[name or command] = button
+        button.on_click(self._commanding(command))
+
+    def _commanding(self, name: str) -> Callable[[Any], None]:
+        return lambda _: self._callbacks.command(name)
+
+    def _point_folder(
+        self, content: Content, view: ViewState, max_points: int
+    ) -> viser.GuiFolderHandle:
+        gui, folder = self._gui, self._gui.add_folder("Points", order=1.0)
+        mine = view.color_by if view.color_by in content.colors else content.colors[0]
+        with folder:
+            self._bind(
+                "color",
+                gui.add_dropdown("Color by", content.colors, initial_value=mine),
+                lambda view, value: replace(view, color_by=value),
+            )
+            self._button("Raw or normalized (N)", "normalized")
+            if content.cloud is not None and content.cloud.tiles.surface == "fitted":
+                self._bind(
+                    "surface",
+                    gui.add_dropdown("Points lie (R)", tuple(LIE), initial_value=_lie(view)),
+                    lambda view, value: replace(view, surface=LIE[value]),
+                )
+            self._bind(
+                "palette",
+                gui.add_dropdown("Palette", get_args(Palette), initial_value=view.palette),
+                lambda view, value: replace(view, palette=value),
+            )
+            self._bind("low", gui.add_number("Range from", 0.0, step=0.01), self._low)
+            self._bind("high", gui.add_number("Range to", 1.0, step=0.01), self._high)
+            self._button("Range of the map", "whole range")
+            self._bind(
+                "size",
+                gui.add_slider("Point size, m", 0.005, 0.2, 0.005, view.point_size_m),
+                lambda view, value: replace(view, point_size_m=float(value)),
+            )
+            self._detail_widgets(view, max_points)
+        return folder
+
+    def _detail_widgets(self, view: ViewState, max_points: int) -> None:
+        thousands = max(max_points // 1000, 100)
+        start = min(view.detail // 1000 or thousands, thousands)
+        slider = self._gui.add_slider("Most points, thousand", 50, thousands, 50, max(start, 50))
+        self._bind("detail", slider, lambda view, value: replace(view, detail=int(value) * 1000))
+        self._bind(
+            "adapt",
+            self._gui.add_checkbox("Fewer when this browser is slow", view.adapt),
+            lambda view, value: replace(view, adapt=bool(value)),
+        )
+
+    def _low(self, view: ViewState, value: float) -> ViewState:
+        return view.with_range(Range(float(value), float(self._widgets["high"].value)))
+
+    def _high(self, view: ViewState, value: float) -> ViewState:
+        return view.with_range(Range(float(self._widgets["low"].value), float(value)))
+
+    def _time_folder(self, multiframes: int, view: ViewState) -> viser.GuiFolderHandle:
+        gui, last = self._gui, max(multiframes - 1, 1)
+        folder = gui.add_folder("Multiframes", order=2.0)
+        with folder:
+            self._bind(
+                "points",
+                gui.add_dropdown("Show", get_args(Points), initial_value=view.points),
+                lambda view, value: replace(view, points=value),
+            )
+            self._bind(
+                "moment",
+                gui.add_slider("Multiframe", 0, last, 1, min(view.moment, last)),
+                lambda view, value: replace(view, moment=int(value)),
+            )
+            self._bind(
+                "window",
+                gui.add_slider("Window, s", 0.0, 30.0, 0.5, min(view.window_s, 30.0)),
+                lambda view, value: replace(view, window_s=float(value)),
+            )
+            self._button("Play or stop (P)", "play")
+        return folder
+
+    def _layer_folder(self, layers: tuple[Layer, ...], view: ViewState) -> viser.GuiFolderHandle:
+        folder = self._gui.add_folder("Layers", order=3.0)
+        with folder:
+            edges = self._gui.add_dropdown(
+                "Edges by", get_args(EdgeColor), initial_value=view.edge_color
+            )
+            self._bind("edges", edges, lambda view, value: replace(view, edge_color=value))
+            for layer in layers:
+                box = self._gui.add_checkbox(counted(layer), view.shows(layer))
+                self._bind(f"layer {layer.key}", box, self._switching(layer.key))
+        return folder
+
+    def _switching(self, key: str) -> Callable[[ViewState, Any], ViewState]:
+        return lambda view, value: view.with_layer(key, on=bool(value))
+
+    def _measure_folder(self) -> None:
+        with self._gui.add_folder("Measure", order=4.0):
+            self._button("Measure a distance (M)", "measure")
+            self._button("Keep the picked point", "keep point")
+            self._widgets["measured"] = self._gui.add_html("")
+            self._button("Download CSV", "csv")
+            self._button("Undo the last", "undo measure")
