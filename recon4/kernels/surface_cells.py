@@ -1,8 +1,7 @@
 """Kernels of fitted surfaces: the cells of a tile, their neighbors, their planes as numbers.
 
-Cells are those of the map's grid. A plane of a cell is a row of `PLANE` numbers. It is oriented:
-its normal points to the sensors that saw it, and only returns seen from that side count for it.
-So the two faces of a thin wall are two planes.
+Cells are those of the map's grid. A plane is oriented: only returns seen from its front count for
+it. So the two faces of a thin wall are two planes.
 """
 
 from __future__ import annotations
@@ -13,13 +12,9 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from recon4.kernels.surface_records import OFFSET, Cells, Neighbors, Returns
 from recon4.kernels.voxels import PER_METER
 
-PLANE = 11
-"""Unit normal x y z, offset n · p [m], standard deviation across [m] (0 = none), weight,
-planarity, middle of its returns x y z [m] (NaN = not known), offset at the cell itself [m]."""
-SLOTS = 3
-"""Planes of a cell: a surface, an edge of two, a corner of three."""
 _SEARCH = 16
 """Points searched first for the next row."""
 OWN_COLUMN = 4
@@ -32,9 +27,7 @@ def unpack_returns(
     i2: NDArray[np.int16],
     u1: NDArray[np.uint8],
     voxel_m: float,
-    means: NDArray[np.float32],
-    to_sensor: NDArray[np.float32],
-    weight: NDArray[np.float32],
+    out: Returns,
 ) -> None:
     """Unpack what the fits need of records.
 
@@ -46,18 +39,16 @@ def unpack_returns(
         i2: The records as int16, (N, 16).
         u1: The records as uint8, (N, 32).
         voxel_m: Edge of a voxel [m].
-        means: Receives unbiased positions [m], (N, 3).
-        to_sensor: Receives the vectors to the sensor [m], (N, 3).
-        weight: Receives the returns of each voxel, (N,).
+        out: Receives all but the first points of the cells.
     """
     per_m = 1.0 / voxel_m
     for n in range(len(f4)):
         several = u1[n, 31] > 1
         for d in range(3):
             x = f4[n, d]
-            means[n, d] = (np.floor(x * per_m) + 0.5) * voxel_m if several else x
-            to_sensor[n, d] = i2[n, 10 + d] * np.float32(1.0 / PER_METER)
-        weight[n] = u1[n, 31]
+            out.xyz[n, d] = (np.floor(x * per_m) + 0.5) * voxel_m if several else x
+            out.to_sensor[n, d] = i2[n, 10 + d] * np.float32(1.0 / PER_METER)
+        out.weight[n] = u1[n, 31]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -71,29 +62,18 @@ def _cell_at(xyz: NDArray[np.float32], p: int, cell_m: float, side: int, halo: i
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def find_cells(
-    xyz: NDArray[np.float32],
-    cell_m: float,
-    side: int,
-    halo: int,
-    starts: NDArray[np.int32],
-    cells: NDArray[np.int32],
-    where: NDArray[np.int32],
-) -> int:
+def find_cells(xyz: NDArray[np.float32], cells: Cells, first: NDArray[np.int32]) -> int:
     """Runs of points in the same cell; the points are in the order of their cells.
 
     Args:
         xyz: Points from the tile's origin [m], (N, 3) or more columns.
-        cell_m: Edge of a cell [m].
-        side: Cells along tile and halo.
-        halo: Cells of the halo.
-        starts: Receives the first point of each cell, and N after the last, int32 (N + 1,).
-        cells: Receives the index of each cell, int32 (N,).
-        where: Receives the row of each cell index; filled with -1 before, int32 (side**3,).
+        cells: Receives the indices (N of them have room) and their rows, which were -1 before.
+        first: Receives the first point of each cell, and N after the last, (N + 1,).
 
     Returns:
         Number of cells.
     """
+    side, halo, cell_m = cells.side, cells.halo, cells.edge_m
     count = 0
     low, high = np.empty(3), np.empty(3)
     high[:] = -np.inf
@@ -103,17 +83,17 @@ def find_cells(
             continue
         cell = _cell_at(xyz, p, cell_m, side, halo)
         # Rounding can put a point on a border into the next cell; it stays in its run.
-        if where[cell] >= 0:
+        if cells.row[cell] >= 0:
             continue
-        where[cell] = count
-        cells[count] = cell
-        starts[count] = p
+        cells.row[cell] = count
+        cells.number[count] = cell
+        first[count] = p
         count += 1
         for d in range(3):
             low[d] = (cell % side - halo) * cell_m
             high[d] = low[d] + cell_m
             cell //= side
-    starts[count] = len(xyz)
+    first[count] = len(xyz)
     return count
 
 
@@ -127,30 +107,30 @@ def number_cells(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def center_of(cell: int, side: int, halo: int, cell_m: float) -> tuple[float, float, float]:
-    """Center of a cell from the tile's origin [m]."""
+def center_of(c: int, cells: Cells) -> tuple[float, float, float]:
+    """Center of the cell of a row from the tile's origin [m]."""
+    cell, side = cells.number[c], cells.side
     i = cell % side
     j = (cell // side) % side
     k = cell // (side * side)
-    middle = 0.5 - halo
-    return (i + middle) * cell_m, (j + middle) * cell_m, (k + middle) * cell_m
+    middle, edge_m = 0.5 - cells.halo, cells.edge_m
+    return (i + middle) * edge_m, (j + middle) * edge_m, (k + middle) * edge_m
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def find_rings(
-    cells: NDArray[np.int32], side: int, low: int, high: int, out: NDArray[np.uint8]
-) -> None:
+def find_rings(cells: Cells, low: int, high: int, out: NDArray[np.uint8]) -> None:
     """How far each cell is from the border: 0 = outermost, its window is incomplete; 2 = inside.
 
     Args:
-        cells: Of `find_cells`, (C,).
-        side: Cells along tile and halo.
+        cells: Of `find_cells`.
         low: First row of cells along y that there is.
         high: First row beyond.
         out: Receives 0, 1 or 2, (C,).
     """
-    for c in range(len(cells)):
-        i, j, k = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
+    side = cells.side
+    for c in range(len(cells.number)):
+        cell = cells.number[c]
+        i, j, k = cell % side, cell // side % side, cell // (side * side)
         out[c] = min(i, j - low, k, side - 1 - i, high - 1 - j, side - 1 - k, 2)
 
 
@@ -202,41 +182,31 @@ def first_of_rows(
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def list_neighbors(
-    cells: NDArray[np.int32],
-    where: NDArray[np.int32],
-    side: int,
-    begin: NDArray[np.int32],
-    near: NDArray[np.int32],
-    at: NDArray[np.uint8],
-) -> int:
+def list_neighbors(cells: Cells, out: Neighbors) -> int:
     """List the cells with points among the 3 x 3 x 3 around each cell, itself included.
 
     Args:
-        cells: Of `find_cells`, (C,).
-        where: Of `find_cells`.
-        side: Cells along tile and halo.
-        begin: Receives the first entry of each cell, and their number after the last, (C + 1,).
-        near: Receives the rows of the cells, int32 (27 C,).
-        at: Receives which of the 27 each is: i + 3 j + 9 k, 13 = the cell itself, (27 C,).
+        cells: Of `find_cells`.
+        out: Receives the list; there is room for 27 C entries.
 
     Returns:
         Number of entries.
     """
+    side = cells.side
     count = 0
-    for c in range(len(cells)):
-        begin[c] = count
-        cell = cells[c]
+    for c in range(len(cells.number)):
+        out.first[c] = count
+        cell = cells.number[c]
         ci, cj, ck = cell % side, cell // side % side, cell // (side * side)
         for k in range(max(ck - 1, 0), min(ck + 2, side)):
             for j in range(max(cj - 1, 0), min(cj + 2, side)):
                 for i in range(max(ci - 1, 0), min(ci + 2, side)):
-                    o = where[(k * side + j) * side + i]
+                    o = cells.row[(k * side + j) * side + i]
                     if o >= 0:
-                        near[count] = o
-                        at[count] = (i - ci + 1) + 3 * (j - cj + 1) + 9 * (k - ck + 1)
+                        out.row[count] = o
+                        out.offset[count] = (i - ci + 1) + 3 * (j - cj + 1) + 9 * (k - ck + 1)
                         count += 1
-    begin[len(cells)] = count
+    out.first[len(cells.number)] = count
     return count
 
 
@@ -257,10 +227,9 @@ def column_of(k: int, along: int) -> int:
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def distance_in_front(
-    plane: NDArray[np.float64], xyz: NDArray[np.float32], to_sensor: NDArray[np.float32], p: int
-) -> float:
+def distance_in_front(plane: NDArray[np.float64], returns: Returns, p: int) -> float:
     """Signed distance of a point to an oriented plane [m]; inf if it was seen from behind."""
+    xyz, to_sensor = returns.xyz, returns.to_sensor
     if plane[0] * to_sensor[p, 0] + plane[1] * to_sensor[p, 1] + plane[2] * to_sensor[p, 2] <= 0.0:
         return np.inf
-    return plane[0] * xyz[p, 0] + plane[1] * xyz[p, 1] + plane[2] * xyz[p, 2] - plane[3]
+    return plane[0] * xyz[p, 0] + plane[1] * xyz[p, 1] + plane[2] * xyz[p, 2] - plane[OFFSET]

@@ -7,12 +7,24 @@ from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.moments import MOMENTS
-from recon4.kernels.surface_cells import PLANE, SLOTS, center_of, distance_in_front
+from recon4.kernels.surface_cells import distance_in_front
+from recon4.kernels.surface_records import (
+    MIDDLE,
+    OFFSET,
+    OWN_OFFSET,
+    PLANE,
+    SIGMA,
+    SLOTS,
+    Cells,
+    Moved,
+    Neighbors,
+    PlaneLimits,
+    Returns,
+    StrayLimits,
+    Supported,
+)
 from recon4.kernels.surface_slots import refit_plane
 
-SURFACE = 6
-"""Unit normal, standard deviation across [m], returns, planarity; without a surface the normal of
-the neighborhood, NaN, 0, 0."""
 _MOST_EDGES = 6
 """Planes of a cell and of its neighbors that its points are compared with."""
 _MIN_AROUND = 12.0
@@ -26,55 +38,47 @@ _ONE_SIDE_M = 0.012
 @njit(cache=True, nogil=True, error_model="numpy")
 def planes_at(
     c: int,
-    cells: NDArray[np.int32],
-    grid: tuple[int, int, float],
-    neighbors: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]],
+    cells: Cells,
+    neighbors: Neighbors,
     planes: NDArray[np.float64],
-    slots: NDArray[np.int32],
-    other: NDArray[np.int32],
+    supported: Supported,
     moments: NDArray[np.float64],
-    sums: NDArray[np.float64],
-    limits: NDArray[np.float64],
-    found: NDArray[np.float64],
+    limits: PlaneLimits,
+    scratch: NDArray[np.float64],
     out: NDArray[np.float64],
 ) -> tuple[int, int]:
     """Planes of a cell, fitted again, and after them those that only its neighbors have.
 
     Args:
         c: Row of the cell.
-        cells: Of `find_cells`, (C,).
-        grid: Cells along tile and halo, cells of the halo, edge of a cell [m].
-        neighbors: Of `list_neighbors`: begin, near, at.
+        cells: Of `find_cells`.
+        neighbors: Of `list_neighbors`.
         planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
-        slots: Of `choose_planes`, (C, SLOTS).
-        other: Of `only_plane`, (C,).
+        supported: Of `choose_planes`.
         moments: As in `refit_plane`.
-        sums: As in `refit_plane`.
         limits: As in `refit_plane`.
-        found: As in `refit_plane`.
+        scratch: As in `refit_plane`.
         out: Receives the planes, (L, PLANE).
 
     Returns:
         How many there are of the cell, and of both.
     """
-    if other[c] < 0:
+    slots = supported.plane
+    if supported.several[c] < 0:
         # Fitted to the same points when the window was.
         out[0] = planes[slots[c, 0]]
-        out[0, 3] = out[0, 10]
+        out[0, OFFSET] = out[0, OWN_OFFSET]
         return 1, 1
-    begin, near, at = neighbors
     count = 0
-    center = center_of(cells[c], *grid)
-    run = begin[c], begin[c + 1]
     while count < SLOTS and slots[c, count] >= 0:
         refit_plane(
-            slots[c, count], center, grid[2], run, near, at,
-            planes, slots, other, moments, sums, limits, found, out[count],
+            slots[c, count], c, cells, neighbors, planes, supported, moments, limits, scratch,
+            out[count],
         )  # fmt: skip
         count += 1
     every = count
-    for k in range(run[0], run[1]):
-        o = near[k]
+    for k in range(neighbors.first[c], neighbors.first[c + 1]):
+        o = neighbors.row[k]
         for t in range(SLOTS):
             row = slots[o, t]
             if row < 0:
@@ -91,90 +95,74 @@ def planes_at(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def onto_planes(
-    xyz: NDArray[np.float32],
-    to_sensor: NDArray[np.float32],
-    starts: NDArray[np.int32],
+    returns: Returns,
+    cells: Cells,
     rings: NDArray[np.uint8],
-    cells: NDArray[np.int32],
-    grid: tuple[int, int, float],
-    neighbors: tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.uint8]],
+    neighbors: Neighbors,
     normals: NDArray[np.float64],
     planes: NDArray[np.float64],
-    slots: NDArray[np.int32],
-    other: NDArray[np.int32],
     moments: NDArray[np.float64],
-    sums: NDArray[np.float64],
-    limits: NDArray[np.float64],
+    supported: Supported,
+    limits: PlaneLimits,
     gate: float,
-    slot_of: NDArray[np.uint8],
-    shift_m: NDArray[np.float32],
-    surface_of: NDArray[np.int32],
-    out: NDArray[np.float32],
+    out: Moved,
 ) -> int:
     """Move every point along the normal onto the nearest plane of its cell.
 
     Args:
-        xyz: Points [m], (N, 3) or more columns.
-        to_sensor: Vectors to the sensor [m], (N, 3).
-        starts: Of `find_cells`, (C + 1,).
+        returns: Of the tile, with the positions as they were measured.
+        cells: Of `find_cells`.
         rings: Of `find_rings`; the points of the outermost cells stay, (C,).
-        cells: Of `find_cells`, (C,).
-        grid: As in `planes_at`.
-        neighbors: As in `planes_at`.
+        neighbors: Of `list_neighbors`.
         normals: Of points without a plane [unit], (C, 3).
         planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
-        slots: Of `choose_planes`, (C, SLOTS).
-        other: Of `only_plane`, (C,).
         moments: As in `refit_plane`.
-        sums: As in `refit_plane`.
+        supported: Of `choose_planes`; receives the plane of each point.
         limits: As in `refit_plane`.
         gate: Farther points keep their place [standard deviations].
-        slot_of: Receives the plane of each point, SLOTS = none, (N,).
-        shift_m: Receives the shift onto the surface [m], (N, 3).
-        surface_of: Receives the row of each point's surface, (N,).
-        out: Receives the surfaces, (at most (SLOTS + 1) C, SURFACE).
+        out: Receives the shifts and the surfaces.
 
     Returns:
         How many surfaces there are.
     """
+    first, of_point = returns.first, supported.of_point
     mine_of, side_of = np.zeros((_MOST_EDGES, PLANE)), np.zeros((_MOST_EDGES, _MOST_EDGES))
-    rows, shift, found = np.empty(SLOTS + 1, np.int32), np.zeros(3), np.empty(MOMENTS + 11)
-    made = 0
-    for c in range(len(cells)):
+    rows, shift, scratch = np.empty(SLOTS + 1, np.int32), np.zeros(3), np.empty(MOMENTS + 11)
+    surfaces = 0
+    for c in range(len(cells.number)):
         count = every = 0
         rows[:] = -1
-        if rings[c] > 0 and (other[c] < 0 or slots[c, 0] >= 0):
+        if rings[c] > 0 and (supported.several[c] < 0 or supported.plane[c, 0] >= 0):
             count, every = planes_at(
-                c, cells, grid, neighbors, planes, slots, other, moments, sums, limits, found,
-                mine_of,
-            )  # fmt: skip
+                c, cells, neighbors, planes, supported, moments, limits, scratch, mine_of
+            )
         if every > 1:
             edge_sides(mine_of, count, every, side_of)
-        for p in range(starts[c], starts[c + 1]):
+        for p in range(first[c], first[c + 1]):
             mine = SLOTS
             best = gate
             off = 0.0
             for s in range(count):
-                away = distance_in_front(mine_of[s], xyz, to_sensor, p)
-                if abs(away) < best * mine_of[s, 4]:
-                    best = abs(away) / mine_of[s, 4]
+                away = distance_in_front(mine_of[s], returns, p)
+                if abs(away) < best * mine_of[s, SIGMA]:
+                    best = abs(away) / mine_of[s, SIGMA]
                     mine = s
                     off = away
-            slot_of[p] = mine
+            of_point[p] = mine
             if rows[mine] < 0:
-                rows[mine] = made
-                write_surface(out[made], mine_of, mine, normals[c])
-                made += 1
-            surface_of[p] = rows[mine]
+                rows[mine] = surfaces
+                write_surface(out.surfaces[surfaces], mine_of, mine, normals[c])
+                surfaces += 1
+            out.surface_of[p] = rows[mine]
             shift[:] = 0.0
             if mine < SLOTS:
                 for d in range(3):
                     shift[d] = -off * mine_of[mine, d]
                 if every > 1:
-                    keep_inside(xyz, p, mine_of, every, mine, side_of, shift)
+                    keep_inside(returns.xyz, p, mine_of, every, mine, side_of, shift)
             for d in range(3):
-                shift_m[p, d] = shift[d]
-    return made
+                out.shift_m[p, d] = shift[d]
+    return surfaces
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -198,9 +186,7 @@ def write_surface(
 @njit(cache=True, nogil=True, error_model="numpy")
 def spread_surfaces(
     rows: NDArray[np.int64],
-    shift_m: NDArray[np.float32],
-    surface_of: NDArray[np.int32],
-    surfaces: NDArray[np.float32],
+    moved: Moved,
     offset: NDArray[np.float32],
     normal: NDArray[np.float32],
     facts: NDArray[np.float32],
@@ -210,9 +196,7 @@ def spread_surfaces(
 
     Args:
         rows: Row of each point, (M,).
-        shift_m: Of `onto_planes`, (N, 3).
-        surface_of: Of `onto_planes`, (N,).
-        surfaces: Of `onto_planes`, (K, SURFACE).
+        moved: Of `onto_planes`.
         offset: Receives the offset from the surface to where each was measured [m], (M, 3).
         normal: Receives the normals, (M, 3).
         facts: Receives standard deviation across [m] and planarity, (2, M).
@@ -220,9 +204,9 @@ def spread_surfaces(
     """
     for m in range(len(rows)):
         n = rows[m]
-        one = surfaces[surface_of[n]]
+        one = moved.surfaces[moved.surface_of[n]]
         for d in range(3):
-            offset[m, d] = -shift_m[n, d]
+            offset[m, d] = -moved.shift_m[n, d]
             normal[m, d] = one[d]
         facts[0, m] = one[3]
         facts[1, m] = one[5]
@@ -231,60 +215,54 @@ def spread_surfaces(
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def find_strays(
-    to_sensor: NDArray[np.float32],
-    weight: NDArray[np.float32],
-    starts: NDArray[np.int32],
-    begin: NDArray[np.int32],
-    near: NDArray[np.int32],
-    slot_of: NDArray[np.uint8],
-    limits: NDArray[np.float64],
+    returns: Returns,
+    neighbors: Neighbors,
+    of_point: NDArray[np.uint8],
+    limits: StrayLimits,
     sums: NDArray[np.float64],
     stray: NDArray[np.bool_],
 ) -> None:
     """Mark points on no surface that are few beside the returns of the surfaces around them.
 
     Args:
-        to_sensor: Vectors to the sensor [m], (N, 3).
-        weight: Returns of each point, (N,).
-        starts: Of `find_cells`, (C + 1,).
-        begin: Of `list_neighbors`, (C + 1,).
-        near: Of `list_neighbors`.
-        slot_of: Plane of each point, SLOTS = none, (N,).
-        limits: Largest ratio of such returns in the 3 x 3 x 3 cells around; as many are few in any
-            case; largest ratio of those from afar; how many times the mean range is afar, (4,).
+        returns: Of the tile.
+        neighbors: Of `list_neighbors`.
+        of_point: Plane of each point, SLOTS = none, (N,).
+        limits: Which are few.
         sums: Receives of each cell the returns, those on no surface, the ranges of the others,
             those on no surface from afar, and the range that is afar, (C, 5).
         stray: Receives the marks, (N,).
     """
-    ratio, alone, far_ratio, afar = limits
-    count = len(starts) - 1
+    _, to_sensor, weight, first = returns
+    count = len(first) - 1
     for c in range(count):
         sums[c] = 0.0
-        for p in range(starts[c], starts[c + 1]):
+        for p in range(first[c], first[c + 1]):
             sums[c, 0] += weight[p]
-            if slot_of[p] == SLOTS:
+            if of_point[p] == SLOTS:
                 sums[c, 1] += weight[p]
             else:
                 sums[c, 2] += weight[p] * range_of(to_sensor, p)
     for c in range(count):
         if sums[c, 1] > 0.0:
-            sums[c, 4] = afar * mean_range_around(c, begin, near, sums)
-            for p in range(starts[c], starts[c + 1]):
-                if slot_of[p] == SLOTS and range_of(to_sensor, p) > sums[c, 4]:
+            sums[c, 4] = limits.afar * mean_range_around(c, neighbors, sums)
+            for p in range(first[c], first[c + 1]):
+                if of_point[p] == SLOTS and range_of(to_sensor, p) > sums[c, 4]:
                     sums[c, 3] += weight[p]
     for c in range(count):
         few = far_few = False
         if sums[c, 1] > 0.0:
             every = loose = far = 0.0
-            for k in range(begin[c], begin[c + 1]):
-                every += sums[near[k], 0]
-                loose += sums[near[k], 1]
-                far += sums[near[k], 3]
-            few = loose <= max(ratio * every, alone) and every >= _MIN_AROUND * loose
-            far_few = far <= far_ratio * every
-        for p in range(starts[c], starts[c + 1]):
+            for k in range(neighbors.first[c], neighbors.first[c + 1]):
+                around = sums[neighbors.row[k]]
+                every += around[0]
+                loose += around[1]
+                far += around[3]
+            few = loose <= max(limits.ratio * every, limits.few) and every >= _MIN_AROUND * loose
+            far_few = far <= limits.far_ratio * every
+        for p in range(first[c], first[c + 1]):
             from_afar = far_few and range_of(to_sensor, p) > sums[c, 4]
-            stray[p] = slot_of[p] == SLOTS and (few or from_afar)
+            stray[p] = of_point[p] == SLOTS and (few or from_afar)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -295,15 +273,14 @@ def range_of(to_sensor: NDArray[np.float32], p: int) -> float:
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def mean_range_around(
-    c: int, begin: NDArray[np.int32], near: NDArray[np.int32], sums: NDArray[np.float64]
-) -> float:
+def mean_range_around(c: int, neighbors: Neighbors, sums: NDArray[np.float64]) -> float:
     """Mean range of the returns on surfaces around a cell [m], infinite without any."""
-    ranges = held = 0.0
-    for k in range(begin[c], begin[c + 1]):
-        ranges += sums[near[k], 2]
-        held += sums[near[k], 0] - sums[near[k], 1]
-    return ranges / held if held > 0.0 else np.inf
+    ranges = count = 0.0
+    for k in range(neighbors.first[c], neighbors.first[c + 1]):
+        around = sums[neighbors.row[k]]
+        ranges += around[2]
+        count += around[0] - around[1]
+    return ranges / count if count > 0.0 else np.inf
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -319,10 +296,10 @@ def edge_sides(
         out: Receives the sides: ``out[a, b]`` = surface a, side of b, (L, L).
     """
     for a in range(count):
-        middle = planes[a, 7:10]
+        middle = planes[a, MIDDLE : MIDDLE + 3]
         for b in range(every):
             q = planes[b]
-            away = q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2] - q[3]
+            away = q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2] - q[OFFSET]
             out[a, b] = 0.0
             if abs(away) > _ONE_SIDE_M:
                 out[a, b] = 1.0 if away > 0.0 else -1.0
@@ -344,13 +321,13 @@ def keep_inside(
         q = planes[b]
         if b == mine or side_of[mine, b] == 0.0:
             continue
-        away = -q[3]
+        away = -q[OFFSET]
         for d in range(3):
             away += q[d] * (xyz[p, d] + shift[d])
         if away * side_of[mine, b] >= 0.0:
             continue
         dot = a[0] * q[0] + a[1] * q[1] + a[2] * q[2]
-        if abs(dot) > 0.9 or abs(away) > 3.0 * q[4]:
+        if abs(dot) > 0.9 or abs(away) > 3.0 * q[SIGMA]:
             continue
         # Within plane a, against the part of b's normal that lies in it.
         scale = away / (1.0 - dot * dot)

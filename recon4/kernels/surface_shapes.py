@@ -6,10 +6,16 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.surface_cells import (
-    center_of,
-    distance_in_front,
-    main_axis,
+from recon4.kernels.surface_cells import center_of, distance_in_front, main_axis
+from recon4.kernels.surface_records import (
+    MIDDLE,
+    OFFSET,
+    PLANARITY,
+    SIGMA,
+    WEIGHT,
+    Cells,
+    Neighbors,
+    Returns,
 )
 
 _BESIDE = 0.55
@@ -20,23 +26,23 @@ _THIN = 0.9
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def write_plane(
-    out: NDArray[np.float64], found: NDArray[np.float64], sign: float, total: NDArray[np.float64]
+    out: NDArray[np.float64], fitted: NDArray[np.float64], sign: float, total: NDArray[np.float64]
 ) -> None:
     """Write the plane through moments about the tile's origin.
 
     Args:
         out: Receives the plane, (PLANE,).
-        found: Of `plane_of`, (7,).
+        fitted: Of `plane_of`, (7,).
         sign: 1, or -1 to turn the normal.
         total: The moments, (MOMENTS,).
     """
     for d in range(4):
-        out[d] = sign * found[d]
-    out[4] = max(np.sqrt(found[4]), 1e-4)
-    out[5] = total[0]
-    out[6] = (found[5] - found[4]) / found[6]
+        out[d] = sign * fitted[d]
+    out[SIGMA] = max(np.sqrt(fitted[4]), 1e-4)
+    out[WEIGHT] = total[0]
+    out[PLANARITY] = (fitted[5] - fitted[4]) / fitted[6]
     for d in range(3):
-        out[7 + d] = total[1 + d] / total[0]
+        out[MIDDLE + d] = total[1 + d] / total[0]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -52,20 +58,20 @@ def own_offset(plane: NDArray[np.float64], column: NDArray[np.float64], bend_m: 
         bend_m: Standard deviation of a cell's surface from the plane of its window [m].
     """
     if not column[0] > 0.0:
-        return plane[3]
+        return plane[OFFSET]
     x, y, z = column[1] / column[0], column[2] / column[0], column[3] / column[0]
-    own = plane[0] * x + plane[1] * y + plane[2] * z - plane[3]
+    own = plane[0] * x + plane[1] * y + plane[2] * z - plane[OFFSET]
     prior = bend_m * bend_m
-    return plane[3] + own * prior / (prior + plane[4] * plane[4] / column[0])
+    return plane[OFFSET] + own * prior / (prior + plane[SIGMA] * plane[SIGMA] / column[0])
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def is_bent(columns: NDArray[np.float64], plane: NDArray[np.float64], limit_m: float) -> bool:
+def is_bent(columns: NDArray[np.float64], fitted: NDArray[np.float64], limit_m: float) -> bool:
     """Whether the parts of a window lie on both sides of its plane: an edge, or a round thing.
 
     Args:
         columns: Weight and weighted sums x y z of the columns of cells along the normal, (9, 4).
-        plane: Of `plane_of`, (7,).
+        fitted: Of `plane_of`, (7,).
         limit_m: Largest root mean square of their distances, beyond what noise explains [m].
     """
     squares = weights = 0.0
@@ -74,44 +80,36 @@ def is_bent(columns: NDArray[np.float64], plane: NDArray[np.float64], limit_m: f
         w = columns[j, 0]
         if w > 0.0:
             away = (
-                plane[0] * columns[j, 1] + plane[1] * columns[j, 2] + plane[2] * columns[j, 3]
-            ) / w - plane[3]
+                fitted[0] * columns[j, 1] + fitted[1] * columns[j, 2] + fitted[2] * columns[j, 3]
+            ) / w - fitted[OFFSET]
             squares += w * away * away
             weights += w
             parts += 1
-    return squares - parts * plane[4] > weights * limit_m * limit_m
+    return squares - parts * fitted[4] > weights * limit_m * limit_m
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def shape_sums(
-    xyz: NDArray[np.float32],
-    to_sensor: NDArray[np.float32],
-    weight: NDArray[np.float32],
-    starts: NDArray[np.int32],
-    planes: NDArray[np.float64],
-    reach_m: float,
-    sums: NDArray[np.float64],
+    returns: Returns, planes: NDArray[np.float64], reach_m: float, sums: NDArray[np.float64]
 ) -> None:
     """Powers 0 to 4 of the distances of each cell's points to each of its planes.
 
     Args:
-        xyz: Points [m], (N, 3).
-        to_sensor: Vectors to the sensor [m], (N, 3).
-        weight: Of each point, (N,).
-        starts: Of `find_cells`, (C + 1,).
+        returns: Of the tile.
         planes: (C, K, PLANE).
         reach_m: Farther points are left out [m].
         sums: Receives the sums, (C, K, 5).
     """
+    first = returns.first
     for c in range(len(planes)):
         for s in range(planes.shape[1]):
             s0 = s1 = s2 = s3 = s4 = 0.0
             plane = planes[c, s]
-            if plane[4] > 0.0:
-                for p in range(starts[c], starts[c + 1]):
-                    away = distance_in_front(plane, xyz, to_sensor, p)
+            if plane[SIGMA] > 0.0:
+                for p in range(first[c], first[c + 1]):
+                    away = distance_in_front(plane, returns, p)
                     if abs(away) < reach_m:
-                        power = np.float64(weight[p])
+                        power = np.float64(returns.weight[p])
                         s0 += power
                         power *= away
                         s1 += power
@@ -151,12 +149,8 @@ def is_one_sheet(sums: NDArray[np.float64], least_m: float, limit: float) -> boo
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def drop_mixed(
-    cells: NDArray[np.int32],
-    side: int,
-    halo: int,
-    cell_m: float,
-    begin: NDArray[np.int32],
-    near: NDArray[np.int32],
+    cells: Cells,
+    neighbors: Neighbors,
     sums: NDArray[np.float64],
     least_m: float,
     limit: float,
@@ -169,12 +163,8 @@ def drop_mixed(
     behind an edge to that of two.
 
     Args:
-        cells: Of `find_cells`, (C,).
-        side: Cells along tile and halo.
-        halo: Cells of the halo.
-        cell_m: Edge of a cell [m].
-        begin: Of `list_neighbors`, (C + 1,).
-        near: Of `list_neighbors`.
+        cells: Of `find_cells`.
+        neighbors: Of `list_neighbors`.
         sums: Of `shape_sums`, (C, 2, 5).
         least_m: As in `is_one_sheet`.
         limit: As in `is_one_sheet`.
@@ -183,23 +173,23 @@ def drop_mixed(
     """
     total = np.zeros(5)
     for c in range(len(planes)):
-        cx, cy, cz = center_of(cells[c], side, halo, cell_m)
+        cx, cy, cz = center_of(c, cells)
         for s in range(2):
             mine = planes[c, s]
-            kept[c, s] = mine[4] > 0.0
-            away = mine[0] * cx + mine[1] * cy + mine[2] * cz - mine[3]
-            if abs(away) > _BESIDE * cell_m * abs(mine[main_axis(mine)]):
+            kept[c, s] = mine[SIGMA] > 0.0
+            away = mine[0] * cx + mine[1] * cy + mine[2] * cz - mine[OFFSET]
+            if abs(away) > _BESIDE * cells.edge_m * abs(mine[main_axis(mine)]):
                 kept[c, s] = False
                 continue
-            if mine[4] < _THIN * least_m:
+            if mine[SIGMA] < _THIN * least_m:
                 continue
             t0 = t1 = t2 = t3 = t4 = 0.0
             nx, ny, nz = mine[0], mine[1], mine[2]
-            for k in range(begin[c], begin[c + 1]):
-                o = near[k]
+            for k in range(neighbors.first[c], neighbors.first[c + 1]):
+                o = neighbors.row[k]
                 for t in range(2):
                     q = planes[o, t]
-                    if q[4] > 0.0 and nx * q[0] + ny * q[1] + nz * q[2] > 0.97:
+                    if q[SIGMA] > 0.0 and nx * q[0] + ny * q[1] + nz * q[2] > 0.97:
                         t0 += sums[o, t, 0]
                         t1 += sums[o, t, 1]
                         t2 += sums[o, t, 2]

@@ -11,11 +11,21 @@ from numpy.typing import NDArray
 from recon4.kernels.moments import MOMENTS, add_point, plane_of
 from recon4.kernels.surface_cells import (
     OWN_COLUMN,
-    SLOTS,
     center_of,
     column_of,
     distance_in_front,
     main_axis,
+)
+from recon4.kernels.surface_records import (
+    OFFSET,
+    SIGMA,
+    SLOTS,
+    WEIGHT,
+    Cells,
+    Neighbors,
+    PlaneLimits,
+    Returns,
+    Supported,
 )
 from recon4.kernels.surface_shapes import own_offset, write_plane
 
@@ -31,11 +41,7 @@ _THINNER = 0.95
 @njit(cache=True, nogil=True, error_model="numpy")
 def list_candidates(
     c: int,
-    cells: NDArray[np.int32],
-    where: NDArray[np.int32],
-    side: int,
-    halo: int,
-    cell_m: float,
+    cells: Cells,
     planes: NDArray[np.float64],
     thickness: NDArray[np.float64],
     out: NDArray[np.int64],
@@ -47,11 +53,7 @@ def list_candidates(
 
     Args:
         c: Row of the cell.
-        cells: Of `find_cells`, (C,).
-        where: Of `find_cells`.
-        side: Cells along tile and halo.
-        halo: Cells of the halo.
-        cell_m: Edge of a cell [m].
+        cells: Of `find_cells`.
         planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
         thickness: Of `thickness_of`, (2 C,).
         out: Receives the rows of the planes, (L,).
@@ -59,30 +61,32 @@ def list_candidates(
     Returns:
         How many there are.
     """
+    side = cells.side
     count = 0
-    cx, cy, cz = center_of(cells[c], side, halo, cell_m)
-    ci, cj, ck = cells[c] % side, cells[c] // side % side, cells[c] // (side * side)
+    cx, cy, cz = center_of(c, cells)
+    cell = cells.number[c]
+    ci, cj, ck = cell % side, cell // side % side, cell // (side * side)
     for k in range(max(ck - 2, 0), min(ck + 3, side)):
         for j in range(max(cj - 2, 0), min(cj + 3, side)):
             for i in range(max(ci - 2, 0), min(ci + 3, side)):
-                at = 2 * np.int64(where[(k * side + j) * side + i])
-                if at < 0:
+                first = 2 * np.int64(cells.row[(k * side + j) * side + i])
+                if first < 0:
                     continue
-                for p in range(at, at + 2):
+                for p in range(first, first + 2):
                     if not thickness[p] < np.inf:
                         continue
                     nx, ny, nz = planes[p, 0], planes[p, 1], planes[p, 2]
-                    away = nx * cx + ny * cy + nz * cz - planes[p, 3]
-                    if abs(away) > 0.87 * cell_m + 2.0 * planes[p, 4]:
+                    away = nx * cx + ny * cy + nz * cz - planes[p, OFFSET]
+                    if abs(away) > 0.87 * cells.edge_m + 2.0 * planes[p, SIGMA]:
                         continue
                     same = -1
                     for q in range(count):
                         d = out[q]
                         ux, uy, uz = planes[d, 0], planes[d, 1], planes[d, 2]
-                        off = away - (ux * cx + uy * cy + uz * cz - planes[d, 3])
+                        off = away - (ux * cx + uy * cy + uz * cz - planes[d, OFFSET])
                         if (
                             ux * nx + uy * ny + uz * nz > _SAME_COS
-                            and abs(off) < _SAME * planes[p, 4]
+                            and abs(off) < _SAME * planes[p, SIGMA]
                         ):
                             same = q
                             break
@@ -104,128 +108,101 @@ def thickness_of(planes: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     """
     for k in range(len(planes)):
         out[k] = np.inf
-        if planes[k, 4] > 0.0:
-            out[k] = planes[k, 4] * (1.0 + 2.0 / np.sqrt(planes[k, 5]))
+        if planes[k, SIGMA] > 0.0:
+            out[k] = planes[k, SIGMA] * (1.0 + 2.0 / np.sqrt(planes[k, WEIGHT]))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def only_plane(
-    xyz: NDArray[np.float32],
-    to_sensor: NDArray[np.float32],
-    weight: NDArray[np.float32],
-    starts: NDArray[np.int32],
+    returns: Returns,
     planes: NDArray[np.float64],
     calm: NDArray[np.bool_],
     gate: float,
     least: float,
-    slots: NDArray[np.int32],
-    slot_of: NDArray[np.uint8],
-    other: NDArray[np.int32],
+    out: Supported,
 ) -> int:
     """Give cells of calm windows the only plane they have, if their returns support no other one.
 
     Args:
-        xyz: Points [m], (N, 3).
-        to_sensor: Vectors to the sensor [m], (N, 3).
-        weight: Of each point, (N,).
-        starts: Of `find_cells`, (C + 1,).
+        returns: Of the tile.
         planes: Of `window_planes`, (C, 2, PLANE).
         calm: Of `window_planes`, (C,).
         gate: Returns within that many standard deviations support a plane.
         least: Least support of a second plane.
-        slots: Receives the rows of the planes among all, -1 = none, (C, SLOTS).
-        slot_of: Receives the slot each point supports, SLOTS = none, (N,).
-        other: Receives -1 for these cells; the others are counted, (C,).
+        out: Receives the planes of these cells and of their points; the other cells are counted.
 
     Returns:
         How many others there are.
     """
+    first, weight = returns.first, returns.weight
     count = 0
     for c in range(len(planes)):
-        other[c] = count
+        out.several[c] = count
         count += 1
-        slots[c] = -1
-        s = 0 if planes[c, 0, 4] > 0.0 else 1
+        out.plane[c] = -1
+        s = 0 if planes[c, 0, SIGMA] > 0.0 else 1
         plane = planes[c, s]
-        if not (calm[c] and plane[4] > 0.0) or (s == 0 and planes[c, 1, 4] > 0.0):
+        if not (calm[c] and plane[SIGMA] > 0.0) or (s == 0 and planes[c, 1, SIGMA] > 0.0):
             continue
         loose = 0.0
-        for p in range(starts[c], starts[c + 1]):
-            slot_of[p] = 0
-            if not abs(distance_in_front(plane, xyz, to_sensor, p)) <= gate * plane[4]:
-                slot_of[p] = SLOTS
+        for p in range(first[c], first[c + 1]):
+            out.of_point[p] = 0
+            if not abs(distance_in_front(plane, returns, p)) <= gate * plane[SIGMA]:
+                out.of_point[p] = SLOTS
                 loose += weight[p]
         if loose > least:
             continue
-        slots[c, 0] = 2 * c + s
-        other[c] = -1
+        out.plane[c, 0] = 2 * c + s
+        out.several[c] = -1
         count -= 1
     return count
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def choose_planes(
-    xyz: NDArray[np.float32],
-    to_sensor: NDArray[np.float32],
-    weight: NDArray[np.float32],
-    starts: NDArray[np.int32],
-    where: NDArray[np.int32],
-    cells: NDArray[np.int32],
-    side: int,
-    halo: int,
-    cell_m: float,
+    returns: Returns,
+    cells: Cells,
     planes: NDArray[np.float64],
     thickness: NDArray[np.float64],
     gate: float,
     least: float,
-    other: NDArray[np.int32],
-    slots: NDArray[np.int32],
-    slot_of: NDArray[np.uint8],
-    sums: NDArray[np.float64],
+    out: Supported,
 ) -> None:
-    """Give each other cell the planes that its returns support, one after the other.
+    """Give each cell of several planes those that its returns support, one after the other.
 
     A cell at an edge has no clean plane of its own: its neighbors' planes reach into it.
 
     Args:
-        xyz: Points [m], (N, 3).
-        to_sensor: Vectors to the sensor [m], (N, 3).
-        weight: Of each point, (N,).
-        starts: Of `find_cells`, (C + 1,).
-        where: Of `find_cells`.
-        cells: Of `find_cells`, (C,).
-        side: Cells along tile and halo.
-        halo: Cells of the halo.
-        cell_m: Edge of a cell [m].
+        returns: Of the tile.
+        cells: Of `find_cells`.
         planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
         thickness: Of `thickness_of`, (2 C,).
         gate: Returns within that many standard deviations support a plane.
         least: Least support of a second plane; a tenth of it is enough for the first.
-        other: Of `only_plane`, (C,).
-        slots: Receives the rows of the planes, -1 = none, (C, SLOTS).
-        slot_of: Receives the slot each point supports, SLOTS = none, (N,).
-        sums: Receives the moments of each slot of the other cells, (K, SLOTS, MOMENTS).
+        out: Of `only_plane`; receives the planes of the other cells.
     """
+    xyz, _, weight, first_point = returns
+    several, of_point = out.several, out.of_point
     listed = np.empty(_MOST_LISTED, np.int64)
     most = 0
-    for c in range(len(cells)):
-        most = max(most, starts[c + 1] - starts[c])
+    for c in range(len(cells.number)):
+        most = max(most, first_point[c + 1] - first_point[c])
     fits, fit = np.empty((len(listed), most)), np.empty(most)
-    for c in range(len(cells)):
-        if other[c] < 0:
+    for c in range(len(cells.number)):
+        if several[c] < 0:
             continue
-        first, points = starts[c], starts[c + 1] - starts[c]
-        returns = 0.0
+        first, points = first_point[c], first_point[c + 1] - first_point[c]
+        total = 0.0
         for p in range(points):
-            slot_of[first + p] = SLOTS
+            of_point[first + p] = SLOTS
             fit[p] = 0.0
-            returns += weight[first + p]
-        count = list_candidates(c, cells, where, side, halo, cell_m, planes, thickness, listed)
+            total += weight[first + p]
+        count = list_candidates(c, cells, planes, thickness, listed)
         for q in range(count):
             plane = planes[listed[q]]
-            scale = 1.0 / (gate * plane[4])
+            scale = 1.0 / (gate * plane[SIGMA])
             for p in range(points):
-                away = scale * distance_in_front(plane, xyz, to_sensor, first + p)
+                away = scale * distance_in_front(plane, returns, first + p)
                 fits[q, p] = 1.0 - away * away
         for slot in range(min(SLOTS, count)):
             best, chosen = 0.0, -1
@@ -233,112 +210,108 @@ def choose_planes(
             for q in range(count):
                 support = 0.0
                 for p in range(points):
-                    if slot_of[first + p] == SLOTS and fits[q, p] > 0.0:
+                    if of_point[first + p] == SLOTS and fits[q, p] > 0.0:
                         support += weight[first + p] * fits[q, p]
                 # A plane through the tail of another surface's noise has less weight than that one.
-                if support > enough and support * planes[listed[q], 5] > best:
-                    best, chosen = support * planes[listed[q], 5], q
+                if support > enough and support * planes[listed[q], WEIGHT] > best:
+                    best, chosen = support * planes[listed[q], WEIGHT], q
             if chosen < 0 and slot == 0:
                 # A cell of few returns may hold the noise of a surface of many.
-                best = _MIN_TAIL * returns
+                best = _MIN_TAIL * total
                 for q in range(count):
-                    if planes[listed[q], 5] > best:
-                        best, chosen = planes[listed[q], 5], q
+                    if planes[listed[q], WEIGHT] > best:
+                        best, chosen = planes[listed[q], WEIGHT], q
             if chosen < 0:
                 break
-            slots[c, slot] = listed[chosen]
+            out.plane[c, slot] = listed[chosen]
             for p in range(points):
                 if fits[chosen, p] > fit[p]:
                     fit[p] = fits[chosen, p]
-                    slot_of[first + p] = slot
-        mine = sums[other[c]]
+                    of_point[first + p] = slot
+        mine = out.sums[several[c]]
         mine[:] = 0.0
         for p in range(first, first + points):
-            if slot_of[p] < SLOTS:
+            if of_point[p] < SLOTS:
                 x, y, z = np.float64(xyz[p, 0]), np.float64(xyz[p, 1]), np.float64(xyz[p, 2])
-                add_point(mine[slot_of[p]], np.float64(weight[p]), x, y, z)
+                add_point(mine[of_point[p]], np.float64(weight[p]), x, y, z)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def refit_plane(
     row: int,
-    center: tuple[float, float, float],
-    cell_m: float,
-    run: tuple[int, int],
-    near: NDArray[np.int32],
-    at: NDArray[np.uint8],
+    c: int,
+    cells: Cells,
+    neighbors: Neighbors,
     planes: NDArray[np.float64],
-    slots: NDArray[np.int32],
-    other: NDArray[np.int32],
+    supported: Supported,
     moments: NDArray[np.float64],
-    sums: NDArray[np.float64],
-    limits: NDArray[np.float64],
-    found: NDArray[np.float64],
+    limits: PlaneLimits,
+    scratch: NDArray[np.float64],
     new: NDArray[np.float64],
 ) -> None:
     """Fit a plane of a cell again, to the points that support it in the 3 x 3 x 3 cells around.
 
     Args:
         row: Of the plane so far.
-        center: Of the cell [m].
-        cell_m: Edge of a cell [m].
-        run: First of its neighbors of `list_neighbors`, itself included, and the first beyond.
-        near: Of `list_neighbors`.
-        at: Of `list_neighbors`.
+        c: Row of the cell.
+        cells: Of `find_cells`.
+        neighbors: Of `list_neighbors`.
         planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
-        slots: Of `choose_planes`, (C, SLOTS).
-        other: Of `only_plane`, (C,).
+        supported: Of `choose_planes`.
         moments: Of the sides of each cell, two rows for each, (2 C, MOMENTS).
-        sums: Of `choose_planes`, (K, SLOTS, MOMENTS).
-        limits: Least weight, least standard deviation along [m], standard deviation of a cell's
-            own offset [m], (3,).
-        found: Scratch, (MOMENTS + 11,).
+        limits: What is a plane.
+        scratch: (MOMENTS + 11,).
         new: Receives the plane, (PLANE,).
     """
-    total, column, fitted = found[:MOMENTS], found[MOMENTS : MOMENTS + 4], found[MOMENTS + 4 :]
+    center, cell_m = center_of(c, cells), cells.edge_m
+    total, column, fitted = (
+        scratch[:MOMENTS],
+        scratch[MOMENTS : MOMENTS + 4],
+        scratch[MOMENTS + 4 :],
+    )
     mine = planes[row]
     along = main_axis(mine)
-    nx, ny, nz, reach = mine[0], mine[1], mine[2], 0.7 * mine[4]
-    middle = nx * center[0] + ny * center[1] + nz * center[2] - mine[3]
+    nx, ny, nz, reach = mine[0], mine[1], mine[2], 0.7 * mine[SIGMA]
+    middle = nx * center[0] + ny * center[1] + nz * center[2] - mine[OFFSET]
     total[:] = 0.0
     column[:] = 0.0
-    for k in range(run[0], run[1]):
-        o = near[k]
-        cell: Any = np.int64(at[k])
+    for k in range(neighbors.first[c], neighbors.first[c + 1]):
+        o = neighbors.row[k]
+        cell: Any = np.int64(neighbors.offset[k])
         x = 0.5 * cell_m * (cell % 3 - 1)
         y = 0.5 * cell_m * (cell // 3 % 3 - 1)
         z = 0.5 * cell_m * (cell // 9 - 1)
         away = middle + nx * x + ny * y + nz * z
         x, y, z = center[0] + x, center[1] + y, center[2] + z
         for t in range(SLOTS):
-            s = slots[o, t]
+            s = supported.plane[o, t]
             if s < 0:
                 break
             u, v, w = planes[s, 0], planes[s, 1], planes[s, 2]
             if (
                 nx * u + ny * v + nz * w <= 0.96
-                or abs(u * x + v * y + w * z - planes[s, 3] - away) >= reach
+                or abs(u * x + v * y + w * z - planes[s, OFFSET] - away) >= reach
             ):
                 continue
             own = column_of(cell, along) == OWN_COLUMN
-            if other[o] < 0:
+            if supported.several[o] < 0:
                 for d in range(MOMENTS):
                     total[d] += moments[s, d]
                 if own:
                     for d in range(4):
                         column[d] += moments[s, d]
             else:
-                j = other[o]
+                j = supported.several[o]
                 for d in range(MOMENTS):
-                    total[d] += sums[j, t, d]
+                    total[d] += supported.sums[j, t, d]
                 if own:
                     for d in range(4):
-                        column[d] += sums[j, t, d]
+                        column[d] += supported.sums[j, t, d]
     new[:] = mine
-    if total[0] < limits[0] or not plane_of(total, fitted):
+    if total[0] < limits.min_returns or not plane_of(total, fitted):
         return
     dot = fitted[0] * nx + fitted[1] * ny + fitted[2] * nz
-    if fitted[5] < limits[1] ** 2 or abs(dot) < 0.94:
+    if fitted[5] < limits.min_along_m**2 or abs(dot) < 0.94:
         return
     write_plane(new, fitted, 1.0 if dot > 0.0 else -1.0, total)
-    new[3] = own_offset(new, column, limits[2])
+    new[OFFSET] = own_offset(new, column, limits.bend_m)

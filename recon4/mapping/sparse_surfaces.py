@@ -11,7 +11,7 @@ from recon4.kernels.surface_cells import number_cells
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, Views
 from recon4.mapping.scratch import Scratch
-from recon4.mapping.surface_fit import SPREAD, FittedSurfaces, Noise, fit_rows
+from recon4.mapping.surface_fit import TUNING, FittedSurfaces, Noise, fit_rows
 
 SCALE = 3
 """Cells of the larger scale are as many times as large."""
@@ -82,4 +82,4 @@ def _thin_enough(
     """Which points lie on a surface about as thick as the others; others may be two sheets."""
     sigma_m = made.surfaces[made.surface_of, 3]
     usual_m = float(np.median(sigma_m[moved])) if moved.any() else 0.0
-    return np.asarray(sigma_m < max(SPREAD * noise_m, THICKER * usual_m))
+    return np.asarray(sigma_m < max(TUNING.strict.max_sigma * noise_m, THICKER * usual_m))

@@ -1,4 +1,8 @@
-"""Surfaces of some rows of cells of a tile: planes fitted to all returns around a point."""
+"""Surfaces of some rows of cells of a tile: planes fitted to all returns around a point.
+
+`docs/surfaces.md` explains the algorithm with its equations; the steps of `fit_rows` are its
+sections.
+"""
 
 from __future__ import annotations
 
@@ -16,40 +20,99 @@ from recon4.kernels import (
     surface_windows,
 )
 from recon4.kernels.moments import MOMENTS
-from recon4.kernels.surface_cells import PLANE, SLOTS
-from recon4.kernels.surface_points import SURFACE
+from recon4.kernels.surface_records import (
+    PLANE,
+    SIGMA,
+    SLOTS,
+    SURFACE,
+    Cells,
+    Moved,
+    Neighbors,
+    PlaneLimits,
+    Returns,
+    Sides,
+    StrayLimits,
+    Supported,
+)
 from recon4.mapping.grid import Grid
 from recon4.mapping.normals import MIN_POINTS
 from recon4.mapping.records import Records, Views
 from recon4.mapping.scratch import ScratchArray
 
-ROUND_GATE = 2.5
-"""While planes are fitted, farther returns do not count [standard deviations]."""
-GATE = 3.7
-"""Points farther from their plane keep their place [standard deviations]."""
-SPREAD = 1.15
-"""Largest standard deviation across a surface [noise of the range]."""
-ONE_SHEET = 1.0
-"""Below this standard deviation a surface is one sheet whatever its shape [noise]."""
-MIN_RETURNS = 12.0
-MIN_SUPPORT = 0.5
-"""Least support of a second plane of a cell [returns]."""
-MIN_LOOSE = 3.0
-"""A cell with more returns off its only plane is looked at for others."""
-LOOSE, STRICT = (1.5, 1.0, 1.0, 0.0), (SPREAD, 0.3, 0.05, 0.02)
-"""Rounds of fitting windows: largest deviation across [noise], largest bend [noise], the part of
-the noise's variance that is the same in all directions (poses and voxels), and the least part of
-the returns of the window: noise beyond an edge has chance planes of a dozen returns."""
-STRAY_RATIO = 0.015
-"""Largest ratio of stray returns among those around them."""
-STRAY_DENSITY = 200.0
-"""As many returns of no surface are stray ones whatever their ratio [1/m² of the cells around]."""
-FAR_RATIO = 0.15
-"""The same of those that were measured from afar: the surfaces around them are known better."""
-AFAR = 1.75
-"""Times the mean range of the returns on surfaces."""
-BEND_M = 0.002
-"""Standard deviation of a cell's surface from the plane of its window [m]."""
+
+@dataclass(frozen=True, slots=True)
+class WindowShape:
+    """What the plane of a window has to be, in one round of fitting."""
+
+    max_sigma: float
+    """Largest standard deviation across [noise]."""
+    max_bend: float
+    """Largest root mean square distance of its parts [noise]."""
+    isotropic: float
+    """Part of the noise's variance that is the same in all directions: poses and voxels."""
+    min_ratio: float
+    """Least part of the returns of the window: noise beyond an edge has chance planes of a dozen
+    returns."""
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceTuning:
+    """Constants of fitted surfaces, chosen on the scene `exhibition` (`docs/map.md`, figures)."""
+
+    loose: WindowShape = WindowShape(1.5, 1.0, 1.0, 0.0)
+    """First rounds: the windows still hold returns of other surfaces."""
+    strict: WindowShape = WindowShape(1.15, 0.3, 0.05, 0.02)
+    """Last round."""
+    min_returns: float = 12.0
+    """Of a plane."""
+    min_along_cells: float = 0.3
+    """Least standard deviation along a plane [cells]."""
+    min_cos: float = 0.5
+    """Cells of a window whose normals differ more are left out."""
+    bend_m: float = 0.002
+    """Standard deviation of a cell's surface from the plane of its window [m]."""
+    one_sheet: float = 1.0
+    """Below this standard deviation a surface is one sheet whatever its shape [noise]."""
+    max_skew: float = 0.35
+    """Of distances on one sheet; also the least excess kurtosis, negative."""
+    shape_reach: float = 4.0
+    """Farther points say nothing of the shape [noise]."""
+    round_gate: float = 2.5
+    """While planes are fitted, farther returns do not count [standard deviations]."""
+    gate: float = 3.7
+    """Points farther from their plane keep their place [standard deviations]."""
+    min_support: float = 0.5
+    """Least support of a second plane of a cell [returns]."""
+    min_loose: float = 3.0
+    """A cell with more returns off its only plane is looked at for others."""
+    stray_ratio: float = 0.015
+    """Largest ratio of stray returns among those around them."""
+    stray_density: float = 200.0
+    """As many returns of no surface are stray ones whatever their ratio [1/m² of the cells]."""
+    far_ratio: float = 0.15
+    """The same of those measured from afar: the surfaces around them are known better."""
+    afar: float = 1.75
+    """Times the mean range of the returns on surfaces."""
+
+    def window(self, shape: WindowShape, cell_m: float, noise_m: float) -> PlaneLimits:
+        """Limits of one round for a cell edge and a noise [m]."""
+        return PlaneLimits(
+            self.min_returns,
+            shape.min_ratio,
+            shape.max_sigma * noise_m,
+            self.min_along_cells * cell_m,
+            shape.max_bend * noise_m,
+            shape.isotropic,
+            self.bend_m,
+        )
+
+    def strays(self, cell_m: float) -> StrayLimits:
+        """Which returns are few, for a cell edge [m]."""
+        few = self.stray_density * (3.0 * cell_m) ** 2
+        return StrayLimits(self.stray_ratio, few, self.far_ratio, self.afar)
+
+
+TUNING = SurfaceTuning()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +124,7 @@ class FittedSurfaces:
     surface_of: NDArray[np.int32]
     """Row of its surface, (N,)."""
     surfaces: NDArray[np.float32]
-    """Of `surface_points.SURFACE` numbers, (K, 6)."""
+    """Of `surface_records.SURFACE` numbers, (K, 6)."""
     stray: NDArray[np.bool_]
     """Returns of no surface, few beside those of the surfaces around them, (N,)."""
     support: NDArray[np.int32]
@@ -103,33 +166,6 @@ class Noise:
     """With that of poses, beams and bends, where these are known less well [m]."""
 
 
-Points = tuple[NDArray[np.float32], NDArray[np.float32], NDArray[np.float32], NDArray[np.int32]]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Cells:
-    """Cells with points, and which of them are neighbors."""
-
-    starts: NDArray[np.int32]
-    cells: NDArray[np.int32]
-    where: NDArray[np.int32]
-    begin: NDArray[np.int32]
-    near: NDArray[np.int32]
-    at: NDArray[np.uint8]
-    rings: NDArray[np.uint8]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Windows:
-    """Planes of windows, with the moments of the sides of each cell."""
-
-    planes: NDArray[np.float64]
-    moments: NDArray[np.float64]
-    calm: NDArray[np.bool_]
-    normals: NDArray[np.float64]
-    support: NDArray[np.int32]
-
-
 def fit_rows(
     records: Records, grid: Grid, rows: tuple[int, int], *, noise: Noise, array: ScratchArray
 ) -> FittedSurfaces:
@@ -143,193 +179,188 @@ def fit_rows(
         noise: Of the returns.
         array: Memory for what is computed and for the result.
     """
-    n, views = len(records), Views.of(records)
-    means, to_sensor = (array(name, (n, 3), np.float32) for name in ("means", "to_sensor"))
-    weight = array("weight", (n,), np.float32)
-    surface_cells.unpack_returns(
-        views.f4, views.i2, views.u1, grid.voxel_m, means, to_sensor, weight
-    )
-    found = _cells(views.f4, grid, rows, array=array)
-    fit = _Fit((means, to_sensor, weight, found.starts), found, grid, noise, array)
+    measured = Views.of(records).f4
+    fit = _Fit.begin(records, grid, rows, noise=noise, array=array)
     windows = fit.windows()
-    made = fit.moved(views.f4, windows, fit.slots(windows))
-    support = np.repeat(windows.support, np.diff(found.starts))
-    found.where[found.cells] = -1
-    return FittedSurfaces(made.shift_m, made.surface_of, made.surfaces, made.stray, support)
-
-
-def _cells(
-    xyz: NDArray[np.float32], grid: Grid, rows: tuple[int, int], *, array: ScratchArray
-) -> _Cells:
-    n, side = len(xyz), grid.side_cells
-    starts, cells = array("starts", (n + 1,), np.int32), array("cells", (n,), np.int32)
-    where = array(f"where-{side}", (side**3,), np.int32, fresh=0xFF)
-    count = surface_cells.find_cells(xyz, grid.cell_m, side, grid.halo_cells, starts, cells, where)
-    starts, cells = starts[: count + 1], cells[:count]
-    begin, near = array("begin", (count + 1,), np.int32), array("near", (27 * count,), np.int32)
-    at = array("at", (27 * count,), np.uint8)
-    entries = surface_cells.list_neighbors(cells, where, side, begin, near, at)
-    rings = array("rings", (count,), np.uint8)
-    surface_cells.find_rings(cells, side, *rows, rings)
-    return _Cells(starts, cells, where, begin, near[:entries], at[:entries], rings)
+    supported = fit.supported(windows)
+    moved = fit.moved(measured, windows, supported)
+    stray = fit.strays(supported)
+    support = np.repeat(windows.support, np.diff(fit.returns.first))
+    fit.cells.row[fit.cells.number] = -1
+    return FittedSurfaces(moved.shift_m, moved.surface_of, moved.surfaces, stray, support)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class _Slots:
-    """Up to three planes for every cell."""
+class _Windows:
+    """The planes of the windows of 3 x 3 x 3 cells around each cell."""
 
-    rows: NDArray[np.int32]
-    """Of the planes of the windows, -1 = none, (C, SLOTS)."""
-    other: NDArray[np.int32]
-    """Row in the sums of cells of several planes, -1 = only the plane of its window, (C,)."""
-    sums: NDArray[np.float64]
-    """Moments of what supports them, (K, SLOTS, MOMENTS)."""
-    slot_of: NDArray[np.uint8]
-    """Which plane each point supports, SLOTS = none, (N,)."""
+    planes: NDArray[np.float64]
+    """For both sides of each cell, (C, 2, PLANE)."""
+    moments: NDArray[np.float64]
+    """Of the returns of each side of a cell that lie near its plane, (C, 2, MOMENTS)."""
+    calm: NDArray[np.bool_]
+    """Whether all cells of the window have similar normals, (C,)."""
+    normals: NDArray[np.float64]
+    """Of all points of the window, zeros = none, (C, 3)."""
+    support: NDArray[np.int32]
+    """Points of the window, (C,)."""
 
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Moved:
-    """Points on their surfaces."""
-
-    shift_m: NDArray[np.float32]
-    surface_of: NDArray[np.int32]
-    surfaces: NDArray[np.float32]
-    stray: NDArray[np.bool_]
+    @property
+    def in_rows(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Planes and moments, two rows for each cell."""
+        return self.planes.reshape(-1, PLANE), self.moments.reshape(-1, MOMENTS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Fit:
     """The steps from the returns of a tile to the planes of its cells."""
 
-    points: Points
-    """Positions, vectors to the sensor, weights, starts of the cells."""
-    found: _Cells
-    grid: Grid
+    returns: Returns
+    cells: Cells
+    neighbors: Neighbors
+    rings: NDArray[np.uint8]
+    """0 = outermost cells, whose windows are incomplete, (C,)."""
     noise: Noise
     array: ScratchArray
 
-    @property
-    def step(self) -> tuple[NDArray[np.int32], int, int, float]:
-        """Cells, and how they lie in the tile."""
-        return self.found.cells, self.grid.side_cells, self.grid.halo_cells, self.grid.cell_m
+    @classmethod
+    def begin(
+        cls,
+        records: Records,
+        grid: Grid,
+        rows: tuple[int, int],
+        *,
+        noise: Noise,
+        array: ScratchArray,
+    ) -> _Fit:
+        """The returns, the cells that hold them, and which cells are neighbors."""
+        n, side, views = len(records), grid.side_cells, Views.of(records)
+        xyz, to_sensor = (array(name, (n, 3), np.float32) for name in ("means", "to_sensor"))
+        weight, first = array("weight", (n,), np.float32), array("first", (n + 1,), np.int32)
+        surface_cells.unpack_returns(
+            views.f4, views.i2, views.u1, grid.voxel_m, Returns(xyz, to_sensor, weight, first)
+        )
+        number = array("cells", (n,), np.int32)
+        row = array(f"cell_rows-{side}", (side**3,), np.int32, fresh=0xFF)
+        cells = Cells(number, row, side, grid.halo_cells, grid.cell_m)
+        count = surface_cells.find_cells(views.f4, cells, first)
+        cells = cells._replace(number=number[:count])
+        near = Neighbors(
+            array("first_neighbors", (count + 1,), np.int32),
+            array("neighbors", (27 * count,), np.int32),
+            array("neighbor_offsets", (27 * count,), np.uint8),
+        )
+        entries = surface_cells.list_neighbors(cells, near)
+        near = Neighbors(near.first, near.row[:entries], near.offset[:entries])
+        rings = array("rings", (count,), np.uint8)
+        surface_cells.find_rings(cells, *rows, rings)
+        returns = Returns(xyz, to_sensor, weight, first[: count + 1])
+        return cls(returns, cells, near, rings, noise, array)
 
     def windows(self) -> _Windows:
         """Planes of the windows around all cells."""
-        array, found, count = self.array, self.found, len(self.found.cells)
-        _, to_sensor, weight, starts = self.points
-        planes = array("planes", (count, 2, PLANE), np.float64)
+        array, returns, near, count = self.array, self.returns, self.neighbors, len(self.rings)
+        axis, normals = array("axes", (2, count, 3), np.float64)
         moments = array("moments", (count, 2, MOMENTS), np.float64)
-        views = array("views", (count, 2, 4), np.float64)
-        calm, every, changed, again, inner = array("marks", (5, count), np.bool_)
-        np.greater(found.rings, 0, out=inner)
-        axes, normals = array("axes", (2, count, 3), np.float64)
+        sides = Sides(axis, moments, array("views", (count, 2, 4), np.float64))
+        planes = array("planes", (count, 2, PLANE), np.float64)
         support = array("window_support", (count,), np.int32)
+        calm, every, changed, again, inner = array("marks", (5, count), np.bool_)
+        made = _Windows(planes, moments, calm, normals, support)
+        np.greater(self.rings, 0, out=inner)
         every.fill(True)
         planes.fill(0.0)
-        axes.fill(0.0)
-        surface_windows.side_moments(*self.points, axes, every, moments, views)
-        surface_windows.window_normals(
-            starts, found.begin, found.near, moments, views, MIN_POINTS, axes, support
-        )
-        normals[:] = axes
-        surface_windows.seen_from_behind(to_sensor, starts, axes, changed)
-        surface_windows.side_moments(*self.points, axes, changed, moments, views)
-        made = _Windows(planes, moments, calm, normals, support)
-        sides = (axes, moments, views)
-        self._fit_windows(made, sides, LOOSE, todo=inner)
-        surface_windows.view_axes(to_sensor, weight, starts, planes, axes, changed)
-        surface_windows.around(changed, found.begin, found.near, again)
+        axis.fill(0.0)
+        # Which sides: one normal a window, then the two sides of it.
+        surface_windows.side_moments(returns, every, sides)
+        surface_windows.window_normals(returns, near, sides, MIN_POINTS, support)
+        normals[:] = axis
+        surface_windows.seen_from_behind(returns, axis, changed)
+        surface_windows.side_moments(returns, changed, sides)
+        self._fit_windows(made, sides, TUNING.loose, todo=inner)
+        # Windows without a plane are divided by where they were seen from.
+        surface_windows.view_axes(returns, planes, axis, changed)
+        surface_windows.around(changed, near, again)
         again &= inner
-        surface_windows.side_moments(*self.points, axes, changed, moments, views)
-        self._fit_windows(made, sides, LOOSE, todo=again)
-        surface_windows.near_moments(*self.points, axes, planes, ROUND_GATE, moments)
-        self._fit_windows(made, sides, STRICT, todo=inner)
+        surface_windows.side_moments(returns, changed, sides)
+        self._fit_windows(made, sides, TUNING.loose, todo=again)
+        # Once more without the returns far from these planes.
+        surface_windows.near_moments(returns, planes, TUNING.round_gate, sides)
+        self._fit_windows(made, sides, TUNING.strict, todo=inner)
         self._drop_mixed(planes)
         return made
 
     def _fit_windows(
-        self,
-        made: _Windows,
-        sides: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
-        shape: tuple[float, float, float, float],
-        *,
-        todo: NDArray[np.bool_],
+        self, made: _Windows, sides: Sides, shape: WindowShape, *, todo: NDArray[np.bool_]
     ) -> None:
-        (spread, bend, same, share), cell_m, noise_m = shape, self.grid.cell_m, self.noise.all_m
-        limits = (MIN_RETURNS, spread * noise_m, 0.3 * cell_m, bend * noise_m, same, BEND_M, share)
-        found = self.found
+        limits = TUNING.window(shape, self.cells.edge_m, self.noise.all_m)
         surface_windows.window_planes(
-            found.begin, found.near, found.at, *sides, 0.5,
-            np.array(limits), todo, made.planes, made.calm,
-        )  # fmt: skip
+            self.neighbors, sides, TUNING.min_cos, limits, todo, made.planes, made.calm
+        )
 
     def _drop_mixed(self, planes: NDArray[np.float64]) -> None:
-        count, found = len(planes), self.found
+        """Drop planes of two sheets, and those beside their cell."""
+        count = len(planes)
         sums = self.array("sums", (count, 2, 5), np.float64)
         kept = self.array("kept", (count, 2), np.bool_)
-        surface_shapes.shape_sums(*self.points, planes, 4.0 * self.noise.all_m, sums)
+        reach_m, least_m = TUNING.shape_reach * self.noise.all_m, self.noise.range_m
+        surface_shapes.shape_sums(self.returns, planes, reach_m, sums)
+        least_m *= TUNING.one_sheet
         surface_shapes.drop_mixed(
-            *self.step,
-            found.begin,
-            found.near,
-            sums,
-            ONE_SHEET * self.noise.range_m,
-            0.35,
-            planes,
-            kept,
+            self.cells, self.neighbors, sums, least_m, TUNING.max_skew, planes, kept
         )
-        planes[:, :, 4] *= kept
+        planes[:, :, SIGMA] *= kept
 
-    def slots(self, windows: _Windows) -> _Slots:
+    def supported(self, windows: _Windows) -> Supported:
         """The planes of every cell that its returns support."""
-        array, found, count = self.array, self.found, len(self.found.cells)
-        weight = self.points[2]
-        rows, other = array("slots", (count, SLOTS), np.int32), array("other", (count,), np.int32)
-        slot_of = array("slot_of", weight.shape, np.uint8)
-        others = surface_slots.only_plane(
-            *self.points, windows.planes, windows.calm, ROUND_GATE, MIN_LOOSE, rows, slot_of, other
+        array, count = self.array, len(self.rings)
+        made = Supported(
+            array("supported", (count, SLOTS), np.int32),
+            array("several", (count,), np.int32),
+            array("plane_of_point", self.returns.weight.shape, np.uint8),
+            array("sums", (0, SLOTS, MOMENTS), np.float64),
         )
-        sums = array("sums", (others, SLOTS, MOMENTS), np.float64)
-        flat = windows.planes.reshape(2 * count, PLANE)
+        several = surface_slots.only_plane(
+            self.returns, windows.planes, windows.calm, TUNING.round_gate, TUNING.min_loose, made
+        )
+        made = made._replace(sums=array("sums", (several, SLOTS, MOMENTS), np.float64))
+        planes, _ = windows.in_rows
         thickness = array("thickness", (2 * count,), np.float64)
-        surface_slots.thickness_of(flat, thickness)
+        surface_slots.thickness_of(planes, thickness)
         surface_slots.choose_planes(
-            *self.points, found.where, *self.step, flat, thickness,
-            ROUND_GATE, MIN_SUPPORT, other, rows, slot_of, sums,
-        )  # fmt: skip
-        return _Slots(rows, other, sums, slot_of)
+            self.returns, self.cells, planes, thickness, TUNING.round_gate, TUNING.min_support, made
+        )
+        return made
 
-    def moved(self, xyz: NDArray[np.float32], windows: _Windows, slots: _Slots) -> _Moved:
-        """The points on the planes of their cells, and which of them are stray returns."""
-        array, found, grid, n = self.array, self.found, self.grid, len(xyz)
-        _, to_sensor, weight, starts = self.points
-        count = len(found.cells)
-        shift_m = array("slab_shift_m", (n, 3), np.float32)
-        surface_of = array("slab_surface_of", (n,), np.int32)
-        surfaces = array("surfaces", (min(n, SLOTS * count) + count, SURFACE), np.float32)
-        made = surface_points.onto_planes(
-            xyz, to_sensor, starts, found.rings, found.cells, self.step[1:],
-            (found.begin, found.near, found.at), windows.normals,
-            windows.planes.reshape(2 * count, PLANE), slots.rows, slots.other,
-            windows.moments.reshape(2 * count, MOMENTS), slots.sums,
-            np.array([MIN_RETURNS, 0.3 * grid.cell_m, BEND_M]), GATE,
-            slots.slot_of, shift_m, surface_of, surfaces,
+    def moved(
+        self, measured: NDArray[np.float32], windows: _Windows, supported: Supported
+    ) -> Moved:
+        """The points on the planes of their cells."""
+        array, (n, count) = self.array, (len(measured), len(self.rings))
+        made = Moved(
+            array("slab_shift_m", (n, 3), np.float32),
+            array("slab_surface_of", (n,), np.int32),
+            array("surfaces", (min(n, SLOTS * count) + count, SURFACE), np.float32),
+        )
+        returns = self.returns._replace(xyz=measured)
+        limits = TUNING.window(TUNING.strict, self.cells.edge_m, self.noise.all_m)
+        surfaces = surface_points.onto_planes(
+            returns, self.cells, self.rings, self.neighbors, windows.normals, *windows.in_rows,
+            supported, limits, TUNING.gate, made,
         )  # fmt: skip
         beyond = array("beyond", (count, SLOTS, 4), np.bool_)
-        neighbors = found.begin, found.near, found.at
-        surface_ends.find_beyond(
-            xyz, weight, starts, found.cells, self.step[1:], neighbors, slots.other,
-            slots.slot_of, shift_m, surface_of, surfaces, beyond,
-        )  # fmt: skip
-        made = surface_ends.put_back(
-            xyz, starts, found.cells, self.step[1:], windows.normals, beyond,
-            slots.slot_of, shift_m, surface_of, surfaces, made,
-        )  # fmt: skip
-        stray, sums = array("slab_stray", (n,), np.bool_), array("sums", (count, 5), np.float64)
-        few = STRAY_DENSITY * (3.0 * grid.cell_m) ** 2
+        surface_ends.find_beyond(returns, self.cells, self.neighbors, supported, made, beyond)
+        surfaces = surface_ends.put_back(
+            returns, self.cells, windows.normals, beyond, supported.of_point, made, surfaces
+        )
+        return made._replace(surfaces=made.surfaces[:surfaces])
+
+    def strays(self, supported: Supported) -> NDArray[np.bool_]:
+        """Which points are stray returns, (N,)."""
+        stray = self.array("slab_stray", self.returns.weight.shape, np.bool_)
+        sums = self.array("sums", (len(self.rings), 5), np.float64)
+        limits = TUNING.strays(self.cells.edge_m)
         surface_points.find_strays(
-            to_sensor, weight, starts, found.begin, found.near, slots.slot_of,
-            np.array([STRAY_RATIO, few, FAR_RATIO, AFAR]), sums, stray,
-        )  # fmt: skip
-        return _Moved(shift_m, surface_of, surfaces[:made], stray)
+            self.returns, self.neighbors, supported.of_point, limits, sums, stray
+        )
+        return stray

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.kernels import surface_cells
-from recon4.kernels.surface_points import SURFACE
+from recon4.kernels.surface_records import SURFACE
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Views, joined
 from recon4.mapping.scratch import Scratch

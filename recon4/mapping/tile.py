@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from recon4.kernels.halves import round_to_half
 from recon4.kernels.surface_points import spread_surfaces
+from recon4.kernels.surface_records import Moved
 from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
 from recon4.mapping.deviation import PoseCovariances, point_deviations
 from recon4.mapping.grid import Grid
@@ -153,10 +154,8 @@ def _fitted_columns(
     n = len(rows)
     offset, normal = np.empty((2, n, 3), np.float32)
     facts, returns = np.empty((2, n), np.float32), np.empty(n, np.uint16)
-    spread_surfaces(
-        rows, surfaces.shift_m, surfaces.surface_of, surfaces.surfaces,
-        offset, normal, facts, returns,
-    )  # fmt: skip
+    moved = Moved(surfaces.shift_m, surfaces.surface_of, surfaces.surfaces)
+    spread_surfaces(rows, moved, offset, normal, facts, returns)
     columns = _columns(records, rows, normal, recipe=recipe)
     columns["xyz"] -= offset
     columns["raw_offset_m"] = as_half(offset)

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from recon4.kernels.moments import MOMENTS, add_point
-from recon4.kernels.surface_cells import PLANE
+from recon4.kernels.surface_records import PLANE, SIGMA, Neighbors, Sides
 from recon4.kernels.surface_windows import window_planes
 from recon4.mapping import surfaces as surfaces_module
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, in_voxel_order, to_sensor_m
 from recon4.mapping.sparse_surfaces import with_sparse_places
-from recon4.mapping.surface_fit import STRICT
+from recon4.mapping.surface_fit import TUNING
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.settings import MapSettings
 
@@ -192,17 +192,18 @@ def test_few_of_the_returns_of_a_window_are_no_plane(rng, returns_beside, is_pla
             add_point.py_func(moments[c, 0], 1.0, *p)
         views[c, 0] = [*(len(points) * normals[c]), len(points)]
     planes, calm = np.zeros((2, 2, PLANE)), np.zeros(2, np.bool_)
-    spread, bend, same, share = STRICT
-    limits = [12.0, spread * NOISE_M, 0.01, bend * NOISE_M, same, 0.002, share]
+    neighbors = Neighbors(
+        np.array([0, 2, 4], np.int32),
+        np.array([0, 1, 0, 1], np.int32),
+        np.array([13, 10, 16, 13], np.uint8),
+    )
+    limits = TUNING.window(TUNING.strict, 0.05, NOISE_M)._replace(min_along_m=0.01)
+    sides = Sides(normals, moments, views)
 
-    window_planes(
-        np.array([0, 2, 4], np.int32), np.array([0, 1, 0, 1], np.int32),
-        np.array([13, 10, 16, 13], np.uint8), normals, moments, views, 0.5,
-        np.array(limits), np.ones(2, np.bool_), planes, calm,
-    )  # fmt: skip
+    window_planes(neighbors, sides, 0.5, limits, np.ones(2, np.bool_), planes, calm)
 
-    assert (planes[0, 0, 4] > 0.0) == is_plane
-    assert planes[1, 0, 4] > 0.0
+    assert (planes[0, 0, SIGMA] > 0.0) == is_plane
+    assert planes[1, 0, SIGMA] > 0.0
 
 
 def test_a_few_returns_before_a_wall_are_strays_and_keep_their_place(rng):
