@@ -107,7 +107,7 @@ class BagRecording:
 
     def read(self) -> Iterator[Item]:
         """Stream the bag once; messages of one topic are in order of time."""
-        # Opening was reported already when the head was read.
+        # OpenRequest was reported already when the head was read.
         with Bag(self._paths, ImportReport()) as bag:
             bag.report = self._report
             yield from self._read(bag)

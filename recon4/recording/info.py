@@ -25,7 +25,7 @@ from recon4.recording.info_head import RecordingHead, judge_samples, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
     BAGS,
-    RECORDINGS,
+    PLANAR,
     RecordingKind,
     bag_paths,
     located_kind,
@@ -35,7 +35,9 @@ from recon4.recording.laser_mount import mounted_scans
 from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
 from recon4.recording.nearby_samples import samples_beside
-from recon4.recording.open import frames_model, open_recording
+from recon4.recording.open import KINDS, open_recording
+from recon4.recording.openers.frames import frames_model
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.settings import IngestSettings
@@ -57,12 +59,11 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     info = RecordingInfo(
         path=path.relative_to(given.parent).as_posix(), kind=str(kind), bytes=_size(path)
     )
-    planar = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
-    if kind in planar or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path, kind)):
+    if kind in PLANAR or (kind in (*BAGS, RecordingKind.PCAP) and is_laser2d(path, kind)):
         if kind is RecordingKind.PCAP:
             info = replace(info, kind=SCAN_CAPTURE)
         return _describe_laser2d(info, path, settings)
-    if kind not in RECORDINGS:
+    if kind not in KINDS:
         return _describe_samples(info, path, kind)
     report = ImportReport()
     if kind is RecordingKind.LINE_TABLES:
@@ -71,7 +72,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
         info = describe_capture(info, path)
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
-    else:
+    elif kind in BAGS:
         info = _describe_bag(info, path, settings, report=report)
     return _with_head(info, path, settings, report=report)
 
@@ -273,7 +274,7 @@ def _with_head(
     missing = list(info.missing)
     rig: Rig | None = None
     try:
-        recording = open_recording([path], None, settings=settings, report=report)
+        recording = open_recording(OpenRequest((path,), None, settings, report))
         rig = recording.rig
         whole = info.bytes <= WHOLE_BYTES
         head = read_head(recording, settings, whole=whole, report=report)

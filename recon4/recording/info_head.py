@@ -18,7 +18,7 @@ from recon4.recording.clock_compare import (
     is_same_clock,
     warn_of_free_clocks,
 )
-from recon4.recording.open import Recording
+from recon4.recording.openers.request import Recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.settings import IngestSettings

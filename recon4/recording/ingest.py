@@ -27,7 +27,8 @@ from recon4.recording.clock_names import described, known_offset_s, offset_name
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.kinds import RecordingKind, recognize
-from recon4.recording.open import Recording, open_recording
+from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
@@ -165,7 +166,7 @@ def ingest(
     paths = sources.recordings
     given = _Samples.of_files(sources, out, settings=settings, report=report)
     recording = open_recording(
-        paths, sources.rig, settings=settings, report=report, open_file=live.open_file
+        OpenRequest(paths, sources.rig, settings, report, open_file=live.open_file)
     )
     assembler = Assembler(
         recording.rig, settings=settings, report=report, wait_s=recording.wait_s, on_cut=live.watch
@@ -343,7 +344,7 @@ def _summary(
     report.warn_of_losses()
     gaps = [*recording.gaps, *assembler.gaps]
     return {
-        "kind": str(recording.kind),
+        "kind": recording.kind,
         "outcome": report.outcome,
         "rig": recording.rig.name,
         "sensors": [

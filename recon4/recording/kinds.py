@@ -42,11 +42,8 @@ class RecordingKind(StrEnum):
     LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
 
 
-RECORDINGS = (
-    *(RecordingKind.PCAP, RecordingKind.BAG1, RecordingKind.BAG2, RecordingKind.FRAMES),
-    RecordingKind.LINE_TABLES,
-)
-"""Kinds with points."""
+PLANAR = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
+"""Kinds with nothing but scans of a 2-D laser."""
 BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
 _KIND_OF_COLUMNS = {
     frozenset(LINE_COLUMNS): RecordingKind.LINE_TABLES,
@@ -60,7 +57,6 @@ _KIND_OF_SUFFIX = {
     ".bag": RecordingKind.BAG1,
 }
 """In folders, where not every file is opened."""
-TABLES = {RecordingKind.LINE_TABLES, RecordingKind.LASER_TABLE, RecordingKind.IMU_CSV}
 
 _DEPTH = 3
 """Levels of subfolders in which recordings are searched."""

@@ -14,7 +14,7 @@ from recon4.errors import UnknownFormat
 from recon4.model.rig import LASER2D_PORT, Rig
 from recon4.recording.bag_messages import imu_row, stamp_ns
 from recon4.recording.formats.bags import LASER_SCAN, Bag
-from recon4.recording.kinds import BAGS, RecordingKind, bag_paths, recognize
+from recon4.recording.kinds import BAGS, PLANAR, bag_paths, recognize
 from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.line_recording import LineRecording, profiler_rig
 from recon4.recording.report import ImportReport
@@ -45,7 +45,7 @@ def has_scans(recording: Path, rig: Rig | None) -> bool:
         kind = recognize(recording)
     except UnknownFormat:  # a folder with captures among other files
         return False
-    if kind in (RecordingKind.CARMEN, RecordingKind.LASER_TABLE):
+    if kind in PLANAR:
         return True
     return kind in BAGS and (is_laser2d(recording) or _line_rig(recording, rig) is not None)
 

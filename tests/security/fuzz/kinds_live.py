@@ -38,6 +38,7 @@ from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -98,7 +99,7 @@ def _open_growing(path: Path) -> IO[bytes]:
 def _read_all(path: Path, open_file: OpenFile) -> tuple[Reading, float]:
     """What a capture file gives, and the sum of its coordinates [m]."""
     settings, report = IngestSettings(), ImportReport()
-    found = open_recording([path], None, settings=settings, report=report, open_file=open_file)
+    found = open_recording(OpenRequest((path,), None, settings, report, open_file=open_file))
     assembler = Assembler(found.rig, settings=settings, report=report, wait_s=found.wait_s)
     items, total = 0, 0.0
     for item in found.read():

@@ -21,6 +21,7 @@ from recon4.recording.assembly.assembler import Assembler
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
 from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import Bag, room_packets, storage_file, write_room_pcap
@@ -51,7 +52,7 @@ def read_recording(path: Path) -> ReadResult:
     settings = IngestSettings()
     "\n".join(describe(path, settings=settings).lines())
     report = ImportReport()
-    recording = open_recording([path], None, settings=settings, report=report)
+    recording = open_recording(OpenRequest((path,), None, settings, report))
     assembler = Assembler(recording.rig, settings=settings, report=report, wait_s=recording.wait_s)
     items = 0
     for item in recording.read():

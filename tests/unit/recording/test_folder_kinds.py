@@ -16,6 +16,7 @@ from recon4.recording.kinds import (
 )
 from recon4.recording.nearby_samples import unread_samples
 from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
@@ -38,9 +39,9 @@ def test_a_mesh_beside_a_recording_is_passed_over_and_said(tmp_path, pcap):
     folder = walk_with_model(tmp_path, pcap)
     report = ImportReport()
 
-    recording = open_recording([folder], None, settings=IngestSettings(), report=report)
+    recording = open_recording(OpenRequest((folder,), None, IngestSettings(), report))
 
-    assert recording.kind is RecordingKind.PCAP
+    assert recording.kind == RecordingKind.PCAP
     assert "model.ply is a mesh, not a recording: passed over" in report.derived
 
 

@@ -13,6 +13,7 @@ from recon4.progress import Silent
 from recon4.recording.info import describe
 from recon4.recording.ingest import ingest
 from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
@@ -162,7 +163,7 @@ def write_transform(bag, parent, child, T):
 
 def open_with_report(path):
     report = ImportReport()
-    return open_recording([path], None, settings=IngestSettings(), report=report).rig, report
+    return open_recording(OpenRequest((path,), None, IngestSettings(), report)).rig, report
 
 
 def test_lines_out_of_order_are_counted(tmp_path):

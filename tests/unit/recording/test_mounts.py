@@ -10,6 +10,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, RigCalibration, Sensor
 from recon4.recording.info import describe
 from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud
@@ -21,7 +22,7 @@ OUSTER = (("os_sensor", "os_lidar", mount(z=0.036, yaw=180)), ("os_sensor", "os_
 
 def opened(path, rig=None):
     report = ImportReport()
-    return open_recording([path], rig, settings=IngestSettings(), report=report).rig, report
+    return open_recording(OpenRequest((path,), rig, IngestSettings(), report)).rig, report
 
 
 def said(report):

@@ -5,6 +5,7 @@ import pytest
 from recon4.errors import UnknownFormat
 from recon4.recording.info import describe
 from recon4.recording.open import open_recording
+from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, storage_file, write_room_bag, write_room_pcap
@@ -20,7 +21,7 @@ def test_captures_of_several_days_are_no_single_walk_but_candidates(tmp_path, gi
     paths = files if given_together else [tmp_path]
 
     with pytest.raises(UnknownFormat, match=r"2 recordings .* a\.pcap \(20.*; b\.pcap") as caught:
-        open_recording(paths, None, settings=IngestSettings(), report=ImportReport())
+        open_recording(OpenRequest(tuple(paths), None, IngestSettings(), ImportReport()))
 
     assert caught.value.candidates == tuple(files)
 

@@ -1,0 +1,44 @@
+"""Openers of ROS bags: line scans of a profiler, clouds and packets of LiDARs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from recon4.model.rig import Rig
+from recon4.recording.bag_recording import BagRecording
+from recon4.recording.formats.bags import Bag
+from recon4.recording.kinds import bag_paths
+from recon4.recording.line_recording import LineRecording, profiler_rig
+from recon4.recording.openers.request import OpenRequest, Recording
+from recon4.recording.report import ImportReport
+
+
+def open_line_bag(request: OpenRequest) -> Recording | None:
+    """Line scans of a profiler, if the rig has one or the topics are those of the shipped rig."""
+    files = _files(request)
+    rig = _profiler_rig(files, request)
+    if rig is None:
+        return None
+    bag = LineRecording(files, rig, report=request.report, settings=request.settings)
+    return Recording(bag.rig, bag.read, bag.seconds)
+
+
+def open_lidar_bag(request: OpenRequest) -> Recording:
+    """Clouds or packets of LiDARs, in the topics that the rig or their contents name."""
+    bag = BagRecording(
+        _files(request), request.rig, settings=request.settings, report=request.report
+    )
+    return Recording(bag.rig, bag.read, bag.seconds)
+
+
+def _files(request: OpenRequest) -> list[Path]:
+    return [file for path in request.paths for file in bag_paths(path)]
+
+
+def _profiler_rig(files: Sequence[Path], request: OpenRequest) -> Rig | None:
+    """The rig of a bag with line scans; None = it has none."""
+    if request.rig is not None:
+        return profiler_rig((), request.rig, request.report)
+    with Bag(files, ImportReport()) as bag:
+        return profiler_rig(bag.topics, None, request.report)

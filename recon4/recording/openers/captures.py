@@ -1,0 +1,76 @@
+"""Openers of capture files: datagrams of scans, packets of Velodyne LiDARs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from pathlib import Path
+
+from recon4.model.rig import Rig, load_rig
+from recon4.recording.kinds import pcap_files
+from recon4.recording.line_recording import WUERZBURG
+from recon4.recording.openers.request import Item, OpenRequest, Recording
+from recon4.recording.rig_choice import Stream, choose_rig
+from recon4.recording.scan_capture import ScanCapture, scan_streams
+from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
+from recon4.recording.velodyne.position_packets import PositionSamples
+from recon4.recording.velodyne.streams import PacketStream, require_one_capture
+
+
+def open_scan_capture(request: OpenRequest) -> Recording | None:
+    """Datagrams with scans of 2-D lasers or of a profiler."""
+    files = _files(request)
+    rig = _scan_rig(files, request)
+    if rig is None:
+        return None
+    scans = ScanCapture(files, rig, report=request.report, open_file=request.open_file)
+    return Recording(rig, scans.read)
+
+
+def open_velodyne(request: OpenRequest) -> Recording:
+    """Packets of Velodyne LiDARs; they are searched for in every capture that nobody else reads."""
+    files, settings, report = _files(request), request.settings, request.report
+    rig = request.rig
+    if rig is None:
+        found = VelodynePcap(files, None, settings=settings, report=report).rig.sensors
+        streams = [Stream(f"{s.address}:{s.port}", s.model, s.address, s.port) for s in found]
+        rig = choose_rig(streams, report)
+    pcap = VelodynePcap(files, rig, settings=settings, report=report, open_file=request.open_file)
+    return Recording(pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=WAIT_S)
+
+
+def _files(request: OpenRequest) -> list[Path]:
+    files = [file for path in request.paths for file in pcap_files(path)]
+    require_one_capture(files)
+    return files
+
+
+def _scan_rig(files: Sequence[Path], request: OpenRequest) -> Rig | None:
+    """The rig of captured datagrams of scans; None = they are packets of LiDARs."""
+    if (rig := request.rig) is not None:
+        kinds = {sensor.kind for sensor in rig.sensors if sensor.enabled}
+        return rig if kinds <= {"laser2d", "profiler"} else None
+    if not scan_streams(files).heads:
+        return None
+    request.report.derive(
+        f"no rig given: line scans, the mounting of the preset {WUERZBURG} is used"
+    )
+    return load_rig(WUERZBURG)
+
+
+def _seconds(streams: Sequence[PacketStream]) -> float:
+    """Duration of capture files [s]; an estimate for large files."""
+    if not streams:
+        return 0.0
+    return (max(s.t_end_ns for s in streams) - min(s.t_first_ns for s in streams)) / 1e9
+
+
+def _read_pcap(pcap: VelodynePcap) -> Iterator[Item]:
+    for item in pcap.read():
+        if not isinstance(item, PositionSamples):
+            yield item
+            continue
+        if item.imu is not None:
+            yield item.imu
+        if item.gnss is not None:
+            yield item.gnss

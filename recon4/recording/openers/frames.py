@@ -1,0 +1,63 @@
+"""Opener of folders with a file per revolution of one LiDAR."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+
+from recon4.errors import ConfigError, RecordingError, UnknownFormat
+from recon4.model.rig import Rig
+from recon4.recording.cloud_points import model_of_points
+from recon4.recording.folders import folder_gaps, list_frames, read_frames
+from recon4.recording.formats.cloud_files import read_cloud
+from recon4.recording.openers.request import OpenRequest, Recording
+from recon4.recording.rig_choice import Stream, choose_rig
+
+_NAMED_GAPS = 20
+"""More gaps are not named one by one."""
+
+
+def open_frames(request: OpenRequest) -> Recording:
+    """A folder of cloud files."""
+    paths, settings, report = request.paths, request.settings, request.report
+    if len(paths) > 1:
+        raise UnknownFormat("give the folder of the frames, not several files or folders")
+    frames = list_frames(paths[0])
+    rig = request.rig
+    if rig is None:
+        rig = choose_rig([Stream(paths[0].name, frames_model(frames.files))], report)
+    _require_one_lidar(rig, paths[0])
+    sensor = rig.sensors[0]
+    gaps = folder_gaps(frames, sensor.name, settings.gap_s)
+    for gap in gaps[:_NAMED_GAPS]:
+        report.warn(f"{gap.sensor}: {gap.seconds:.3f} s from one frame to the next")
+    read = partial(read_frames, frames, sensor, settings=settings, report=report)
+    return Recording(rig, read, len(frames.files) * frames.period_ns / 1e9, tuple(gaps))
+
+
+def _require_one_lidar(rig: Rig, path: Path) -> None:
+    """Refuse rigs of which a folder of frames has no data.
+
+    Raises:
+        UnknownFormat: If the rig has a profiler.
+        ConfigError: If it has several sensors.
+    """
+    if rig.row_of("profiler") is not None:
+        raise UnknownFormat(
+            f"{path.name}: line scans are read from bags, tables or captures, got frames"
+        )
+    if len(rig.sensors) > 1:
+        raise ConfigError(
+            f"a folder of frames is one LiDAR, the rig {rig.name!r} has {len(rig.sensors)}"
+        )
+
+
+def frames_model(files: Sequence[Path]) -> str:
+    """Detect the sensor from the first readable file."""
+    for file in files[:3]:
+        try:
+            return model_of_points(read_cloud(file))
+        except RecordingError:
+            continue
+    return "generic"
