@@ -130,8 +130,8 @@ def is_one_sheet(sums: NDArray[np.float64], least_m: float, limit: float) -> boo
     Args:
         sums: Powers 0 to 4, (5,).
         least_m: A standard deviation below this is always one surface [m].
-        limit: Largest absolute skewness and smallest excess kurtosis of one surface, beyond twice
-            their standard deviations.
+        limit: Largest absolute skewness and smallest excess kurtosis of one surface, beyond one
+            standard deviation of theirs.
     """
     n = sums[0]
     if n < 8.0:
