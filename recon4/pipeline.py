@@ -13,6 +13,7 @@ from typing import Any
 
 from recon4.errors import ConfigError, RecordingError, StoreError
 from recon4.model.calibration_figures import CalibrationFigures
+from recon4.model.events import Warned
 from recon4.model.rig import Rig, load_rig
 from recon4.progress import Progress, Silent
 from recon4.recording.kinds import located_sources
@@ -30,7 +31,7 @@ from recon4.store.project import (
     is_project,
     read_artifacts,
 )
-from recon4.store.recipes import settings_to_repeat
+from recon4.store.recipes import retired_settings, settings_to_repeat
 from recon4.store.stage import Stage, StageRunner
 from recon4.workflows.choice import (
     check_planar,
@@ -226,6 +227,8 @@ def _continued(
     there = [stage for stage in kept if stage.name in made]
     required = {stage.name for stage in workflow.kept} - {CALIBRATION.name}
     settings = settings_to_repeat(made, there)
+    for text in retired_settings(made.values()):
+        progress.event(Warned(text=text))
     with Project.open(out) as project:
         run = Run(StageRunner(project, settings, progress), read_decided(out))
         for stage in kept:

@@ -33,7 +33,7 @@ def process(
     Args:
         recording: A file or folder; `Sources.of` for several, a rig, or samples from CSV files.
         out: Project folder; made when missing. The result files end up in it.
-        preset: What the settings start from: ``indoor``, ``staircase``, ``outdoor``, ``hector``,
+        preset: What the settings start from: ``indoor``, ``outdoor``, ``hector``,
             ``thesis`` or ``wuerzburg``.
         settings: Name -> value, as ``{"map.voxel_m": 0.02}``; all are in ``docs/settings.md``.
         on_progress: Called often with what is done, the units done and the units in all (0 = not

@@ -64,9 +64,7 @@ _RESUMABLE = {"process", "demo"}
 
 PresetOption = Annotated[
     str,
-    typer.Option(
-        "--preset", help="Start from: indoor, staircase, outdoor, hector, thesis, wuerzburg."
-    ),
+    typer.Option("--preset", help="Start from: indoor, outdoor, hector, thesis, wuerzburg."),
 ]
 SetOption = Annotated[
     list[str] | None,

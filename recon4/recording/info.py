@@ -40,7 +40,9 @@ from recon4.recording.openers.frames import frames_model
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
+from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
+from recon4.settings.tuning import tuned
 
 _PROBED_MESSAGES = 50
 _LASER_GAP_S = 1.0
@@ -230,7 +232,7 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
         t_first_ns=int(frames.t_ns[0]),
         t_last_ns=int(frames.t_ns[-1]) + frames.period_ns,
         sensors=(sensor,),
-        gaps=tuple(folder_gaps(frames, path.name, settings.gap_s)),
+        gaps=tuple(folder_gaps(frames, path.name, tuned(IngestTuning, settings).gap_s)),
         missing=tuple(f"field: {text}" for text in absent),
         warnings=time_warnings(frames),
     )

@@ -21,7 +21,9 @@ from recon4.recording.clock_compare import (
 from recon4.recording.openers.request import Recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
+from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
+from recon4.settings.tuning import tuned
 
 _HEAD_ITEMS = 40
 _HEAD_NS = 1_000_000_000
@@ -76,7 +78,7 @@ def read_head(
             gather(head.gnss, item)
         head.points += _usable_points(item, settings, report)
         if isinstance(item, Shots) and len(item):
-            head.note_jump(item, recording.rig, settings.gap_s)
+            head.note_jump(item, recording.rig, tuned(IngestTuning, settings).gap_s)
         if isinstance(item, Shots) and len(item) and not beyond:
             shots.setdefault(item.sensor, []).append(item)
             start_ns = int(item.t_ns[0]) if start_ns is None else start_ns

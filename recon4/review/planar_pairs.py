@@ -8,6 +8,8 @@ from recon4.geometry.se2 import from_se3
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge
 from recon4.review.source import Source
+from recon4.settings.tuning import tuned
+from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
 
 
 def keyframe_points(source: Source, node: int, reach: int) -> Array:
@@ -27,5 +29,9 @@ def align_keyframes(source: Source, nodes: tuple[int, int], predicted: SE3) -> E
     from recon4.slam2d.submaps import SubmapRegistrar
 
     settings = source.settings
-    registrar = SubmapRegistrar(source.keyframes, settings=settings.slam2d, loops=settings.loops2d)
+    registrar = SubmapRegistrar(
+        source.keyframes,
+        settings=tuned(Slam2dTuning, settings.slam2d),
+        loops=tuned(Loop2dTuning, settings.loops2d),
+    )
     return registrar.register_at(nodes, from_se3(predicted))

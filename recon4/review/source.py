@@ -12,6 +12,8 @@ from recon4.model.pose_graph import Judgment, PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, load_history
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
+from recon4.slam2d.tuning import Slam2dTuning
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.project import read_artifacts
@@ -88,7 +90,7 @@ class Source:
         from recon4.slam2d.stage import read_keyframes
 
         scans, odometry = self._folder("scans_2d"), self._folder("odometry_2d")
-        return read_keyframes(scans, odometry, settings=self.settings.slam2d)
+        return read_keyframes(scans, odometry, settings=tuned(Slam2dTuning, self.settings.slam2d))
 
     @cached_property
     def frames(self) -> FrameStore:

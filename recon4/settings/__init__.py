@@ -21,10 +21,9 @@ from recon4.settings.registration import (
     RegistrationSettings,
     SegmentSettings,
 )
-from recon4.settings.renamed import current_name
+from recon4.settings.renamed import changed_retired, current_name
 from recon4.settings.slam2d import (
     Grid2dSettings,
-    HectorSettings,
     Loop2dSettings,
     Slam2dSettings,
 )
@@ -37,7 +36,6 @@ __all__ = [
     "GnssSettings",
     "GraphSettings",
     "Grid2dSettings",
-    "HectorSettings",
     "IngestSettings",
     "IntensitySettings",
     "LevelSettings",
@@ -57,6 +55,7 @@ __all__ = [
     "Slam2dSettings",
     "VerificationSettings",
     "canonical",
+    "changed_retired",
     "current_name",
     "override",
     "preset",

@@ -9,7 +9,7 @@ from typing import Any, get_args, get_type_hints
 
 from recon4.errors import ConfigError, WrongSettings
 from recon4.settings.presets import Settings
-from recon4.settings.renamed import RENAMED
+from recon4.settings.renamed import RENAMED, Retired, retired
 
 
 def override(settings: Settings, assignments: list[str]) -> Settings:
@@ -23,6 +23,9 @@ def override(settings: Settings, assignments: list[str]) -> Settings:
     for text in assignments:
         path, _, value = (part.strip() for part in text.partition("="))
         try:
+            if fixed := _retired(path):
+                _check_fixed(fixed, path, value)
+                continue
             group, name, kind = _find(settings, text)
             values.setdefault(group, {})[name] = _parse(value, kind, path)
         except ConfigError as error:
@@ -34,6 +37,22 @@ def override(settings: Settings, assignments: list[str]) -> Settings:
     if problems:
         raise WrongSettings(problems)
     return replace(settings, **changed)
+
+
+def _retired(path: str) -> Retired | None:
+    group, _, name = path.partition(".")
+    return retired().get((group, RENAMED.get((group, name), name)))
+
+
+def _check_fixed(fixed: Retired, path: str, text: str) -> None:
+    """Accept the assignment of a retired setting that changes nothing.
+
+    Raises:
+        ConfigError: If it changes something.
+    """
+    said = fixed.changed(path, _parse(text, type(fixed.value), path))
+    if said:
+        raise ConfigError(said)
 
 
 def _find(settings: Settings, text: str) -> tuple[str, str, Any]:

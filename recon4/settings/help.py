@@ -9,6 +9,7 @@ from itertools import pairwise
 from typing import Any, get_args, get_type_hints
 
 from recon4.settings import PRESETS, Settings, values_by_group
+from recon4.settings.require import ValueRange, range_of
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,9 +20,16 @@ class SettingHelp:
     name: str
     kind: str
     """Allowed values: ``int``, ``float``, ``text``, or the choices."""
+    limits: ValueRange | None
+    """Of numbers."""
     default: Any
     text: str
     """Meaning and unit; empty if the name is sufficient."""
+
+    @property
+    def values(self) -> str:
+        """What it may be: range and unit, or the choices."""
+        return f"{self.limits} {self.limits.unit}".rstrip() if self.limits else self.kind
 
     @property
     def path(self) -> str:
@@ -61,6 +69,9 @@ def markdown() -> str:
         "",
         "Written by `recon4 settings --markdown` from `recon4/settings/`; do not edit.",
         "Change one with `--set group.name=value`, many with `--preset`.",
+        "What only an expert would change is *tuning*: a record beside its algorithm.",
+        "A setting of an earlier version that is tuning now is accepted at its value; at another",
+        "one it is refused, or announced if a finished project was made with it.",
         "",
         "## Presets",
         "",
@@ -76,15 +87,23 @@ def markdown() -> str:
         parts += ["", f"## {group.name}", "", group.text, "", "| setting | value | default | |"]
         parts.append("|---|---|---|---|")
         for s in group.settings:
-            parts.append(f"| `{s.path}` | {s.kind} | `{_shown(s.default)}` | {_cell(s.text)} |")
+            parts.append(f"| `{s.path}` | {s.values} | `{_shown(s.default)}` | {_cell(s.text)} |")
     return "\n".join(parts) + "\n"
 
 
 def _group(name: str) -> GroupHelp:
     kind = get_type_hints(Settings)[name]
     hints, texts = get_type_hints(kind), _texts_under_fields(kind)
+    ranges = {n: range_of(h) for n, h in get_type_hints(kind, include_extras=True).items()}
     settings = tuple(
-        SettingHelp(name, f.name, _kind(hints[f.name]), f.default, texts.get(f.name, ""))
+        SettingHelp(
+            group=name,
+            name=f.name,
+            kind=_kind(hints[f.name]),
+            limits=ranges[f.name],
+            default=f.default,
+            text=texts.get(f.name, ""),
+        )
         for f in fields(kind)
     )
     return GroupHelp(name, inspect.getdoc(kind) or "", settings)

@@ -3,29 +3,25 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
-from recon4.settings.require import require
+from recon4.settings.require import Checked, ValueRange, require
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class IngestSettings:
+class IngestSettings(Checked):
     """Reading a recording into multiframes."""
 
-    rate_hz: float = 0.0
+    rate_hz: Annotated[float, ValueRange(0, 100, "Hz")] = 0.0
     """Multiframes per second. 0 = one per measured revolution of the slowest LiDAR."""
-    reorder_window_s: float = 0.2
-    """Packets out of order by at most this are sorted [s]."""
-    min_range_m: float = 0.7
+    min_range_m: Annotated[float, ValueRange(0, 1000, "m")] = 0.7
     """Nearer returns are of the carrier and are dropped [m]."""
-    max_range_m: float = 120.0
+    max_range_m: Annotated[float, ValueRange(0, 1000, "m")] = 120.0
     """Farther returns are dropped [m]."""
-    gap_s: float = 0.2
-    """A jump of the clock larger than this is reported as a gap [s]."""
     deskewed: bool = False
     """The clouds are undistorted already, or the sensor stood still: all points are taken as
     measured at the cloud's stamp. For terrestrial laser scans and clouds of other programs."""
-    points_unit_m: float = 1.0
+    points_unit_m: Annotated[float, ValueRange(1e-6, 1e3, "m")] = 1.0
     """Unit of the points of clouds [m]: 0.001 if they are in millimeters."""
 
     lidar_topic: str = ""
@@ -41,15 +37,10 @@ class IngestSettings:
     laser_topic: str = ""
     """Topic of the 2-D laser in a bag of one alone. Empty = chosen by content."""
 
-    def __post_init__(self) -> None:
-        require(0.0 <= self.rate_hz <= 100.0, "rate_hz must be 0 to 100", self.rate_hz)
+    def check(self) -> None:
+        """Limits of the range in their order."""
         require(
-            1e-6 <= self.points_unit_m <= 1e3,
-            "points_unit_m must be 1e-6 to 1000",
-            self.points_unit_m,
-        )
-        require(
-            0.0 <= self.min_range_m < self.max_range_m,
+            self.min_range_m < self.max_range_m,
             "min_range_m must be below max_range_m",
             self.min_range_m,
         )

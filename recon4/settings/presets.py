@@ -20,9 +20,9 @@ from recon4.settings.registration import (
     RegistrationSettings,
     SegmentSettings,
 )
+from recon4.settings.renamed import EARLIER_PRESETS
 from recon4.settings.slam2d import (
     Grid2dSettings,
-    HectorSettings,
     Loop2dSettings,
     Slam2dSettings,
 )
@@ -51,14 +51,12 @@ class Settings:
     intensity: IntensitySettings = field(default_factory=IntensitySettings)
     map: MapSettings = field(default_factory=MapSettings)
     slam2d: Slam2dSettings = field(default_factory=Slam2dSettings)
-    hector: HectorSettings = field(default_factory=HectorSettings)
     loops2d: Loop2dSettings = field(default_factory=Loop2dSettings)
     grid2d: Grid2dSettings = field(default_factory=Grid2dSettings)
 
 
 PRESET_TEXTS = {
-    "indoor": "Rooms, corridors, halls",
-    "staircase": "Several floors; the same settings as indoor",
+    "indoor": "Rooms, corridors, staircases, halls",
     "outdoor": "Streets, squares, fields: voxels of 3 cm, ranges up to 100 m",
     "hector": "A 2-D laser, matched as hector_slam does; no loop closures",
     "wuerzburg": "A backpack with a profiler, by the methods of its publication",
@@ -68,7 +66,6 @@ PRESET_TEXTS = {
 
 PRESETS: dict[str, Settings] = {
     "indoor": Settings(),
-    "staircase": Settings(),
     "outdoor": Settings(
         map=MapSettings(voxel_m=0.03, max_range_m=100.0, tile_m=20.0, normal_cell_m=0.15)
     ),
@@ -121,6 +118,7 @@ def preset(name: str) -> Settings:
     Raises:
         ConfigError: If there is no such preset.
     """
+    name = EARLIER_PRESETS.get(name, name)
     if name not in PRESETS:
         raise ConfigError(f"no preset named {name!r}; there are: {', '.join(sorted(PRESETS))}")
     return PRESETS[name]

@@ -7,8 +7,8 @@ import numpy as np
 from recon4.geometry.se2 import wrap
 from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import turned_round
-from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.odometry import Odometry2d
+from recon4.slam2d.tuning import Slam2dTuning
 
 _TURN_RAD = 0.6
 """Rotation by the odometry that is enough to decide [rad] …"""
@@ -54,7 +54,7 @@ def _turns(scans: LaserScans) -> list[slice]:
 def _vote(scans: LaserScans) -> int:
     """1 = the scans turn as the odometry does, -1 = against it, 0 = neither."""
     assert scans.odometry is not None
-    odometry = Odometry2d(scans, settings=Slam2dSettings(use_odometry=False))
+    odometry = Odometry2d(scans, settings=Slam2dTuning(use_odometry=False))
     for k in range(len(scans)):
         odometry.push(k)
     by_scans = wrap(np.diff(odometry.steps.pose[:, 2]))

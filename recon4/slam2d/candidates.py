@@ -11,9 +11,9 @@ from scipy.sparse.csgraph import dijkstra
 
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
-from recon4.settings.slam2d import Loop2dSettings
 from recon4.slam2d.edges import plane_information
 from recon4.slam2d.keyframes import Keyframes, Rows
+from recon4.slam2d.tuning import Loop2dTuning
 
 _CHUNK = 256
 _SIGMAS = 3.0
@@ -36,7 +36,7 @@ class Candidate2d:
 
 
 def candidates(
-    graph: PoseGraph, keyframes: Keyframes, *, settings: Loop2dSettings, most_m: float
+    graph: PoseGraph, keyframes: Keyframes, *, settings: Loop2dTuning, most_m: float
 ) -> Iterator[Candidate2d]:
     """Pairs whose nodes are close, as certain as ``most_m`` or better.
 
@@ -69,7 +69,7 @@ def candidates(
                 yield Candidate2d(int(targets[k]), source, float(drift_m[k]), drift_rad)
 
 
-def _links(graph: PoseGraph, settings: Loop2dSettings) -> coo_array:
+def _links(graph: PoseGraph, settings: Loop2dTuning) -> coo_array:
     """Edges with their length in meters of path, or more where the motion is uncertain."""
     of = graph.relations
     used = np.flatnonzero(of.in_graph)

@@ -12,9 +12,9 @@ import numpy as np
 from recon4.geometry.se2 import between, transform, wrap
 from recon4.geometry.se3 import Array
 from recon4.kernels.occupancy2d import gradient_equations
-from recon4.settings.slam2d import HectorSettings
 from recon4.slam2d.line_map import Match2d
 from recon4.slam2d.occupancy import OccupancyGrid
+from recon4.slam2d.tuning import HectorTuning
 
 _LARGEST_TURN_RAD = 0.2
 """A step of the yaw is clamped to this [rad]."""
@@ -25,7 +25,7 @@ _MATCHED = 0.5
 class HectorMap:
     """Occupancy grids of several resolutions, and the registration to them."""
 
-    def __init__(self, settings: HectorSettings) -> None:
+    def __init__(self, settings: HectorTuning) -> None:
         """Empty grids."""
         self._settings = settings
         self._grids = [

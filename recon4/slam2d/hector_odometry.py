@@ -9,11 +9,11 @@ from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
-from recon4.settings.slam2d import HectorSettings, Slam2dSettings
 from recon4.slam2d.hector import HectorMap
 from recon4.slam2d.observability import observed
 from recon4.slam2d.scan_points import leveling, scan_points
 from recon4.slam2d.steps import Steps2d, empty_steps
+from recon4.slam2d.tuning import HectorTuning, Slam2dTuning
 
 _FEWEST_POINTS = 15
 
@@ -22,8 +22,8 @@ def run_hector(
     scans: LaserScans,
     *,
     attitude: Trajectory | None,
-    settings: Slam2dSettings,
-    hector: HectorSettings,
+    settings: Slam2dTuning,
+    hector: HectorTuning,
     progress: Progress,
 ) -> Steps2d:
     """Register all scans to one occupancy grid.
@@ -74,6 +74,6 @@ def _in_scan_axes(H: Array, pose: Array) -> Array:
     return np.asarray(turn.T @ H @ turn)
 
 
-def _is_keyframe(moved: Array, settings: Slam2dSettings) -> bool:
+def _is_keyframe(moved: Array, settings: Slam2dTuning) -> bool:
     far = float(np.hypot(moved[0], moved[1])) > settings.keyframe_m
     return far or abs(float(wrap(moved[2]))) > settings.keyframe_rad

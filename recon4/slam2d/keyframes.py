@@ -11,11 +11,11 @@ from recon4.geometry.se2 import between, transform
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Times, Trajectory
-from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.line_map import stack_points
 from recon4.slam2d.prediction import MotionPredictor
 from recon4.slam2d.scan_points import ScanPoints, leveling, scan_points
 from recon4.slam2d.steps import Steps2d
+from recon4.slam2d.tuning import Slam2dTuning
 
 Rows = NDArray[np.intp]
 
@@ -68,7 +68,7 @@ class Keyframes:
 
 
 def make_keyframes(
-    scans: LaserScans, steps: Steps2d, *, attitude: Trajectory | None, settings: Slam2dSettings
+    scans: LaserScans, steps: Steps2d, *, attitude: Trajectory | None, settings: Slam2dTuning
 ) -> Keyframes:
     """Collect the keyframes of a finished odometry."""
     rows = np.flatnonzero(steps.keyframe)

@@ -10,11 +10,11 @@ from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
 from recon4.pose_graph.solve import optimize
 from recon4.progress import Progress
-from recon4.settings.slam2d import Loop2dSettings, Slam2dSettings
 from recon4.slam2d.candidates import Candidate2d, candidates
 from recon4.slam2d.edges import odometry_graph
 from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.submaps import Pair, SubmapRegistrar, predicted_pose
+from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
 
 _RETRY_MOVE_M = 0.5
 """A rejected pair is tried again after its predicted pose has moved by more than this [m]."""
@@ -23,8 +23,8 @@ _RETRY_MOVE_M = 0.5
 def close_loops(
     keyframes: Keyframes,
     *,
-    settings: Slam2dSettings,
-    loops: Loop2dSettings,
+    settings: Slam2dTuning,
+    loops: Loop2dTuning,
     progress: Progress,
 ) -> PoseGraph:
     """Build the graph of all keyframes with loop closures, and solve it after each round.

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
-from recon4.settings.slam2d import Grid2dSettings
 from recon4.slam2d.occupancy import OccupancyGrid
+from recon4.slam2d.tuning import Grid2dTuning
 from recon4.untrusted.bounded import read_text_limited
 
 _FREE, _UNKNOWN, _OCCUPIED = 254, 205, 0
@@ -48,7 +48,7 @@ class TrinaryMap:
         return self.gray == _FREE
 
 
-def trinary_image(grid: OccupancyGrid, settings: Grid2dSettings) -> NDArray[np.uint8]:
+def trinary_image(grid: OccupancyGrid, settings: Grid2dTuning) -> NDArray[np.uint8]:
     """Occupied black, free white, unknown gray; the first row has the largest y, (Y, X)."""
     width, height = grid.log_odds.shape
     image = np.full((height, width), _UNKNOWN, np.uint8)
@@ -87,7 +87,7 @@ def overview_of(gray: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
     return out, joined
 
 
-def write_map(folder: Path, grid: OccupancyGrid, settings: Grid2dSettings) -> TrinaryMap:
+def write_map(folder: Path, grid: OccupancyGrid, settings: Grid2dTuning) -> TrinaryMap:
     """Write ``map.png`` and ``map.yaml``, and ``overview.png`` and ``overview.yaml`` for pages.
 
     Args:

@@ -13,13 +13,13 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import WEAK_SD_M
 from recon4.progress import Progress, track
-from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.correlative import LikelihoodField
 from recon4.slam2d.line_map import LineMap, Match2d, Prior2d, stack_points
 from recon4.slam2d.observability import Observed, observed
 from recon4.slam2d.prediction import MotionPredictor, Predicted, VarianceGrowth
 from recon4.slam2d.scan_points import ScanPoints, leveling, scan_points
 from recon4.slam2d.steps import Steps2d, empty_steps
+from recon4.slam2d.tuning import Slam2dTuning
 
 _FEWEST_POINTS = 15
 """With fewer returns a scan cannot be registered."""
@@ -46,7 +46,7 @@ class Odometry2d:
         scans: LaserScans,
         *,
         attitude: Trajectory | None = None,
-        settings: Slam2dSettings | None = None,
+        settings: Slam2dTuning | None = None,
     ) -> None:
         """Prepare; no scan is registered yet.
 
@@ -55,7 +55,7 @@ class Odometry2d:
             attitude: Attitude of the laser at all scans, as of an IMU; None = the laser is level.
             settings: None = the defaults.
         """
-        self._settings = settings or Slam2dSettings()
+        self._settings = settings or Slam2dTuning()
         self._take(scans, attitude)
         extent_m = 2.0 * self._settings.max_range_m + _WINDOW_PATH_M
         self._map = LineMap(cell_m=self._settings.cell_m, extent_m=extent_m)
@@ -225,7 +225,7 @@ def run_odometry_2d(
     scans: LaserScans,
     *,
     attitude: Trajectory | None,
-    settings: Slam2dSettings,
+    settings: Slam2dTuning,
     progress: Progress,
 ) -> Steps2d:
     """Register all scans.

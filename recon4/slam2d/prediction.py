@@ -10,7 +10,7 @@ from recon4.geometry.se2 import between, wrap
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
-from recon4.settings.slam2d import Slam2dSettings
+from recon4.slam2d.tuning import Slam2dTuning
 
 _VELOCITY_S = 0.25
 """The velocity is measured over at least this time, because times of scans jitter [s]."""
@@ -49,7 +49,7 @@ class MotionPredictor:
     """Predicts with the odometry of the recording, else with the velocity before; yaw by an IMU."""
 
     def __init__(
-        self, scans: LaserScans, attitude: Trajectory | None, *, settings: Slam2dSettings
+        self, scans: LaserScans, attitude: Trajectory | None, *, settings: Slam2dTuning
     ) -> None:
         """Choose the sources.
 

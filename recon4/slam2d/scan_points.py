@@ -9,7 +9,7 @@ import numpy as np
 from recon4.geometry.se2 import transform
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.laser_scans import LaserScans
-from recon4.settings.slam2d import Slam2dSettings
+from recon4.slam2d.tuning import Slam2dTuning
 
 _SPACING_M = 0.05
 """Neighboring returns closer than this have less weight each [m]."""
@@ -29,7 +29,7 @@ def scan_points(
     scans: LaserScans,
     k: int,
     *,
-    settings: Slam2dSettings,
+    settings: Slam2dTuning,
     R_level_laser: Array | None = None,
     motion: Array | None = None,
 ) -> ScanPoints:

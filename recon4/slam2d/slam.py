@@ -14,6 +14,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent, track
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.slam2d.correction import corrected_poses
 from recon4.slam2d.covariance import node_covariances
 from recon4.slam2d.hector_odometry import run_hector
@@ -23,6 +24,7 @@ from recon4.slam2d.occupancy import OccupancyGrid, fitting_cell_m
 from recon4.slam2d.odometry import run_odometry_2d
 from recon4.slam2d.scan_points import leveling, scan_points
 from recon4.slam2d.steps import Steps2d
+from recon4.slam2d.tuning import Grid2dTuning, HectorTuning, Loop2dTuning, Slam2dTuning
 
 _GRID_STEP_M = 0.05
 """A scan is entered into the grid after this motion [m] …"""
@@ -60,7 +62,7 @@ def slam2d(
         scans: At least one; their odometry is used if there is any.
         attitude: Attitude of the laser (``R_world_laser``, as of an IMU) around the times of all
             scans; positions are ignored. Roll and pitch level the scans, the yaw predicts turns.
-        settings: Groups ``slam2d``, ``hector``, ``loops2d``, ``verification`` and ``grid2d`` are
+        settings: Groups ``slam2d``, ``loops2d``, ``verification`` and ``grid2d`` are
             read; None = the defaults.
         progress: Counts scans and pairs.
 
@@ -71,9 +73,14 @@ def slam2d(
     """
     settings, watcher = settings or Settings(), progress or Silent()
     steps = run_steps(scans, attitude=attitude, settings=settings, progress=watcher)
-    keyframes = make_keyframes(scans, steps, attitude=attitude, settings=settings.slam2d)
+    keyframes = make_keyframes(
+        scans, steps, attitude=attitude, settings=tuned(Slam2dTuning, settings.slam2d)
+    )
     searched = close_loops(
-        keyframes, settings=settings.slam2d, loops=settings.loops2d, progress=watcher
+        keyframes,
+        settings=tuned(Slam2dTuning, settings.slam2d),
+        loops=tuned(Loop2dTuning, settings.loops2d),
+        progress=watcher,
     )
     graph = verify(searched, settings=settings.verification, progress=watcher).graph
     poses = map_poses(steps, keyframes, graph)
@@ -95,11 +102,13 @@ def run_steps(
         return run_hector(
             scans,
             attitude=attitude,
-            settings=settings.slam2d,
-            hector=settings.hector,
+            settings=tuned(Slam2dTuning, settings.slam2d),
+            hector=HectorTuning(),
             progress=progress,
         )
-    return run_odometry_2d(scans, attitude=attitude, settings=settings.slam2d, progress=progress)
+    return run_odometry_2d(
+        scans, attitude=attitude, settings=tuned(Slam2dTuning, settings.slam2d), progress=progress
+    )
 
 
 def map_poses(steps: Steps2d, keyframes: Keyframes, graph: PoseGraph) -> Array:
@@ -130,14 +139,14 @@ def make_grid(
         settings: Groups ``slam2d`` (limits of range) and ``grid2d``.
         progress: Counts scans.
     """
-    chosen = settings.grid2d
+    chosen = tuned(Grid2dTuning, settings.grid2d)
     level = None
     if attitude is not None:
         level = leveling(attitude.at(scans.t_ns, slack_ns=1_000_000_000))
 
     def placed(k: int) -> Array:
         R = None if level is None else level[k]
-        seen = scan_points(scans, k, settings=settings.slam2d, R_level_laser=R)
+        seen = scan_points(scans, k, settings=tuned(Slam2dTuning, settings.slam2d), R_level_laser=R)
         return transform(poses[k], seen.points)
 
     # Made at once: growing with the walk would copy a large grid again and again.

@@ -21,7 +21,7 @@ from recon4.recording.laser2d import read_laser_recording
 from recon4.recording.laser_mount import MountedScans, mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings, Settings
-from recon4.settings.slam2d import Slam2dSettings
+from recon4.settings.tuning import tuned
 from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
 from recon4.slam2d.loops import close_loops
@@ -30,6 +30,7 @@ from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
 from recon4.slam2d.scan_points import scan_points
 from recon4.slam2d.slam import make_grid, map_poses, run_steps, scan_covariances
 from recon4.slam2d.steps import Steps2d
+from recon4.slam2d.tuning import Grid2dTuning, Loop2dTuning, Slam2dTuning
 from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.line_store import LineStoreWriter, load_laser_scans
@@ -155,7 +156,7 @@ def run_odometry(
     )
 
 
-def read_keyframes(scans: Path, odometry: Path, *, settings: Slam2dSettings) -> Keyframes:
+def read_keyframes(scans: Path, odometry: Path, *, settings: Slam2dTuning) -> Keyframes:
     """The keyframes of a finished odometry, with their returns.
 
     Args:
@@ -183,9 +184,14 @@ def build_graph(
             f"none of the {len(found)} scans has enough returns between "
             f"{settings.slam2d.min_range_m:g} and {settings.slam2d.max_range_m:g} m"
         )
-    keyframes = make_keyframes(found, steps, attitude=None, settings=settings.slam2d)
+    keyframes = make_keyframes(
+        found, steps, attitude=None, settings=tuned(Slam2dTuning, settings.slam2d)
+    )
     graph = close_loops(
-        keyframes, settings=settings.slam2d, loops=settings.loops2d, progress=progress
+        keyframes,
+        settings=tuned(Slam2dTuning, settings.slam2d),
+        loops=tuned(Loop2dTuning, settings.loops2d),
+        progress=progress,
     )
     save_graph(out, graph)
     accepted = sum(edge.in_graph for edge in graph.edges)
@@ -206,13 +212,15 @@ def build_map(
     scans = read_scans(artifacts["scans"])
     steps = load_record(artifacts["odometry"] / "steps.npz", Steps2d)
     graph = load_graph(artifacts["graph"])
-    keyframes = make_keyframes(scans, steps, attitude=None, settings=settings.slam2d)
+    keyframes = make_keyframes(
+        scans, steps, attitude=None, settings=tuned(Slam2dTuning, settings.slam2d)
+    )
     poses = map_poses(steps, keyframes, graph)
     covariance = scan_covariances(keyframes, graph, len(scans))
     grid = make_grid(scans, poses, attitude=None, settings=settings, progress=progress)
     save_trajectory(out / "trajectory.npz", Trajectory(scans.t_ns, to_se3(poses)))
     np.savez(out / "poses.npz", t_ns=scans.t_ns, pose=poses, covariance=covariance)
-    written = write_map(out, grid, settings.grid2d)
+    written = write_map(out, grid, tuned(Grid2dTuning, settings.grid2d))
     free = int(np.count_nonzero(written.free))
     return Map2dFigures(
         cell_m=grid.cell_m,
@@ -237,7 +245,7 @@ def read_covariance(folder: Path) -> Array:
 def _crossing(grid: OccupancyGrid, scans: LaserScans, poses: Array, *, settings: Settings) -> float:
     def placed() -> Iterator[tuple[Array, Array]]:
         for k in range(0, len(scans), max(1, len(scans) // _CHECKED_SCANS)):
-            points = scan_points(scans, k, settings=settings.slam2d).points
+            points = scan_points(scans, k, settings=tuned(Slam2dTuning, settings.slam2d)).points
             yield transform(poses[k], points), poses[k, :2]
 
     return crossing_ratio(grid, placed())

@@ -21,13 +21,13 @@ from recon4.model.pose_graph import (
     Verdict,
 )
 from recon4.progress import Progress, track
-from recon4.settings.slam2d import Loop2dSettings, Slam2dSettings
 from recon4.slam2d.candidates import Candidate2d
 from recon4.slam2d.correlative import LikelihoodField
 from recon4.slam2d.edges import in_source_axes, space_information
 from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.line_map import LineMap, Match2d
 from recon4.slam2d.observability import observed
+from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
 
 _MOST_POINTS = 1500
 """Returns of a source that are registered."""
@@ -49,7 +49,7 @@ class SubmapRegistrar:
     """Registers the surroundings of a node to sub-maps around other nodes."""
 
     def __init__(
-        self, keyframes: Keyframes, *, settings: Slam2dSettings, loops: Loop2dSettings
+        self, keyframes: Keyframes, *, settings: Slam2dTuning, loops: Loop2dTuning
     ) -> None:
         """Prepare an empty map, which all sub-maps use one after the other."""
         self._keyframes, self._settings, self._loops = keyframes, settings, loops

@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 from pathlib import Path
 from typing import Any
 
-from recon4.settings import Settings, current_name
+from recon4.settings import Settings, changed_retired, current_name
 from recon4.store.seal import check_sealed
 from recon4.store.stage import Stage, read_manifest
 
@@ -43,8 +43,8 @@ def settings_to_repeat(made: Mapping[str, Path], kept: Sequence[Stage[Any]]) -> 
 def settings_in(artifacts: Iterable[Path]) -> Settings:
     """Settings with which artifacts were made; the last artifact counts, the rest are defaults.
 
-    Unknown names of older or newer versions are ignored. Call `check_recipes` first if the seals
-    can be read.
+    Retired names are left out, see `retired_settings`; unknown ones of newer versions, too. Call
+    `check_recipes` first if the seals can be read.
 
     Args:
         artifacts: Their folders.
@@ -52,9 +52,7 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
     Raises:
         StoreError: If an artifact is damaged.
     """
-    recorded: dict[str, Mapping[str, object]] = {}
-    for folder in artifacts:
-        recorded |= read_manifest(folder)["recipe"]["settings"]
+    recorded = _recorded(artifacts)
     settings = Settings()
     groups = {}
     for name, values in recorded.items():
@@ -64,3 +62,19 @@ def settings_in(artifacts: Iterable[Path]) -> Settings:
             current = {current_name(name, n): value for n, value in values.items()}
             groups[name] = replace(group, **{n: v for n, v in current.items() if n in known})
     return replace(settings, **groups)
+
+
+def retired_settings(artifacts: Iterable[Path]) -> list[str]:
+    """Sentences on settings that artifacts were made with and that are fixed now at other values.
+
+    Raises:
+        StoreError: If an artifact is damaged.
+    """
+    return changed_retired(_recorded(artifacts))
+
+
+def _recorded(artifacts: Iterable[Path]) -> dict[str, Mapping[str, object]]:
+    recorded: dict[str, Mapping[str, object]] = {}
+    for folder in artifacts:
+        recorded |= read_manifest(folder)["recipe"]["settings"]
+    return recorded

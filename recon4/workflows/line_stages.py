@@ -46,7 +46,7 @@ def _refine_lines(
     return found.save(context.out)
 
 
-_PLANAR = ("slam2d", "hector", "loops2d", "grid2d", "verification")
+_PLANAR = ("slam2d", "loops2d", "grid2d", "verification")
 LINE_ODOMETRY = Stage(
     "odometry", 5, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
 )

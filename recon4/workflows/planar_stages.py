@@ -70,7 +70,7 @@ def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
 
 
 SCANS_2D = Stage("scans_2d", 11, ("ingest",), _scans, Scan2dFigures)
-ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d", "hector"), _odometry, Odometry2dFigures)
+ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d",), _odometry, Odometry2dFigures)
 GRAPH_2D = Stage("graph_2d", 2, ("slam2d", "loops2d"), _graph, GraphFigures)
 MAP_2D = Stage("map_2d", 2, ("slam2d", "grid2d"), _map, Map2dFigures)
 AUDIT_2D = Stage("audit", AUDIT_VERSION, (), _audit, AuditFigures)

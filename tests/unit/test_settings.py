@@ -11,9 +11,11 @@ import pytest
 
 from recon4 import settings as declared
 from recon4.errors import ConfigError, WrongSettings
-from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json
+from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json, values_by_group
 from recon4.settings.help import describe_settings, differences, markdown
+from recon4.settings.renamed import RENAMED, retired
 
+RANGED = {"ingest", "slam2d", "loops2d", "grid2d"}
 ROOT = Path(__file__).parents[2]
 
 
@@ -104,7 +106,7 @@ def test_two_settings_that_only_fit_together_may_be_changed_together():
 
 
 def test_an_unknown_preset_is_rejected_with_the_known_ones():
-    with pytest.raises(ConfigError, match="there are: hector, indoor, outdoor, staircase, thesis"):
+    with pytest.raises(ConfigError, match="there are: hector, indoor, outdoor, thesis"):
         preset("forest")
 
 
@@ -115,6 +117,41 @@ def test_the_thesis_preset_is_the_documents_algorithm():
     assert thesis.registration.max_iterations == 500
     assert thesis.graph.mode == "verification"
     assert not thesis.odometry.use_imu
+
+
+def test_an_earlier_preset_is_the_one_with_the_same_settings():
+    assert preset("staircase") == preset("indoor")
+
+
+def test_a_retired_setting_is_accepted_at_its_value_and_refused_at_another_one():
+    assert override(Settings(), ["loops2d.revisits=3"]) == Settings()
+
+    with pytest.raises(ConfigError) as refused:
+        override(Settings(), ["loops2d.revisits=5", "hector.levels=1"])
+
+    assert "loops2d.revisits is no setting anymore: fixed at 3, not 5 (Largest" in str(
+        refused.value
+    )
+    assert "hector.levels is no setting anymore: fixed at 3, not 1 (Number" in str(refused.value)
+
+
+def test_every_retired_setting_has_a_text_and_is_no_setting():
+    now = {(group.name, s.name) for group in describe_settings() for s in group.settings}
+
+    assert all(fixed.text for fixed in retired().values())
+    assert not now & retired().keys()
+    assert all((group, new) in {*now, *retired()} for (group, _), new in RENAMED.items())
+
+
+def test_every_number_has_a_range_that_its_default_and_the_presets_are_in():
+    for settings in PRESETS.values():
+        values = values_by_group(settings)
+        for group in describe_settings():
+            for one in group.settings:
+                if one.kind in {"int", "float"} and group.name in RANGED:
+                    value = values[group.name][one.name]
+                    assert one.limits is not None, one.path
+                    assert one.limits.low <= value <= one.limits.high, one.path
 
 
 def test_settings_are_immutable():

@@ -29,6 +29,8 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.usability import WEAK_SD_M
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
+from recon4.slam2d.tuning import Slam2dTuning
 
 SUMMARY_EVERY_NS = 1_000_000_000
 SHOWN_EVERY_NS = 100_000_000
@@ -59,7 +61,7 @@ class ScanMap:
         assert row is not None
         self._rig, self._laser = rig, seen_from_above(rig.sensors[row])
         self._is_upside_down = is_upside_down(rig.sensors[row].T_body_sensor)
-        self._tracker = ScanTracker(self._laser, settings.slam2d)
+        self._tracker = ScanTracker(self._laser, tuned(Slam2dTuning, settings.slam2d))
         self._attitude = LiveAttitude(rig)
         self._coverage, self._preview = Coverage(), PreviewCloud()
         self._places, self._gate = ScanPlaces(settings), LoopGate()

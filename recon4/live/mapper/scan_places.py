@@ -12,10 +12,12 @@ from recon4.geometry.se2 import between, compose, from_se3, inverse, transform, 
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import Edge
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.slam2d.candidates import Candidate2d
 from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.scan_points import ScanPoints
 from recon4.slam2d.submaps import SubmapRegistrar
+from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
 
 _MOST_RETURNS = 400
 """Returns of a keyframe that are stored, 5 kB: an hour of walking has 20 000 keyframes."""
@@ -48,7 +50,8 @@ class ScanPlaces:
     """Keyframes of the path, and the registration of the newest ones to earlier ones."""
 
     def __init__(self, settings: Settings) -> None:
-        self._settings = settings
+        self._slam = tuned(Slam2dTuning, settings.slam2d)
+        self._loops = tuned(Loop2dTuning, settings.loops2d)
         self._keyframes: list[_Keyframe] = []
         self._at = np.zeros((64, 3))
         """x [m], y [m] and path length [m] of each keyframe; the last rows are spare."""
@@ -136,7 +139,7 @@ class ScanPlaces:
         """The nearest keyframe of an earlier visit; None = there is none."""
         if not len(self):
             return None
-        loops, last = self._settings.loops2d, len(self) - 1
+        loops, last = self._loops, len(self) - 1
         at = self._at[: last + 1]
         reach_m = loops.reach_m + self._drift_m
         away_m = np.hypot(at[:, 0] - at[last, 0], at[:, 1] - at[last, 1])
@@ -148,7 +151,7 @@ class ScanPlaces:
 
     def locate(self, place: int) -> PlaceMatch:
         """Register the newest keyframes to those around an earlier one."""
-        loops, settings = self._settings.loops2d, self._settings.slam2d
+        loops, settings = self._loops, self._slam
         last = len(self) - 1
         of_place = range(max(place - loops.target_reach, 0), place + loops.target_reach + 1)
         of_place = range(of_place.start, min(of_place.stop, last))
@@ -167,12 +170,12 @@ class ScanPlaces:
     def _drift_m(self) -> float:
         """What the pose may be off since the last place that was recognized [m]."""
         path_m = self.walked_m - self._closed_m
-        drift_m = self._settings.loops2d.drift_ratio * path_m + self._unknown_m
+        drift_m = self._loops.drift_ratio * path_m + self._unknown_m
         return float(np.clip(drift_m, _LEAST_DRIFT_M, _MOST_DRIFT_M))
 
     def _drift_rad(self, place: int) -> float:
         path_m = self.walked_m - float(self._at[place, 2])
-        drift_rad = self._settings.loops2d.drift_rad_m * path_m + 0.1 * self._unknown_m
+        drift_rad = self._loops.drift_rad_m * path_m + 0.1 * self._unknown_m
         return min(drift_rad, _MOST_DRIFT_RAD)
 
     def _batch(self, rows: list[int]) -> Keyframes:

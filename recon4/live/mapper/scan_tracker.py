@@ -11,9 +11,9 @@ from recon4.live.mapper.live_attitude import LiveAttitude
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Trajectory
-from recon4.settings.slam2d import Slam2dSettings
 from recon4.slam2d.odometry import Odometry2d
 from recon4.slam2d.scan_points import ScanPoints
+from recon4.slam2d.tuning import Slam2dTuning
 
 _KEPT_NS = 300_000_000
 """Scans of this time before the newest one give the velocity [ns]."""
@@ -52,7 +52,7 @@ class ScanStep:
 class ScanTracker:
     """Runs `Odometry2d` on the last scans of a capture; its memory does not grow."""
 
-    def __init__(self, laser: Sensor, settings: Slam2dSettings) -> None:
+    def __init__(self, laser: Sensor, settings: Slam2dTuning) -> None:
         self._laser, self._settings = laser, settings
         self._odometry: Odometry2d | None = None
         self._scans: LaserScans | None = None

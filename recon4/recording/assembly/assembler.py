@@ -16,7 +16,9 @@ from recon4.recording.assembly.rotation import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.extent import extent_text
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
+from recon4.settings.tuning import tuned
 
 _HEAD_NS = 1_000_000_000
 """Data of every sensor inspected before the first cut [ns]."""
@@ -87,7 +89,7 @@ class Assembler:
                 complete, because the last one may be incomplete.
         """
         self._on_cut, self._begun = on_cut, False
-        self._settings, self._report = settings, report
+        self._settings, self._report = tuned(IngestTuning, settings), report
         self._beams = [sensor.beams for sensor in rig.sensors]
         self._wait_ns = int(wait_s * 1e9)
         self._streams = [

@@ -13,6 +13,8 @@ from recon4.recording.folders import folder_gaps, list_frames, read_frames
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.rig_choice import Stream, choose_rig
+from recon4.recording.tuning import IngestTuning
+from recon4.settings.tuning import tuned
 
 _NAMED_GAPS = 20
 """More gaps are not named one by one."""
@@ -29,7 +31,7 @@ def open_frames(request: OpenRequest) -> Recording:
         rig = choose_rig([Stream(paths[0].name, frames_model(frames.files))], report)
     _require_one_lidar(rig, paths[0])
     sensor = rig.sensors[0]
-    gaps = folder_gaps(frames, sensor.name, settings.gap_s)
+    gaps = folder_gaps(frames, sensor.name, tuned(IngestTuning, settings).gap_s)
     for gap in gaps[:_NAMED_GAPS]:
         report.warn(f"{gap.sensor}: {gap.seconds:.3f} s from one frame to the next")
     read = partial(read_frames, frames, sensor, settings=settings, report=report)

@@ -14,6 +14,7 @@ from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning import IngestTuning
 from recon4.recording.velodyne.models import (
     DUAL,
     RETURN_MODES,
@@ -27,6 +28,7 @@ from recon4.recording.velodyne.packet_filter import PacketOrder, Payloads, as_pa
 from recon4.recording.velodyne.packet_holes import PacketHoles
 from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock
 from recon4.settings import IngestSettings
+from recon4.settings.tuning import tuned
 
 
 @dataclass(frozen=True, slots=True)
@@ -173,7 +175,8 @@ class PacketDecoder:
         self.rotation = Rotation()
         self._row, self._sensor = sensor_row, sensor
         self._settings, self._report = settings, report
-        self._order = PacketOrder(round(settings.reorder_window_s * SECOND_NS), report)
+        window_s = tuned(IngestTuning, settings).reorder_window_s
+        self._order = PacketOrder(round(window_s * SECOND_NS), report)
         self._offset_ns = round(sensor.time_offset_s * SECOND_NS)
         self._product: int | None = None
         self._holes = PacketHoles()
@@ -190,7 +193,7 @@ class PacketDecoder:
             payloads: UDP payloads, (N, 1206) or any other width (then all are dropped, counted).
 
         Returns:
-            Shots in firing order; after a hole, those of the last ``settings.reorder_window_s`` are
+            Shots in firing order; after a hole, those of the last ``reorder_window_s`` are
             held back.
         """
         t_arrival_ns = np.asarray(t_arrival_ns, dtype=np.int64)

@@ -9,7 +9,7 @@ from ruamel.yaml import YAML
 
 from recon4.errors import MapTooLarge, StoreError
 from recon4.progress import Silent
-from recon4.settings import Grid2dSettings, Settings
+from recon4.settings import Settings
 from recon4.slam2d import occupancy
 from recon4.slam2d.map_files import (
     OVERVIEW_CELLS,
@@ -20,6 +20,7 @@ from recon4.slam2d.map_files import (
 )
 from recon4.slam2d.occupancy import MAX_CELLS, OccupancyGrid, crossing_ratio, fitting_cell_m
 from recon4.slam2d.slam import make_grid
+from recon4.slam2d.tuning import Grid2dTuning
 from tests.planar_walks import furnished_room, scanned
 
 
@@ -117,7 +118,7 @@ def test_the_files_have_walls_where_they_are(tmp_path):
     # Three scans from one place: a wall at x = 2, y from 1 to 1.4.
     grid = grid_of(*[([[2.05, 1.0 + 0.1 * k + 0.05] for k in range(4)], [0.05, 0.05])] * 3)
 
-    write_map(tmp_path, grid, Grid2dSettings())
+    write_map(tmp_path, grid, Grid2dTuning())
 
     described = YAML(typ="safe").load((tmp_path / "map.yaml").read_text("ascii"))
     image = np.asarray(Image.open(tmp_path / described["image"]))
@@ -130,7 +131,7 @@ def test_the_files_have_walls_where_they_are(tmp_path):
     unknown, free, occupied = (_meaning(v, described) for v in (205, 254, 0))
     assert (unknown, free, occupied) == (-1, 0, 100)
     assert set(np.unique(image)) <= {0, 205, 254}
-    np.testing.assert_array_equal(image, trinary_image(grid, Grid2dSettings()))
+    np.testing.assert_array_equal(image, trinary_image(grid, Grid2dTuning()))
 
 
 def _meaning(value, described):
@@ -154,7 +155,7 @@ def far_apart():
 @pytest.fixture(scope="module")
 def large(tmp_path_factory):
     folder = tmp_path_factory.mktemp("large")
-    return folder, write_map(folder, far_apart(), Grid2dSettings())
+    return folder, write_map(folder, far_apart(), Grid2dTuning())
 
 
 def test_a_map_of_202_million_cells_is_written_in_full(large):
@@ -190,7 +191,7 @@ def test_an_image_too_large_to_decode_is_an_error_of_the_store(large):
 def test_a_small_map_is_its_own_overview(tmp_path):
     grid = grid_of(*[([[2.05, 1.05]], [0.05, 0.05])] * 3)
 
-    write_map(tmp_path, grid, Grid2dSettings())
+    write_map(tmp_path, grid, Grid2dTuning())
 
     assert (tmp_path / "overview.png").read_bytes() == (tmp_path / "map.png").read_bytes()
     (tmp_path / "overview.png").unlink()
