@@ -109,7 +109,6 @@ def run_and_end(arguments, *, news, seconds, sign):
         stderr=subprocess.PIPE,
         text=True,
         env=os.environ | {"OMP_NUM_THREADS": "1"},
-        preexec_fn=obey_sigint,
     )
     with run:
         assert run.stderr is not None
@@ -119,8 +118,3 @@ def run_and_end(arguments, *, news, seconds, sign):
         rest = run.stderr.read()
     assert said, f"ended before it said {news!r}: {rest}"
     return run.returncode, rest
-
-
-def obey_sigint():
-    """In the child: a shell that runs the tests in the background had it ignored."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)

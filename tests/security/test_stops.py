@@ -63,13 +63,7 @@ def test_a_signal_is_obeyed_where_python_throws_exceptions_away(where, name):
         cwd=ROOT,
         timeout=60,
         start_new_session=True,
-        preexec_fn=obey_sigint,
     )
 
     assert ended.stderr == f"recon4: stopped by {name}\n"
     assert ended.returncode == 128 + signal.Signals[name]
-
-
-def obey_sigint():
-    """In the child: a shell that runs this in the background had it ignored."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
