@@ -1,6 +1,9 @@
-"""What a busy computer may add to a deadline before a test calls it missed."""
+"""How long tests wait on a busy computer."""
 
 from __future__ import annotations
 
-#: The deadlines under test end what would else go on for a minute or forever.
 BUSY_S = 20.0
+"""What may be added to a deadline under test before it counts as missed; such deadlines end what
+would else go on for a minute or forever."""
+HANG_S = 120.0
+"""For what has no deadline, as the start of a process: what takes longer hangs."""

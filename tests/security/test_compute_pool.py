@@ -25,6 +25,7 @@ from recon4_app.errors import AppError, ComputeFailed, TooMany
 from recon4.errors import Recon4Error
 from recon4.system.processes import ChildRegister
 from tests import pool_functions as work
+from tests.deadlines import BUSY_S
 from tests.service.running import wait_for
 
 EVE = Terms(person="Eve")
@@ -172,7 +173,7 @@ def test_children_end_with_a_server_that_is_killed(root):
         server.send_signal(signal.SIGKILL)
         server.wait()
 
-    wait_for(lambda: not alive(child), "the child ends with its server", max_s=5.0)
+    wait_for(lambda: not alive(child), "the child ends with its server", max_s=5.0 + BUSY_S)
     register = ChildRegister(root / ".recon4" / "children")
     assert [path.name.split("-")[0] for path in register.folder.iterdir()] == [str(child)]
     register.end_leftovers()
@@ -219,7 +220,9 @@ def test_work_ends_when_its_client_leaves(root, kind):
         asked.cancel()
         with pytest.raises(asyncio.CancelledError):
             await asked
-        await asyncio.to_thread(wait_for, lambda: not alive(pid), "its child ends", max_s=10.0)
+        await asyncio.to_thread(
+            wait_for, lambda: not alive(pid), "its child ends", max_s=10.0 + BUSY_S
+        )
         await asyncio.wait_for(idle(pool.queues[Lane.SURVEY]), 10.0)
 
     in_pool(root, leave)

@@ -14,6 +14,7 @@ from recon4_app.access.login.login_service import open_access
 from recon4_app.access.people import Role
 from recon4_app.metrics_routes import make_metrics_token
 
+from tests.deadlines import HANG_S
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD
 
@@ -35,7 +36,7 @@ def test_no_secret_reaches_a_log(tmp_path):
         url = re.search(r"https://\S+", process.stdout.readline())[0].rstrip("/")
         secrets = use(url, token)
         process.terminate()
-        _, stderr = process.communicate(timeout=30.0)
+        _, stderr = process.communicate(timeout=HANG_S)
     logs = [path.read_text("utf-8") for path in (state / "logs").rglob("*") if path.is_file()]
     everything = "\n".join([stderr, *logs])
 
@@ -45,7 +46,7 @@ def test_no_secret_reaches_a_log(tmp_path):
 
 def use(url, token):
     """Use every secret, in the right and in the wrong place; what they were."""
-    with httpx.Client(base_url=url, verify=False, timeout=30.0) as client:
+    with httpx.Client(base_url=url, verify=False, timeout=HANG_S) as client:
         client.post("/api/login", json={"name": "anna", "password": WRONG})
         client.post("/api/login", json={"name": WRONG, "password": PASSWORD})
         answer = client.post("/api/login", json={"name": "anna", "password": PASSWORD})

@@ -12,6 +12,7 @@ from pathlib import Path
 import httpx
 import pytest
 
+from tests.deadlines import HANG_S
 from tests.project_builder import build_project
 from tests.security import ordinary_user
 
@@ -134,7 +135,7 @@ def test_a_server_serves(user):
             line = server.stdout.readline()
             assert "Serving at" in line, server.stderr.read()
             url = line.split()[2].rstrip("/")
-            (card,) = httpx.get(f"{url}/api/projects", timeout=30.0).json()
+            (card,) = httpx.get(f"{url}/api/projects", timeout=HANG_S).json()
             image = httpx.get(f"{url}/api/projects/office/thumbnail", timeout=120.0)
         finally:
             server.terminate()

@@ -16,6 +16,7 @@ import pytest
 from recon4_app.viewer.pool import socket_folder
 
 from recon4.system.processes import ChildRegister, process_identity
+from tests.deadlines import BUSY_S
 from tests.processes import command_of
 from tests.project_builder import build_project
 from tests.service.killing import leftover_files
@@ -118,7 +119,7 @@ def test_the_next_server_ends_a_leftover_it_knows_and_nothing_else(root):
         (register.folder / f"{number}-{identity.split('-')[1]}-another-boot").touch()
 
         with server_process(root):
-            wait_for(lambda: leftover.poll() is not None, "the leftover ends", max_s=10.0)
+            wait_for(lambda: leftover.poll() is not None, "the leftover ends", max_s=10.0 + BUSY_S)
             assert leftover.returncode == -signal.SIGKILL
             assert stranger.poll() is None
             assert not list(register.folder.glob(f"{leftover.pid}-*"))

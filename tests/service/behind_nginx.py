@@ -21,6 +21,7 @@ from recon4_app.access.login.login_service import open_access
 from recon4_app.network.behind import public_address
 from recon4_app.network.certificate import Certificate, made_certificate
 
+from tests.deadlines import HANG_S
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_thread, wait_for
 from tests.service.secure import CHEAP, PASSWORD, ROLES
@@ -59,7 +60,7 @@ class Site:
     def client(self, host: str = "") -> httpx.Client:
         headers = {"Host": host or f"{self.name}:{self.port}", "Origin": self.origin}
         url = f"https://127.0.0.1:{self.port}{self.prefix}"
-        return httpx.Client(base_url=url, headers=headers, verify=self.trust(), timeout=30)
+        return httpx.Client(base_url=url, headers=headers, verify=self.trust(), timeout=HANG_S)
 
 
 @contextmanager

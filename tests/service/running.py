@@ -32,6 +32,7 @@ from recon4_app.network.listen import (
 from recon4_app.settings import ServerSettings, recording_folders_from_environment
 
 from recon4.system.stopping import StopSignals, end_process
+from tests.deadlines import HANG_S
 
 ROOT = Path(__file__).parents[2]
 SLOW = "tests.service.slow_worker"
@@ -52,7 +53,7 @@ class Running:
         return self._ask("POST", path, **options)
 
     def _ask(self, method: str, path: str, **options: Any) -> httpx.Response:
-        return httpx.request(method, self.url + path, timeout=30.0, verify=WITHOUT_TLS, **options)
+        return httpx.request(method, self.url + path, timeout=HANG_S, verify=WITHOUT_TLS, **options)
 
     def start(self, project: str, recording: Path) -> str:
         answer = self.post("/api/jobs", json={"project": project, "recordings": [str(recording)]})
@@ -60,12 +61,12 @@ class Running:
         return answer.json()["job"]["id"]
 
     def wait(
-        self, job_id: str, met: Callable[[dict[str, Any]], bool], *, max_s: float = 60.0
+        self, job_id: str, met: Callable[[dict[str, Any]], bool], *, max_s: float = HANG_S
     ) -> dict[str, Any]:
         """The first view of the job, from the event stream, that meets a condition."""
         deadline_s = time.monotonic() + max_s
         with httpx.stream(
-            "GET", f"{self.url}/api/events", timeout=30.0, verify=WITHOUT_TLS
+            "GET", f"{self.url}/api/events", timeout=HANG_S, verify=WITHOUT_TLS
         ) as stream:
             view = self.get(f"/api/jobs/{job_id}").json()  # there is no event for an ended job
             if met(view):
@@ -104,12 +105,12 @@ def server_thread(root: Path, **settings: Any) -> Iterator[Running]:
         thread = threading.Thread(target=lambda: asyncio.run(server.serve([listener])))
         thread.start()
         try:
-            assert ready.wait(20.0)
+            assert ready.wait(HANG_S)
             scheme = "https" if certificate else "http"
             yield Running(f"{scheme}://127.0.0.1:{listener.getsockname()[1]}", root, app)
         finally:
             server.should_exit = True
-            thread.join(20.0)
+            thread.join(HANG_S)
             end_workers(root)
     assert not thread.is_alive()
 
@@ -142,7 +143,7 @@ def server_process(
             process.wait()
 
 
-def wait_for(met: Callable[[], Any], what: str, *, max_s: float = 60.0) -> Any:
+def wait_for(met: Callable[[], Any], what: str, *, max_s: float = HANG_S) -> Any:
     """Poll a condition until it is true."""
     deadline_s = time.monotonic() + max_s
     while not (found := met()):

@@ -21,6 +21,7 @@ from recon4_app.access.people import Role
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from tests.deadlines import HANG_S
 from tests.service.running import Running, server_thread
 
 PASSWORD = "three green owls dance"
@@ -72,7 +73,7 @@ class Secure:
 
     def client(self, **options: Any) -> httpx.Client:
         """A client that has not signed in."""
-        return httpx.Client(base_url=self.url, verify=self.trust(), timeout=30.0, **options)
+        return httpx.Client(base_url=self.url, verify=self.trust(), timeout=HANG_S, **options)
 
     @contextmanager
     def signed_in(self, name: str, password: str = PASSWORD) -> Iterator[httpx.Client]:

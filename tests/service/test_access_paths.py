@@ -10,6 +10,7 @@ from recon4_app.access.routes_check import declared
 from recon4_app.main import create_app
 from recon4_app.settings import ServerSettings
 
+from tests.deadlines import HANG_S
 from tests.project_builder import build_project
 from tests.service.running import server_thread
 
@@ -82,7 +83,7 @@ def sent(name, way):
 def test_no_hostile_name_in_any_path_reaches_anything_or_makes_the_server_fail(
     server, tmp_path, way
 ):
-    connection = http.client.HTTPConnection(urlsplit(server.url).netloc, timeout=30.0)
+    connection = http.client.HTTPConnection(urlsplit(server.url).netloc, timeout=HANG_S)
     wrong = []
     for method, path in paths_with_parameters(tmp_path):
         for name in NAMES if way == "encoded" else WAYS_OUT:

@@ -8,6 +8,7 @@ import pytest
 from recon4.cli.main import main
 from recon4.review.signature import public_key_of
 from recon4.store.project import read_artifacts
+from tests.deadlines import HANG_S
 from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread
 
@@ -78,7 +79,7 @@ def test_an_unknown_signer_is_named_and_its_files_are_refused_until_the_key_is_a
             f"{server.url}/api/keys",
             json={"name": "Survey Brno", "public_key": key},
             headers={"Origin": server.url},
-            timeout=30.0,
+            timeout=HANG_S,
         )
         after = shown(server)
         counted = server.get(f"{base}/files/trajectory.tum")
@@ -149,7 +150,7 @@ def test_the_key_a_server_signs_with_is_listed_and_not_removed(maps):
         answer = httpx.delete(
             f"{server.url}/api/keys/{key['fingerprint']}",
             headers={"Origin": server.url},
-            timeout=30.0,
+            timeout=HANG_S,
         )
 
     assert key["own"] and not key["removed"]

@@ -13,6 +13,7 @@ from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
 from recon4.errors import ConfigError
+from tests.deadlines import HANG_S
 from tests.service.behind_nginx import behind_nginx, needs_nginx, sign_in
 from tests.service.secure import PASSWORD
 
@@ -39,6 +40,7 @@ def open_socket(site, path, *, cookies, origin="", **options):
         compression=None,
         max_size=None,
         proxy=None,
+        open_timeout=HANG_S,  # the viewer starts before its socket is accepted
         **options,
     )
 
@@ -47,7 +49,7 @@ async def first_message(site, path, cookies, **options):
     async with open_socket(site, path, cookies=cookies, **options) as stream:
         if path.endswith("/stream"):
             await stream.send("{}")
-        return await asyncio.wait_for(stream.recv(), 60)
+        return await asyncio.wait_for(stream.recv(), HANG_S)
 
 
 VISER = {"subprotocols": [Subprotocol(f"viser-v{viser.__version__}")]}

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from recon4.store.seal import changing
+from tests.deadlines import HANG_S
 from tests.served import office, served
 
 BASE = "/api/projects/office/slices"
@@ -27,7 +28,7 @@ def test_control_points_are_looked_at_kept_and_judged(server):
 
     preview = sent(server, "/control/preview", file).json()
     state = {"points": preview["points"], "picks": {"A": [0, 5, 1.5], "B": [16, 5, 1.5]}}
-    kept = httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
+    kept = httpx.put(f"{server.url}{BASE}/control", json=state, timeout=HANG_S)
     report = server.get(f"{BASE}/control/report").json()
     near = server.get(f"{BASE}/control/surface", params={"point": "A"}).json()
 
@@ -43,7 +44,7 @@ def test_control_points_are_looked_at_kept_and_judged(server):
 
 def test_the_table_of_control_points_is_downloaded(server):
     state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
-    httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
+    httpx.put(f"{server.url}{BASE}/control", json=state, timeout=HANG_S)
 
     table = server.get(f"{BASE}/control/report.csv")
     sheet = server.get(f"{BASE}/control/report.html")
@@ -55,7 +56,7 @@ def test_the_table_of_control_points_is_downloaded(server):
 
 
 def put_control(server, state):
-    return httpx.put(f"{server.url}{BASE}/control", json=state, timeout=30)
+    return httpx.put(f"{server.url}{BASE}/control", json=state, timeout=HANG_S)
 
 
 def test_a_point_on_a_wall_measures_one_component_on_every_route(server):
@@ -128,10 +129,10 @@ def test_a_place_of_an_earlier_version_counts_only_when_it_is_measured_again(ser
 def test_of_two_who_keep_control_points_the_second_does_not_overwrite_the_first(server):
     url = f"{server.url}{BASE}/control"
     state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {}}
-    read = httpx.put(url, json=state, timeout=30).json()
+    read = httpx.put(url, json=state, timeout=HANG_S).json()
 
     def keep(k):
-        return httpx.put(url, json=read | {"picks": {"A": [k / 10, 5, 1.5]}}, timeout=30)
+        return httpx.put(url, json=read | {"picks": {"A": [k / 10, 5, 1.5]}}, timeout=HANG_S)
 
     with ThreadPoolExecutor(8) as people:
         answers = list(people.map(keep, range(8)))
@@ -146,12 +147,12 @@ def test_a_point_found_in_an_earlier_map_does_not_count_in_this_one(server):
     path = server.root / "office" / "slices" / "control.json"
     state = {"points": [{"id": "A", "xyz_m": [0.02, 5, 1.5]}], "picks": {"A": [0, 5, 1.5]}}
     url = f"{server.url}{BASE}/control"
-    kept = httpx.put(url, json=state | {"found_in": {"A": "of another map"}}, timeout=30).json()
+    kept = httpx.put(url, json=state | {"found_in": {"A": "of another map"}}, timeout=HANG_S).json()
     with changing(server.root / "office", "slices/control.json"):
         path.write_text(path.read_text().replace(kept["found_in"]["A"], "ab" * 32))
 
     earlier = server.get(f"{BASE}/control/report").json()
-    moved = httpx.put(url, json=state | {"picks": {"A": [0.01, 5, 1.5]}}, timeout=30).json()
+    moved = httpx.put(url, json=state | {"picks": {"A": [0.01, 5, 1.5]}}, timeout=HANG_S).json()
     again = server.get(f"{BASE}/control/report").json()
 
     assert kept["found_in"]["A"] == server.get(BASE).json()["key"] == moved["found_in"]["A"]

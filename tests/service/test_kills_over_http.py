@@ -20,6 +20,7 @@ import pytest
 from recon4.archive.verify import verify
 from recon4.progress import Silent
 from recon4.review.journal import broken, read_rows
+from tests.deadlines import HANG_S
 from tests.processes import command_of
 from tests.project_builder import build_project
 from tests.service.running import WITHOUT_TLS, server_process
@@ -47,7 +48,7 @@ class Acknowledged:
 
 
 def ask(server, method, path, **options):
-    answer = httpx.request(method, server.url + path, timeout=30.0, verify=WITHOUT_TLS, **options)
+    answer = httpx.request(method, server.url + path, timeout=HANG_S, verify=WITHOUT_TLS, **options)
     assert answer.status_code < 300, answer.text
     return answer
 

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
+from tests.deadlines import HANG_S
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.service.viser_client import camera, viewing
 
@@ -140,7 +141,7 @@ def test_a_server_shows_read_only_media_and_changes_nothing(media):
             browser.send(camera((8.0, 3.0, 1.5)))
             browser.until(lambda c: c.shown == POINTS)
         process.terminate()
-        _, errors = process.communicate(timeout=30)
+        _, errors = process.communicate(timeout=HANG_S)
 
     assert {card["id"]: card["problem"] for card in cards} == {"office": "", "in-use": ""}
     assert "cannot be written" in note and "cannot be written" in notices[0]

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from tests.deadlines import HANG_S
 from tests.project_builder import ROOM_M, approve_project, build_project, write_summary
 from tests.served import served
 from tests.service.running import server_thread
@@ -175,7 +176,7 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
         "p_reference": [[1, 0, 0], [2, 0, 0], [1, 1, 0]],
     }
     moved = sent(server, f"/references/{added['id']}/align", {"how": "pairs"} | pairs).json()
-    gone = httpx.delete(f"{server.url}{BASE}/references/{added['id']}", timeout=30)
+    gone = httpx.delete(f"{server.url}{BASE}/references/{added['id']}", timeout=HANG_S)
 
     assert added["points"] == len(lines) and added["name"] == "Walls"
     assert table["point_weighted"]["mean_m"] == pytest.approx(0.034, abs=0.006)

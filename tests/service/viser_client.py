@@ -17,6 +17,7 @@ from websockets.sync.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
 from recon4.geometry.se3 import quat_from_matrix
+from tests.deadlines import HANG_S
 from tests.service.secure import Socket
 
 PROTOCOL = Subprotocol(f"viser-v{viser.__version__}")
@@ -69,7 +70,7 @@ class ViserClient:
     def send(self, message: dict[str, Any]) -> None:
         self.socket.send(msgspec.msgpack.encode(message))
 
-    def until(self, met: Callable[[ViserClient], object], *, limit_s: float = 30.0) -> float:
+    def until(self, met: Callable[[ViserClient], object], *, limit_s: float = HANG_S) -> float:
         """Take messages until a condition is met; how long that took [s]."""
         began_s = time.monotonic()
         while not met(self):
@@ -218,6 +219,6 @@ def viewing(
         max_queue=16 if buffer_bytes is None else 1,
         proxy=None,
         sock=plain,
-        open_timeout=30.0,
+        open_timeout=HANG_S,
     ) as connection:
         yield ViserClient(connection, storage)
