@@ -1,0 +1,148 @@
+"""The wheel alone: nothing of the checkout can be imported where it is installed."""
+
+import os
+import re
+import subprocess
+import sys
+import sysconfig
+import zipfile
+from contextlib import contextmanager
+from pathlib import Path
+from shutil import copyfile
+
+import httpx
+import pytest
+
+from recon4.sandbox.private_cache import KERNELS
+from tests.deadlines import HANG_S
+from tests.service.running import ROOT, WITHOUT_TLS
+from tests.service.viser_client import camera, viewing
+
+pytestmark = pytest.mark.slow
+
+PAGES = ("/", "/docs/", "/docs/recordings", "/live", "/rigs")
+ADDRESS = re.compile(r'(?:href|src)="(/[^"#]*)"')
+CHECKOUT = """
+import importlib.util, recon4, recon4_app
+assert importlib.util.find_spec("tests") is None and importlib.util.find_spec("tools") is None
+print(recon4.__file__, recon4_app.__file__)
+"""
+
+
+@pytest.fixture(scope="module")
+def wheel(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wheel")
+    pip("wheel", "--no-build-isolation", "--wheel-dir", folder, ROOT)
+    (built,) = folder.glob("recon4-*.whl")
+    return built
+
+
+@pytest.fixture(scope="module")
+def installed(wheel, tmp_path_factory):
+    """An environment with the wheel; libraries are those of the tests, without the checkout.
+
+    A folder that a ``.pth`` file names is searched, but the ``.pth`` files in it are not read.
+    """
+    place = tmp_path_factory.mktemp("installed")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", place], check=True)
+    python = place / "bin" / "python"
+    pip("--python", python, "install", "--no-compile", wheel)
+    (packages,) = place.glob("lib/python*/site-packages")
+    (packages / "libraries.pth").write_text(sysconfig.get_path("purelib") + "\n")
+    with_compiled_kernels(packages / "recon4" / "kernels")
+    return place / "bin"
+
+
+@pytest.fixture(scope="module")
+def demo(installed, tmp_path_factory):
+    """A folder in which the demo has run, and what it wrote."""
+    folder = tmp_path_factory.mktemp("demo")
+    return folder, recon4(installed, folder, "demo", "--headless", "--seconds", "5")
+
+
+def pip(*arguments):
+    offline = {**os.environ, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_CONFIG_FILE": os.devnull}
+    command = [sys.executable, "-m", "pip", "-q", "--disable-pip-version-check"]
+    subprocess.run([*command, *map(str, arguments)], env=offline, check=True)
+
+
+def with_compiled_kernels(kernels):
+    """Else they are compiled for a minute. Numba knows them by the time of their source."""
+    cache = kernels / "__pycache__"
+    cache.mkdir()
+    for path in KERNELS.glob("__pycache__/*"):
+        if path.suffix in (".nbi", ".nbc", ""):
+            copyfile(path, cache / path.name)
+    for source in KERNELS.glob("*.py"):
+        changed = source.stat()
+        os.utime(kernels / source.name, ns=(changed.st_atime_ns, changed.st_mtime_ns))
+
+
+def alone():
+    """The environment without the checkout, which tests put in front of everything."""
+    return {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+
+
+def recon4(installed, folder, *arguments):
+    done = subprocess.run(
+        [installed / "recon4", *arguments], cwd=folder, env=alone(), capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@contextmanager
+def serving(installed, folder):
+    """``recon4 serve`` on a folder; its address."""
+    command = [installed / "recon4", "serve", "demo", "--port", "0"]
+    pipe = subprocess.PIPE
+    with subprocess.Popen(command, cwd=folder, env=alone(), stdout=pipe, text=True) as server:
+        try:
+            yield re.search(r"http://[^ ]*(?=/)", server.stdout.readline())[0]
+        finally:
+            server.terminate()
+    assert server.returncode == 0
+
+
+def test_all_it_puts_beside_other_packages_begins_with_recon4(wheel):
+    with zipfile.ZipFile(wheel) as file:
+        first = {name.split("/")[0] for name in file.namelist()}
+
+    assert {"recon4", "recon4_app", "recon4_web"} < first
+    assert [name for name in first if not name.startswith("recon4")] == []
+
+
+def test_the_help_is_that_of_the_installed_package(installed, tmp_path):
+    found = subprocess.run(
+        [installed / "python", "-c", CHECKOUT], cwd=tmp_path, env=alone(), capture_output=True
+    )
+
+    assert found.returncode == 0, found.stderr
+    for place in found.stdout.decode().split():
+        assert Path(place).is_relative_to(installed.parent)
+    assert "demo" in recon4(installed, tmp_path, "--help")
+
+
+def test_the_demo_makes_a_map(demo):
+    folder, said = demo
+
+    assert "50 multiframes (0 lost)" in said
+    assert (folder / "demo" / "office" / "map.laz").stat().st_size > 1_000_000
+
+
+def test_pages_documentation_and_viewer_are_served(installed, demo):
+    folder, _ = demo
+    with (
+        serving(installed, folder) as url,
+        httpx.Client(base_url=url, verify=WITHOUT_TLS, timeout=HANG_S) as client,
+    ):
+        linked = {at for page in PAGES for at in ADDRESS.findall(client.get(page).text)}
+        found = {address: client.get(address).status_code for address in linked.union(PAGES)}
+        projects = client.get("/api/projects").json()
+        with viewing(url) as browser:
+            browser.send(camera())
+            browser.until(lambda shown: "/grid" in shown.nodes)
+
+    assert {"/web/projects/index.js", "/web/shared/base.css"} <= set(found)
+    assert {address: code for address, code in found.items() if code != 200} == {}
+    assert "office" in str(projects)
