@@ -57,13 +57,13 @@ def nclt_truth(folder: Path) -> Trajectory:
     return Trajectory(t_ns, SE3.from_matrix(matrices))
 
 
-def muehlburg(folder: Path) -> Iterator[Multiframe]:
+def muehlburg(folder: Path, rows: slice = slice(None)) -> Iterator[Multiframe]:
     """``hdl64-muehlburg``: not deskewed; a point's time follows from its column."""
     numbers = _numbers((folder / "velodyne_config.txt").read_text("ascii"))
     down_deg = np.array(numbers[5:])
     starts = _times(folder / "timestamps_start.txt")
     ends = _times(folder / "timestamps_end.txt")
-    for k, path in enumerate(sorted(folder.glob("*.png"))):
+    for k, path in list(enumerate(sorted(folder.glob("*.png"))))[rows]:
         yield _range_image(k, path, down_deg, start_ns=int(starts[k]), end_ns=int(ends[k]))
 
 

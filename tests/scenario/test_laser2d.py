@@ -37,13 +37,15 @@ def test_aces_is_as_good_as_published_graph_slam(tmp_path, data):
 
 
 def test_aces_needs_no_odometry(tmp_path, data):
+    """Its first third, in which it comes back to places."""
     whole = read_laser2d([data("laser2d/aces.clf.bz2")], ImportReport())
-    write_carmen(tmp_path / "aces.log", whole)
+    write_carmen(tmp_path / "aces.log", whole[: len(whole) // 3])
     relations = read_relations(data("laser2d/aces.relations"))
     settings = override(Settings(), ["slam2d.use_odometry=false"])
     process(Sources((tmp_path / "aces.log",)), tmp_path / "out", settings=settings)
 
     errors = relation_errors(find_trajectory(tmp_path / "out"), relations)
+    assert errors.relations > 300
     assert errors.translation_mean_m < PUBLISHED_M
     assert np.rad2deg(errors.rotation_mean_rad) < PUBLISHED_DEG
 

@@ -18,7 +18,7 @@ from tests.security.fuzz.mutators import mutant
 from tests.security.fuzz.runner import Readers, fuzz
 from tests.security.measured import DEADLINE_S, LIMIT_BYTES, MeasuredChild, measured_child
 
-MUTANTS = 100
+MUTANTS = 60
 SEED = 20
 FINDS = {
     "broken-hang": "HANG",

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
+from tests.deadlines import HANG_S
 from tests.project_builder import build_project, room_points
 from tests.served import served
 
@@ -17,8 +18,8 @@ CORNERS_M = np.array([[0.0, 0.0, 1.0], [16.0, 0.0, 1.0], [16.0, 10.0, 1.0]])
 
 
 def projects(root):
-    build_project(root / "office", points=120_000, normals=True)
-    np.savetxt(root / "turned.xyz", TURNED @ room_points(np.random.default_rng(5), 60_000))
+    build_project(root / "office", points=60_000, normals=True)
+    np.savetxt(root / "turned.xyz", TURNED @ room_points(np.random.default_rng(5), 30_000))
 
 
 server = served(projects)
@@ -29,7 +30,7 @@ def reference(server):
     path = str(server.root / "turned.xyz")
     added = server.post(BASE + "/references", json={"path": path}).json()
     yield added["id"]
-    httpx.delete(f"{server.url}{BASE}/references/{added['id']}", timeout=30)
+    httpx.delete(f"{server.url}{BASE}/references/{added['id']}", timeout=HANG_S)
 
 
 def aligned(server, reference, **how):
