@@ -149,6 +149,7 @@ def test_a_right_rig_file_is_not_changed_on_request(right, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_exchanged_mounts_are_called_so(dance, tmp_path):
     first, second = dance.rig.sensors
     rig = replace(
@@ -233,6 +234,7 @@ def test_on_a_circle_a_right_rig_file_raises_no_alarm(on_a_circle, tmp_path, mon
     assert abs(clock.change) < 1e-3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("motion", "corrected"), [(circle, 4), (straight, 0)])
 def test_what_a_walk_does_not_show_keeps_its_value_and_pulls_nothing_along(
     motion, corrected, tmp_path

@@ -82,6 +82,7 @@ class Follower:
         return pose, float(np.linalg.norm(off_m[:2]))
 
 
+@pytest.mark.slow
 def test_who_is_lost_and_carried_elsewhere_is_found_again(walk):
     follower = Follower(walk)
     errors = [follower.push(row)[1] for row in range(130)]
