@@ -33,20 +33,24 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test quick format lint types web kernels bytecode unit e2e bench docs examples constraints lock audit sbom clean
+.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e bench docs examples constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
+# What takes one processor only runs beside something that takes the other.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
-	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint types bytecode
-	@$(MAKE) --no-print-directory -j2 $(SYNC) unit e2e
+	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint bytecode
+	@$(MAKE) --no-print-directory -j3 $(SYNC) types unit e2e
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
-quick: format lint types
+quick:
+	@$(MAKE) --no-print-directory -j2 $(SYNC) format lint types touched
+
+touched: $(VENV)/installed-dev
 	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not e2e and not slow" $$($(BIN)/python -m tools.touched)
 
 format: $(VENV)/installed-dev
@@ -73,7 +77,7 @@ kernels: $(VENV)/installed-dev
 
 # What pip would do while nothing else can run yet; a confined process cannot keep what it compiles.
 bytecode: $(VENV)/installed-dev
-	@$(BIN)/python -m compileall -qq $(VENV)/lib || true
+	@$(BIN)/python -m compileall -qq -x '/tests?/' $(VENV)/lib || true
 
 bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \
