@@ -13,7 +13,7 @@ from recon4.export.names import check_name
 from recon4.export.scans import ScanRows, export_scans
 from recon4.model.pose_graph import PoseGraph
 from recon4.pose_graph.files import load_graph
-from recon4.profiler.turns import find_turns
+from recon4.profiler.sweeps import find_sweeps
 from recon4.progress import Progress
 from recon4.store.atomic import atomic_folder
 from recon4.store.frames import FrameStore, open_frames
@@ -26,8 +26,8 @@ _ALWAYS = (0, 2**63 - 1)
 def export_3dtk(project: Path, folder: Path, *, progress: Progress, draft: bool = False) -> int:
     """Write one scan with its pose for each node of the pose graph, as 3DTK reads them.
 
-    A node is a multiframe or, of a rig with a profiler, a turn of its head. The format has no place
-    for an approval.
+    A node is a multiframe or, of a rig with a profiler, a sweep of its head. The format has no
+    place for an approval.
 
     Args:
         project: The project folder.
@@ -50,7 +50,7 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress, draft: bool 
     dense = final_trajectory(project, artifacts, draft=draft)
     store = open_frames(artifacts["frames"], artifacts.get("calibration"))
     graph = load_graph(artifacts["verification"])
-    scans = _multiframes if store.rig.row_of("profiler") is None else _turns
+    scans = _multiframes if store.rig.row_of("profiler") is None else _sweeps
     with atomic_folder(folder) as temporary:
         return export_scans(store, dense, scans(store, graph), folder=temporary, progress=progress)
 
@@ -63,10 +63,10 @@ def _multiframes(store: FrameStore, graph: PoseGraph) -> list[ScanRows]:
     ]
 
 
-def _turns(store: FrameStore, _: PoseGraph) -> list[ScanRows]:
-    turns = find_turns(store, load_lines(store.folder))
-    spans = pairwise(turns.start_ns.tolist())
+def _sweeps(store: FrameStore, _: PoseGraph) -> list[ScanRows]:
+    sweeps = find_sweeps(store, load_lines(store.folder))
+    spans = pairwise(sweeps.start_ns.tolist())
     return [
-        ScanRows(t_ns, turns.multiframes(store, k), span_ns)
-        for k, (t_ns, span_ns) in enumerate(zip(turns.t_ns.tolist(), spans, strict=True))
+        ScanRows(t_ns, sweeps.multiframes(store, k), span_ns)
+        for k, (t_ns, span_ns) in enumerate(zip(sweeps.t_ns.tolist(), spans, strict=True))
     ]

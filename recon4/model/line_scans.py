@@ -13,8 +13,8 @@ from recon4.model.trajectory import Times
 _SPIN_RAD = 2.0 * np.pi
 _WIDE_LINES = 5
 """Lines over which the direction of the head is judged: its angles have noise."""
-_MIN_TURN = 0.25
-"""Shorter turns than this part of the median one are joined to their neighbor."""
+_MIN_SWEEP = 0.25
+"""Shorter sweeps than this part of the median one are joined to their neighbor."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,7 +29,7 @@ class LineScans:
     t_ns: Times
     """Time of the first shot [ns], strictly increasing, (L,)."""
     head_rad: Array
-    """Angle of the head at that time, continuous over a full turn [rad], (L,)."""
+    """Angle of the head at that time, continuous over a full revolution [rad], (L,)."""
     points: NDArray[np.int64]
     """Number of returns, (L,)."""
 
@@ -40,10 +40,10 @@ class LineScans:
         """Row of the line that was measured at each time, (N,) -> (N,)."""
         return np.maximum(np.searchsorted(self.t_ns, t_ns, side="right") - 1, 0)
 
-    def turns(self) -> NDArray[np.intp]:
-        """First line of each turn, and the number of lines at the end, (T + 1,).
+    def sweeps(self) -> NDArray[np.intp]:
+        """First line of each sweep, and the number of lines at the end, (T + 1,).
 
-        A turn ends where the head reverses, or after a full revolution in one direction.
+        A sweep ends where the head reverses, or after a full revolution in one direction.
         """
         count = len(self)
         if count <= 2 * _WIDE_LINES:
@@ -61,9 +61,9 @@ class LineScans:
                 start_rad, heading = self.head_rad[at], way[line] or heading
         return _without_short(np.array([*ends, count], np.intp))
 
-    def usual_turn_s(self) -> float:
-        """Median duration of the complete turns [s]; of all if there are too few."""
-        ends = self.turns()
+    def usual_sweep_s(self) -> float:
+        """Median duration of the complete sweeps [s]; of all if there are too few."""
+        ends = self.sweeps()
         starts = self.t_ns[ends[:-1]]
         if len(starts) < 3:
             return float(self.t_ns[-1] - self.t_ns[0]) * 1e-9
@@ -71,8 +71,8 @@ class LineScans:
 
 
 def _without_short(ends: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Turns joined to the one before where they are far shorter than usual."""
-    least = _MIN_TURN * np.median(np.diff(ends))
+    """Sweeps joined to the one before where they are far shorter than usual."""
+    least = _MIN_SWEEP * np.median(np.diff(ends))
     kept = [int(ends[0])]
     for end in ends[1:-1]:
         if end - kept[-1] >= least:

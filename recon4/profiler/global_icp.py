@@ -1,4 +1,4 @@
-"""6D SLAM as published: ICP of consecutive turns, then all turns at once (L Eq. 1, 2)."""
+"""6D SLAM as published: ICP of consecutive sweeps, then all sweeps at once (L Eq. 1, 2)."""
 
 from __future__ import annotations
 
@@ -6,26 +6,26 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points, proper, so3_exp
-from recon4.profiler.turns import Turns, relative
+from recon4.profiler.sweeps import Sweeps, relative
 from recon4.settings import LineSettings
 
 _POINTS = 8000
-"""Points of a turn that are paired."""
+"""Points of a sweep that are paired."""
 _MIN_PAIRS = 50
 _SMALL_M = 1e-3
 _SMALL_RAD = 2e-4
 Links = list[tuple[int, int, float]]
-"""Pairs of turns, the earlier first, and the part of the points with a closest pair."""
+"""Pairs of sweeps, the earlier first, and the part of the points with a closest pair."""
 
 
-class PairedTurns:
-    """Thinned points of all turns with their search trees."""
+class PairedSweeps:
+    """Thinned points of all sweeps with their search trees."""
 
-    def __init__(self, turns: Turns) -> None:
+    def __init__(self, sweeps: Sweeps) -> None:
         self.points: list[Array] = []
-        for turn in turns.turns:
-            step = max(1, -(-len(turn.points) // _POINTS))
-            self.points.append(turn.points[::step].astype(np.float64))
+        for sweep in sweeps.sweeps:
+            step = max(1, -(-len(sweep.points) // _POINTS))
+            self.points.append(sweep.points[::step].astype(np.float64))
         self._trees = [cKDTree(p, balanced_tree=False, compact_nodes=False) for p in self.points]
 
     def pairs(self, i: int, j: int, T_i_j: SE3, *, reach_m: float) -> tuple[Array, Array]:
@@ -37,20 +37,20 @@ class PairedTurns:
         return self.points[i][nearest[found]], self.points[j][found]
 
 
-def preregister(turns: Turns, T: SE3, settings: LineSettings) -> SE3:
-    """ICP of every turn to the one before; later turns move along (L Eq. 1, §5.2; A12 L-5).
+def preregister(sweeps: Sweeps, T: SE3, settings: LineSettings) -> SE3:
+    """ICP of every sweep to the one before; later sweeps move along (L Eq. 1, §5.2; A12 L-5).
 
-    The correction of a turn applies in its middle; between the middles of two turns it is
+    The correction of a sweep applies in its middle; between the middles of two sweeps it is
     interpolated, so it is distributed over the line scans.
 
     Args:
-        turns: Turns of the head as rigid scans.
+        sweeps: Sweeps of the head as rigid scans.
         T: Their first poses.
         settings: Largest distance of two points and number of rounds.
     """
-    paired = PairedTurns(turns)
+    paired = PairedSweeps(sweeps)
     R, t = T.R.copy(), T.t.copy()
-    for k in range(1, len(turns)):
+    for k in range(1, len(sweeps)):
         T_i_j = SE3(R[k - 1], t[k - 1]).inverse() @ (
             SE3(R[k - 1], t[k - 1]) @ relative(T, k - 1, k)
         )
@@ -68,19 +68,19 @@ def preregister(turns: Turns, T: SE3, settings: LineSettings) -> SE3:
     return SE3(proper(R), t)
 
 
-def register_all(turns: Turns, T: SE3, links: Links, *, settings: LineSettings) -> SE3:
-    """Poses of all turns from the closest pairs of all links, solved at once (L Eq. 2).
+def register_all(sweeps: Sweeps, T: SE3, links: Links, *, settings: LineSettings) -> SE3:
+    """Poses of all sweeps from the closest pairs of all links, solved at once (L Eq. 2).
 
     The rotation is linearized and pairs are searched again in every round, as in ICP. The first
-    turn stays.
+    sweep stays.
 
     Args:
-        turns: Turns of the head as rigid scans.
+        sweeps: Sweeps of the head as rigid scans.
         T: Their poses.
-        links: Turns that overlap.
+        links: Sweeps that overlap.
         settings: Largest distance of two points and number of rounds.
     """
-    paired, count = PairedTurns(turns), len(turns)
+    paired, count = PairedSweeps(sweeps), len(sweeps)
     if count < 2 or not links:
         return T
     R, t = T.R.copy(), T.t.copy()
@@ -107,11 +107,11 @@ def _add(H: Array, g: Array, link: tuple[int, int], *, r: Array, arms: tuple[Arr
     """Add the normal equations of the pairs of one link.
 
     Args:
-        H: Of all turns, added to, (6 N, 6 N).
+        H: Of all sweeps, added to, (6 N, 6 N).
         g: Likewise, (6 N,).
-        link: The two turns.
+        link: The two sweeps.
         r: Point of the first minus point of the second [m], (M, 3).
-        arms: The points from the position of their turn, in the map's axes, (M, 3) each.
+        arms: The points from the position of their sweep, in the map's axes, (M, 3) each.
     """
     jacobians = (_jacobian(arms[0]), -_jacobian(arms[1]))
     for a, J_a in zip(link, jacobians, strict=True):

@@ -1,8 +1,8 @@
 """Semi-rigid SLAM as published (L §4.3): point pairs, corrections between groups of lines.
 
 Every 100 lines have a correction; between two of them that of a line is interpolated. Points match
-the closest point of another turn, so at least a turn of the head away in time, within 25 cm. There
-is no model of the motion besides a weak bond between consecutive corrections.
+the closest point of another sweep, so at least a sweep away in time, within 25 cm. There is no
+model of the motion besides a weak bond between consecutive corrections.
 """
 
 from __future__ import annotations
@@ -73,15 +73,15 @@ class PublishedRefiner:
         self, trajectory: Trajectory, knot_ns: Times
     ) -> tuple[IntervalEquations, float, float]:
         """Normal equations of all pairs, their mean distance [m] and the part of matched points."""
-        turns = self._turns(trajectory)
+        sweeps = self._sweeps(trajectory)
         clouds = [
-            thinned(points.placed(trajectory), self.settings.pair_voxel_m) for points in turns
+            thinned(points.placed(trajectory), self.settings.pair_voxel_m) for points in sweeps
         ]
         count = len(knot_ns) - 1
         H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
         center = trajectory.at(np.clip(knot_ns[:-1], trajectory.t_ns[0], trajectory.t_ns[-1])).t
         total, matches, tried = 0.0, 0, 0
-        for k, points in enumerate(turns):
+        for k, points in enumerate(sweeps):
             others = [cloud for j, cloud in enumerate(clouds) if abs(j - k) >= 2 and len(cloud)]
             if not others:
                 continue
@@ -100,9 +100,9 @@ class PublishedRefiner:
         system = IntervalEquations(scale * H, scale * g)
         return system, total / max(matches, 1), matches / max(tried, 1)
 
-    def _turns(self, trajectory: Trajectory) -> list[TimedPoints]:
-        """Points of each turn of the head."""
-        ends = self.lines.turns()
+    def _sweeps(self, trajectory: Trajectory) -> list[TimedPoints]:
+        """Points of each sweep of the head."""
+        ends = self.lines.sweeps()
         start_ns = self.lines.t_ns[ends[:-1]]
         parts: list[list[TimedPoints]] = [[] for _ in start_ns]
         self.progress.start("pair lines", len(self.frames), "multiframe")
@@ -113,9 +113,9 @@ class PublishedRefiner:
                 every=self.settings.match_every,
                 min_range_m=self.settings.min_range_m,
             )
-            turn = np.clip(np.searchsorted(start_ns, points.t_ns, side="right") - 1, 0, None)
-            for k in np.unique(turn):
-                rows = turn == k
+            sweep = np.clip(np.searchsorted(start_ns, points.t_ns, side="right") - 1, 0, None)
+            for k in np.unique(sweep):
+                rows = sweep == k
                 parts[k].append(TimedPoints(points.t_ns[rows], points.p_body[rows]))
             self.progress.advance()
         nothing = TimedPoints(np.zeros(0, np.int64), np.empty((0, 3)))

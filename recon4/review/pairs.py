@@ -27,7 +27,7 @@ from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
 from recon4.review.planar_pairs import align_keyframes, keyframe_points
 from recon4.review.queue import MAX_PATHS, AlternativePath, alternative_paths
 from recon4.review.source import Source
-from recon4.review.turn_pairs import align_turns, has_turns, multiframes_of
+from recon4.review.sweep_pairs import align_sweeps, has_sweeps, multiframes_of
 from recon4.store.arrays import load_arrays, load_trajectory
 
 MAGIC = b"R4PP"
@@ -154,8 +154,8 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
     nodes = nodes_of(source.verified, pair)
     if source.is_2d:
         edge = align_keyframes(source, nodes, T_predicted)
-    elif has_turns(source):
-        edge = align_turns(source, nodes, T_predicted)
+    elif has_sweeps(source):
+        edge = align_sweeps(source, nodes, T_predicted)
     else:
         edge = _align_multiframes(source, pair, T_predicted)
     return Alignment(_measurement(edge), edge.converged, str(edge.reason))
@@ -241,7 +241,7 @@ def nodes_of(graph: PoseGraph, pair: Pair) -> tuple[int, int]:
 def _around(source: Source, node: int, reach: int) -> range:
     """Multiframes that are shown of a node: its own, or those of its turn, and some around them."""
     frame = int(source.verified.frame_ids[node])
-    own = multiframes_of(source, node) if has_turns(source) else range(frame, frame + 1)
+    own = multiframes_of(source, node) if has_sweeps(source) else range(frame, frame + 1)
     return range(max(own.start - reach, 0), min(own.stop + reach, len(source.frames)))
 
 

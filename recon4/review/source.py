@@ -20,7 +20,7 @@ from recon4.store.project import read_artifacts
 from recon4.store.recipes import check_recipes, settings_in
 
 if TYPE_CHECKING:  # other kinds of recordings; each is imported where it is read
-    from recon4.profiler.turns import TurnNodes
+    from recon4.profiler.sweeps import SweepNodes
     from recon4.slam2d.keyframes import Keyframes
 
 _MADE_WITH = ("graph", "graph_2d", "verification")
@@ -98,12 +98,12 @@ class Source:
         return open_frames(self._folder("frames"), self.artifacts.get("calibration"))
 
     @cached_property
-    def turns(self) -> TurnNodes:
-        """Turns of the profiler's head: the nodes of the graph of such a rig."""
-        from recon4.profiler.turns import find_turns
+    def sweeps(self) -> SweepNodes:
+        """Sweeps of the profiler's head: the nodes of the graph of such a rig."""
+        from recon4.profiler.sweeps import find_sweeps
         from recon4.store.line_store import load_lines
 
-        return find_turns(self.frames, load_lines(self.frames.folder))
+        return find_sweeps(self.frames, load_lines(self.frames.folder))
 
     def _folder(self, stage: str) -> Path:
         if stage not in self.artifacts:

@@ -18,7 +18,7 @@ from recon4.recording.velodyne.models import BLOCKS, MODELS
 from recon4.simulation.companions import REFLECTIVITY as OF_PEOPLE
 from recon4.simulation.companions import Companions
 from recon4.simulation.mirrors import follow
-from recon4.simulation.rides import Car, CarScene
+from recon4.simulation.rides import CarScene, ElevatorCar
 from recon4.simulation.vehicles import REFLECTIVITY as OF_VEHICLES
 from recon4.simulation.vehicles import Vehicles
 from recon4.simulation.walk import Walk
@@ -176,7 +176,7 @@ class Surroundings:
     mesh: WorldMesh
     scene: Scene
     companions: Companions | None = None
-    car: Car | None = None
+    car: ElevatorCar | None = None
     vehicles: Vehicles | None = None
 
     @cached_property

@@ -13,7 +13,7 @@ from recon4.geometry.se3 import Array
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Car:
+class ElevatorCar:
     """The car of an elevator as it stands at height 0."""
 
     shell: WorldMesh
@@ -49,7 +49,7 @@ class Ride:
 class CarScene:
     """A car prepared for ray casting."""
 
-    def __init__(self, car: Car) -> None:
+    def __init__(self, car: ElevatorCar) -> None:
         self._shell, self._door = Scene(car.shell), Scene(car.door)
         self._first_of_door = len(car.shell.triangles)
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from recon4.geometry.mesh import WorldMesh
 from recon4.geometry.se3 import Array
-from recon4.simulation.rides import Car
+from recon4.simulation.rides import ElevatorCar
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class World:
     stops: int
     """Most places a round can visit."""
     markers: tuple[WorldMarker, ...] = ()
-    car: Car | None = None
+    car: ElevatorCar | None = None
     """Of the elevator that the route rides; None = there is none."""
     floor: tuple[float, float, float, float] | None = None
     """Middle x, y and half extents of a free floor for figures [m]; None = there is none."""

@@ -22,12 +22,12 @@ def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
     )
 
 
-def _turn_graph(context: StageContext, *, frames: Path, odometry: Path) -> GraphFigures:
-    from recon4.profiler.turn_graph import build_turn_graph
+def _sweep_graph(context: StageContext, *, frames: Path, odometry: Path) -> GraphFigures:
+    from recon4.profiler.sweep_graph import build_sweep_graph
     from recon4.store.frames import FrameStore
 
     store = FrameStore.open(frames)
-    return build_turn_graph(
+    return build_sweep_graph(
         store, odometry, context.out, settings=context.settings, progress=context.progress
     )
 
@@ -54,7 +54,7 @@ TURN_GRAPH = Stage(
     "graph",
     3,
     ("odometry", "lines", "graph", "planes", "registration"),
-    _turn_graph,
+    _sweep_graph,
     GraphFigures,
 )
 LINE_REFINE = Stage("refine", 4, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)

@@ -29,7 +29,7 @@ MAX_KEPT = 4
 """Most idle children that are kept with their open maps."""
 SPARE_AFTER_S = 5.0
 """After the last start of a child the next one is prepared in advance."""
-INTERACTIVE_MODULES = ("recon4_app.slices.work", "recon4_app.review.work")
+INTERACTIVE_MODULES = ("recon4_app.slices.slice_work", "recon4_app.review.review_work")
 
 
 @dataclass(frozen=True, slots=True)

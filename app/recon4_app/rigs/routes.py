@@ -21,7 +21,7 @@ from recon4_app.errors import BadRequest
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
 from recon4_app.rig_files import LIMIT_S
-from recon4_app.rigs import work
+from recon4_app.rigs import rig_work
 from recon4_app.rigs.calibrations import evidence_of
 from recon4_app.rigs.content import content_of, problems_of, rig_of, warnings_of
 from recon4_app.rigs.model import (
@@ -96,7 +96,7 @@ async def read_rig(
     versions = await run_in_threadpool(server.rigs.versions, rig_id)
     terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
     content = await caller.wait(
-        server.compute_pool.run_interactive(Lane.INSPECT, terms, work.read_content, path)
+        server.compute_pool.run_interactive(Lane.INSPECT, terms, rig_work.read_content, path)
     )
     shown = versions[0].number if version is None else version
     return RigView(
@@ -192,16 +192,16 @@ def _text_of(new: NewRig | NewVersion) -> str:
     return new.toml or ""
 
 
-async def _checked_text(text: str, server: ServerParts, caller: Caller) -> work.CheckedRig:
+async def _checked_text(text: str, server: ServerParts, caller: Caller) -> rig_work.CheckedRig:
     terms = Terms(person=caller.name, limit_s=LIMIT_S)
     pool = server.compute_pool
-    return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, work.check_rig, text))
+    return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_work.check_rig, text))
 
 
-async def _checked_file(server: ServerParts, caller: Caller, path: Path) -> work.CheckedRig:
+async def _checked_file(server: ServerParts, caller: Caller, path: Path) -> rig_work.CheckedRig:
     terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
     pool = server.compute_pool
-    return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, work.check_rig_in, path))
+    return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_work.check_rig_in, path))
 
 
 def _audited(request: Request, rig_id: str, saved: RigVersion) -> SavedRig:

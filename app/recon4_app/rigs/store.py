@@ -22,7 +22,7 @@ from recon4.store.project import is_project
 from recon4.untrusted.names import visible
 from recon4_app.errors import Conflict, NotFound, Remedy
 from recon4_app.rigs.model import RIG_ID, RigVersion
-from recon4_app.rigs.work import CheckedRig
+from recon4_app.rigs.rig_work import CheckedRig
 
 RIGS = "rigs"
 """Folder of the rigs below that of the projects."""

@@ -17,7 +17,7 @@ from recon4.slices.fit import fit_of, sample_reference, sample_tiles
 from recon4.slices.imports import set_alignment, undo_alignment
 from recon4.slices.reference import Reference, ReferenceFacts
 from recon4_app.slices.model import AlignPoints, AlignRequest
-from recon4_app.slices.work import reference_of, tiles_of
+from recon4_app.slices.slice_work import reference_of, tiles_of
 
 _SHOWN = 150_000
 """Most points of map and reference on the page."""

@@ -20,7 +20,7 @@ from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text
 from recon4.workflows.result_files import covariances_of
 from recon4_app.slices.model import ControlState, ExportContext
-from recon4_app.slices.work import Artifacts, map_frame, map_of, stamp_text, tiles_of
+from recon4_app.slices.slice_work import Artifacts, map_frame, map_of, stamp_text, tiles_of
 
 
 def preview_control(data: bytes, name: str, choice: ColumnChoice) -> ControlPreview:

@@ -14,7 +14,7 @@ from recon4.slices.points import SliceWindow
 from recon4.slices.sheet import SheetText, lay_out, source_text, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw
 from recon4_app.slices.model import ExportContext, SliceExportRequest
-from recon4_app.slices.work import (
+from recon4_app.slices.slice_work import (
     Artifacts,
     map_frame,
     map_of,

@@ -10,7 +10,7 @@ from recon4.slices.imports import MapPlace, import_reference
 from recon4.slices.meshes import is_mesh
 from recon4.slices.reference import ReferenceFacts
 from recon4_app.slices.reference_model import AddReference, ReferenceFile, ReferencePreview
-from recon4_app.slices.work import Artifacts, map_frame, tiles_of
+from recon4_app.slices.slice_work import Artifacts, map_frame, tiles_of
 
 
 def preview_reference(path: str, artifacts: Artifacts, ask: ReferenceFile) -> ReferencePreview:

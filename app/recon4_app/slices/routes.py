@@ -25,7 +25,7 @@ from recon4_app.errors import BadRequest
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
 from recon4_app.projects.routes import REPORT_POLICY
-from recon4_app.slices import control_work, readers, work
+from recon4_app.slices import control_work, readers, slice_work
 from recon4_app.slices.exports import ExportRequest
 from recon4_app.slices.model import (
     CompareRequest,
@@ -76,7 +76,9 @@ async def read_facts(
     approval = await run_in_threadpool(slices.approval, project_id, source)
     terms = slices.terms(project_id, caller.name, source)
     return await caller.wait(
-        slices.run_interactive(terms, work.facts, artifacts, references, sources, approval=approval)
+        slices.run_interactive(
+            terms, slice_work.facts, artifacts, references, sources, approval=approval
+        )
     )
 
 
@@ -99,7 +101,7 @@ async def slice_image(
         slices.run_latest(
             asking,
             terms,
-            work.slice_image,
+            slice_work.slice_image,
             artifacts["map"],
             reference,
             ask,
@@ -132,7 +134,9 @@ async def pick(project_id: str, ask: PickRequest, server: Server, *, caller: Cal
     artifacts = await run_in_threadpool(server.slices.artifacts, project_id, ask.source)
     terms = server.slices.terms(project_id, caller.name, ask.source)
     ask.plane.slice_plane()  # an invalid plane is rejected before the request waits
-    return await caller.wait(server.slices.run_interactive(terms, work.pick_point, artifacts, ask))
+    return await caller.wait(
+        server.slices.run_interactive(terms, slice_work.pick_point, artifacts, ask)
+    )
 
 
 @router.get("/doubles", summary="Double walls")
@@ -147,7 +151,7 @@ async def doubles(
         server.slices.kept(
             f"{Path(folder).name}-surfaces.json",
             lambda out: server.slices.run_background(
-                replace(terms, outputs={SURFACES: out}), work.double_walls, folder, SURFACES
+                replace(terms, outputs={SURFACES: out}), slice_work.double_walls, folder, SURFACES
             ),
         )
     )
@@ -163,7 +167,7 @@ async def compare(
     reference = server.slices.reference(project_id, ask.reference)
     terms = server.slices.terms(project_id, caller.name, ask.source)
     return await caller.wait(
-        server.slices.run_background(terms, work.comparison, artifacts["map"], reference, ask)
+        server.slices.run_background(terms, slice_work.comparison, artifacts["map"], reference, ask)
     )
 
 
@@ -292,7 +296,9 @@ async def surface(project_id: str, point: str, server: Server, *, caller: Called
         raise ConfigError(f"no point {point[:64]!r}")
     terms = server.slices.terms(project_id, caller.name)
     return await caller.wait(
-        server.slices.run_interactive(terms, work.surface_at, artifacts, found[0], state.frame)
+        server.slices.run_interactive(
+            terms, slice_work.surface_at, artifacts, found[0], state.frame
+        )
     )
 
 
@@ -306,7 +312,9 @@ async def compare_csv(
     reference = server.slices.reference(project_id, asked.reference)
     terms = server.slices.terms(project_id, caller.name, asked.source)
     text = await caller.wait(
-        server.slices.run_background(terms, work.comparison_csv, artifacts["map"], reference, asked)
+        server.slices.run_background(
+            terms, slice_work.comparison_csv, artifacts["map"], reference, asked
+        )
     )
     head = {"Content-Disposition": f'attachment; filename="{project_id}-comparison.csv"'}
     return PlainTextResponse(text, media_type="text/csv; charset=utf-8", headers=head)
@@ -321,7 +329,7 @@ async def _overview(project_id: str, server: Server, caller: Caller, *, source: 
     async def make(out: Path) -> None:
         # The image is written last: if it exists, its window exists too.
         made = replace(terms, outputs={about: out.with_suffix(".json"), image: out})
-        await server.slices.run_interactive(made, work.overview, folder, image, about)
+        await server.slices.run_interactive(made, slice_work.overview, folder, image, about)
 
     return await caller.wait(server.slices.kept(f"{Path(folder).name}-above.png", make))
 

@@ -30,7 +30,7 @@ from recon4_app.errors import Conflict, NotFound
 from recon4_app.projects.store import PROJECT_ID, ProjectStore
 from recon4_app.review.checks import ApprovalChecks
 from recon4_app.settings import ServerSettings
-from recon4_app.slices import work
+from recon4_app.slices import slice_work
 from recon4_app.slices.exports import Exports
 from recon4_app.slices.model import ControlState, ListedReference, OtherMap, Xyz
 
@@ -194,7 +194,7 @@ class Slices:
 
     def references(self, project_id: str) -> list[ListedReference]:
         """References of a project."""
-        return work.references_in(self._folder(project_id) / "references")
+        return slice_work.references_in(self._folder(project_id) / "references")
 
     def reference(self, project_id: str, reference_id: str) -> str:
         """Folder of a reference; empty for an empty id.

@@ -12,7 +12,7 @@ from recon4_app.error_responses import ProblemDetail
 from recon4_app.pages import page_response
 from recon4_app.projects.trash import Deleted
 from recon4_app.storage.model import StorageView
-from recon4_app.storage.work import delete_recording, read_storage
+from recon4_app.storage.storage_work import delete_recording, read_storage
 
 PROCESS = [Depends(needs(Permission.PROCESS))]
 

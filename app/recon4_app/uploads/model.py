@@ -20,7 +20,7 @@ class UploadedFile:
     bytes: int
     offset: int = 0
     """Bytes that are durably on disk."""
-    turn: asyncio.Lock = field(default_factory=asyncio.Lock, repr=False, compare=False)
+    lock: asyncio.Lock = field(default_factory=asyncio.Lock, repr=False, compare=False)
     """Held by the request that writes to it."""
 
     @property

@@ -240,7 +240,7 @@ async def head(file_id: Annotated[str, Path(max_length=40)], server: Server) -> 
     """Read the bytes of a file that are durably on the server's disk, as ``Upload-Offset``."""
     upload, file = server.uploads.file(file_id)
     with contextlib.suppress(TimeoutError):  # an interrupted request may still write its bytes
-        async with asyncio.timeout(SETTLES_WITHIN_S), file.turn:
+        async with asyncio.timeout(SETTLES_WITHIN_S), file.lock:
             pass
     headers = {"Upload-Length": str(file.bytes), "Cache-Control": "no-store"}
     return Response(headers=headers | _offset_headers(server, upload, file))
@@ -286,9 +286,9 @@ async def _take(
     server: ServerParts, upload: Upload, file: UploadedFile, *, request: Request
 ) -> None:
     """Write the body of a request to its file; one request per file at a time."""
-    if file.turn.locked():
+    if file.lock.locked():
         raise Locked("another request writes to this file; send HEAD and try again")
-    async with file.turn:
+    async with file.lock:
         offset = tus.number(request.headers, "Upload-Offset") if request.method == "PATCH" else 0
         if upload.finished or offset != file.offset:
             raise Conflict(f"expected Upload-Offset {file.offset}, got {offset}")

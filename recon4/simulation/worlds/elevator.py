@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
-from recon4.simulation.rides import Car
+from recon4.simulation.rides import ElevatorCar
 from recon4.simulation.world import Waypoint, World
 from recon4.simulation.worlds.furniture import lamp, shelf
 from recon4.simulation.worlds.walls import (
@@ -83,7 +83,7 @@ def _landing(builder: MeshBuilder, floor_m: float, *, rng: np.random.Generator) 
     builder.place(part, [0.0, 0.0, floor_m])
 
 
-def _car() -> Car:
+def _car() -> ElevatorCar:
     """Walls of steel with a handrail and a panel of buttons; the door is on the side of x."""
     shell, door = MeshBuilder(), MeshBuilder()
     low, high, top = _FRONT_M - 0.1 - 2 * _CAR_M, _FRONT_M - 0.1, 2.3
@@ -101,7 +101,7 @@ def _car() -> Car:
     shell.quad(over, [0, _DOOR_M, 0], [0, 0, top - 2.1], reflectivity=STEEL)
     shell.box([high - 0.06, 0.65, 0.9], [high - 0.03, 0.85, 1.5], 0.2)
     door.quad([high, -_DOOR_M / 2, 0.0], [0, _DOOR_M, 0], [0, 0, 2.1], reflectivity=STEEL)
-    return Car(shell.mesh(), door.mesh())
+    return ElevatorCar(shell.mesh(), door.mesh())
 
 
 def _route(rng: np.random.Generator, stops: int, *, storeys: int) -> list[Waypoint]:

@@ -27,7 +27,7 @@ def access(tmp_path, clock, monkeypatch):
         "recon4_app.access.login.passwords.hashed", lambda password: f"hash of {password}"
     )
     monkeypatch.setattr(
-        "recon4_app.access.login.passwords.fits",
+        "recon4_app.access.login.passwords.matches",
         lambda password, stored: stored == f"hash of {password}",
     )
     opened = open_access(tmp_path, login=True, clock=clock)

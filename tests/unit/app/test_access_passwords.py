@@ -60,22 +60,22 @@ def test_a_hash_is_argon2id_dear_enough_and_salted():
 
     assert first.startswith("$argon2id$v=19$m=65536,t=2,p=1$")
     assert first != second
-    assert passwords.fits("three green owls", first)
-    assert not passwords.fits("three green owl", first)
+    assert passwords.matches("three green owls", first)
+    assert not passwords.matches("three green owl", first)
 
 
 def test_the_same_letters_typed_otherwise_are_the_same_password():
     stored = passwords.hashed("caf\u00e9 au lait noir")
 
-    assert passwords.fits("cafe\u0301 au lait noir", stored)
+    assert passwords.matches("cafe\u0301 au lait noir", stored)
 
 
 @pytest.mark.parametrize("stored", [None, "", "no hash", "$argon2id$v=19$m=1"])
 def test_nothing_fits_what_is_no_hash(stored):
-    assert not passwords.fits("nobody has this password", stored)
+    assert not passwords.matches("nobody has this password", stored)
 
 
 def test_a_name_without_an_account_costs_as_much_as_one_with_an_account():
     assert not passwords.HASHER.check_needs_rehash(passwords.STAND_IN)
     assert passwords.HASHER.verify(passwords.STAND_IN, "nobody has this password")
-    assert not passwords.fits("nobody has this password", None)
+    assert not passwords.matches("nobody has this password", None)

@@ -1,4 +1,4 @@
-"""Line scans: which line a time belongs to, and where the turns of the head end."""
+"""Line scans: which line a time belongs to, and where the sweeps of the head end."""
 
 import numpy as np
 
@@ -26,18 +26,18 @@ def test_a_turn_ends_where_the_head_reverses():
 
     lines = lines_of(angle)
 
-    ends = lines.turns()
+    ends = lines.sweeps()
     assert ends[0] == 0
     assert ends[-1] == 2600
     assert np.abs(ends[1:-1] - [400, 1000, 1600, 2200]).max() <= 5
-    assert abs(lines.usual_turn_s() - 6.0) < 0.05
+    assert abs(lines.usual_sweep_s() - 6.0) < 0.05
 
 
 def test_a_head_that_spins_has_a_turn_every_revolution():
     lines = lines_of(np.arange(1000) * np.deg2rad(-1.2))  # 300 lines a revolution
 
-    assert lines.turns().tolist() == [0, 300, 600, 900, 1000]
+    assert lines.sweeps().tolist() == [0, 300, 600, 900, 1000]
 
 
 def test_few_lines_are_one_turn():
-    assert lines_of(np.arange(5)).turns().tolist() == [0, 5]
+    assert lines_of(np.arange(5)).sweeps().tolist() == [0, 5]

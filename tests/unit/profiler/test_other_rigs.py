@@ -10,7 +10,7 @@ from recon4.model.rig import parse_rig
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.line_refine import refine_lines
 from recon4.profiler.stage_odometry import run_line_odometry
-from recon4.profiler.turn_graph import build_turn_graph
+from recon4.profiler.sweep_graph import build_sweep_graph
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
@@ -47,7 +47,7 @@ SECONDS = 20.0
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SpinningHead(HeadModel):
-    """A head that turns in one direction."""
+    """A head that spins in one direction."""
 
     def angle_rad(self, t_s):
         """One revolution in 6 s, reported without wrapping."""
@@ -93,7 +93,7 @@ def test_another_rig_is_mapped_by_its_rig_file(tmp_path, settings, name, turn_s)
     frames = FrameStore.open(tmp_path / "frames")
 
     figures = run_line_odometry(frames, tmp_path / "odometry", settings=settings, progress=Silent())
-    build_turn_graph(
+    build_sweep_graph(
         frames, tmp_path / "odometry", tmp_path / "graph", settings=settings, progress=Silent()
     )
     refined = refine_lines(
@@ -105,7 +105,7 @@ def test_another_rig_is_mapped_by_its_rig_file(tmp_path, settings, name, turn_s)
     )
 
     assert not line_texts(figures)
-    assert len(load_lines(frames.folder).turns()) - 1 == pytest.approx(SECONDS / turn_s, abs=1.5)
+    assert len(load_lines(frames.folder).sweeps()) - 1 == pytest.approx(SECONDS / turn_s, abs=1.5)
     truth = read_tum(tmp_path / "walk" / "truth.tum")
     error = absolute_error(pair_poses(refined.trajectory, truth))
     assert error.position_m.rmse < 0.02

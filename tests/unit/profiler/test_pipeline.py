@@ -12,8 +12,8 @@ from recon4.pose_graph.files import load_graph
 from recon4.profiler.line_refine import refine_lines
 from recon4.profiler.samples import line_points
 from recon4.profiler.stage_odometry import run_line_odometry
-from recon4.profiler.turn_graph import build_turn_graph
-from recon4.profiler.turns import unwind_turns
+from recon4.profiler.sweep_graph import build_sweep_graph
+from recon4.profiler.sweeps import unwind_sweeps
 from recon4.progress import Silent
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -31,7 +31,7 @@ def odometry(frames, settings, tmp_path_factory):
 @pytest.fixture(scope="module")
 def graph_folder(frames, odometry, settings, tmp_path_factory):
     out = tmp_path_factory.mktemp("graph")
-    build_turn_graph(frames, odometry[0], out, settings=settings, progress=Silent())
+    build_sweep_graph(frames, odometry[0], out, settings=settings, progress=Silent())
     return out
 
 
@@ -53,14 +53,14 @@ def test_the_first_trajectory_is_near_the_truth(odometry, truth):
 def test_turns_are_unwound_by_the_pose_of_every_point(frames, truth, settings):
     lines = load_lines(frames.folder)
 
-    turns = unwind_turns(frames, lines, truth, settings=settings.lines, progress=Silent())
+    sweeps = unwind_sweeps(frames, lines, truth, settings=settings.lines, progress=Silent())
 
-    ends = lines.turns()
-    assert len(turns) == len(ends) - 1
-    assert sum(turn.lines for turn in turns.turns) == len(lines)
+    ends = lines.sweeps()
+    assert len(sweeps) == len(ends) - 1
+    assert sum(sweep.lines for sweep in sweeps.sweeps) == len(lines)
     # With the true poses the floor is flat in every turn.
-    for k, turn in enumerate(turns.turns):
-        z = (truth.at(turns.t_ns[k : k + 1])[0] @ turn.points.astype(float))[:, 2]
+    for k, sweep in enumerate(sweeps.sweeps):
+        z = (truth.at(sweeps.t_ns[k : k + 1])[0] @ sweep.points.astype(float))[:, 2]
         floor = z[np.abs(z) < 0.1]
         assert len(floor) > 100
         assert np.abs(floor).mean() < 0.01

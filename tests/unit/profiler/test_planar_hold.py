@@ -11,7 +11,7 @@ from recon4.profiler.imu_chain import initial_chain, linearize, make_drive
 from recon4.profiler.line_refine import refine_lines
 from recon4.profiler.planar_hold import PlanarHold, observed_motion
 from recon4.profiler.stage_odometry import run_line_odometry, span_of
-from recon4.profiler.turn_graph import build_turn_graph
+from recon4.profiler.sweep_graph import build_sweep_graph
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
@@ -75,7 +75,7 @@ def test_the_other_side_of_a_wall_is_another_wall(settings, tmp_path):
     ingest(sources, tmp_path / "frames", settings=IngestSettings(), progress=Silent())
     frames = FrameStore.open(tmp_path / "frames")
     run_line_odometry(frames, tmp_path / "odometry", settings=settings, progress=Silent())
-    build_turn_graph(
+    build_sweep_graph(
         frames, tmp_path / "odometry", tmp_path / "graph", settings=settings, progress=Silent()
     )
 

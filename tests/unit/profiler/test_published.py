@@ -1,4 +1,4 @@
-"""The pipeline as published: ICP of turns, all turns at once, pairs of line scans."""
+"""The pipeline as published: ICP of sweeps, all sweeps at once, pairs of line scans."""
 
 from dataclasses import replace
 
@@ -11,7 +11,7 @@ from recon4.kernels.pairs import accumulate_pairs
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.global_icp import preregister, register_all
 from recon4.profiler.published_refine import PublishedRefiner
-from recon4.profiler.turns import Turn, Turns
+from recon4.profiler.sweeps import Sweep, Sweeps
 from recon4.progress import Silent
 from recon4.settings import LineSettings
 from recon4.store.line_store import load_lines
@@ -30,12 +30,12 @@ def room(rng, *, count=4000):
     return p
 
 
-def turns_of(T_map_node, rng):
-    """Turns that all see the same room, each from its own node."""
+def sweeps_of(T_map_node, rng):
+    """Sweeps that all see the same room, each from its own node."""
     p = room(rng)
-    turns = tuple(Turn((T.inverse() @ p).astype(np.float32), 100) for T in T_map_node)
-    t_ns = np.arange(len(turns), dtype=np.int64) * 6_000_000_000
-    return Turns(t_ns, np.append(t_ns, t_ns[-1] + 1), np.arange(len(turns)), turns)
+    sweeps = tuple(Sweep((T.inverse() @ p).astype(np.float32), 100) for T in T_map_node)
+    t_ns = np.arange(len(sweeps), dtype=np.int64) * 6_000_000_000
+    return Sweeps(t_ns, np.append(t_ns, t_ns[-1] + 1), np.arange(len(sweeps)), sweeps)
 
 
 @pytest.fixture
@@ -53,11 +53,11 @@ def disturbed(T, rng, *, sd_m, sd_rad):
 
 def test_all_turns_are_registered_at_once(poses):
     rng = np.random.default_rng(1)
-    turns = turns_of([poses[k] for k in range(4)], rng)
+    sweeps = sweeps_of([poses[k] for k in range(4)], rng)
     links = [(i, j, 1.0) for j in range(4) for i in range(j)]
 
     found = register_all(
-        turns, disturbed(poses, rng, sd_m=0.08, sd_rad=0.02), links, settings=SETTINGS
+        sweeps, disturbed(poses, rng, sd_m=0.08, sd_rad=0.02), links, settings=SETTINGS
     )
 
     assert np.abs(found.t - poses.t).max() < 2e-3
@@ -65,10 +65,10 @@ def test_all_turns_are_registered_at_once(poses):
 
 
 def test_a_turn_without_links_stays(poses):
-    turns = turns_of([poses[k] for k in range(4)], np.random.default_rng(1))
+    sweeps = sweeps_of([poses[k] for k in range(4)], np.random.default_rng(1))
     start = disturbed(poses, np.random.default_rng(2), sd_m=0.05, sd_rad=0.01)
 
-    found = register_all(turns, start, [(0, 1, 1.0)], settings=SETTINGS)
+    found = register_all(sweeps, start, [(0, 1, 1.0)], settings=SETTINGS)
 
     assert np.allclose(found.t[2:], start.t[2:], atol=1e-6)
     assert np.linalg.norm(found.t[1] - start.t[1]) > 0.01
@@ -76,12 +76,12 @@ def test_a_turn_without_links_stays(poses):
 
 def test_preregistration_reaches_farther_and_moves_later_turns_along(poses):
     rng = np.random.default_rng(3)
-    turns = turns_of([poses[k] for k in range(4)], rng)
+    sweeps = sweeps_of([poses[k] for k in range(4)], rng)
     shift = SE3.from_rpy(0.0, 0.0, 0.03, t=[0.35, 0.25, 0.0])
     start = SE3.stack([poses[0], *((poses[k] @ shift) for k in range(1, 4))])
     settings = replace(SETTINGS, slam_rounds=60)
 
-    found = preregister(turns, start, settings)
+    found = preregister(sweeps, start, settings)
 
     before = np.linalg.norm(start.t - poses.t, axis=1)
     after = np.linalg.norm(found.t - poses.t, axis=1)

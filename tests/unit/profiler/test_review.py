@@ -7,7 +7,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.stage_odometry import run_line_odometry
-from recon4.profiler.turn_graph import build_turn_graph
+from recon4.profiler.sweep_graph import build_sweep_graph
 from recon4.progress import Silent
 from recon4.review.decisions import numbers_of, pose_of
 from recon4.review.pairs import LAYOUT, align, pair_points
@@ -18,7 +18,7 @@ from recon4.review.source import Source
 def source(frames, settings, tmp_path_factory):
     odometry, graph = tmp_path_factory.mktemp("odometry"), tmp_path_factory.mktemp("graph")
     run_line_odometry(frames, odometry, settings=settings, progress=Silent())
-    build_turn_graph(frames, odometry, graph, settings=settings, progress=Silent())
+    build_sweep_graph(frames, odometry, graph, settings=settings, progress=Silent())
     made = Source({"frames": frames.folder, "odometry": odometry, "verification": graph})
     made.__dict__["settings"] = settings  # as if the recipes said so
     return made

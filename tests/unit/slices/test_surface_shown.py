@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from recon4_app.slices.model import PickRequest, SliceImageRequest, SlicePlaneSpec, WindowSpec
-from recon4_app.slices.work import pick_point, slice_image
+from recon4_app.slices.slice_work import pick_point, slice_image
 from recon4_app.viewer.client.legend import legend
 from recon4_app.viewer.client.view import ViewState, view_from_json
 from recon4_app.viewer.cloud.parts import Cloud

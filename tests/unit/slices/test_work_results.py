@@ -4,12 +4,12 @@ import inspect
 
 import numpy as np
 import pytest
-import recon4_app.review.work
+import recon4_app.review.review_work
 from pydantic import TypeAdapter
 from recon4_app.compute_pool.messages import declared, decode_result, encode_result
-from recon4_app.review.work import pair_facts, preview
+from recon4_app.review.review_work import pair_facts, preview
 from recon4_app.slices.control_work import control_report
-from recon4_app.slices.work import comparison
+from recon4_app.slices.slice_work import comparison
 
 from recon4.evaluation.slices import SliceError
 from recon4.model.pose_graph import Judge, Judgment, Measure, Reason, Verdict
@@ -26,7 +26,7 @@ from recon4.slices.signed import SignedFigures
 
 WORK = [
     function
-    for module in (recon4_app.review.work, recon4_app.slices.work)
+    for module in (recon4_app.review.review_work, recon4_app.slices.slice_work)
     for name, function in inspect.getmembers(module, inspect.isfunction)
     if not name.startswith("_")
     if function.__module__ == module.__name__ or name in getattr(module, "__all__", ())

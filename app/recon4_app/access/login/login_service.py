@@ -142,7 +142,7 @@ class LoginService:
     def _fits(self, name: str, password: str) -> bool:
         stored = self._accounts.active_password_hash(name)
         with self._verifying:
-            return passwords.fits(password[: passwords.LONGEST], stored)
+            return passwords.matches(password[: passwords.LONGEST], stored)
 
     def _begin_session(self, account: Account, caller: LoginOrigin) -> LoginResult:
         session = self._sessions.begin(account.name, address=caller.address, agent=caller.agent)

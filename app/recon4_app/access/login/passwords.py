@@ -100,7 +100,7 @@ def hashed(password: str) -> str:
     return HASHER.hash(_normal(password))
 
 
-def fits(password: str, stored: str | None) -> bool:
+def matches(password: str, stored: str | None) -> bool:
     """Whether a password matches its hash; takes as long when there is no hash."""
     try:
         return HASHER.verify(stored or STAND_IN, _normal(password)) and bool(stored)

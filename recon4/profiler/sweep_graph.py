@@ -1,4 +1,4 @@
-"""6D SLAM of turns: links by counts of closest pairs, registration, pose graph (A12 L-3)."""
+"""6D SLAM of sweeps: links by counts of closest pairs, registration, pose graph (A12 L-3)."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import RegistrationLimits, registration_judgment, tried_event
 from recon4.pose_graph.solve import optimize
 from recon4.profiler.global_icp import preregister, register_all
-from recon4.profiler.turns import Turns, relative, unwind_turns
+from recon4.profiler.sweeps import Sweeps, relative, unwind_sweeps
 from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
@@ -40,13 +40,13 @@ from recon4.store.line_store import load_lines
 Points = NDArray[np.float32]
 
 _COUNTED = 4000
-"""Points of a turn whose closest pairs are counted."""
+"""Points of a sweep whose closest pairs are counted."""
 _LOST_FACTOR = 200.0
 _WIDE_SD_M = 0.05
-"""Planes of a turn that is bent by the errors of its poses [m]."""
+"""Planes of a sweep that is bent by the errors of its poses [m]."""
 
 
-def build_turn_graph(
+def build_sweep_graph(
     frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
 ) -> GraphFigures:
     """Run the stage ``graph`` of a rig with a profiler.
@@ -61,9 +61,9 @@ def build_turn_graph(
     trajectory = load_trajectory(odometry / "trajectory.npz")
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
     lines = load_lines(frames.folder)
-    turns = unwind_turns(frames, lines, trajectory, settings=settings.lines, progress=progress)
-    make = published_graph if settings.lines.method == "published" else turn_graph
-    graph = make(turns, trajectory, lost, settings=settings, progress=progress)
+    sweeps = unwind_sweeps(frames, lines, trajectory, settings=settings.lines, progress=progress)
+    make = published_graph if settings.lines.method == "published" else sweep_graph
+    graph = make(sweeps, trajectory, lost, settings=settings, progress=progress)
     save_graph(out, graph)
     return GraphFigures(
         nodes=len(graph),
@@ -72,31 +72,31 @@ def build_turn_graph(
     )
 
 
-def turn_graph(
-    turns: Turns,
+def sweep_graph(
+    sweeps: Sweeps,
     trajectory: Trajectory,
     lost: NDArray[np.bool_],
     *,
     settings: Settings,
     progress: Progress,
 ) -> PoseGraph:
-    """Nodes at the turns, edges between those that see the same."""
-    T = trajectory.at(turns.t_ns)
-    edges = _chain(turns, T, lost, settings=settings)
-    graph = PoseGraph(turns.frame_rows, turns.t_ns, T, edges)
-    progress.event(NodesPlaced(t_ns=tuple(turns.t_ns.tolist()), t_m=positions_of(T.t)))
-    links = linked(turns, T, settings)
+    """Nodes at the sweeps, edges between those that see the same."""
+    T = trajectory.at(sweeps.t_ns)
+    edges = _chain(sweeps, T, lost, settings=settings)
+    graph = PoseGraph(sweeps.frame_rows, sweeps.t_ns, T, edges)
+    progress.event(NodesPlaced(t_ns=tuple(sweeps.t_ns.tolist()), t_m=positions_of(T.t)))
+    links = linked(sweeps, T, settings)
     progress.start("pairs", len(links), "pair")
     found = list(edges)
     target, target_of = PlaneMap(_planes_of(settings)), -1
     for i, j, overlap in links:
         if i != target_of:
             target.clear()
-            target.add(turns.turns[i].points.astype(np.float64))
+            target.add(sweeps.sweeps[i].points.astype(np.float64))
             target_of = i
         edge = _register(
             target,
-            (turns.turns[i].points, turns.turns[j].points),
+            (sweeps.sweeps[i].points, sweeps.sweeps[j].points),
             Link(i, j, relative(T, i, j), overlap),
             settings=settings,
         )
@@ -112,25 +112,25 @@ def turn_graph(
 
 
 def published_graph(
-    turns: Turns,
+    sweeps: Sweeps,
     trajectory: Trajectory,
     lost: NDArray[np.bool_],
     *,
     settings: Settings,
     progress: Progress,
 ) -> PoseGraph:
-    """Turns registered as published: to the one before if requested, then all at once (L §4.2).
+    """Sweeps registered as published: to the one before if requested, then all at once (L §4.2).
 
     The edges are the relations of the solution; those of links have the counts of pairs.
     """
-    first = trajectory.at(turns.t_ns)
+    first = trajectory.at(sweeps.t_ns)
     s = settings.lines
-    T = preregister(turns, first, s) if s.preregister else first
-    progress.event(NodesPlaced(t_ns=tuple(turns.t_ns.tolist()), t_m=positions_of(T.t)))
-    links = linked(turns, T, settings)
-    T = register_all(turns, T, links, settings=s)
+    T = preregister(sweeps, first, s) if s.preregister else first
+    progress.event(NodesPlaced(t_ns=tuple(sweeps.t_ns.tolist()), t_m=positions_of(T.t)))
+    links = linked(sweeps, T, settings)
+    T = register_all(sweeps, T, links, settings=s)
     progress.event(NodesPlaced(t_m=positions_of(T.t)))
-    edges = list(_chain(turns, T, lost, settings=settings))
+    edges = list(_chain(sweeps, T, lost, settings=settings))
     information = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** -2.0)
     for i, j, overlap in links:
         kind = EdgeKind.NEIGHBOR if j - i <= settings.graph.neighbors else EdgeKind.LOOP
@@ -146,19 +146,19 @@ def published_graph(
         )
         progress.event(tried_event(edge))
         edges.append(edge)
-    return PoseGraph(turns.frame_rows, turns.t_ns, T, tuple(edges))
+    return PoseGraph(sweeps.frame_rows, sweeps.t_ns, T, tuple(edges))
 
 
-def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, float]]:
-    """Pairs of turns with enough closest pairs, and which part of the points has one.
+def linked(sweeps: Sweeps, T: SE3, settings: Settings) -> list[tuple[int, int, float]]:
+    """Pairs of sweeps with enough closest pairs, and which part of the points has one.
 
     Neighbors first; of earlier visits those with the most pairs (requirements A12 L-3).
     """
     g, s = settings.graph, settings.lines
-    some = [_spread(turn.points, _COUNTED) for turn in turns.turns]
+    some = [_spread(sweep.points, _COUNTED) for sweep in sweeps.sweeps]
     trees = [cKDTree(points, balanced_tree=False, compact_nodes=False) for points in some]
     out = []
-    for j in range(1, len(turns)):
+    for j in range(1, len(sweeps)):
         near = [i for i in range(j) if np.linalg.norm(T.t[i] - T.t[j]) < s.link_reach_m]
         ratios = [
             (_close_ratio(trees[i], some[j], relative(T, i, j), reach_m=s.link_distance_m), i)
@@ -173,7 +173,7 @@ def linked(turns: Turns, T: SE3, settings: Settings) -> list[tuple[int, int, flo
 
 @dataclass(frozen=True, slots=True)
 class Link:
-    """Two turns to register."""
+    """Two sweeps to register."""
 
     i: int
     j: int
@@ -186,10 +186,10 @@ class Link:
 def register_pair(
     points: tuple[Points, Points], link: Link, *, settings: Settings
 ) -> tuple[Edge, float]:
-    """Register two turns from a predicted pose, whatever their overlap.
+    """Register two sweeps from a predicted pose, whatever their overlap.
 
     Args:
-        points: Of both turns, in the body at their nodes [m], (N, 3) each.
+        points: Of both sweeps, in the body at their nodes [m], (N, 3) each.
         link: Its overlap is not used.
         settings: Uses lines, graph, planes and registration.
 
@@ -209,7 +209,7 @@ def register_pair(
 def _register(
     target: PlaneMap, points: tuple[Points, Points], link: Link, *, settings: Settings
 ) -> Edge:
-    """Register turn ``j`` to the planes of turn ``i`` and judge the result."""
+    """Register sweep ``j`` to the planes of sweep ``i`` and judge the result."""
     g = settings.graph
     found = register_to_planes(
         target,
@@ -245,7 +245,7 @@ def _close_ratio(tree: cKDTree, points: Points, T_i_j: SE3, *, reach_m: float) -
 
 
 def _information(found: Registration, settings: Settings) -> Array:
-    """Inverse covariance of the tangent of ``T_i_j``; a turn is bent by the error of its poses."""
+    """Inverse covariance of the tangent of ``T_i_j``; a sweep is bent by the error of its poses."""
     s = settings.lines
     floor = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** 2)
     if not found.converged:
@@ -257,14 +257,14 @@ def _information(found: Registration, settings: Settings) -> Array:
 
 
 def _chain(
-    turns: Turns, T: SE3, lost: NDArray[np.bool_], *, settings: Settings
+    sweeps: Sweeps, T: SE3, lost: NDArray[np.bool_], *, settings: Settings
 ) -> tuple[Edge, ...]:
-    """Edges between consecutive turns by the first trajectory."""
+    """Edges between consecutive sweeps by the first trajectory."""
     s = settings.lines
     edges = []
-    for k in range(len(turns) - 1):
+    for k in range(len(sweeps) - 1):
         sd = np.repeat([s.chain_sd_rad, s.chain_sd_m], 3)
-        if lost[turns.frame_rows[k] : turns.frame_rows[k + 1] + 1].any():
+        if lost[sweeps.frame_rows[k] : sweeps.frame_rows[k + 1] + 1].any():
             sd = sd * _LOST_FACTOR
         edges.append(
             Edge(

@@ -1,4 +1,4 @@
-"""Turns of the head as scans: unwound points around a node in the middle of each turn."""
+"""Sweeps of the head as scans: unwound points around a node in the middle of each sweep."""
 
 from __future__ import annotations
 
@@ -18,8 +18,8 @@ from recon4.store.frames import FrameStore
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Turn:
-    """One turn of the head as a rigid scan."""
+class Sweep:
+    """One sweep of the head as a rigid scan."""
 
     points: NDArray[np.float32]
     """Unwound and thinned, in the body at the node's time [m], (N, 3)."""
@@ -28,67 +28,67 @@ class Turn:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Turns:
-    """All turns of a walk."""
+class Sweeps:
+    """All sweeps of a walk."""
 
     t_ns: Times
-    """Time of each node: the middle of its turn [ns], (T,)."""
+    """Time of each node: the middle of its sweep [ns], (T,)."""
     start_ns: Times
-    """First time of each turn, and the end of the last one [ns], (T + 1,)."""
+    """First time of each sweep, and the end of the last one [ns], (T + 1,)."""
     frame_rows: NDArray[np.int64]
     """Multiframe of each node, (T,)."""
-    turns: tuple[Turn, ...]
+    sweeps: tuple[Sweep, ...]
 
     def __len__(self) -> int:
-        return len(self.turns)
+        return len(self.sweeps)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class TurnNodes:
-    """When the turns of a walk begin, and their nodes."""
+class SweepNodes:
+    """When the sweeps of a walk begin, and their nodes."""
 
     t_ns: Times
-    """Time of each node: the middle of its turn [ns], (T,)."""
+    """Time of each node: the middle of its sweep [ns], (T,)."""
     start_ns: Times
-    """First time of each turn, and the end of the last one [ns], (T + 1,)."""
+    """First time of each sweep, and the end of the last one [ns], (T + 1,)."""
     frame_rows: NDArray[np.int64]
     """Multiframe of each node, (T,)."""
 
-    def multiframes(self, frames: FrameStore, turn: int) -> range:
-        """Multiframes with points of a turn."""
-        start_ns, end_ns = self.start_ns[turn : turn + 2]
+    def multiframes(self, frames: FrameStore, sweep: int) -> range:
+        """Multiframes with points of a sweep."""
+        start_ns, end_ns = self.start_ns[sweep : sweep + 2]
         begins = frames.index["t_ns"]
         ends = begins + frames.index["duration_ns"]
         first, last = np.searchsorted(ends, start_ns), np.searchsorted(begins, end_ns)
         return range(int(first), int(last))
 
 
-def find_turns(frames: FrameStore, lines: LineScans) -> TurnNodes:
-    """Turns of the head, each with the multiframe in its middle as node."""
-    ends = lines.turns()
+def find_sweeps(frames: FrameStore, lines: LineScans) -> SweepNodes:
+    """Sweeps of the head, each with the multiframe in its middle as node."""
+    ends = lines.sweeps()
     start_ns = np.append(lines.t_ns[ends[:-1]], lines.t_ns[-1] + 1)
     t_mid_ns = frames.t_mid_ns
     middle = start_ns[:-1] + np.diff(start_ns) // 2
     rows = np.clip(np.searchsorted(t_mid_ns, middle), 0, len(t_mid_ns) - 1).astype(np.int64)
-    if len(np.unique(rows)) < len(rows):  # turns shorter than a multiframe
+    if len(np.unique(rows)) < len(rows):  # sweeps shorter than a multiframe
         rows, first = np.unique(rows, return_index=True)
         start_ns = np.append(start_ns[first], start_ns[-1])
     # Points before the first line scan and after the last one belong to these.
     last = frames.index[-1]
     start_ns[0] = min(start_ns[0], frames.index["t_ns"][0])
     start_ns[-1] = max(start_ns[-1], last["t_ns"] + last["duration_ns"] + 1)
-    return TurnNodes(t_mid_ns[rows], start_ns, rows)
+    return SweepNodes(t_mid_ns[rows], start_ns, rows)
 
 
-def unwind_turns(
+def unwind_sweeps(
     frames: FrameStore,
     lines: LineScans,
     trajectory: Trajectory,
     *,
     settings: LineSettings,
     progress: Progress,
-) -> Turns:
-    """Place every point by the pose of its own time, turn by turn (L §4.2, A12 L-2).
+) -> Sweeps:
+    """Place every point by the pose of its own time, sweep by sweep (L §4.2, A12 L-2).
 
     Args:
         frames: The points.
@@ -97,35 +97,35 @@ def unwind_turns(
         settings: Thinning and shortest range.
         progress: Counts multiframes.
     """
-    nodes = find_turns(frames, lines)
+    nodes = find_sweeps(frames, lines)
     counts = np.diff(np.searchsorted(lines.t_ns, nodes.start_ns))
-    progress.start("unwind", len(nodes.t_ns), "turn")
-    turns = []
+    progress.start("unwind", len(nodes.t_ns), "sweep")
+    sweeps = []
     for k in range(len(nodes.t_ns)):
-        points = unwind_turn(frames, nodes, k, trajectory=trajectory, settings=settings)
-        turns.append(Turn(points, int(counts[k])))
+        points = unwind_sweep(frames, nodes, k, trajectory=trajectory, settings=settings)
+        sweeps.append(Sweep(points, int(counts[k])))
         progress.advance()
-    return Turns(nodes.t_ns, nodes.start_ns, nodes.frame_rows, tuple(turns))
+    return Sweeps(nodes.t_ns, nodes.start_ns, nodes.frame_rows, tuple(sweeps))
 
 
-def unwind_turn(
+def unwind_sweep(
     frames: FrameStore,
-    nodes: TurnNodes,
-    turn: int,
+    nodes: SweepNodes,
+    sweep: int,
     *,
     trajectory: Trajectory,
     settings: LineSettings,
 ) -> NDArray[np.float32]:
-    """Points of one turn in the body at its node [m], thinned, (N, 3)."""
-    start_ns, end_ns = nodes.start_ns[turn : turn + 2]
+    """Points of one sweep in the body at its node [m], thinned, (N, 3)."""
+    start_ns, end_ns = nodes.start_ns[sweep : sweep + 2]
     parts = [np.empty((0, 3))]
-    for row in nodes.multiframes(frames, turn):
+    for row in nodes.multiframes(frames, sweep):
         points = line_points(
             frames, row, every=settings.turn_every, min_range_m=settings.min_range_m
         )
         inside = (points.t_ns >= start_ns) & (points.t_ns < end_ns)
         parts.append(points.placed(trajectory)[inside])
-    T_odom_node = trajectory.at(nodes.t_ns[turn : turn + 1])[0]
+    T_odom_node = trajectory.at(nodes.t_ns[sweep : sweep + 1])[0]
     p_node = T_odom_node.inverse() @ np.concatenate(parts)
     return thinned(p_node, settings.turn_voxel_m).astype(np.float32)
 

@@ -1,4 +1,4 @@
-"""Pairs of turns of a profiler's head: a node stands for all line scans of its turn."""
+"""Pairs of sweeps of a profiler's head: a node stands for all line scans of its sweep."""
 
 from __future__ import annotations
 
@@ -8,18 +8,18 @@ from recon4.pose_graph.pairs import too_little_overlap
 from recon4.review.source import Source
 
 
-def has_turns(source: Source) -> bool:
-    """Whether the nodes of the graph are turns of a head."""
+def has_sweeps(source: Source) -> bool:
+    """Whether the nodes of the graph are sweeps of a head."""
     return source.frames.rig.row_of("profiler") is not None
 
 
 def multiframes_of(source: Source, node: int) -> range:
-    """Multiframes with points of a node's turn."""
-    return source.turns.multiframes(source.frames, node)
+    """Multiframes with points of a node's sweep."""
+    return source.sweeps.multiframes(source.frames, node)
 
 
-def align_turns(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
-    """Register two turns as the search does, from an operator's predicted pose.
+def align_sweeps(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
+    """Register two sweeps as the search does, from an operator's predicted pose.
 
     Args:
         source: The project's latest graph.
@@ -29,12 +29,14 @@ def align_turns(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge:
     Returns:
         The edge with the reason for which the search would reject it, if there is one.
     """
-    from recon4.profiler.turn_graph import Link, register_pair
-    from recon4.profiler.turns import unwind_turn
+    from recon4.profiler.sweep_graph import Link, register_pair
+    from recon4.profiler.sweeps import unwind_sweep
 
-    settings, turns = source.settings, source.turns
+    settings, sweeps = source.settings, source.sweeps
     first, second = (
-        unwind_turn(source.frames, turns, node, trajectory=source.odometry, settings=settings.lines)
+        unwind_sweep(
+            source.frames, sweeps, node, trajectory=source.odometry, settings=settings.lines
+        )
         for node in nodes
     )
     link = Link(*nodes, initial=predicted, overlap=0.0)
