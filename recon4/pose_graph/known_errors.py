@@ -11,6 +11,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.odometry_figures import HeightDoubt, OdometryFigures, TurnDoubt
 from recon4.model.trajectory import Times
+from recon4.pose_graph.carried_motion import CarriedMotion, load_carried_motion
 from recon4.pose_graph.rig_error import EXACT, RigError, audited_error
 from recon4.store.stage import read_figures
 
@@ -27,6 +28,8 @@ class KnownErrors:
     """Rides that no LiDAR sees; positions on the earth show them, a local map does not."""
     turns: tuple[TurnDoubt, ...] = ()
     """Turns that no LiDAR observes; likewise."""
+    carried: CarriedMotion | None = None
+    """Motion that only the accelerometer carries: part of the odometry edges; None = none."""
 
     def cov(self, t_ns: Times, T_map_body: SE3, *, on_earth: bool) -> Array:
         """Covariances that they add to poses, (N, 6, 6), turn first, in axes of the map.
@@ -67,10 +70,15 @@ def load_known_errors(*, audit: Path | None = None, odometry: Path | None = None
     """What the figures of stages say against the poses; None = there is no such stage.
 
     Raises:
-        StoreError: If figures are missing or damaged.
+        StoreError: If figures or arrays are missing or damaged.
     """
     rig = audited_error(read_figures(audit, CalibrationFigures).parameters) if audit else EXACT
     if odometry is None:
         return KnownErrors(rig=rig)
     figures = read_figures(odometry, OdometryFigures)
-    return KnownErrors(rig=rig, heights=figures.heights, turns=figures.turns)
+    return KnownErrors(
+        rig=rig,
+        heights=figures.heights,
+        turns=figures.turns,
+        carried=load_carried_motion(odometry) if figures.imu and figures.lines is None else None,
+    )

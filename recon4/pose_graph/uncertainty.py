@@ -17,6 +17,7 @@ import numpy as np
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, skew
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
+from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement, agreement
 from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.solve import PositionPriors
@@ -108,7 +109,7 @@ def pose_uncertainty(
     if len(graph) < 2:
         return None
     agrees = agreement(graph, model)
-    chain = _chain(graph, model, agrees)
+    chain = _chain(graph, model, agrees, carried=known.carried)
     knots = len(chain.t_ns)
     information = _odometry_information(chain)
     _add_edges(information, graph, chain, factor=model.registered * agrees.ratio)
@@ -156,11 +157,17 @@ def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
     return HelpfulPoint(int(t_ns[first]), int(t_ns[last]), float(largest_m[best]))
 
 
-def _chain(graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement) -> _Chain:
+def _chain(
+    graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement, *, carried: CarriedMotion | None
+) -> _Chain:
     """Join nodes to at most `_MAX_KNOTS` knots."""
     stride = -(-len(graph) // _MAX_KNOTS)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
-    step_cov, rate, usual = _steps(graph, model, agrees)
+    of_carried = np.zeros((len(graph) - 1, 3, 3))
+    if carried is not None:
+        R = graph.T_map_body.R[1:]
+        of_carried = R @ carried.between(graph.frame_ids) @ np.swapaxes(R, 1, 2)
+    step_cov, rate, usual = _steps(graph, model, agrees, carried=of_carried)
     step_s = _step_seconds(graph.t_ns)
     covs, rhos = [], []
     for first, last in pairwise(rows.tolist()):
@@ -190,19 +197,22 @@ def _transport(arm_m: Array) -> Array:
 
 
 def _steps(
-    graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement
+    graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement, *, carried: Array
 ) -> tuple[Array, Array, Array]:
     """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
+
+    Args:
+        graph: Solved.
+        model: Factors on the covariances.
+        agrees: What its residuals say.
+        carried: Covariance of the shifts that only an accelerometer carries, in axes of the map,
+            (N - 1, 3, 3).
 
     Returns:
         Covariances and symmetric matrices with the inverse correlation times as eigenvalues
         [1/s], (N - 1, 6, 6) each, in axes of the map; what half a second usually states, (2,).
     """
-    stated = np.tile(np.eye(6), (len(graph) - 1, 1, 1))
-    for edge in graph.edges:
-        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1:
-            into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
-            stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
+    stated = _stated(graph)
     half_s = 0.5 / _step_seconds(graph.t_ns)[:, None]
     cov, rate, usual = np.zeros_like(stated), np.zeros_like(stated), np.zeros(2)
     for row, (part, weak_at, surely, most, observed_s) in enumerate(
@@ -216,6 +226,8 @@ def _steps(
         limit = min(max(weak_at, model.weak_ratio * usual[row]), surely)
         ratio = half_s * np.sqrt(values) / limit
         weak = ratio**4 / (1.0 + ratio**4)
+        if part is TRANSLATION:
+            weak = np.maximum(weak, _ratio_along(V, carried, values))
         observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
         observed *= agrees.ratio[row] ** 2
         # Bounded, so that a walk that was lost leaves numbers that can be worked with.
@@ -224,6 +236,22 @@ def _steps(
         cov[:, part, part] = V * true[:, None, :] @ np.swapaxes(V, 1, 2)
         rate[:, part, part] = V * inverse_s[:, None, :] @ np.swapaxes(V, 1, 2)
     return cov + model.moved**2 * agrees.moved, rate, usual
+
+
+def _stated(graph: PoseGraph) -> Array:
+    """Covariance that each odometry edge states, in axes of the map, (N - 1, 6, 6)."""
+    stated = np.tile(np.eye(6), (len(graph) - 1, 1, 1))
+    for edge in graph.edges:
+        if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1:
+            into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
+            stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
+    return stated
+
+
+def _ratio_along(directions: Array, cov: Array, values: Array) -> Array:
+    """Ratio of a covariance to others along their main axes, 0..1, (N, 3)."""
+    along = np.einsum("nia,nij,nja->na", directions, cov, directions)
+    return np.clip(along / values, 0.0, 1.0)
 
 
 def _odometry_information(chain: _Chain) -> Array:

@@ -11,7 +11,7 @@ from recon4.registration.state import END_POSE, START
 LEAST_TURN = 0.2
 """Squared part of the turn in a motion from which on it counts as a turn: a shift along a tunnel
 has 0.01 of it, a turn in a round hall or stairwell 0.3 to 1."""
-_CURVED_INFORMATION = 0.009
+CURVED_INFORMATION = 0.009
 """Information on a turn per weight of the points, at their typical distance, that planes fitted to
 curved walls feign: 0.0028 to 0.0040 in a round hall, 0.0018 to 0.0060 on spiral stairs; offices
 and staircases have at least 0.0139."""
@@ -38,7 +38,7 @@ def observable_directions(
     Returns:
         ``H`` (12, 12) and ``g`` (12,) in the form of `Match`.
     """
-    feigned = _CURVED_INFORMATION if with_imu else 0.0
+    feigned = CURVED_INFORMATION if with_imu else 0.0
     root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad, least_of_turn=feigned)
     both = np.kron(np.eye(2), root)
     return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
@@ -62,7 +62,7 @@ def observable_pose(H: Array, normal_noise_rad: float) -> tuple[Array, Array]:
     return root.T @ H @ root, full
 
 
-def weakest_twist(H: Array) -> tuple[Array, float, float]:
+def weakest_twist(H: Array) -> tuple[Array, float, float, float]:
     """The small motion that is observed least.
 
     Args:
@@ -70,17 +70,19 @@ def weakest_twist(H: Array) -> tuple[Array, float, float]:
 
     Returns:
         Turn [rad] and shift [m] of that motion, (6,), its size at the typical distance of the
-        points being 1; the standard deviation of its size [m]; the typical distance [m].
-        NaN if nothing is observed.
+        points being 1; the standard deviation of its size [m]; the typical distance [m]; the
+        information on it per weight of the points, 1/3 = as on any shift among walls of all
+        directions. NaN if nothing is observed.
     """
     weight, turning = (float(np.trace(H[part, part])) for part in (TRANSLATION, ROTATION))
     if not (weight > 0.0 and turning > 0.0 and np.isfinite(H).all()):
-        return np.full(6, np.nan), float("nan"), float("nan")
+        return np.full(6, np.nan), float("nan"), float("nan"), float("nan")
     typical_m = np.sqrt(turning / weight)
     scale = np.repeat([1.0 / typical_m, 1.0], 3)
     information, directions = np.linalg.eigh(scale[:, None] * H * scale)
     sd_m = float(max(information[0], 1e-4) ** -0.5)
-    return scale * directions[:, 0], sd_m, float(typical_m)
+    relative = float(max(information[0], 0.0) / weight)
+    return scale * directions[:, 0], sd_m, float(typical_m), relative
 
 
 def _reductions(

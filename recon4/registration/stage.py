@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from recon4.model.odometry_figures import MovingFigures, OdometryFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.registration.aiding import GnssAiding
+from recon4.registration.felt_motion import carried, felt_motion, is_carried
 from recon4.registration.moving import find_moving
 from recon4.registration.moving_passes import Found, leave_out_moving, less_sure
 from recon4.registration.passes import OdometryPass, register_all
@@ -52,10 +54,21 @@ def run_odometry(
         found = Found(made, find_moving(frames, made.trajectory, made.pieces))
     if found.hidden is not None:
         save_record(out / MOVING_POINTS, found.hidden)
+    found = replace(found, made=_carried(found.made, frames.rig, settings))
     made, moving = found.made, found.moving
     save_trajectory(out / "trajectory.npz", made.trajectory)
     _save_steps(out / "steps.npz", less_sure(found))
     return _figures(made, frames, moving=moving, aided=aiding is not None)
+
+
+def _carried(made: OdometryPass, rig: Rig, settings: Settings) -> OdometryPass:
+    """A pass with what its accelerometer says where the LiDARs hardly observe the motion."""
+    if made.imu is None or not any(is_carried(step) for step in made.steps[1:]):
+        return made
+    felt = felt_motion(
+        made.steps, made.trajectory, made.imu, rig=rig, accel_noise=settings.odometry.accel_noise
+    )
+    return made if felt is None else replace(made, steps=carried(made.steps, felt))
 
 
 def _figures(
@@ -104,4 +117,5 @@ def _save_steps(path: Path, steps: list[OdometryStep]) -> None:
         weak_direction=np.array([s.weak_direction for s in steps]).reshape(-1, 3),
         stationary=np.array([s.stationary for s in steps]),
         weak_sd_m=np.array([s.weak_sd_m for s in steps]),
+        weak_motion_sd_m=np.array([s.weak_motion_sd_m for s in steps]),
     )

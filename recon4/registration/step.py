@@ -48,13 +48,18 @@ class OdometryStep:
     weak_twist_sd_m: float = float("nan")
     """… the standard deviation of its size by the LiDARs of this frame alone [m] …"""
     typical_m: float = float("nan")
-    """… and the distance of the points at which it has that size [m]."""
+    """… the distance of the points at which it has that size [m] …"""
+    weak_twist_information: float = float("nan")
+    """… and the information on it per weight of the points, whatever their number."""
     stationary: bool = False
     """Whether the IMU says that the body stands."""
     bridged: bool = False
     """Whether only a registration to the scans before a gap says how the body got here."""
     piece: int = 0
     """Number of the piece of the walk; the motion from one piece to the next is not known."""
+    weak_motion_sd_m: float = 0.0
+    """Standard deviation of the motion over the frame along the weak direction, as an accelerometer
+    carries it from where it is observed [m]; 0 = it is observed, or nothing carries it."""
 
 
 def make_step(

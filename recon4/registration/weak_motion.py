@@ -3,7 +3,8 @@
 The information of the points along such a direction comes from noise of the normals and from the
 pattern of the rings, which moves with the sensor. It is not merely weak but wrong, and in the same
 way for seconds: in a tunnel the filter states millimeters a multiframe and is wrong by 4 cm.
-Its covariance therefore says nothing there; the speed of the carrier bounds the error.
+Its covariance therefore says nothing there; the speed of the carrier bounds the error. That is the
+bound while the walk goes on. Afterwards the accelerometer says more: `felt_motion`.
 """
 
 from __future__ import annotations
@@ -16,8 +17,8 @@ _WEAK_SD_M = 0.06
 """Deviation of a position by the points of one multiframe at which half of the error remains [m].
 Measured on walks with known truth: up to 2 cm the motion of half a second is wrong by 2 mm, at 5 cm
 by 0.1 m, above 10 cm by 0.25 m (``docs/trust.md``)."""
-_OBSERVED_SD_M = 0.02
-"""Below this nothing is added [m]."""
+OBSERVED_SD_M = 0.02
+"""Below this a direction is observed, and nothing is added [m]."""
 _SPEED_M_S = 0.6
 """Standard deviation of the speed along a direction that nothing but the IMU knows [m/s]."""
 _FREE_SPEED_M_S = 2.0
@@ -50,7 +51,7 @@ def weak_motion_cov(
         converged: If not, all directions are as weak as this one.
     """
     cov = np.zeros((6, 6))
-    if not np.isfinite(direction).all() or not weak_sd_m >= _OBSERVED_SD_M:
+    if not np.isfinite(direction).all() or not weak_sd_m >= OBSERVED_SD_M:
         return cov
     ratio = (weak_sd_m / _WEAK_SD_M) ** 4
     sd_m = unknown_m * ratio / (1.0 + ratio)

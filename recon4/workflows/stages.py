@@ -256,10 +256,10 @@ def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
     return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
 
 
-FRAMES = Stage("frames", 28, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 29, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    37,
+    38,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,
@@ -279,7 +279,7 @@ REVIEW = Stage("review", 4, ("verification", "graph"), _review, ReviewFigures)
 REFINE = Stage(
     "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
 )
-LEVEL = Stage("level", 23, ("level", "gnss", "verification"), _level, LevelFigures)
+LEVEL = Stage("level", 24, ("level", "gnss", "verification"), _level, LevelFigures)
 AUDIT = Stage("audit", AUDIT_VERSION, ("gnss", "rig"), _audit, AuditFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
 MAP = Stage("map", 9, ("map",), _map, MapFigures)

@@ -1,5 +1,6 @@
 """Covariances of a graph's poses against errors drawn at random."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +10,9 @@ from recon4.geometry.se3 import SE3, TRANSLATION, Array, so3_log
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph import uncertainty
+from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import ErrorModel
+from recon4.pose_graph.known_errors import KnownErrors
 from recon4.pose_graph.solve import PositionPriors
 from recon4.pose_graph.uncertainty import pose_uncertainty
 from recon4.pose_graph.uncertainty_files import (
@@ -206,3 +209,26 @@ def test_a_graph_of_one_node_states_nothing(tmp_path: Path) -> None:
     assert load_uncertainty(tmp_path) is None
     (header,) = path.read_text().splitlines()
     assert header.startswith("t_ns,x_m")
+
+
+def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> None:
+    """Without that the model takes it for the covariance of an observed step, far too large."""
+    graph = chain(14)
+    R = graph.T_map_body.R
+    shift = np.zeros((14, 3, 3))
+    shift[6:11, 0, 0] = 0.005**2
+    carried = CarriedMotion(shift, R)
+    cov = np.diag(STEP_SD**2)
+    with_shift = np.tile(cov, (13, 1, 1))
+    with_shift[:, TRANSLATION, TRANSLATION] += carried.between(graph.frame_ids)
+    edges = [replace(e, information=np.linalg.inv(with_shift[e.i])) for e in graph.edges]
+    graph = replace(graph, edges=tuple(edges))
+
+    plain = pose_uncertainty(graph)
+    known = pose_uncertainty(graph, known=KnownErrors(carried=carried))
+
+    assert plain is not None and known is not None
+    grown = np.sqrt(known.cov[10, 3, 3] - known.cov[5, 3, 3])
+    assert grown == pytest.approx(5 * 0.005, rel=0.35)
+    assert np.sqrt(plain.cov[10, 3, 3] - plain.cov[5, 3, 3]) < 0.3 * grown
+    assert known.cov[10, 4, 4] == pytest.approx(plain.cov[10, 4, 4], rel=0.2)

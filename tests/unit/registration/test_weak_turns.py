@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from recon4.findings.finding import Level
 from recon4.findings.witnesses.motion import turn_finding
 from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.known_errors import KnownErrors
-from recon4.registration.degeneracy import of_rigid_pose, weakest_twist
+from recon4.registration.degeneracy import CURVED_INFORMATION, of_rigid_pose, weakest_twist
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.step import OdometryStep
 from recon4.registration.weak_turns import weak_turns
@@ -45,19 +46,20 @@ def weakest_in(is_round):
 
 def step(k, *, weakest, at_m, lost=False, stationary=False):
     pose = SE3(np.eye(3), np.asarray(at_m, float))
-    twist, sd_m, typical_m = weakest
+    twist, sd_m, typical_m, information = weakest
     return OdometryStep(
         frame_id=k, t_mid_ns=100_000_000 * k, T_odom_body=pose, t_ns=np.array([0]), T_dense=pose,
         error_m=0.01, match_ratio=0.9, rounds=3, converged=True, degeneracy=0.1,
         prediction_offset_m=0.0, lost=lost, motion_cov=np.zeros((6, 6)),
-        weak_twist=twist, weak_twist_sd_m=sd_m, typical_m=typical_m, stationary=stationary,
+        weak_twist=twist, weak_twist_sd_m=sd_m, typical_m=typical_m,
+        weak_twist_information=information, stationary=stationary,
     )  # fmt: skip
 
 
 def about(center, at_m, *, sd_m=0.03):
     """A turn about a vertical axis, as a body at ``at_m`` moves in it."""
     turn = np.array([0.0, 0.0, 0.2])
-    return np.concatenate([turn, np.cross(turn, at_m - center)]), sd_m, 3.0
+    return np.concatenate([turn, np.cross(turn, at_m - center)]), sd_m, 3.0, 0.002
 
 
 def walk(count, **kinds):
@@ -67,13 +69,23 @@ def walk(count, **kinds):
 
 
 def test_a_round_hall_does_not_observe_the_turn_about_its_axis():
-    twist, sd_m, _ = weakest_in(is_round=True)
+    twist, sd_m, _, information = weakest_in(is_round=True)
     turn, shift = twist[:3], twist[3:]
 
     assert abs(turn[2]) > 0.99 * np.linalg.norm(turn)
     center = np.cross(turn, shift) / (turn @ turn)
     np.testing.assert_allclose(center[:2], CENTER[:2], atol=0.4)
-    assert sd_m > 3.0 * weakest_in(is_round=False)[1]
+    in_square = weakest_in(is_round=False)
+    assert sd_m > 3.0 * in_square[1]
+    assert information < CURVED_INFORMATION / 3.0 < CURVED_INFORMATION < in_square[3] / 3.0
+
+
+def test_the_information_on_a_turn_does_not_depend_on_the_number_of_points():
+    H = np.diag([30.0, 40.0, 20.0, 8.0, 6.0, 4.0])
+    many, few = weakest_twist(H), weakest_twist(0.01 * H)
+
+    assert few[1] == pytest.approx(10.0 * many[1])
+    assert few[3] == pytest.approx(many[3])
 
 
 def test_the_stretch_is_found_with_its_axis_and_its_error():
@@ -82,8 +94,10 @@ def test_the_stretch_is_found_with_its_axis_and_its_error():
     assert (found.start_s, found.end_s) == (0.0, pytest.approx(9.9))
     np.testing.assert_allclose(np.abs(found.axis), [0.0, 0.0, 1.0], atol=1e-9)
     np.testing.assert_allclose(found.center_m, CENTER, atol=1e-9)
-    assert "about the vertical axis at x 0.5 m, y 3.0 m" in text_of(turn_finding(found))
-    assert "turned by ± 4.0° (2σ)" in text_of(turn_finding(found))
+    assert "about the vertical axis at x 0.5 m, y 3.0 m" in text_of(
+        turn_finding(found, Level.CHECK)
+    )
+    assert "turned by ± 4.0° (2σ)" in text_of(turn_finding(found, Level.CHECK))
     (free,) = weak_turns(walk(100), with_imu=False)
     assert free.rate_sd_rad_s == pytest.approx(10.0 * found.rate_sd_rad_s)
 
@@ -95,6 +109,10 @@ def test_the_stretch_is_found_with_its_axis_and_its_error():
         pytest.param(walk(100, stationary=True), id="stationary"),
         pytest.param(walk(100, lost=True), id="lost"),
         pytest.param([replace(one, weak_twist_sd_m=0.01) for one in walk(100)], id="well observed"),
+        pytest.param(
+            [replace(one, weak_twist_information=0.02) for one in walk(100)],
+            id="a campus of few points: noise, not shape",
+        ),
         pytest.param(
             [replace(one, weak_twist=np.eye(6)[3]) for one in walk(100)], id="tunnel: a shift"
         ),
@@ -109,9 +127,9 @@ def test_nothing_is_said_of_other_walks(steps):
 
 
 def test_nothing_observed_has_no_weakest_motion():
-    twist, sd_m, typical_m = weakest_twist(np.zeros((6, 6)))
+    twist, *figures = weakest_twist(np.zeros((6, 6)))
 
-    assert np.isnan(twist).all() and np.isnan(sd_m) and np.isnan(typical_m)
+    assert np.isnan(twist).all() and np.isnan(figures).all()
 
 
 def test_poses_know_how_far_the_turn_may_move_them():

@@ -1,0 +1,236 @@
+"""What the accelerometer says of the motion while the LiDARs hardly observe a direction.
+
+The points say nothing of the motion along such a direction, or something wrong; but before and
+after it they observed the body, or it stood. Between both the accelerometer carries the speed: a
+Kalman smoother over velocity ``v``, bias ``b`` and gravity ``g``, with the specific force ``f``,
+
+    v(k+1) = v(k) + ∫ (R (f - b) + g) ds
+    p(k+1) = p(k) + v(k) dt + ∬ (R (f - b) + g) ds²
+
+measures the shift of each multiframe along the directions that its points observe, and leaves out
+the others. Of the odometry it uses the attitude ``R``, which a gyroscope knows, and the observed
+shifts; what the odometry makes of a weak direction it does not use, so both may be compared.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import uniform_filter1d
+
+from recon4.geometry.se3 import TRANSLATION, Array
+from recon4.model.rig import Rig
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.imu_saturation import saturated_samples
+from recon4.registration.motion import imu_in_body
+from recon4.registration.step import OdometryStep
+from recon4.registration.weak_motion import OBSERVED_SD_M
+
+_SHIFT_SD_M = 0.003
+"""Standard deviation of the shift over a multiframe along observed directions [m] …"""
+_UNKNOWN_M = 10.0
+"""… and along others, where it is no measurement [m]."""
+_AT_REST_M_S = 0.02
+"""Standard deviation of the velocity of a body that stands [m/s]."""
+_FIRST_SD = np.repeat([2.0, 0.2, 0.1], 3)
+"""Standard deviation at first of the velocity [m/s], of the bias and of gravity [m/s²]: the
+odometry was leveled by the same accelerometer."""
+_BIAS_WALK = 1e-3
+"""Random walk of the bias [m/s²/√s]."""
+_UNFELT_M_S = 2.0
+"""Standard deviation of the change of the velocity where samples are missing or saturated [m/s]."""
+_LEAST_SD_M = 0.001
+"""No motion over a multiframe is known better [m]."""
+_LONGEST_GAP_NS = 50_000_000
+_V = slice(0, 3)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class FeltMotion:
+    """Shift from the multiframe before to each as the accelerometer carries it, in odom axes."""
+
+    shift_m: Array
+    """(N - 1, 3)."""
+    cov: Array
+    """[m²], (N - 1, 3, 3)."""
+    per_second: int
+    """Multiframes in a second."""
+
+    def sd_m(self, shift_m: Array, direction: Array) -> Array:
+        """How wrong other shifts (N - 1, 3) may be along directions (N - 1, 3) [m], (N - 1,).
+
+        The uncertainty of the felt shift, and how far the other one is from it, over a second: the
+        noise of single poses does not add up.
+        """
+        apart = uniform_filter1d(shift_m - self.shift_m, self.per_second, axis=0, mode="nearest")
+        apart_m = np.einsum("ni,ni->n", apart, direction)
+        variance = np.einsum("ni,nij,nj->n", direction, self.cov, direction)
+        return np.sqrt(np.maximum(variance, 0.0) + apart_m**2)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Felt:
+    """Integrals over the time from each multiframe to the next, in odom axes."""
+
+    dt_s: Array
+    """(K,)."""
+    speed: Array
+    """∫ R f and ∫ R, side by side, (K, 3, 4)."""
+    shift: Array
+    """∬ R f and ∬ R, side by side, (K, 3, 4)."""
+    missing: NDArray[np.bool_]
+    """Whether samples are missing or saturated, (K,)."""
+
+
+def felt_motion(
+    steps: Sequence[OdometryStep],
+    trajectory: Trajectory,
+    imu: ImuSamples,
+    *,
+    rig: Rig,
+    accel_noise: float,
+) -> FeltMotion | None:
+    """Smooth the motion of all multiframes; None without an accelerometer.
+
+    Args:
+        steps: Of all multiframes, two or more.
+        trajectory: ``T_odom_body``, dense.
+        imu: As it was used.
+        rig: Where the IMU is.
+        accel_noise: Noise density of the specific force [m/s²/√Hz].
+    """
+    t_ns = np.array([step.t_mid_ns for step in steps], np.int64)
+    felt = _integrate(t_ns, trajectory, imu, rig=rig)
+    if felt is None:
+        return None
+    return _smoothed(felt, list(_measurements(steps)), accel_noise)
+
+
+def carried(steps: Sequence[OdometryStep], felt: FeltMotion) -> list[OdometryStep]:
+    """The steps with what the accelerometer says of motions that the points hardly observe.
+
+    Their covariance is at most what it was: where the accelerometer contradicts the odometry, or
+    knows no better after a long time, it stays.
+    """
+    shifts = np.diff([step.T_odom_body.t for step in steps], axis=0)
+    weak = np.array([is_carried(step) for step in steps[1:]], np.bool_)
+    directions = np.array([step.weak_direction for step in steps[1:]])
+    sd_m = felt.sd_m(shifts, np.where(weak[:, None], directions, 0.0))
+    after = [
+        _with_weak_motion(step, max(sd, _LEAST_SD_M)) if is_weak else step
+        for step, is_weak, sd in zip(steps[1:], weak.tolist(), sd_m.tolist(), strict=True)
+    ]
+    return [*steps[:1], *after]
+
+
+def is_carried(step: OdometryStep) -> bool:
+    """Whether the points of a multiframe hardly observe its motion along a direction."""
+    known = bool(np.isfinite(step.weak_direction).all()) and not step.lost and not step.bridged
+    return known and not step.stationary and not step.weak_sd_m < OBSERVED_SD_M
+
+
+def _with_weak_motion(step: OdometryStep, sd_m: float) -> OdometryStep:
+    along = step.weak_direction
+    before_m = float(np.sqrt(along @ step.motion_cov[TRANSLATION, TRANSLATION] @ along))
+    ratio = min(sd_m / max(before_m, _LEAST_SD_M), 1.0)
+    scale = np.eye(6)
+    scale[TRANSLATION, TRANSLATION] -= (1.0 - ratio) * np.outer(along, along)
+    cov = scale @ step.motion_cov @ scale
+    return replace(step, motion_cov=cov, weak_motion_sd_m=ratio * before_m)
+
+
+def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig) -> _Felt | None:
+    _, force = imu_in_body(imu, rig)
+    if not np.isfinite(force).all():
+        return None
+    known = np.concatenate([imu.t_ns, t_ns])
+    grid = np.unique(known[(known >= t_ns[0]) & (known <= t_ns[-1])])
+    s = 1e-9 * (grid - grid[0])
+    sample_s = 1e-9 * (imu.t_ns - grid[0])
+    f = np.stack([np.interp(s, sample_s, force[:, axis]) for axis in range(3)], axis=1)
+    R = trajectory.at(grid, slack_ns=_LONGEST_GAP_NS).R
+    both = np.concatenate([(R @ f[:, :, None]), R], axis=2).reshape(len(grid), 12)
+    h = np.diff(s)[:, None]
+    once = np.cumsum(h * (both[1:] + both[:-1]) / 2, axis=0)
+    once = np.concatenate([np.zeros((1, 12)), once])
+    twice = np.cumsum(h * once[:-1] + h**2 * (2 * both[:-1] + both[1:]) / 6, axis=0)
+    twice = np.concatenate([np.zeros((1, 12)), twice])
+    rows = np.searchsorted(grid, t_ns)
+    dt_s = np.diff(s[rows])
+    speed = np.diff(once[rows], axis=0)
+    shift = np.diff(twice[rows], axis=0) - once[rows[:-1]] * dt_s[:, None]
+    return _Felt(dt_s, speed.reshape(-1, 3, 4), shift.reshape(-1, 3, 4), _missing(t_ns, imu))
+
+
+def _missing(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
+    """Whether the samples from each multiframe to the next have a gap or are saturated, (K,)."""
+    gaps = np.diff(imu.t_ns) > _LONGEST_GAP_NS
+    bad = np.concatenate([[0], np.cumsum(np.append(gaps, False) | saturated_samples(imu)[:, 1])])
+    first = np.maximum(np.searchsorted(imu.t_ns, t_ns) - 1, 0)
+    last = np.searchsorted(imu.t_ns, t_ns)
+    outside = (t_ns < imu.t_ns[0] - _LONGEST_GAP_NS) | (t_ns > imu.t_ns[-1] + _LONGEST_GAP_NS)
+    return np.asarray((bad[last[1:]] > bad[first[:-1]]) | outside[1:] | outside[:-1])
+
+
+def _measurements(steps: Sequence[OdometryStep]) -> Iterator[tuple[Array, Array, bool]]:
+    """Shift to each multiframe but the first, its covariance, and whether the body stands."""
+    for before, step in pairwise(steps):
+        cov = _SHIFT_SD_M**2 * np.eye(3)
+        tracked = not (before.lost or step.lost or step.bridged) and step.piece == before.piece
+        if not tracked or not np.isfinite(step.weak_direction).all():
+            cov = _UNKNOWN_M**2 * np.eye(3)
+        elif not step.weak_sd_m < OBSERVED_SD_M and not step.stationary:
+            cov = cov + _UNKNOWN_M**2 * np.outer(step.weak_direction, step.weak_direction)
+        yield step.T_odom_body.t - before.T_odom_body.t, cov, step.stationary and before.stationary
+
+
+def _smoothed(
+    felt: _Felt, measured: Sequence[tuple[Array, Array, bool]], accel_noise: float
+) -> FeltMotion:
+    """Rauch, Tung and Striebel's smoother; the state is velocity, bias, gravity, (9,)."""
+    x, P = np.zeros(9), np.diag(_FIRST_SD**2)
+    x[8] = -STANDARD_GRAVITY_M_S2
+    filtered = []
+    for k, (shift_m, cov, still) in enumerate(measured):
+        H = _shift_by_state(felt, k)
+        x, P = _updated(x, P, H, z=shift_m - felt.shift[k, :, 0], R=cov)
+        if still:
+            x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=_AT_REST_M_S**2 * np.eye(3))
+        F, Q = _transition(felt, k, accel_noise)
+        predicted = F @ x
+        predicted[_V] += felt.speed[k, :, 0]
+        filtered.append((F, (x, P), (predicted, F @ P @ F.T + Q)))
+        x, P = filtered[-1][2]
+    shifts_m, covs = np.zeros((len(filtered), 3)), np.zeros((len(filtered), 3, 3))
+    for k in range(len(filtered) - 1, -1, -1):
+        F, known, ahead = filtered[k]
+        gain = np.linalg.solve(ahead[1], F @ known[1]).T
+        x, P = known[0] + gain @ (x - ahead[0]), known[1] + gain @ (P - ahead[1]) @ gain.T
+        H = _shift_by_state(felt, k)
+        shifts_m[k], covs[k] = H @ x + felt.shift[k, :, 0], H @ P @ H.T
+    return FeltMotion(shifts_m, covs, max(1, round(1.0 / float(np.median(felt.dt_s)))))
+
+
+def _shift_by_state(felt: _Felt, k: int) -> Array:
+    dt_s = felt.dt_s[k]
+    return np.hstack([dt_s * np.eye(3), -felt.shift[k, :, 1:], 0.5 * dt_s**2 * np.eye(3)])
+
+
+def _transition(felt: _Felt, k: int, accel_noise: float) -> tuple[Array, Array]:
+    dt_s = felt.dt_s[k]
+    F = np.eye(9)
+    F[_V, 3:] = np.hstack([-felt.speed[k, :, 1:], dt_s * np.eye(3)])
+    speed = accel_noise**2 * dt_s + (_UNFELT_M_S**2 if felt.missing[k] else 0.0)
+    return F, np.diag(np.repeat([speed, _BIAS_WALK**2 * dt_s, 0.0], 3))
+
+
+def _updated(x: Array, P: Array, H: Array, *, z: Array, R: Array) -> tuple[Array, Array]:
+    """State and covariance with a measurement ``z = H x``, in Joseph's form."""
+    gain = np.linalg.solve(H @ P @ H.T + R, H @ P).T
+    left = np.eye(len(x)) - gain @ H
+    return x + gain @ (z - H @ x), left @ P @ left.T + gain @ R @ gain.T

@@ -1,0 +1,137 @@
+"""The accelerometer carries a motion that no LiDAR observes, and contradicts a wrong one."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Trajectory
+from recon4.registration.felt_motion import carried, felt_motion
+from recon4.registration.step import OdometryStep
+from tests.unit.registration.test_unseen_rides import RIG, walked
+
+ALONG_X, UP = np.array([1.0, 0.0, 0.0]), np.array([0.0, 0.0, 1.0])
+WEAK = slice(60, 110)
+"""Five seconds in the middle of the walk."""
+ACCEL_NOISE = 0.01
+STATED = 0.06**2 * np.eye(6)
+
+
+def steps_of(trajectory: Trajectory, direction: Array, *, weak: slice = WEAK) -> list[OdometryStep]:
+    """Multiframes at 10 Hz whose points hardly observe a direction for a while."""
+    t_ns = np.arange(trajectory.t_ns[0], trajectory.t_ns[-1], 100_000_000)
+    sd_m = np.full(len(t_ns), 0.005)
+    sd_m[weak] = 0.3
+    return [
+        OdometryStep(
+            frame_id=k, t_mid_ns=int(t_ns[k]), T_odom_body=T, t_ns=t_ns[k : k + 1], T_dense=T,
+            error_m=0.01, match_ratio=0.9, rounds=3, converged=True, degeneracy=0.1,
+            prediction_offset_m=0.0, lost=False, motion_cov=STATED,
+            weak_direction=direction, weak_sd_m=float(sd_m[k]),
+        )
+        for k, T in enumerate(trajectory.at(t_ns))
+    ]  # fmt: skip
+
+
+def after(
+    trajectory: Trajectory, imu: ImuSamples, direction: Array, *, seen: Trajectory | None = None
+) -> list[OdometryStep]:
+    """The steps of an odometry that made ``seen`` of the walk, with what the IMU says of them."""
+    made = trajectory if seen is None else seen
+    steps = steps_of(made, direction)
+    felt = felt_motion(steps, made, imu, rig=RIG, accel_noise=ACCEL_NOISE)
+    assert felt is not None
+    return carried(steps, felt)
+
+
+def stated_m(steps: list[OdometryStep]) -> float:
+    """Standard deviation of the motion over the weak stretch, all errors being the same."""
+    return sum(step.weak_motion_sd_m for step in steps)
+
+
+@pytest.mark.parametrize("direction", [ALONG_X, UP], ids=["along", "up"])
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_five_unobserved_seconds_are_known_to_centimeters(direction: Array, seed: int) -> None:
+    trajectory, imu = walked("office", seconds=15.0, seed=seed)
+
+    steps = after(trajectory, imu, direction)
+
+    assert 0.005 < stated_m(steps) < 0.12
+    assert all(step.weak_motion_sd_m > 0.0 for step in steps[WEAK])
+    others = [*steps[: WEAK.start], *steps[WEAK.stop :]]
+    assert all(step.weak_motion_sd_m == 0.0 and step.motion_cov is STATED for step in others)
+
+
+def dragged(trajectory: Trajectory, m_s: float) -> Trajectory:
+    """The walk as an odometry makes of it that slides along x while nothing observes it."""
+    start_ns = trajectory.t_ns[0] + 100_000_000 * WEAK.start
+    since_s = np.clip((trajectory.t_ns - start_ns) / 1e9, 0.0, 5.0)
+    slid = trajectory.T_a_b.t - m_s * since_s[:, None] * ALONG_X
+    return Trajectory(trajectory.t_ns, SE3(trajectory.T_a_b.R, slid))
+
+
+@pytest.mark.parametrize("m_s", [0.1, 0.3])
+def test_a_motion_that_the_accelerometer_contradicts_stays_unknown(m_s: float) -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+
+    steps = after(trajectory, imu, ALONG_X, seen=dragged(trajectory, m_s))
+
+    assert stated_m(steps) > 0.8 * 5.0 * m_s
+
+
+def test_nothing_is_less_sure_than_before_and_other_directions_stay() -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+
+    steps = after(trajectory, imu, ALONG_X, seen=dragged(trajectory, 3.0))
+
+    assert 0.9 * 50 * 0.06 < stated_m(steps) < 1.0001 * 50 * 0.06
+    surer = after(trajectory, imu, ALONG_X)[WEAK.start].motion_cov
+    assert surer[3, 3] < 0.1 * STATED[3, 3]
+    np.testing.assert_allclose(surer[4:, 4:], STATED[4:, 4:])
+    np.testing.assert_allclose(surer[:3, :3], STATED[:3, :3])
+
+
+def test_across_missing_samples_nothing_is_carried() -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+    at_s = (imu.t_ns - trajectory.t_ns[0]) / 1e9
+    kept = (at_s < 8.0) | (at_s > 8.5)
+    holey = ImuSamples(imu.t_ns[kept], imu.gyro_rad_s[kept], imu.accel_m_s2[kept])
+
+    assert stated_m(after(trajectory, holey, ALONG_X)) > 3.0 * stated_m(
+        after(trajectory, imu, ALONG_X)
+    )
+
+
+def test_without_an_accelerometer_nothing_is_felt() -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+    blind = ImuSamples(imu.t_ns, imu.gyro_rad_s, np.full_like(imu.accel_m_s2, np.nan))
+
+    assert (
+        felt_motion(steps_of(trajectory, UP), trajectory, blind, rig=RIG, accel_noise=ACCEL_NOISE)
+        is None
+    )
+
+
+@pytest.mark.parametrize(
+    "how",
+    [
+        {"lost": True},
+        {"stationary": True},
+        {"bridged": True},
+        {"weak_direction": np.full(3, np.nan)},
+    ],
+    ids=["lost", "stands", "bridged", "unknown"],
+)
+def test_other_multiframes_keep_their_covariance(how: dict[str, object]) -> None:
+    trajectory, imu = walked("office", seconds=15.0)
+    steps = steps_of(trajectory, UP)
+    steps[80] = replace(steps[80], **how)
+    felt = felt_motion(steps, trajectory, imu, rig=RIG, accel_noise=ACCEL_NOISE)
+    assert felt is not None
+
+    after = carried(steps, felt)
+
+    assert after[80] is steps[80]
+    assert after[90].weak_motion_sd_m > 0.0
