@@ -32,6 +32,16 @@ class ParameterFigures(msgspec.Struct, frozen=True, kw_only=True):
     """Standard deviation of the change, in the unit; None = not known."""
     status: ParameterStatus
 
+    @property
+    def is_severe(self) -> bool:
+        """Whether a map that was made with the rig file's value must not be used.
+
+        A lever arm or the clock of the GNSS receiver moves a map and bends it, the place of the IMU
+        changes accelerations only: no wall doubles.
+        """
+        doubles = self.sensor != GNSS and (self.sensor, self.quantity) != (IMU, "position")
+        return doubles and self.status == "off" and abs(self.change) > _SEVERE[self.unit]
+
 
 _SEVERE = {"rad": 0.0087, "m": 0.03, "s": 0.01}
 """Larger differences (0.5°, 3 cm, 10 ms) make walls double."""
@@ -83,15 +93,5 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
 
     @property
     def is_severe(self) -> bool:
-        """Whether a map that was made with the rig file must not be used.
-
-        A lever arm or the clock of the GNSS receiver moves a map and bends it, the place of the IMU
-        changes accelerations only: no wall doubles.
-        """
-        return self.changes or any(
-            row.status == "off"
-            and row.sensor != GNSS
-            and (row.sensor, row.quantity) != (IMU, "position")
-            and abs(row.change) > _SEVERE[row.unit]
-            for row in self.parameters
-        )
+        """Whether a map that was made with the rig file must not be used."""
+        return self.changes or any(row.is_severe for row in self.parameters)

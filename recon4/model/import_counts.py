@@ -152,6 +152,7 @@ _MESSAGES = {
         "the times of their points make no sense, they are taken from the azimuth or the stamp",
         "clouds",
     ),
+    "clouds_untimed": _usual("clouds", "without times of their points"),
     "stamps_missing": _repaired("clouds", _NO_STAMP),
     "stamps_wrong": _repaired("clouds", "a stamp of another time, the time of recording is used"),
     "remarks_more": _usual("", "left out here", noun="different remarks"),

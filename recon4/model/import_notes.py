@@ -12,6 +12,10 @@ HEIGHTS_UNSTATED, HEIGHTS_ORTHOMETRIC = "gnss_heights_unstated", "gnss_heights_o
 """Counts of fixes whose height is taken as ellipsoidal because nothing says what it is above, and
 of those above sea level without a geoid separation."""
 
+CLOUDS_UNTIMED = "clouds_untimed"
+"""Count of clouds whose points have no times: these follow from the stamp, which may be that of the
+start, the middle or the end of a cloud, so nothing says how a clock lies to that of the points."""
+
 
 class ImportNotes(msgspec.Struct, frozen=True):
     """Outcome, warnings and counts of reading a recording."""

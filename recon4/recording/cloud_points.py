@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import UnknownFormat
+from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
@@ -188,8 +189,12 @@ class CloudDecoder:
         azimuth = np.arctan2(xyz[:, 1], xyz[:, 0])
         key, full_turn = find_field(table, TIME_FIELDS), _covers_turn(azimuth)
         self.absolute, everyone = False, np.ones(len(xyz), np.bool_)
-        if self._deskewed or not len(xyz):
-            return np.full(len(xyz), t_ns, np.int64), everyone
+        at_stamp = np.full(len(xyz), t_ns, np.int64), everyone
+        if not len(xyz):
+            return at_stamp
+        if self._deskewed:
+            self._report.count(CLOUDS_UNTIMED)
+            return at_stamp
         if key:
             found = self._clock.times(
                 key, table[key], t_ns=t_ns, period_ns=period_ns, full_turn=full_turn
@@ -197,14 +202,15 @@ class CloudDecoder:
             if found is not None:
                 self.absolute = found.absolute
                 return found.t_ns, found.kept
-        elif not full_turn:
+        self._report.count(CLOUDS_UNTIMED)
+        if not key and not full_turn:
             self._report.warn(
                 f"{self._name}: the points have no times: all of a cloud are taken as measured at "
                 "its stamp, which is wrong while the sensor moves. If the clouds are undistorted "
                 "already or the sensor stood still, say so with ingest.deskewed=true"
             )
         if not full_turn:
-            return np.full(len(xyz), t_ns, np.int64), everyone
+            return at_stamp
         turn, how = _turn_from_order(azimuth)
         text = f"{self._name}: no time per point, time from azimuth, {how}"
         if key:

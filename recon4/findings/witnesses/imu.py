@@ -12,6 +12,7 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.uncertainty import known_to
+from recon4.model.import_notes import CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.imu_gravity import wrong_gravity
@@ -19,6 +20,9 @@ from recon4.registration.imu_saturation import SaturatedAxis, saturated_axes
 
 _STOREY_M = 1.0
 """Heights that are wrong by more than this put one storey onto another [m]."""
+_OF_A_BIAS_M_S2 = 0.4
+"""The bias of a unit in order changes gravity by a quarter of this (standard deviation); more is a
+wrong scale, of which a gyroscope in the same unit shows the half, too [m/s²]."""
 _OUTCOMES = {
     "bias removed": FindingKind.IMU_BIAS_REMOVED,
     "accelerometer not used": FindingKind.IMU_ACCELEROMETER_NOT_USED,
@@ -38,8 +42,20 @@ class ImuUse:
             yield finding(FindingKind.IMU_MISSING, Level.NOTE, known_to(walk))
         if figures.imu_choice is not None and figures.imu_choice.outcome in _OUTCOMES:
             yield _choice(figures.imu_choice)
+        untimed = has_untimed_clouds(walk)
         for fault in figures.imu_faults:
-            yield fault_finding(fault, corrected=True)
+            found = fault_finding(fault, corrected=True)
+            yield _of_derived_times(found) if untimed and fault.kind == "clock" else found
+
+
+def has_untimed_clouds(walk: WalkRecord) -> bool:
+    """Whether times of points follow from stamps, whose place in a cloud nothing states."""
+    return CLOUDS_UNTIMED in import_notes(walk.imported).counts
+
+
+def _of_derived_times(found: Finding) -> Finding:
+    """A clock against times that are derived: one cannot say which of them is wrong."""
+    return replace(found, level=Level.NOTE, values=found.values | {"derived": True})
 
 
 class Saturation:
@@ -65,13 +81,14 @@ class Gravity:
         found = wrong_gravity(walk.odometry, walk.imu, walk.rig)
         if found is None:
             return
+        of_a_bias = abs(found - STANDARD_GRAVITY_M_S2) <= _OF_A_BIAS_M_S2
         percent = 100.0 * (found / STANDARD_GRAVITY_M_S2 - 1.0)
         values = {
             "found_m_s2": found,
             "gravity_m_s2": STANDARD_GRAVITY_M_S2,
             "percent": percent,
         }
-        yield finding(FindingKind.IMU_GRAVITY, Level.CHECK, values)
+        yield finding(FindingKind.IMU_GRAVITY, Level.NOTE if of_a_bias else Level.CHECK, values)
 
 
 class Rides:

@@ -11,6 +11,7 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.uncertainty import is_known
 from recon4.model.odometry_figures import MovingFigures, TurnDoubt
 
 
@@ -28,9 +29,10 @@ class WeakTurns:
     """Turns that only the gyroscope holds."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
-        """Each stretch."""
+        """Each stretch; no fault of the map where the positions are known well all the same."""
+        level = Level.NOTE if is_known(walk) else Level.CHECK
         for doubt in walk.odometry_figures.turns if walk.odometry_figures else ():
-            yield turn_finding(doubt)
+            yield turn_finding(doubt, level)
 
 
 class Bridges:
@@ -81,11 +83,11 @@ def moving_finding(moving: MovingFigures) -> Finding:
     )
 
 
-def turn_finding(doubt: TurnDoubt) -> Finding:
+def turn_finding(doubt: TurnDoubt, level: Level) -> Finding:
     """A stretch in which the LiDARs hardly observe a turn of the body."""
     x_m, y_m, z_m = doubt.center_m
     turn_rad = 2.0 * doubt.rate_sd_rad_s * (doubt.end_s - doubt.start_s)
     values: dict[str, Value] = {"x_m": x_m, "y_m": y_m, "z_m": z_m, "turn_rad": turn_rad}
-    found = finding(FindingKind.WEAK_TURN, Level.CHECK, values, span_s=(doubt.start_s, doubt.end_s))
+    found = finding(FindingKind.WEAK_TURN, level, values, span_s=(doubt.start_s, doubt.end_s))
     axis = "vertical" if abs(doubt.axis[2]) > np.sqrt(0.5) else "horizontal"
     return replace(found, direction=axis)

@@ -25,9 +25,11 @@ class Leveled:
     """Whether up is known."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
-        """A map that is not leveled."""
-        if not walk.placement.is_leveled:
-            yield finding(FindingKind.NOT_LEVELED, Level.CHECK)
+        """A map that is not leveled: what a missing IMU costs, or a fault if there is one."""
+        if walk.placement.is_leveled:
+            return
+        missing = walk.frames is not None and not walk.frames.imu
+        yield finding(FindingKind.NOT_LEVELED, Level.NOTE if missing else Level.CHECK)
 
 
 class Gnss:

@@ -11,9 +11,10 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
-from recon4.findings.witnesses.imu import fault_finding
+from recon4.findings.witnesses.imu import fault_finding, has_untimed_clouds
 from recon4.model.calibration_figures import (
     GNSS,
+    IMU,
     CalibrationFigures,
     ParameterFigures,
     RigScatter,
@@ -22,6 +23,9 @@ from recon4.model.rig_origin import RigOrigin
 
 _VAGUE_M = 0.01
 """A lever arm that is known no better is named [m]."""
+_ESTIMATED = {"rotation": 0.012, "clock": 0.004}
+"""The odometry estimates the axes and the clock of an IMU by itself, and says so from these errors
+on [rad, s]: smaller ones cost the map nothing."""
 _SHOWN = {"rad": (float(np.rad2deg(1.0)), "°"), "m": (100.0, " cm"), "s": (1e3, " ms")}
 
 
@@ -33,7 +37,7 @@ class RigFile:
         figures = walk.calibration
         if figures is None:
             return
-        found = list(rig_findings(figures))
+        found = list(rig_findings(figures, untimed=has_untimed_clouds(walk)))
         yield from found or [_agreement(figures)]
 
 
@@ -62,10 +66,14 @@ class RigAge:
             )
 
 
-def rig_findings(figures: CalibrationFigures) -> Iterator[Finding]:
+def rig_findings(figures: CalibrationFigures, *, untimed: bool = False) -> Iterator[Finding]:
     """What a recording says against its rig file.
 
     A calibration corrects what it estimates: that is a note where the calibrated rig is used.
+
+    Args:
+        figures: Of the audit or calibration.
+        untimed: Whether times of points are derived, see `has_untimed_clouds`.
     """
     for fault in figures.imu_faults:
         yield fault_finding(fault, corrected=False)
@@ -76,14 +84,29 @@ def rig_findings(figures: CalibrationFigures) -> Iterator[Finding]:
     for first, second in figures.exchanged:
         names: dict[str, Value] = {"first": repr(first), "second": repr(second)}
         yield finding(FindingKind.RIG_EXCHANGED, level, names)
-    level = Level.NOTE if figures.applied else level
     rows = (*figures.parameters, *figures.beams)
     for sensor in dict.fromkeys(row.sensor for row in rows if row.status == "off"):
         if sensor != GNSS or figures.applied:
             mine = [row for row in rows if row.sensor == sensor]
+            level = Level.NOTE if figures.applied else _level(mine, untimed=untimed)
             yield _contradicted(sensor, mine, level, applied=figures.applied)
     if figures.applied:
         yield from _vague([row for row in rows if row.sensor == GNSS and row.unit == "m"])
+
+
+def _level(rows: Sequence[ParameterFigures], *, untimed: bool) -> Level:
+    """How much the errors of one sensor cost."""
+    off = [row for row in rows if row.status == "off" and not _costs_nothing(row, untimed=untimed)]
+    if not off:
+        return Level.NOTE
+    return Level.DO_NOT_USE if any(row.is_severe for row in off) else Level.CHECK
+
+
+def _costs_nothing(row: ParameterFigures, *, untimed: bool) -> bool:
+    """Whether the odometry corrects an error, or nothing states the time it is measured against."""
+    if row.quantity == "clock" and untimed:
+        return True
+    return row.sensor == IMU and abs(row.change) <= _ESTIMATED.get(row.quantity, 0.0)
 
 
 def _agreement(figures: CalibrationFigures) -> Finding:

@@ -18,6 +18,7 @@ from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.geometry.se3 import Array
 from recon4.model.support import SurfaceSupport
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
@@ -131,15 +132,21 @@ class WeakStretches:
     """Stretches in which the LiDARs hardly observe a direction."""
 
     def check(self, walk: WalkRecord) -> Iterator[Finding]:
-        """Each stretch, or what the profiler observes in place of the 2-D laser."""
+        """Each stretch, or what the profiler observes in place of the 2-D laser.
+
+        Where the positions are known well all the same, because an accelerometer, loops or fixes
+        hold them, a stretch is no fault of the map.
+        """
         stretches = weak_stretches(walk.steps, walk.support)
         if not stretches and walk.support is not None:
             yield from _observed_by_profiler(weak_stretches(walk.steps))
         seconds = sum(stretch.seconds for stretch in stretches)
         georeferenced = walk.placement.gnss.georeferenced
         bad = seconds >= UNOBSERVED_SECONDS and not georeferenced
+        level = Level.DO_NOT_USE if bad else Level.CHECK
+        held = known_to(walk) if is_known(walk) else {}
         for stretch in stretches:
-            yield _finding(stretch, Level.DO_NOT_USE if bad else Level.CHECK)
+            yield _finding(stretch, Level.NOTE if held else level, held)
 
 
 def _observed_by_profiler(planar: Sequence[WeakStretch]) -> Iterator[Finding]:
@@ -152,7 +159,7 @@ def _observed_by_profiler(planar: Sequence[WeakStretch]) -> Iterator[Finding]:
         )
 
 
-def _finding(stretch: WeakStretch, level: Level) -> Finding:
+def _finding(stretch: WeakStretch, level: Level, held: dict[str, float]) -> Finding:
     stated = bool(np.isfinite(stretch.sd_m))
     known = bool(np.isfinite(stretch.direction_odom).all())
     direction = "horizontal" if stretch.horizontal else "vertical"
@@ -165,7 +172,9 @@ def _finding(stretch: WeakStretch, level: Level) -> Finding:
             "known": stated and stretch.sd_m < _UNLIMITED_M,
             "unlimited": stated and stretch.sd_m >= _UNLIMITED_M,
             "unstated": not stated,
-        },
+            "open": not held,
+        }
+        | held,
         span_s=(stretch.start_s, stretch.end_s),
     )
     return replace(found, direction=direction if known else "unknown")

@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from recon4.errors import UnknownFormat
+from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
 from tests.builders import T0_NS, room_cloud, spin
 from tests.unit.recording.packet_builders import sensor
 
@@ -223,3 +225,19 @@ def test_a_cloud_without_points_does_not_accuse_the_times_of_the_others(value):
     assert len(shots) == 0
     assert report.warnings == []
     assert report.counts["points_invalid"] == len(table["x"])
+
+
+@pytest.mark.parametrize(
+    ("table", "deskewed", "untimed"),
+    [
+        (room_cloud(), False, 0),
+        (room_cloud(), True, 1),
+        (without(room_cloud(), "time"), False, 1),
+        ({key: column[:0] for key, column in room_cloud().items()}, True, 0),
+    ],
+    ids=["times of points", "undistorted", "times from azimuths", "empty"],
+)
+def test_clouds_whose_points_have_no_times_are_counted(table, deskewed, untimed):
+    _, report = decode(table, settings=IngestSettings(deskewed=deskewed))
+
+    assert report.counts[CLOUDS_UNTIMED] == untimed

@@ -3,6 +3,10 @@
 import numpy as np
 import pytest
 
+from recon4.findings.finding import Level
+from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.imu import Gravity
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.registration.imu_gravity import wrong_gravity
@@ -34,6 +38,24 @@ def test_the_change_of_the_velocity_is_no_gravity() -> None:
     pushed = imu.accel_m_s2 + np.einsum("nji,j->ni", _attitude(trajectory, imu), [0.0, 0.0, 0.3])
 
     assert wrong_gravity(trajectory, ImuSamples(imu.t_ns, imu.gyro_rad_s, pushed), RIG) is None
+
+
+@pytest.mark.parametrize(
+    ("bias_m_s2", "levels"), [(0.1, []), (0.3, [Level.NOTE]), (0.6, [Level.CHECK])]
+)
+def test_only_what_no_unit_in_order_measures_is_a_fault(
+    bias_m_s2: float, levels: list[Level]
+) -> None:
+    trajectory, imu = walked("office", seconds=20.0)
+    up = np.einsum("nji,j->ni", _attitude(trajectory, imu), [0.0, 0.0, bias_m_s2])
+    record = WalkRecord(
+        odometry=trajectory,
+        imu=ImuSamples(imu.t_ns, imu.gyro_rad_s, imu.accel_m_s2 + up),
+        rig=RIG,
+        odometry_figures=OdometryFigures(multiframes=200, lost=0, imu=True),
+    )
+
+    assert [one.level for one in Gravity().check(record)] == levels
 
 
 def test_without_an_accelerometer_or_in_a_short_walk_nothing_is_said() -> None:

@@ -9,10 +9,14 @@ from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import WalkRecord
+from recon4.findings.witnesses.rig import rig_findings
 from recon4.findings.witnesses.speed import too_fast
 from recon4.findings.witnesses.weak_directions import weak_stretches
+from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
-from recon4.model.odometry_figures import HeightDoubt, OdometryFigures
+from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.figures import FrameFigures
+from recon4.model.odometry_figures import HeightDoubt, ImuFault, OdometryFigures
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
@@ -232,6 +236,95 @@ def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> WalkRecord:
     helpful = HelpfulPoint(7_000_000_000, 9_000_000_000, point_sd_m)
     known = PoseUncertainty(final.t_ns, cov, on_earth=False, helpful=helpful)
     return WalkRecord(final=final, uncertainty=known)
+
+
+@pytest.mark.parametrize(
+    ("largest_sd_m", "usability", "words"),
+    [
+        (0.03, Usability.GOOD, "What else holds it keeps the positions to ± 6.0 cm"),
+        (0.06, Usability.DO_NOT_USE, "may be wrong by meters"),
+    ],
+)
+def test_a_direction_that_no_lidar_observes_is_no_fault_where_something_else_holds_it(
+    largest_sd_m, usability, words
+):
+    walked = replace(uncertain(largest_sd_m), steps=steps(corridor(30.0)))
+
+    found = found_in(walked)
+
+    (weak,) = [one for one in found if one.kind is FindingKind.WEAK_DIRECTION]
+    assert verdict_of(found).usability is usability
+    assert words in text_of(weak)
+
+
+@pytest.mark.parametrize(
+    ("imu", "level"), [(False, Level.NOTE), (True, Level.CHECK)], ids=["no IMU", "an IMU"]
+)
+def test_a_map_that_is_not_leveled_is_a_fault_only_if_an_imu_could_have_done_it(imu, level):
+    frames = FrameFigures(multiframes=9, points=900, rig="rig", imu=imu, gnss=False)
+
+    found = found_in(WalkRecord(frames=frames, georeference={"levelling": {"source": "none"}}))
+
+    assert [one.level for one in found if one.kind is FindingKind.NOT_LEVELED] == [level]
+
+
+def off(sensor, quantity, change):
+    unit = {"rotation": "rad", "clock": "s", "position": "m"}[quantity]
+    return ParameterFigures(
+        sensor=sensor, quantity=quantity, axis="z", unit=unit, change=change, sd=1e-4, status="off"
+    )
+
+
+@pytest.mark.parametrize(
+    ("rows", "level"),
+    [
+        ([off("imu", "rotation", 0.0031)], Level.NOTE),  # 0.18°
+        ([off("imu", "rotation", 0.0031), off("imu", "clock", -0.002)], Level.NOTE),
+        ([off("imu", "rotation", 0.0031), off("imu", "clock", -0.006)], Level.CHECK),
+        ([off("imu", "rotation", 0.02)], Level.DO_NOT_USE),
+        ([off("imu", "position", 0.02)], Level.CHECK),
+        ([off("vertical", "rotation", 0.0031)], Level.CHECK),
+    ],
+)
+def test_what_the_odometry_corrects_of_an_imu_is_no_fault_of_the_map(rows, level):
+    (found,) = rig_findings(CalibrationFigures(parameters=tuple(rows)))
+
+    assert found.level is level
+
+
+def test_each_sensor_has_the_level_of_its_own_errors():
+    rows = (off("vertical", "rotation", 0.03), off("imu", "rotation", 0.0031))
+
+    found = rig_findings(CalibrationFigures(parameters=rows))
+
+    assert {one.sensor: one.level for one in found} == {
+        "vertical": Level.DO_NOT_USE,
+        "imu": Level.NOTE,
+    }
+
+
+def clock_of_imu(ahead_s):
+    faults = (ImuFault(kind="clock", value=ahead_s, sd=1e-4),)
+    figures = OdometryFigures(multiframes=9, lost=0, imu=True, imu_faults=faults)
+    audit = CalibrationFigures(parameters=(off("imu", "clock", ahead_s),))
+    return WalkRecord(odometry_figures=figures, calibration=audit)
+
+
+@pytest.mark.parametrize(
+    ("counts", "usability"),
+    [({}, Usability.DO_NOT_USE), ({"clouds_untimed": 40}, Usability.GOOD)],
+    ids=["times of points", "times that are derived"],
+)
+def test_a_clock_is_not_accused_by_times_that_nothing_states(counts, usability):
+    walked = replace(clock_of_imu(0.05), imported={"counts": counts})
+
+    found = [
+        one for one in found_in(walked)
+        if one.kind in {FindingKind.IMU_CLOCK, FindingKind.RIG_CONTRADICTED}
+    ]  # fmt: skip
+
+    assert len(found) == 2
+    assert verdict_of(found).usability is usability
 
 
 @pytest.mark.parametrize(
