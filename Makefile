@@ -4,6 +4,7 @@
 #   make demo [HEADLESS=1]   simulate a walk, map it, serve it in the browser
 #   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
 #   make quick               what a change needs before it is committed: two minutes
+#   make site                build the documentation site, which the server serves under /docs
 #   make bench               benchmarks, by hand: they need a quiet machine
 #   make docs                write what is generated: settings, findings, HTTP types, NOTICE
 #   make examples            run the programs in examples/ and write their pages
@@ -33,17 +34,17 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e bench docs examples constraints lock audit sbom clean
+.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e bench site docs examples constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
-demo: $(VENV)/installed-run
+demo: $(VENV)/installed-run site
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
 # What takes one processor only runs beside something that takes the other.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
-	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint bytecode
+	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint bytecode site
 	@$(MAKE) --no-print-directory -j3 $(SYNC) types unit e2e
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
@@ -62,10 +63,10 @@ lint: $(VENV)/installed-dev
 types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
-unit: $(VENV)/installed-dev
+unit: $(VENV)/installed-dev site
 	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
 
-e2e: $(VENV)/installed-dev
+e2e: $(VENV)/installed-dev site
 	$(BIN)/python -m pytest -m e2e --durations=10
 
 web:
@@ -83,11 +84,16 @@ bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \
 		echo "== $$name"; $(BIN)/python -m tests.benchmarks.$$name || exit 1; \
 	done
-	@echo 'Those that need a recording or a project: docs/benchmarks.md'
+	@echo 'Those that need a recording or a project: docs/explanation/benchmarks.md'
+
+site: site/index.html
+
+site/index.html: zensical.toml tools/site.py $(shell find docs -type f) | $(VENV)/installed-run
+	$(BIN)/python -m tools.site
 
 docs: $(VENV)/installed-dev
-	$(BIN)/recon4 settings --markdown > docs/settings.md
-	$(BIN)/python -m recon4.findings.explain > docs/findings.md
+	$(BIN)/recon4 settings --markdown > docs/reference/settings.md
+	$(BIN)/python -m recon4.findings.explain > docs/reference/findings.md
 	$(BIN)/python -m tools.http_types
 	$(BIN)/python -m tools.notice
 
@@ -111,7 +117,7 @@ sbom: $(TOOLS)/installed $(VENV)/installed-run
 		--output-reproducible -o out/sbom.json $(BIN)/python
 
 clean:
-	rm -rf $(VENV) $(TOOLS) demo .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(TOOLS) demo site .cache .mypy_cache .ruff_cache .pytest_cache
 
 $(VENV)/bin/python:
 	@test -n '$(PYTHON)' || { echo 'recon4: needs Python 3.11, 3.12 or 3.13 (found: '"$$(python3 --version 2>&1)"'); name one with make PYTHON=…' >&2; exit 1; }

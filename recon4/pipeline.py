@@ -60,7 +60,7 @@ def process(
 
     Args:
         sources: The recordings of one walk, its rig, and CSV files in place of their samples.
-        out: Project folder; made when missing. Results end up in it (see ``docs/stages.md``).
+        out: Project folder; made when missing. See ``docs/explanation/stages.md``.
         settings: All settings; None = those of the preset.
         preset: Name of the preset they started from.
         progress: Who watches.

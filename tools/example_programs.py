@@ -48,7 +48,7 @@ def run(name: str, folder: Path) -> str:
 
 def page_path(name: str) -> Path:
     """The page of a program."""
-    return ROOT / "docs" / f"example-{name.replace('_', '-')}.md"
+    return ROOT / "docs" / "examples" / f"{name.replace('_', '-')}.md"
 
 
 def page(name: str, output: str) -> str:
@@ -63,7 +63,7 @@ def page(name: str, output: str) -> str:
     parts += [f"```python\n{program}\n```"]
     if output:
         parts += ["It prints:", f"```\n{output.strip()}\n```"]
-    parts += ["All examples: [Python](python.md#examples)."]
+    parts += ["All examples: [Python](../reference/python.md#examples)."]
     return "\n\n".join(parts) + "\n"
 
 

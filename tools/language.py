@@ -1,6 +1,6 @@
 """Words the project does not use, and what to use instead: ``python -m tools.language [PATH…]``.
 
-`docs/glossary.md` is the list for people; this is what a test can check.
+`docs/reference/glossary.md` is the list for people; this is what a test can check.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[1]
 SUFFIXES = {".py", ".js", ".html", ".css", ".md", ".jinja", ".toml"}
 ALLOWED = {
     "tools/language.py",
-    "docs/glossary.md",
+    "docs/reference/glossary.md",
     "recon4/settings/renamed.py",
     "recon4/store/earlier_names.py",
 }

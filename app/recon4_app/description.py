@@ -15,7 +15,7 @@ from recon4_app.access.routes_check import declared
 
 INTRODUCTION = """The HTTP interface of the pages. The body of an error is `{"error", "detail"}`;
 `detail` is a text for users. `x-needs` of an operation names the permission it requires (empty =
-none). `docs/access.md` lists the permissions of each role, `/api/me` those of the caller."""
+none). `docs/how-to/access.md` lists the permissions of each role, `/api/me` those of the caller."""
 TOKEN_SCHEME = {
     "type": "apiKey",
     "in": "header",

@@ -1,79 +1,77 @@
-"""The documentation as pages of the server: the Markdown files of `docs/`, without internet."""
+"""The documentation site (``make site``) as pages of the server: with its search, no internet."""
 
 from __future__ import annotations
 
-import html
 import re
+from base64 import b64encode
+from collections.abc import Mapping
 from functools import cache
+from hashlib import sha256
 from pathlib import Path
 
 from fastapi import APIRouter, Depends, Request
-from fastapi.responses import FileResponse, HTMLResponse
-from markdown_it import MarkdownIt
+from fastapi.responses import FileResponse, RedirectResponse, Response
 
+from recon4_app.access.middleware.origin import PAGE_POLICY
 from recon4_app.access.people import Permission, needs
 from recon4_app.errors import NotFound
-from recon4_app.pages import WEB, page_response
+from recon4_app.network.behind import public_path
+from recon4_app.pages import WEB
 
 router = APIRouter(
     prefix="/docs", dependencies=[Depends(needs(Permission.LOOK))], include_in_schema=False
 )
-PAGE = "shared/docs.html"
-"""``{title}`` and ``{content}`` are filled in."""
-START = "tour"
-_EMPTY_HEAD = re.compile(r"<thead>\s*<tr>\s*(?:<th>\s*</th>\s*)+</tr>\s*</thead>")
-"""Of a table that has no captions: Markdown cannot leave the line out."""
+_STYLE_OF_THE_SEARCH = "sha256-NwSx/R2V/U4jnW0Tq5pQ53Y/rzPVJ4dqE7D6UTA/J1k="
+"""Its dialog adds one sheet of styles (zensical 0.0.73); with another the browser names the hash
+that it expects."""
+_INLINE_SCRIPT = re.compile(r"<script>(.*?)</script>", re.DOTALL)
 
 
 @cache
 def folder() -> Path:
-    """The Markdown files: of an installed package inside of it, else of the checkout."""
+    """The built site: of an installed package inside of it, else of the checkout."""
     inside = WEB / "docs"
-    return inside if inside.is_dir() else WEB.parent / "docs"
+    return inside if inside.is_dir() else WEB.parent / "site"
 
 
 @cache
-def _names(below: str, pattern: str) -> frozenset[str]:
-    """Names of the files; only these can be requested."""
-    return frozenset(path.name for path in (folder() / below).glob(pattern))
+def files() -> Mapping[str, Path]:
+    """Address below ``/docs/`` -> file; only these can be requested.
+
+    Raises:
+        NotFound: If the site was not built.
+    """
+    found = [path for path in folder().rglob("*") if path.is_file()]
+    if not found:
+        raise NotFound("the documentation was not built: run `make site`, then start again")
+    return {path.relative_to(folder()).as_posix(): path for path in found}
 
 
-@router.get("/")
-def docs_start(request: Request) -> HTMLResponse:
-    """Show the first page of the documentation."""
-    return docs_page(START, request)
+@cache
+def _addresses() -> Mapping[str, str]:
+    """Name of a page -> its address: ``review`` -> ``how-to/review.html``."""
+    return {Path(one).stem: one for one in files() if one.endswith(".html")}
 
 
-@router.get("/images/{name}")
-def docs_image(name: str) -> FileResponse:
-    """Send an image of the documentation."""
-    path = folder() / "images" / name
-    if name not in _names("images", "*.*"):
-        raise NotFound(f"the documentation has no image {name[:64]!r}")
-    return FileResponse(path)
+@router.get("/{address:path}")
+def docs_file(address: str, request: Request) -> Response:
+    """Send a file of the site; the name of a page alone leads to it."""
+    path = files().get(address or "index.html")
+    if path is None:
+        page = _addresses().get(address.removesuffix(".md").rpartition("/")[2])
+        if page is None:
+            raise NotFound(f"the documentation has no page {address[:64]!r}")
+        return RedirectResponse(public_path(request.scope, f"/docs/{page}"))
+    if path.suffix != ".html":
+        return FileResponse(path)
+    return FileResponse(path, headers={"Content-Security-Policy": policy_of(path)})
 
 
-@router.get("/{name}")
-def docs_page(name: str, request: Request) -> HTMLResponse:
-    """Show a page of the documentation."""
-    path = folder() / f"{name.removesuffix('.md')}.md"
-    if f"{name.removesuffix('.md')}.md" not in _names("", "*.md"):
-        raise NotFound(f"the documentation has no page {name[:64]!r}")
-    text = path.read_text("utf-8")
-    title = html.escape(text.split("\n", 1)[0].lstrip("# "))
-    return page_response(PAGE, request, {"title": title, "content": rendered(text)})
-
-
-def rendered(markdown: str) -> str:
-    """HTML of a page; raw HTML in it is kept, because it is ours."""
-    body: str = MarkdownIt("commonmark", {"html": True}).enable("table").render(markdown)
-    body = _EMPTY_HEAD.sub("", body).replace("<th></th>", "<td></td>")
-    # What scrolls sideways can be reached with the keyboard, too.
-    body = re.sub(r"<(table|pre)>", r'<\1 tabindex="0">', body)
-    return re.sub(r"<h([23])>(.*?)</h\1>", _with_anchor, body)
-
-
-def _with_anchor(heading: re.Match[str]) -> str:
-    plain = re.sub(r"<[^>]+>", "", heading[2]).lower()
-    anchor = re.sub(r"[^\w -]", "", plain).replace(" ", "-")
-    return f'<h{heading[1]} id="{anchor}">{heading[2]}</h{heading[1]}>'
+@cache
+def policy_of(page: Path) -> str:
+    """The policy of other pages, which admits also the small scripts that are part of this one."""
+    scripts = _INLINE_SCRIPT.findall(page.read_text("utf-8"))
+    hashes = {b64encode(sha256(one.encode()).digest()).decode() for one in scripts}
+    allowed = " ".join(f"'sha256-{one}'" for one in sorted(hashes))
+    styles = f"style-src 'self' '{_STYLE_OF_THE_SEARCH}'"
+    return f"{PAGE_POLICY}; {styles}; script-src 'self' {allowed}"

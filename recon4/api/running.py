@@ -35,7 +35,7 @@ def process(
         out: Project folder; made when missing. The result files end up in it.
         preset: What the settings start from: ``indoor``, ``outdoor``, ``hector``,
             ``thesis`` or ``wuerzburg``.
-        settings: Name -> value, as ``{"map.voxel_m": 0.02}``; all are in ``docs/settings.md``.
+        settings: Name -> value, as ``{"map.voxel_m": 0.02}``; `recon4 settings` lists them.
         on_progress: Called often with what is done, the units done and the units in all (0 = not
             known). Raise `errors.Cancelled` in it to stop; the next call continues from there.
 

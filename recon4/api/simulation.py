@@ -21,7 +21,7 @@ def simulate(
 
     Args:
         world: ``office``, ``staircase``, ``street``, ``field``, ``corridor:7``, …; all are in
-            ``docs/simulation.md``.
+            ``docs/explanation/simulation.md``.
         out: Folder to make, with the recording, its rig, and its truth (``truth.tum``,
             ``model.ply``).
         seconds: Length of the walk, at least 5 [s].

@@ -28,7 +28,8 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
     gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
     method: Annotated[
-        str, typer.Option(help="joint, maps, gravity, entropy or pairs; see docs/calibration.md.")
+        str,
+        typer.Option(help="joint, maps, gravity, entropy or pairs; page calibration of the docs."),
     ] = "joint",
     sensors: Annotated[
         str, typer.Option(help="Only these, as vertical,imu,gnss; for pairs: the sensor.")

@@ -171,7 +171,9 @@ def settings(
     assignments: SetOption = None,
     as_json: JsonOption = False,
     *,
-    markdown: Annotated[bool, typer.Option("--markdown", help="Write docs/settings.md.")] = False,
+    markdown: Annotated[
+        bool, typer.Option("--markdown", help="The page settings of the docs.")
+    ] = False,
 ) -> None:
     """Show every setting in force, with its meaning."""
     from recon4.settings import to_json

@@ -15,7 +15,7 @@ simulation = typer.Typer()
 
 @simulation.command()
 def simulate(
-    world: Annotated[str, typer.Argument(help="As office or corridor:7, see docs/simulation.md.")],
+    world: Annotated[str, typer.Argument(help="As office or corridor:7; docs: page simulation.")],
     out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
     *,
     seconds: Annotated[
@@ -33,7 +33,7 @@ def simulate(
         typer.Option(
             metavar="NAME[=VALUE]",
             help="An error that the rig file does not know, as extrinsics=1.4; repeatable. "
-            "All are in docs/simulation.md.",
+            "All are on the page simulation of the docs.",
         ),
     ] = None,
 ) -> None:

@@ -1,4 +1,4 @@
-"""The kinds of findings for people: ``recon4 explain`` and ``docs/findings.md``."""
+"""The kinds of findings for people: ``recon4 explain`` and ``docs/reference/findings.md``."""
 
 from __future__ import annotations
 
@@ -24,8 +24,8 @@ An approval covers the findings too: with other findings the map is a draft unti
 again.
 
 On the pages each finding has a link to its place in the viewer, and a reviewer can acknowledge it
-with a note ([review](review.md#acknowledging-a-finding)). More than four can be filtered by level
-and kind. `recon4 export PROJECT FILE.csv`
+with a note ([review](../how-to/review.md#acknowledging-a-finding)). More than four can be filtered
+by level and kind. `recon4 export PROJECT FILE.csv`
 (or `.geojson`, also on the page of the project) writes all of them: as a table with both ends of
 each stretch in the CRS of the map, or as lines along the walk in longitude and latitude. If the map
 is not georeferenced, both are in its local frame, and the file says so. A finding about the whole
@@ -61,7 +61,7 @@ def explained(code: str) -> str:
 
 
 def markdown() -> str:
-    """The page ``docs/findings.md``."""
+    """The page ``docs/reference/findings.md``."""
     return "\n".join(
         [_INTRODUCTION, *(_section(kind, catalog().kinds[kind]) for kind in FindingKind)]
     )

@@ -47,7 +47,7 @@ class KindText(msgspec.Struct, frozen=True, forbid_unknown_fields=True):
     remedy: str = ""
     """What to do about it; empty = nothing."""
     meaning: str = ""
-    """What it says of the map, for ``docs/findings.md`` and ``recon4 explain``."""
+    """What it says of the map, for ``docs/reference/findings.md`` and ``recon4 explain``."""
     detection: str = ""
     """How it is detected, and from which size on."""
     words: dict[str, str] = {}

@@ -139,7 +139,7 @@ def measure(
     intensity: NDArray[np.uint8],
     truth: NDArray[np.uint8],
 ) -> None:
-    """Simulate the measurement of each shot; the model is in ``docs/simulation.md``.
+    """Simulate the measurement of each shot; the model is in ``docs/explanation/simulation.md``.
 
     Args:
         range_m: Hits of central and second rays, (2 N,).

@@ -1,4 +1,4 @@
-"""Named arrays that the kernels of fitted surfaces share; `docs/map.md` explains the algorithm.
+"""Named arrays that the kernels of fitted surfaces share; algorithm: docs, page surfaces.
 
 Numba passes a named tuple as its fields, so a name costs nothing. N points, C cells with points.
 """

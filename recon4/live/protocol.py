@@ -1,7 +1,7 @@
 """Messages of a live capture, one record each: JSON lines on the sockets of recorder and mapper.
 
 A message has its name in the field ``kind``, a request to the recorder in the field ``do``. Bytes
-are base64. The server sends the newest messages on to the phones; ``docs/live.md`` describes their
+are base64. The server sends the newest messages on to the phones; ``docs/how-to/live.md`` has their
 fields.
 
     recorder -> clients     written, status, mark, stopped

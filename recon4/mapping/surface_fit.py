@@ -1,7 +1,7 @@
 """Surfaces of some rows of cells of a tile: planes fitted to all returns around a point.
 
-`docs/surfaces.md` explains the algorithm with its equations; the steps of `fit_rows` are its
-sections.
+`docs/explanation/surfaces.md` explains the algorithm with its equations; the steps of `fit_rows`
+are its sections.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class WindowShape:
 
 @dataclass(frozen=True, slots=True)
 class SurfaceTuning:
-    """Constants of fitted surfaces, chosen on the scene `exhibition` (`docs/map.md`, figures)."""
+    """Constants of fitted surfaces, chosen on the scene `exhibition` (docs: page map, figures)."""
 
     loose: WindowShape = WindowShape(1.5, 1.0, 1.0, 0.0)
     """First rounds: the windows still hold returns of other surfaces."""

@@ -21,7 +21,7 @@ from recon4.untrusted.bounded import read_text_limited
 IMU_PORT, GNSS_PORT = 8309, 8310
 """Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""
 LASER2D_PORT, PROFILER_PORT = 8311, 8312
-"""Default UDP ports of scans and of line scans (``docs/live.md``)."""
+"""Default UDP ports of scans and of line scans (``docs/how-to/live.md``)."""
 MAX_RIG_BYTES = 128 * 1024
 """A rig file has some hundred bytes per sensor."""
 MAX_SENSORS = 64
@@ -121,7 +121,7 @@ class Rig:
     gnss_time_offset_s: float
     """Added to the GNSS time stamps to get rig time [s]."""
     imu_port: int = IMU_PORT
-    """UDP port of the IMU's datagrams (``docs/live.md``); 0 = none."""
+    """UDP port of the IMU's datagrams (``docs/how-to/live.md``); 0 = none."""
     gnss_port: int = GNSS_PORT
     """UDP port of the GNSS receiver's datagrams; 0 = none."""
     gnss_serial: str = ""
@@ -178,7 +178,7 @@ def load_rig(name_or_path: str | PathLike[str]) -> Rig:
 
 
 def parse_rig(text: str, *, where: str) -> Rig:
-    """Read a rig from TOML text (see ``docs/rig.md``).
+    """Read a rig from TOML text (see ``docs/reference/rig.md``).
 
     Raises:
         ConfigError: Names the key, the expected and the found value.

@@ -9,7 +9,7 @@ from recon4.settings import IngestSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class IngestTuning(IngestSettings):
-    """Reading a recording: times of packets and messages (docs/recordings.md)."""
+    """Reading a recording: times of packets and messages (docs/reference/recordings.md)."""
 
     reorder_window_s: float = 0.2
     """Packets out of order by at most this are sorted [s]."""

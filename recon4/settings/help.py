@@ -63,7 +63,7 @@ def differences(settings: Settings) -> dict[str, object]:
 
 
 def markdown() -> str:
-    """``docs/settings.md``."""
+    """``docs/reference/settings.md``."""
     parts = [
         "# Settings",
         "",

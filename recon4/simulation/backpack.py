@@ -149,7 +149,7 @@ def simulate_backpack(
     progress: Progress,
     degradations: Mapping[str, float] | None = None,
 ) -> None:
-    """Write a recording and its truth to a new folder (see ``docs/wuerzburg.md``).
+    """Write a recording and its truth to a new folder (see ``docs/explanation/wuerzburg.md``).
 
     Args:
         setup: The walk and the sensors; the same setup gives the same bytes.

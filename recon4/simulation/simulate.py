@@ -27,7 +27,7 @@ def simulate(
     bag: bool = True,
     degradations: Mapping[str, float] | None = None,
 ) -> None:
-    """Write a recording and its truth to a new folder (see ``docs/simulation.md``).
+    """Write a recording and its truth to a new folder (see ``docs/explanation/simulation.md``).
 
     Args:
         setup: The walk and the sensors, see `prepare`; the same setup gives the same bytes.

@@ -9,7 +9,7 @@ from recon4.settings import Grid2dSettings, Loop2dSettings, Slam2dSettings
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Slam2dTuning(Slam2dSettings):
-    """Registration of the scans of a 2-D laser (docs/slam2d.md)."""
+    """Registration of the scans of a 2-D laser (docs/explanation/slam2d.md)."""
 
     height_window_m: float = 1.0
     """With an attitude: returns more than this above or below the laser are left out [m]."""
@@ -60,7 +60,7 @@ class HectorTuning:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Loop2dTuning(Loop2dSettings):
-    """Loop closure of 2-D maps (docs/slam2d.md)."""
+    """Loop closure of 2-D maps (docs/explanation/slam2d.md)."""
 
     min_path_m: float = 10.0
     """Places with a shorter path between them are not loops [m]."""
@@ -103,7 +103,7 @@ class Loop2dTuning(Loop2dSettings):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Grid2dTuning(Grid2dSettings):
-    """The occupancy grid, as nav2 reads it (docs/slam2d.md)."""
+    """The occupancy grid, as nav2 reads it (docs/explanation/slam2d.md)."""
 
     p_free: float = 0.4
     """Probability by which a beam that passes updates a cell."""

@@ -2,7 +2,8 @@
 
 The map is cut into patches (a cell, and the side it was seen from), and each patch into visits
 (windows of time). Within a visit a surface is sharp. If the separation of two groups of visits
-exceeds what noise and pose errors explain, the wall is double. Equations: ``docs/slices.md``.
+exceeds what noise and pose errors explain, the wall is double. Equations:
+``docs/how-to/slices.md``.
 """
 
 from __future__ import annotations

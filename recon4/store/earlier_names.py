@@ -1,7 +1,7 @@
 """Names in files of format 1 and their current names.
 
-Since format 2 of ``summary.json`` all names are those of ``docs/glossary.md``. Files of format 1
-are never rewritten: their readers translate.
+Since format 2 of ``summary.json`` names are those of ``docs/reference/glossary.md``. Files of
+format 1 are never rewritten: their readers translate.
 """
 
 from __future__ import annotations

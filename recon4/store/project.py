@@ -65,7 +65,7 @@ class ProjectDescription:
 class Project:
     """An open project folder; while it is open no other process can open it.
 
-    Layout and rules are in ``docs/stages.md``. Reading needs no lock: `read_description`.
+    Layout and rules: ``docs/explanation/stages.md``. Reading needs no lock: `read_description`.
     """
 
     def __init__(self, root: Path, ledger: Ledger, lock: int) -> None:

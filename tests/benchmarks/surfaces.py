@@ -1,4 +1,4 @@
-"""Fitted surfaces beside raw points, against the truth: what `docs/map.md` says of them.
+"""Fitted surfaces beside raw points, against the truth: the figures of `docs/explanation/map.md`.
 
     python -m tests.benchmarks.surfaces [SCENE ...] [--seconds S] [--seeds 11 12] [--once]
 

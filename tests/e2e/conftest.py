@@ -170,7 +170,7 @@ def keep_small(png: bytes, file: Path) -> None:
 def pages() -> str:
     """The documentation as one text."""
     return "".join(
-        path.read_text("utf-8") for path in (ROOT / "README.md", *(ROOT / "docs").glob("*.md"))
+        path.read_text("utf-8") for path in (ROOT / "README.md", *(ROOT / "docs").rglob("*.md"))
     )
 
 

@@ -23,7 +23,6 @@ PAGES = {
     "/phone": "account/phone.html",
     "/live": "live/live.html",
     "/api": "shared/api.html",
-    "/docs/recordings.md": "shared/docs.html",
     "/projects/office/": "projects/project.html",
     "/projects/office/review/": "review/review.html",
     "/projects/office/slices/": "slices/slices.html",

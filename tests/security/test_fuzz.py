@@ -1,7 +1,7 @@
 """Mutants of every kind of file: an error message or a complete result, nothing else.
 
 Figure to hold: 0 findings (traceback, death of the reader, hang over 10 s, more than 1 GiB, silent
-loss). By hand: ``python -m tests.security.fuzz --count 10000`` (docs/fuzzing.md).
+loss). By hand: ``python -m tests.security.fuzz --count 10000`` (docs/explanation/fuzzing.md).
 """
 
 from __future__ import annotations

@@ -35,7 +35,7 @@ FLOORS = {
 }
 """Least versions, as of 2026-11-22; `make audit` is asked about the rest."""
 NEVER = {"ray", "dask", "joblib", "torch", "cloudpickle"}
-"""Not needed, and each unpickles or opens ports (docs/security.md)."""
+"""Not needed, and each unpickles or opens ports (docs/explanation/security.md)."""
 
 
 def locked(name):

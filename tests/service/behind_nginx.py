@@ -1,4 +1,4 @@
-"""Servers behind a real nginx that does TLS: the site of ``docs/server.md``."""
+"""Servers behind a real nginx that does TLS: the site of ``docs/how-to/server.md``."""
 
 from __future__ import annotations
 
@@ -128,7 +128,7 @@ def _write_configuration(
 
 
 def _documented_site(sites: Sequence[Site], certificate: Certificate, *, removed: bool) -> str:
-    text = (ROOT / "docs" / "server.md").read_text("utf-8")
+    text = (ROOT / "docs" / "how-to" / "server.md").read_text("utf-8")
     found = re.search(r"```nginx\n(.*?)```", text, re.DOTALL)
     assert found is not None
     site = found[1]

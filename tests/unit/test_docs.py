@@ -2,6 +2,7 @@
 
 import re
 import shlex
+import tomllib
 from dataclasses import fields
 from functools import cache
 from pathlib import Path
@@ -18,7 +19,7 @@ from recon4.model.rig import parse_rig
 from recon4.settings import Settings
 
 ROOT = Path(__file__).parents[2]
-IN_DOCS = sorted((ROOT / "docs").glob("*.md"))
+IN_DOCS = sorted((ROOT / "docs").rglob("*.md"))
 PAGES = [*sorted(ROOT.glob("*.md")), *IN_DOCS]
 COMMANDS = get_command(app)
 
@@ -47,7 +48,7 @@ BENCHMARK = re.compile(
 )
 
 
-@pytest.fixture(params=PAGES, ids=lambda path: path.name)
+@pytest.fixture(params=PAGES, ids=lambda path: path.relative_to(ROOT).as_posix())
 def page(request):
     return request.param
 
@@ -143,7 +144,7 @@ def test_names_of_the_code_in_a_page_exist(page):
 
 
 def test_architecture_names_every_top_level_module():
-    page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    page = (ROOT / "docs" / "explanation" / "architecture.md").read_text("utf-8")
     modules = {
         path.name for top in ("recon4", "app/recon4_app") for path in (ROOT / top).glob("[!_]*.py")
     }
@@ -209,7 +210,7 @@ def known(line):
 
 def test_the_rig_file_of_its_page_is_valid():
     (example,) = re.findall(
-        r"```toml\n(.*?)```", (ROOT / "docs/rig.md").read_text("utf-8"), re.DOTALL
+        r"```toml\n(.*?)```", (ROOT / "docs/reference/rig.md").read_text("utf-8"), re.DOTALL
     )
 
     assert [one.name for one in parse_rig(example, where="rig.md").sensors] == [
@@ -218,10 +219,28 @@ def test_the_rig_file_of_its_page_is_valid():
     ]
 
 
-def test_every_page_can_be_reached_from_the_readme():
-    readme = (ROOT / "README.md").read_text("utf-8")
+def test_every_page_has_one_place_in_the_contents_of_the_site():
+    contents = tomllib.loads((ROOT / "zensical.toml").read_text("utf-8"))["project"]["nav"]
 
-    assert [one.name for one in IN_DOCS if f"(docs/{one.name}" not in readme] == []
+    assert sorted(pages_in(contents)) == [f"{one.relative_to(ROOT / 'docs')}" for one in IN_DOCS]
+
+
+def pages_in(entry):
+    """The pages of an entry of the contents and of all below it."""
+    if isinstance(entry, str):
+        return [entry]
+    below = entry.values() if isinstance(entry, dict) else entry
+    return [page for one in below for page in pages_in(one)]
+
+
+@pytest.mark.parametrize("page", IN_DOCS, ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_a_page_of_the_site_links_to_no_file_outside_of_it(page):
+    """It is read where there is no checkout."""
+    docs = ROOT / "docs"
+    targets = ["".join(found).partition("#")[0] for found in LINK.findall(page.read_text("utf-8"))]
+    local = [target for target in targets if target and ":" not in target]
+
+    assert [one for one in local if docs not in (page.parent / one).resolve().parents] == []
 
 
 def test_help_texts_contain_no_markup():

@@ -1,6 +1,6 @@
 """The architecture as a test: who may import whom, and where heavy packages live.
 
-The table in ``docs/architecture.md`` says the same in words.
+The table in ``docs/explanation/architecture.md`` says the same in words.
 """
 
 import ast
@@ -266,7 +266,7 @@ def test_nothing_imports_the_whole_of_scipy_stats():
 
 
 def test_the_page_names_every_package():
-    page = (ROOT / "docs" / "architecture.md").read_text("utf-8")
+    page = (ROOT / "docs" / "explanation" / "architecture.md").read_text("utf-8")
     packages = {
         path.parent.name
         for top in ("recon4", "app/recon4_app")

@@ -212,7 +212,7 @@ def test_no_text_stands_under_the_wrong_field():
 
 
 def test_the_page_about_settings_is_up_to_date():
-    page = (ROOT / "docs" / "settings.md").read_text("utf-8")
+    page = (ROOT / "docs" / "reference" / "settings.md").read_text("utf-8")
 
     assert page == markdown(), "run `make docs`"
 

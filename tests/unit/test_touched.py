@@ -23,7 +23,7 @@ from tools.touched import ALWAYS, ROOT, mirrors_of, touched, without_those_below
         ("tests/unit/live/test_disk.py", ["tests/unit/live/test_disk.py"]),
         ("tests/unit/recording/packet_builders.py", ["tests/unit/recording"]),
         ("tests/unit/conftest.py", []),
-        ("docs/map.md", []),
+        ("docs/explanation/map.md", []),
         ("Makefile", []),
     ],
 )

@@ -126,7 +126,8 @@ export const projectUrl = (id) => at(`/projects/${name(id)}/`);
 export const stretchUrl = (id, stretch) => `${projectUrl(id)}#${stretch}`;
 export const slicesUrl = (id) => `${projectUrl(id)}slices/`;
 /** What the code of a finding means. */
-export const findingHelpUrl = (kind) => at(`/docs/findings#${name(kind.toLowerCase())}`);
+export const findingHelpUrl = (kind) =>
+  at(`/docs/reference/findings.html#${name(kind.toLowerCase())}`);
 export const viewerUrl = (id) => at(`/projects/${name(id)}/viewer/`);
 export const reportUrl = (id) => at(`/api/projects/${name(id)}/report`);
 export const findingsUrl = (id, ending) => at(`/api/projects/${name(id)}/findings.${ending}`);

@@ -208,7 +208,7 @@ def _one_line(text: str) -> str:
 
 @router.websocket("/stream", dependencies=LOOK)
 async def stream(socket: WebSocket) -> None:
-    """Stream the part of the map and state this phone lacks (``docs/live.md``)."""
+    """Stream the part of the map and state this phone lacks (``docs/how-to/live.md``)."""
     current_capture = parts(socket).current_capture
     await socket.accept()  # a page receives the close code and reason of an accepted socket only
     try:

@@ -41,7 +41,7 @@ STAGE_ORDER = (
     "map",
     "audit",
 )
-"""As in docs/architecture.md; a stage not named here is shown last."""
+"""As in docs/explanation/architecture.md; a stage not named here is shown last."""
 
 VIEWABLE_STAGES = {"odometry", "map", "odometry_2d", "map_2d"}
 """The viewer has something to show once one of them is done."""

@@ -1,6 +1,6 @@
 """Maps multiframes during a capture and reports the result as messages. No clocks, no sockets.
 
-The messages are those of ``docs/live.md``; arrays are base64.
+The messages are those of ``docs/how-to/live.md``; arrays are base64.
 """
 
 from __future__ import annotations

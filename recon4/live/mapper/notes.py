@@ -23,7 +23,7 @@ class NotesWatch:
         """Time and counts of recent messages; before the first one nothing was counted."""
 
     def message(self, now_s: float) -> Notes:
-        """Build the message ``notes`` of ``docs/live.md``.
+        """Build the message ``notes`` of ``docs/how-to/live.md``.
 
         Args:
             now_s: A monotonic time [s].

@@ -2,8 +2,8 @@
 
 ``python -m recon4.live.mapper.process PROJECT`` reads the file while the recorder writes it.
 It may be killed and restarted at any time: it starts at the beginning of the file and catches up.
-It sends JSON lines over a Unix socket (``docs/live.md``): messages of `LiveMap`, ``notes`` (repairs
-and warnings of the reader) and, at the end, ``done``.
+It sends JSON lines over a socket (``docs/how-to/live.md``): messages of `LiveMap`, ``notes``
+(repairs and warnings of the reader) and, at the end, ``done``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""IMU and GNSS samples as CSV files (``docs/recordings.md`` has the headers)."""
+"""IMU and GNSS samples as CSV files (``docs/reference/recordings.md`` has the headers)."""
 
 from __future__ import annotations
 

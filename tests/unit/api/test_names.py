@@ -49,7 +49,7 @@ def test_the_examples_of_a_docstring_give_what_they_show(name, here, monkeypatch
 
 @pytest.mark.parametrize("name", api.__all__)
 def test_the_page_lists_a_name(name):
-    page = (ROOT / "docs" / "python.md").read_text("utf-8")
+    page = (ROOT / "docs" / "reference" / "python.md").read_text("utf-8")
 
     assert re.search(rf"^\| `{name}\b", page, re.MULTILINE)
 
@@ -73,7 +73,7 @@ def test_the_wheel_says_that_it_has_types():
     assert {"recon4/py.typed", "recon4/api/__init__.py"} <= files
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/python.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/reference/python.md"])
 def test_the_first_example_of_a_page_runs(page, here, monkeypatch):
     """All but the stages: the walk was processed before."""
     text = (ROOT / page).read_text("utf-8")

@@ -97,7 +97,7 @@ def test_every_code_is_explained_and_a_wrong_one_gets_the_nearest():
 
 
 def test_the_page_of_the_findings_is_the_catalog():
-    page = (ROOT / "docs" / "findings.md").read_text("utf-8")
+    page = (ROOT / "docs" / "reference" / "findings.md").read_text("utf-8")
 
     assert page == markdown(), "run make docs"
 

@@ -1,0 +1,48 @@
+"""The documentation in a browser: its search, its colors and its links, from this server alone."""
+
+import re
+
+import pytest
+from playwright.sync_api import expect
+
+from tests.served import served
+
+pytestmark = pytest.mark.e2e
+
+server = served()
+
+
+def test_the_search_finds_a_page_without_internet(server, page, look, screenshot):
+    page.goto(f"{server.url}/docs/")
+    screenshot(page, "docs-start")
+
+    page.keyboard.press("Control+k")
+    page.get_by_role("combobox", name="Search").fill("fingerprint")
+    found = page.get_by_role("option")
+    expect(found.first).to_be_visible()
+    screenshot(page, "docs-search")
+    found.first.click()
+
+    expect(page).to_have_url(re.compile(r"/docs/[\w-]+/[\w-]+\.html"))
+    expect(page.locator("article h1")).to_be_visible()
+
+
+def test_a_page_has_the_colors_the_browser_wants_and_no_more_than_its_width(
+    server, page, look, screenshot
+):
+    page.goto(f"{server.url}/docs/reference/findings.html#gnss-clock")
+
+    expect(page.locator("#gnss-clock")).to_be_in_viewport()
+    dark = page.evaluate("() => getComputedStyle(document.body).backgroundColor")
+    channels = [int(one) for one in re.findall(r"\d+", dark)[:3]]
+    assert (max(channels) < 80) == (look[1] == "dark")
+    assert page.evaluate("() => document.documentElement.scrollWidth <= innerWidth")
+    screenshot(page, "docs-findings")
+
+
+def test_the_site_leads_back_to_the_projects(server, page):
+    page.goto(f"{server.url}/docs/reference/rig.html")
+
+    page.get_by_role("link", name="Projects of this server").click()
+
+    expect(page).to_have_url(f"{server.url}/")
