@@ -218,7 +218,7 @@ def test_the_server_answers_before_a_job_that_takes_all_processors(tmp_path, rec
         server.wait_at_gate(job)
         gate = open_gate(recording, "busy")
         wait_for(lambda: "busy" in ran(recording), "all processors are taken")
-        answers = [client.get("/healthz").status_code for _ in range(200)]
+        answers = [client.get("/healthz").status_code for _ in range(50)]
         still = client.get(f"/api/jobs/{job}").json()["job"]["state"]
         niceness = [one.nice() for one in psutil.Process(server.worker_pid(job)).children()]
         of_server = psutil.Process(process.pid).nice()
