@@ -8,7 +8,8 @@ import sysconfig
 import zipfile
 from contextlib import contextmanager
 from pathlib import Path
-from shutil import copyfile
+from shutil import copyfile, copytree
+from urllib.parse import urljoin
 
 import httpx
 import pytest
@@ -20,8 +21,12 @@ from tests.service.viser_client import camera, viewing
 
 pytestmark = pytest.mark.slow
 
+SOURCES = (
+    *("pyproject.toml", "zensical.toml", "README.md", "LICENSE", "NOTICE"),
+    *("recon4", "app", "web", "docs", "tools"),
+)
 PAGES = ("/", "/docs/", "/docs/recordings", "/live", "/rigs")
-ADDRESS = re.compile(r'(?:href|src)="(/[^"#]*)"')
+ADDRESS = re.compile(r'(?:href|src)="([^"#]+)')
 CHECKOUT = """
 import importlib.util, recon4, recon4_app
 assert importlib.util.find_spec("tests") is None and importlib.util.find_spec("tools") is None
@@ -31,8 +36,12 @@ print(recon4.__file__, recon4_app.__file__)
 
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("wheel")
-    pip("wheel", "--no-build-isolation", "--wheel-dir", folder, ROOT)
+    """Built from a copy: the site of the checkout is served by other tests meanwhile."""
+    folder, source = tmp_path_factory.mktemp("wheel"), tmp_path_factory.mktemp("source")
+    for name in SOURCES:
+        path = ROOT / name
+        (copytree if path.is_dir() else copyfile)(path, source / name)
+    pip("wheel", "--no-build-isolation", "--wheel-dir", folder, source)
     (built,) = folder.glob("recon4-*.whl")
     return built
 
@@ -134,15 +143,23 @@ def test_pages_documentation_and_viewer_are_served(installed, demo):
     folder, _ = demo
     with (
         serving(installed, folder) as url,
-        httpx.Client(base_url=url, verify=WITHOUT_TLS, timeout=HANG_S) as client,
+        httpx.Client(
+            base_url=url, verify=WITHOUT_TLS, timeout=HANG_S, follow_redirects=True
+        ) as client,
     ):
-        linked = {at for page in PAGES for at in ADDRESS.findall(client.get(page).text)}
-        found = {address: client.get(address).status_code for address in linked.union(PAGES)}
+        pages = {page: client.get(page) for page in PAGES}
+        linked = {
+            urljoin(str(page.url), at)
+            for page in pages.values()
+            for at in ADDRESS.findall(page.text)
+        }
+        ours = sorted(at.removeprefix(url) for at in linked if at.startswith(f"{url}/"))
+        answers = pages | {address: client.get(address) for address in ours}
         projects = client.get("/api/projects").json()
         with viewing(url) as browser:
             browser.send(camera())
             browser.until(lambda shown: "/grid" in shown.nodes)
 
-    assert {"/web/projects/index.js", "/web/shared/base.css"} <= set(found)
-    assert {address: code for address, code in found.items() if code != 200} == {}
+    assert {"/web/projects/index.js", "/web/shared/base.css"} < set(answers)
+    assert {at: one.status_code for at, one in answers.items() if one.status_code != 200} == {}
     assert "office" in str(projects)
