@@ -74,14 +74,7 @@ def graph_of(walk: Trajectory) -> PoseGraph:
         edge(walk, 0, 19, EdgeKind.LOOP, Verdict.ACCEPTED, **good),
         edge(walk, 1, 18, EdgeKind.LOOP, Verdict.UNVERIFIED, error_m=0.03, limit_m=0.1),
         edge(walk, 2, 9, EdgeKind.LOOP, Verdict.REJECTED, reason=Reason.OVERLAP, overlap=0.1),
-        edge(
-            walk,
-            3,
-            12,
-            EdgeKind.LOOP,
-            Verdict.REJECTED,
-            **bad,
-        ),
+        edge(walk, 3, 12, EdgeKind.LOOP, Verdict.REJECTED, **bad),
     ]
     rows = np.arange(20)
     return PoseGraph(rows * 10, walk.t_ns[rows * 10], walk.T_a_b[rows * 10], (*odometry, *loops))
@@ -103,15 +96,13 @@ def write_map(folder: Path) -> None:
         writer.append((0, 0, 0), columns)
 
 
-@pytest.fixture
-def facts(tmp_path: Path) -> ReportFacts:
+def made_facts(folder: Path) -> ReportFacts:
     folders = {
-        name: tmp_path / name
-        for name in ("frames", "odometry", "verification", "level", "intensity")
+        name: folder / name for name in ("frames", "odometry", "verification", "level", "intensity")
     }
-    for folder in folders.values():
-        folder.mkdir()
-    write_map(tmp_path / "map")
+    for one in folders.values():
+        one.mkdir()
+    write_map(folder / "map")
     truth = loop_walk()
     save_trajectory(folders["odometry"] / "trajectory.npz", loop_walk(drift_m=0.5))
     save_trajectory(folders["level"] / "trajectory.npz", truth)
@@ -123,12 +114,8 @@ def facts(tmp_path: Path) -> ReportFacts:
         share=np.full(200, 0.9),
         lost=np.zeros(200, dtype=bool),
     )
-    imported = {
-        "outcome": "lossy",
-        "warnings": [EVIL],
-        "derived": ["ring"],
-        "counts": {"points": 5_000_000},
-    }
+    counts = {"points": 5_000_000}
+    imported = {"outcome": "lossy", "warnings": [EVIL], "derived": ["ring"], "counts": counts}
     (folders["frames"] / "report.json").write_text(json.dumps(imported))
     placed = {
         "georeferenced": True,
@@ -150,7 +137,7 @@ def facts(tmp_path: Path) -> ReportFacts:
         created="2026-11-21T10:00:00Z",
         preset="indoor",
         settings=override(preset("indoor"), ["map.voxel_m=0.05"]),
-        artifacts=folders | {"map": tmp_path / "map"},
+        artifacts=folders | {"map": folder / "map"},
         stages=(
             StageTiming("frames", 2.0, 3.0, 200_000_000),
             StageTiming("map", 8.0, 9.0, 900_000_000),
@@ -160,8 +147,20 @@ def facts(tmp_path: Path) -> ReportFacts:
     )
 
 
-def test_the_report_says_what_was_found(facts: ReportFacts) -> None:
-    text = Tags(render(assess(facts))).text
+@pytest.fixture
+def facts(tmp_path: Path) -> ReportFacts:
+    return made_facts(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def page(tmp_path_factory: pytest.TempPathFactory) -> tuple[ReportFacts, str]:
+    """Facts and their report, which tests only read."""
+    facts = made_facts(tmp_path_factory.mktemp("facts"))
+    return facts, render(assess(facts))
+
+
+def test_the_report_says_what_was_found(page: tuple[ReportFacts, str]) -> None:
+    text = Tags(page[1]).text
 
     for words in (
         "office walk",
@@ -200,19 +199,20 @@ def test_names_and_texts_from_files_are_shown_as_text(facts: ReportFacts) -> Non
     assert "49" not in page.text.split("alert('x')")[1][:80]
 
 
-def test_the_page_asks_nothing_of_the_network(facts: ReportFacts) -> None:
-    text = render(assess(facts))
-    page = Tags(text)
+def test_the_page_asks_nothing_of_the_network(page: tuple[ReportFacts, str]) -> None:
+    _, text = page
+    found = Tags(text)
 
-    assert not {"script", "link", "iframe", "object", "embed", "form"} & set(page.tags)
-    sources = [v for name, v in page.attributes if name in {"src", "href", "xlink:href", "action"}]
+    assert not {"script", "link", "iframe", "object", "embed", "form"} & set(found.tags)
+    sources = [v for name, v in found.attributes if name in {"src", "href", "xlink:href", "action"}]
     assert sources
     assert all(value.startswith(("data:image/png;base64,", "#")) for value in sources)
     assert "https://" not in text
 
 
-def test_the_same_facts_give_the_same_page(facts: ReportFacts) -> None:
-    assert render(assess(facts)) == render(assess(facts))
+def test_the_same_facts_give_the_same_page(page: tuple[ReportFacts, str]) -> None:
+    facts, text = page
+    assert render(assess(facts)) == text
 
 
 def test_lost_tracking_is_the_first_thing_said(facts: ReportFacts, tmp_path: Path) -> None:
