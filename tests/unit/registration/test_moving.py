@@ -242,7 +242,7 @@ def test_what_does_not_hold_the_trajectory_is_severe() -> None:
 
 @pytest.mark.slow
 def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
-    walk = Walk(GROUP[2:], ROWS, seconds=6.0)
+    walk = Walk(GROUP[2:], ROWS, seconds=4.0)
 
     figures = run_odometry(walk, tmp_path, settings=Settings(), progress=Silent())
 
@@ -259,7 +259,7 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
-    walk, kept = Walk(GROUP, ROWS, seconds=6.0), OdometrySettings(leave_out_moving=False)
+    walk, kept = Walk(GROUP, ROWS, seconds=4.5), OdometrySettings(leave_out_moving=False)
 
     figures = run_odometry(walk, tmp_path, settings=Settings(odometry=kept), progress=Silent())
 
