@@ -8,6 +8,7 @@ from difflib import get_close_matches
 
 from recon4.errors import ConfigError
 from recon4.findings.kinds import FindingKind
+from recon4.findings.measured import sources
 from recon4.findings.wording import KindText, Sentence, catalog
 
 _WIDTH = 88
@@ -31,7 +32,12 @@ each stretch in the CRS of the map, or as lines along the walk in longitude and 
 is not georeferenced, both are in its local frame, and the file says so. A finding about the whole
 map has no place there.
 
-This page is made from the catalog of the texts: `make docs`.
+*Measured* counts the alarms (*check* or *do not use*) in runs with known truth. An alarm is true in
+a run whose trajectory is wrong, or whose fault it names; wrong runs without it may have others.
+[Trust](../explanation/trust.md) says how the runs were made. Of a published table only the first
+reason of each run is known, by the code of its time.
+
+This page is made from the catalog of the texts and the counts in `measured.toml`: `make docs`.
 """
 
 
@@ -72,6 +78,7 @@ def _section(kind: FindingKind, entry: KindText) -> str:
     shown = " ".join(_readable(text) for text in sentences)
     rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", ""]
     rows += [f"- says: {shown}", f"- detected: {entry.detection}"]
+    rows.append(f"- measured: {'; '.join(source.words(kind) for source in sources())}")
     if entry.remedy:
         rows.append(f"- what to do: {_readable(entry.remedy)}")
     return "\n".join([*rows, ""])

@@ -1,6 +1,10 @@
 """How often each kind of finding is right: precision and recall over runs of the proving ground.
 
-    python -m tests.benchmarks.precision OUT/runs.jsonl [OUT/runs.jsonl …]
+    python -m tests.benchmarks.precision OUT/runs.jsonl [docs/explanation/trust.md …] [--toml NAME]
+
+Of a page with the published table (``.md``) only the first reason of each run is known.
+``--toml`` prints a source for ``recon4/findings/measured.toml``, whose figures the page
+``docs/reference/findings.md`` quotes.
 
 A finding is an *alarm* if it makes the verdict worse than good. Its precision is the ratio of its
 alarms that stand in runs whose trajectory is not right, or whose degradation it names; its recall
@@ -12,6 +16,7 @@ good.
 from __future__ import annotations
 
 import argparse
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -46,6 +51,34 @@ NAMES = {
 """Degradation -> kinds that name it: no false alarm, even if the trajectory is right."""
 
 
+_FIRST_REASONS = {
+    "The rig file contradicts the recording": "RIG-CONTRADICTED",
+    "Between .* moving objects": "MOVING-OBJECTS",
+    "Between .* the LiDAR hardly observes": "WEAK-DIRECTION",
+    "no IMU": "IMU-MISSING",
+    "The IMU measures .* where gravity is": "IMU-GRAVITY",
+    "The IMU contradicts the recording. The scale": "IMU-SCALE",
+    "The IMU contradicts the recording. The accelerometer measures about 1": "IMU-UNIT",
+    "The IMU contradicts the recording. The accelerometer": "IMU-SCALE",
+    "Tracking was lost": "TRACKING-LOST",
+    "The positions are known to": "UNCERTAINTY",
+    "The clock of the IMU": "IMU-CLOCK",
+    "The mounts of": "RIG-EXCHANGED",
+    "A mirror or a glass wall": "MIRROR",
+    "The registration converged in only": "NOT-CONVERGED",
+    "No loop closure was accepted": "LOOPS-NONE",
+    "The gyroscope is rotated": "IMU-GYRO-ROTATION",
+    "The gyroscope measures turns": "IMU-GYRO-SCALE",
+    "The rig file contradicts the GNSS fixes: their clock": "GNSS-CLOCK",
+    "The rig file contradicts the GNSS fixes: the antenna": "ANTENNA-OFFSET",
+    "the accelerometer contradicts the LiDARs": "IMU-ACCELEROMETER-NOT-USED",
+    "the IMU contradicts the LiDARs": "IMU-NOT-USED",
+    "[a-z]+: its packets say": "IMPORT-REMARK",
+}
+"""How the first reason in a published table begins, a regular expression, and its kind."""
+_COLUMNS, _WALK = 12, re.compile(r"[a-z]+(:\d+)?/\d+")
+
+
 @dataclass(frozen=True, slots=True)
 class KindCounts:
     """Alarms of one kind."""
@@ -62,7 +95,7 @@ def kind_counts(lines: Iterable[Line]) -> dict[str, KindCounts]:
     alarms, true, of_wrong = Counter[str](), Counter[str](), Counter[str]()
     for line in lines:
         wrong = line["outcome"] != "right"
-        named = {kind for one in line["degradation"].split("+") for kind in NAMES.get(one, ())}
+        named = _named(line)
         for kind, level in line["kinds"].items():
             if level in _ALARMS:
                 alarms[kind] += 1
@@ -85,8 +118,55 @@ def false_alarms(lines: Sequence[Line]) -> dict[str, float]:
 
 def _names_a_degradation(line: Line) -> bool:
     """Whether some alarm of a run names what is wrong with its recording."""
-    named = {kind for one in line["degradation"].split("+") for kind in NAMES.get(one, ())}
+    named = _named(line)
     return any(level in _ALARMS and kind in named for kind, level in line["kinds"].items())
+
+
+def _named(line: Line) -> set[str]:
+    """The kinds that name what is wrong with a recording, or what stands in its world."""
+    named = {kind for one in line["degradation"].split("+") for kind in NAMES.get(one, ())}
+    return named | ({"MIRROR"} if line["walk"].startswith("mirrors") else set())
+
+
+def table_lines(page: Path) -> list[Line]:
+    """The runs of a published table, each with its first reason.
+
+    Raises:
+        ValueError: If the kind of a reason is not known.
+    """
+    rows = ([cell.strip() for cell in text.strip("| ").split("|")] for text in _rows_of(page))
+    lines: list[Line] = []
+    for row in rows:
+        walk, degradation, verdict, outcome, reason = (row[k] for k in (0, 1, 8, 9, 10))
+        verdict = verdict.strip("()")
+        kinds = {_kind_of(reason): verdict} if reason else {}
+        run = {"walk": walk, "degradation": degradation, "verdict": verdict, "outcome": outcome}
+        lines.append(run | {"kinds": kinds})
+    return lines
+
+
+def _rows_of(page: Path) -> list[str]:
+    texts = (text.strip() for text in page.read_text("utf-8").splitlines())
+    rows = [text for text in texts if text.count("|") == _COLUMNS + 1]
+    return [text for text in rows if _WALK.fullmatch(text.split("|")[1].strip())]
+
+
+def _kind_of(reason: str) -> str:
+    for begin, kind in _FIRST_REASONS.items():
+        if re.match(begin, reason):
+            return kind
+    raise ValueError(f"expected the first reason of a run, got {reason!r}")
+
+
+def source_toml(lines: Sequence[Line], name: str) -> str:
+    """The counts as a source of ``recon4/findings/measured.toml``."""
+    right = sum(line["outcome"] == "right" for line in lines)
+    rows = [
+        f"{kind} = {{ alarms = {n.alarms}, true = {n.true}, of_wrong = {n.of_wrong} }}"
+        for kind, n in sorted(kind_counts(lines).items())
+    ]
+    head = ["[[sources]]", f'name = "{name}"', f"right = {right}", f"wrong = {len(lines) - right}"]
+    return "\n".join([*head, "[sources.kinds]", *rows])
 
 
 def report(lines: Sequence[Line]) -> str:
@@ -112,8 +192,13 @@ def report(lines: Sequence[Line]) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("runs", type=Path, nargs="+")
-    lines = [line for path in parser.parse_args().runs for line in read_lines(path)]
-    print(report(lines))
+    parser.add_argument("--toml", metavar="NAME", help="print a source of that name")
+    asked = parser.parse_args()
+    lines = [
+        line for path in asked.runs
+        for line in (table_lines(path) if path.suffix == ".md" else read_lines(path))
+    ]  # fmt: skip
+    print(source_toml(lines, asked.toml) if asked.toml else report(lines))
 
 
 if __name__ == "__main__":

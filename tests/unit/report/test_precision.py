@@ -1,13 +1,29 @@
 """Precision and recall of findings over runs of the proving ground."""
 
+import tomllib
+from pathlib import Path
+
+import msgspec
+import pytest
+
 from recon4.findings.kinds import FindingKind
-from tests.benchmarks.precision import NAMES, KindCounts, false_alarms, kind_counts, report
+from recon4.findings.measured import MeasuredRuns, sources
+from tests.benchmarks.precision import (
+    NAMES,
+    KindCounts,
+    false_alarms,
+    kind_counts,
+    report,
+    source_toml,
+    table_lines,
+)
 from tests.benchmarks.proving_ground import DEGRADATIONS
 
 
 def run(outcome, verdict, degradation="none", **kinds):
     named = {name.replace("_", "-"): level for name, level in kinds.items()}
-    return {"outcome": outcome, "verdict": verdict, "degradation": degradation, "kinds": named}
+    line = {"outcome": outcome, "verdict": verdict, "degradation": degradation, "kinds": named}
+    return line | {"walk": "office/1"}
 
 
 RUNS = [
@@ -35,3 +51,55 @@ def test_right_runs_that_name_their_degradation_are_no_false_alarms():
 def test_degradations_and_kinds_are_those_of_the_program():
     assert set(NAMES) <= set(DEGRADATIONS)
     assert {kind for kinds in NAMES.values() for kind in kinds} <= set(FindingKind)
+
+
+TABLE = """
+| walk | degradation | ATE | largest | 2σ | NEES | earth | lost | verdict | class | first | code |
+|---|---|---:|---:|---:|---:|---:|---:|---|---|---|---|
+| mirrors/1 | none | 0.2 | 1 | 1 | 1 | - | 0 | check | right | A mirror or a glass wall of … | O |
+| garage/1 | none | 0.2 | 1 | 1 | 1 | - | 0 | (check) | right | A mirror or a glass wall of … | O |
+| tunnel/1 | none | 90 | 99 | 99 | 1 | - | 0 | do not use | announced | Tracking was lost in … | O |
+| office/1 | none | 0.2 | 1 | 1 | 1 | - | 0 | good | right |  | O |
+"""
+
+
+def test_a_published_table_has_the_first_reason_of_each_run(tmp_path):
+    (tmp_path / "trust.md").write_text(TABLE, "utf-8")
+
+    lines = table_lines(tmp_path / "trust.md")
+
+    assert [line["verdict"] for line in lines] == ["check", "check", "do not use", "good"]
+    # In a hall of mirrors a mirror is none that the program made up.
+    assert kind_counts(lines)["MIRROR"] == KindCounts(alarms=2, true=1, of_wrong=0)
+    assert kind_counts(lines)["TRACKING-LOST"] == KindCounts(alarms=1, true=1, of_wrong=1)
+
+
+def test_a_reason_of_no_known_kind_is_refused(tmp_path):
+    (tmp_path / "trust.md").write_text(TABLE.replace("A mirror or", "Something"), "utf-8")
+
+    with pytest.raises(ValueError, match="Something a glass wall"):
+        table_lines(tmp_path / "trust.md")
+
+
+def test_what_the_page_of_findings_quotes_is_what_was_counted():
+    source = msgspec.convert(
+        tomllib.loads(source_toml(RUNS, "five runs"))["sources"][0], MeasuredRuns
+    )
+
+    assert (source.right, source.wrong) == (4, 1)
+    assert source.words(FindingKind.WEAK_DIRECTION) == (
+        "2 alarms in 5 runs, 50 % of them true, in 1 of 1 wrong runs (five runs)"
+    )
+    assert source.words(FindingKind.MIRROR) == "no alarm in 5 runs (five runs)"
+
+
+def test_the_published_table_is_counted_in_the_catalog():
+    lines = table_lines(Path(__file__).parents[3] / "docs" / "explanation" / "trust.md")
+
+    source = next(one for one in sources() if "table in trust.md" in one.name)
+
+    assert len(lines) == source.right + source.wrong
+    counts = kind_counts(lines)
+    assert {kind: found.alarms for kind, found in source.kinds.items()} == {
+        kind: found.alarms for kind, found in counts.items()
+    }
