@@ -16,7 +16,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.usability import WEAK_SD_M
 from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
-from recon4.registration.passes import dense_trajectory
+from recon4.registration.smoother import dense_trajectory, smooth
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -86,7 +86,7 @@ class RecordedWalk:
         """``T_odom_body``, dense, of an odometry that no fixes pull."""
         odometry = Odometry(self.frames.rig, settings, self.frames.imu)
         frames = track(self.frames, progress, what="odometry without GNSS", unit="multiframe")
-        return dense_trajectory([odometry.push(frame) for frame in frames])
+        return dense_trajectory(smooth([odometry.push(frame) for frame in frames]))
 
     def tracked_windows(
         self,
@@ -111,6 +111,6 @@ class RecordedWalk:
             odometry = Odometry(rig, settings, imu)
             steps = [odometry.push(self.frames[row]) for row in part]
             if not any(step.lost for step in steps):
-                dense = dense_trajectory(steps)
+                dense = dense_trajectory(smooth(steps))
                 found.append(cut_window(self.frames, dense, part, points=points))
         return found

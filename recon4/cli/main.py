@@ -115,6 +115,9 @@ def process(  # noqa: PLR0913 - an argument for each option
         ),
     ] = "",
     assignments: SetOption = None,
+    verbose: Annotated[
+        bool, typer.Option("-v", "--verbose", help="Show what the odometry tried to assume.")
+    ] = False,
     as_json: JsonOption = False,
 ) -> None:
     """Make a map of a recording; started again, it continues where it stopped."""
@@ -125,7 +128,7 @@ def process(  # noqa: PLR0913 - an argument for each option
     compile_first()
     confine_command(write=[result_folder(out)])
 
-    from recon4.cli.terminal import describe_summary, watcher
+    from recon4.cli.terminal import describe_summary, describe_tried, watcher
     from recon4.model.events import Warned
     from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
@@ -140,7 +143,7 @@ def process(  # noqa: PLR0913 - an argument for each option
     if as_json:
         _write_json(summary.to_json())
     else:
-        write(describe_summary(summary))
+        write("\n".join([describe_summary(summary), *(describe_tried(out) if verbose else ())]))
 
 
 def _calibrate(word: str) -> list[str]:

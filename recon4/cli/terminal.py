@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
+from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, TextIO, cast
 
@@ -169,6 +170,21 @@ def describe_event(event: Event) -> str:
                 f"the damaged one is {moved_to}: {'; '.join(files)}"
             )
     return ""
+
+
+def describe_tried(out: Path) -> list[str]:
+    """The hypotheses that the odometry of a project tried, in lines; none if it has no table.
+
+    Raises:
+        StoreError: If the table is damaged.
+    """
+    from recon4.report.tried import tried_lines
+    from recon4.store.project import read_artifacts
+    from recon4.store.tried import read_tried
+
+    odometry = read_artifacts(out).get("odometry")
+    tried = read_tried(odometry) if odometry else ()
+    return tried_lines(tried) if tried else []
 
 
 def describe_summary(summary: RunSummary) -> str:

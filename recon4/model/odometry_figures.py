@@ -8,6 +8,7 @@ from typing import ClassVar, Literal
 import msgspec
 
 from recon4.model.figures import Figures, Point
+from recon4.model.tried_hypotheses import ImuOutcome, TriedHypothesis
 
 
 class HeightDoubt(msgspec.Struct, frozen=True, kw_only=True):
@@ -24,9 +25,6 @@ class HeightDoubt(msgspec.Struct, frozen=True, kw_only=True):
     largest_m_s2: float | None = None
     """Largest difference of vertical accelerations; None = it has the pattern of a ride [m/s²]."""
     usual_m_s2: float | None = None
-
-
-ImuOutcome = Literal["as recorded", "bias removed", "accelerometer not used", "not used"]
 
 
 class ImuChoice(msgspec.Struct, frozen=True, kw_only=True):
@@ -166,3 +164,5 @@ class OdometryFigures(Figures, frozen=True, kw_only=True):
     """Turns that no LiDAR observes."""
     moving: MovingFigures | None = None
     """People and vehicles in view; None = not searched for."""
+    tried: tuple[TriedHypothesis, ...] = ()
+    """What it tried to assume, and why one hypothesis was chosen; none in earlier versions."""

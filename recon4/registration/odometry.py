@@ -17,7 +17,6 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.bridge import bridge_cov
 from recon4.registration.frame_fit import FrameFit, FrameFitter
-from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import (
     FreeMotion,
@@ -113,10 +112,10 @@ class Odometry:
         """The aiding, if the odometry began in its frame."""
         self._piece = self._resets = self._tracked_frames = 0
 
-    def remember_imu(self, before: Odometry) -> None:
-        """Begin with what another odometry found out about the same IMU."""
-        if isinstance(self._motion, ImuMotion) and before._good and before._chain is None:
-            self._motion.remember(before._good)
+    def remember_imu(self, known: MotionState) -> None:
+        """Begin with what another odometry found out about the same IMU (`imu_state`)."""
+        if isinstance(self._motion, ImuMotion):
+            self._motion.remember(known)
 
     def extend_imu(self, imu: ImuSamples) -> None:
         """Append newer IMU samples of a live capture. Without an IMU at first this does nothing."""
@@ -124,10 +123,9 @@ class Odometry:
             self._motion.extend(imu)
 
     @property
-    def imu_estimate(self) -> ImuEstimate | None:
-        """What is known of the IMU so far; None without one, or before the first multiframe."""
-        state = None if self._chain else self._before_hole or self._state
-        return ImuEstimate.of(state) if state else None
+    def imu_state(self) -> MotionState | None:
+        """The last tracked state that knows the IMU; None without one, or before the first."""
+        return None if self._chain else self._before_hole or self._good
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
@@ -257,7 +255,8 @@ class Odometry:
         """The last position and heading, with what the IMU says of the attitude now."""
         if self._chain is not None:
             return self._free.at_rest(state, t_ns)
-        self.remember_imu(self)
+        if self.imu_state is not None:
+            self.remember_imu(self.imu_state)
         leveled = self._motion.initial(t_ns)
         vector = leveled.vector.copy()
         vector[VECTOR.position] = state.vector[VECTOR.position]

@@ -1,99 +1,103 @@
-"""The stage ``odometry``: estimate the pose of all multiframes with one `Odometry`."""
+"""The stage ``odometry``: estimate the pose of all multiframes with the hypothesis that holds."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.model.frames import RecordedFrames
-from recon4.model.hidden import MOVING_POINTS
-from recon4.model.odometry_figures import MovingFigures, OdometryFigures
+from recon4.model.hidden import MOVING_POINTS, HiddenPoints
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
-from recon4.progress import Progress
-from recon4.registration.aiding import GnssAiding
+from recon4.model.samples import ImuSamples
 from recon4.registration.felt_motion import carried, felt_motion, is_carried
-from recon4.registration.moving import find_moving
-from recon4.registration.moving_passes import Found, leave_out_moving, less_sure
-from recon4.registration.passes import OdometryPass, register_all
+from recon4.registration.hypotheses import Choice, choose_walk
+from recon4.registration.pulled import less_sure
 from recon4.registration.step import OdometryStep
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
+from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs
 from recon4.registration.weak_turns import weak_turns
-from recon4.settings import Settings
-from recon4.store.arrays import save_record, save_trajectory
+from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
+from recon4.store.tried import read_tried, write_tried
 
 
-def run_odometry(
-    frames: RecordedFrames,
-    out: Path,
-    *,
-    settings: Settings,
-    progress: Progress,
-    aiding: GnssAiding | None = None,
-) -> OdometryFigures:
-    """Register all multiframes in order; again without moving objects, if these fill the view.
+def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
+    """Register all multiframes in order; again only if that shows what must be assumed.
 
     Args:
-        frames: The multiframes with their rig and IMU.
-        out: Receives ``trajectory.npz`` (``T_odom_body``, dense) and ``steps.npz``
-            (a row a multiframe), ``moving.npz`` if points on moving objects are left out.
-        settings: Uses segments, planes, registration and odometry.
-        progress: Counts multiframes; tracking that is lost is an event.
-        aiding: Fixes of a GNSS/INS, outdoors.
+        recording: The multiframes with their rig, IMU and fixes, and the settings: segments,
+            planes, registration, scans and odometry. Its progress counts multiframes; tracking
+            that is lost is an event.
+        out: Receives ``trajectory.npz`` (``T_odom_body``, dense), ``steps.npz`` (a row a
+            multiframe), ``hypotheses.json`` (what was tried, and why one was chosen), and
+            ``moving.npz`` if points on moving objects are left out.
     """
-
-    def register(seen: RecordedFrames, *, trusted: bool = False) -> OdometryPass:
-        return register_all(seen, settings, progress=progress, aiding=aiding, trusted=trusted)
-
-    made = register(frames)
-    if settings.odometry.leave_out_moving:
-        found = leave_out_moving(frames, made, register=register, aiding=aiding)
-    else:
-        found = Found(made, find_moving(frames, made.trajectory, made.pieces))
-    if found.hidden is not None:
-        save_record(out / MOVING_POINTS, found.hidden)
-    found = replace(found, made=_carried(found.made, frames.rig, settings))
-    made, moving = found.made, found.moving
-    save_trajectory(out / "trajectory.npz", made.trajectory)
-    _save_steps(out / "steps.npz", less_sure(found))
-    return _figures(made, frames, moving=moving, aided=aiding is not None)
+    choice = choose_walk(recording)
+    hypothesis, tracked = choice.best.hypothesis, choice.best.tracked
+    if hypothesis.hidden is not None:
+        save_record(out / MOVING_POINTS, hypothesis.hidden)
+    write_tried(out, choice.tried)
+    save_trajectory(out / "trajectory.npz", tracked.trajectory)
+    used = hypothesis.imu.samples if recording.settings.odometry.use_imu else None
+    steps = tracked.steps if used is None else _carried(recording, tracked, used)
+    _save_steps(out / "steps.npz", less_sure(steps, choice.moving, with_imu=used is not None))
+    return _figures(recording, choice, steps, with_imu=used is not None)
 
 
-def _carried(made: OdometryPass, rig: Rig, settings: Settings) -> OdometryPass:
-    """A pass with what its accelerometer says where the LiDARs hardly observe the motion."""
-    if made.imu is None or not any(is_carried(step) for step in made.steps[1:]):
-        return made
-    felt = felt_motion(
-        made.steps, made.trajectory, made.imu, rig=rig, accel_noise=settings.odometry.accel_noise
-    )
-    return made if felt is None else replace(made, steps=carried(made.steps, felt))
+def _carried(recording: WalkInputs, tracked: TrackedWalk, imu: ImuSamples) -> list[OdometryStep]:
+    """Steps with what the accelerometer says where the LiDARs hardly observe the motion."""
+    steps = tracked.steps
+    if not any(is_carried(step) for step in steps[1:]):
+        return steps
+    noise, rig = recording.settings.odometry.accel_noise, recording.frames.rig
+    felt = felt_motion(steps, tracked.trajectory, imu, rig=rig, accel_noise=noise)
+    return steps if felt is None else carried(steps, felt)
+
+
+def earlier_walks(odometry: Path) -> EarlierWalks:
+    """What the odometry found before the calibration changed the rig.
+
+    Args:
+        odometry: Folder of that stage.
+
+    Raises:
+        StoreError: If a file is missing or damaged.
+    """
+    walks = sum(row.whole for row in read_tried(odometry))
+    if not (odometry / MOVING_POINTS).exists():
+        return EarlierWalks(walks)
+    positions_m = load_arrays(odometry / "steps.npz", ["t_m"])["t_m"]
+    return EarlierWalks(walks, load_record(odometry / MOVING_POINTS, HiddenPoints), positions_m)
 
 
 def _figures(
-    made: OdometryPass, frames: RecordedFrames, *, moving: MovingFigures, aided: bool
+    recording: WalkInputs, choice: Choice, steps: list[OdometryStep], *, with_imu: bool
 ) -> OdometryFigures:
-    """Figures of a pass; ``aided`` by fixes, which show the heading."""
+    """Figures of the walk that was chosen; fixes show its heading."""
+    tracked, aided = choice.best.tracked, recording.aiding is not None
+    frames, imu = recording.frames, choice.best.hypothesis.imu
     return OdometryFigures(
-        multiframes=len(made.steps),
-        lost=made.lost,
-        imu=made.imu is not None,
-        imu_choice=made.imu_choice if frames.imu is not None else None,
-        imu_faults=made.estimate.faults if made.estimate else (),
-        heights=tuple(ride.doubt for ride in _rides(made, frames.rig)),
+        multiframes=len(tracked.steps),
+        lost=tracked.score.lost,
+        imu=with_imu,
+        imu_choice=imu.choice if frames.imu is not None else None,
+        imu_faults=tracked.estimate.faults if tracked.estimate else (),
+        heights=tuple(ride.doubt for ride in _rides(choice, frames.rig)) if with_imu else (),
         gnss=aided,
-        turns=() if aided else weak_turns(made.steps, with_imu=made.imu is not None),
-        moving=moving,
+        turns=() if aided else weak_turns(steps, with_imu=with_imu),
+        moving=choice.moving,
+        tried=choice.tried,
     )
 
 
-def _rides(made: OdometryPass, rig: Rig) -> list[UnseenRide | HeightContradiction]:
+def _rides(choice: Choice, rig: Rig) -> list[UnseenRide | HeightContradiction]:
     """What the IMU says against the heights of the trajectory."""
-    if made.imu is None:
+    imu, tracked = choice.best.hypothesis.imu.samples, choice.best.tracked
+    if imu is None:
         return []
-    lost_ns = np.array([step.t_mid_ns for step in made.steps if step.lost], np.int64)
-    return unseen_rides(made.trajectory, made.imu, rig, lost_ns=lost_ns)
+    lost_ns = np.array([step.t_mid_ns for step in tracked.steps if step.lost], np.int64)
+    return unseen_rides(tracked.trajectory, imu, rig, lost_ns=lost_ns)
 
 
 def _save_steps(path: Path, steps: list[OdometryStep]) -> None:

@@ -18,6 +18,7 @@ from recon4.findings.wording import headline
 from recon4.mapping.tiles import Surface, TileSet, surface_text
 from recon4.model.figures import MapFigures
 from recon4.model.pose_graph import EdgeKind
+from recon4.model.tried_hypotheses import TriedHypothesis
 from recon4.report import chart_groups
 from recon4.report.approval import draft_block
 from recon4.report.assessment import Assessment
@@ -27,8 +28,10 @@ from recon4.report.findings import LEVELS, shown_findings
 from recon4.report.maps import map_chunks, rasterize
 from recon4.report.rig import origin_rows, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
+from recon4.report.tried import COLUMNS, tried_rows
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_text
+from recon4.store.tried import read_tried
 
 
 def write_report(path: Path, assessed: Assessment) -> None:
@@ -67,6 +70,8 @@ def render(assessed: Assessment) -> str:
             edges=chart_groups.edge_figures(results, rasters),
             edge_kinds=[str(kind) for kind in EdgeKind],
             edge_rows=_edge_rows(facts, results),
+            tried_columns=COLUMNS,
+            tried=tried_rows(_tried(facts)),
             accuracy=chart_groups.accuracy_figures(facts),
             intensity=chart_groups.intensity_figures(results, rasters),
             rig_origin=origin_rows(facts.rig_origin),
@@ -100,6 +105,11 @@ def environment() -> Environment:
     )
     made.filters |= {"number": number, "percentage": percentage, "short": _short, "size": _size}
     return made
+
+
+def _tried(facts: ReportFacts) -> tuple[TriedHypothesis, ...]:
+    folder = facts.artifacts.get("odometry")
+    return read_tried(folder) if folder is not None else ()
 
 
 def _edge_rows(facts: ReportFacts, results: WalkRecord) -> list[EdgeRow]:

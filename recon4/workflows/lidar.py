@@ -23,8 +23,8 @@ def before_review(run: Run) -> None:
     """Odometry and verified graph; a rig that is calibrated repeats the odometry."""
     run.stage(ODOMETRY, frames="frames")
     run.stage(CALIBRATION, frames="frames", odometry="odometry")
-    if run.rig_audit is None:
-        run.stage(ODOMETRY, **run.measurements)
+    if "calibration" in run.measurements:
+        run.stage(ODOMETRY, **run.measurements, earlier="odometry")
     run.stage(GRAPH, **run.measurements, odometry="odometry")
     run.stage(VERIFICATION, graph="graph")
 

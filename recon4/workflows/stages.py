@@ -65,17 +65,27 @@ def frames_figures(folder: Path) -> FrameFigures:
 
 
 def _odometry(
-    context: StageContext, *, frames: Path, calibration: Path | None = None
+    context: StageContext,
+    *,
+    frames: Path,
+    calibration: Path | None = None,
+    earlier: Path | None = None,
 ) -> OdometryFigures:
     from recon4.georeference.gnss_aiding import make_gnss_aiding
-    from recon4.registration.stage import run_odometry
+    from recon4.registration.stage import earlier_walks, run_odometry
+    from recon4.registration.walk import WalkInputs
     from recon4.store.frames import open_frames
 
     store = open_frames(frames, calibration)
     aiding = make_gnss_aiding(store.gnss, store.rig, context.settings.odometry, imu=store.imu)
-    return run_odometry(
-        store, context.out, settings=context.settings, progress=context.progress, aiding=aiding
+    recording = WalkInputs(
+        store,
+        context.settings,
+        context.progress,
+        aiding,
+        earlier_walks(earlier) if earlier else None,
     )
+    return run_odometry(recording, context.out)
 
 
 def _calibration(context: StageContext, *, frames: Path, odometry: Path) -> CalibrationFigures:
@@ -259,7 +269,7 @@ def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
 FRAMES = Stage("frames", 29, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    38,
+    39,
     ("segments", "registration", "planes", "scans", "odometry"),
     _odometry,
     OdometryFigures,

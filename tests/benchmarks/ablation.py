@@ -30,6 +30,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.semi_rigid.refine import refine
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
@@ -93,7 +94,7 @@ def modes(
         odometry = work / "odometry"
         odometry.mkdir()
         start = time.perf_counter()
-        run_odometry(frames, odometry, settings=preset(base), progress=Silent())
+        run_odometry(WalkInputs(frames, preset(base), Silent()), odometry)
         seconds = time.perf_counter() - start
         lost = int(np.sum(load_arrays(odometry / "steps.npz", ["lost"])["lost"]))
         found = load_trajectory(odometry / "trajectory.npz")

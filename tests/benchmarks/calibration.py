@@ -22,6 +22,7 @@ from recon4.progress import Silent
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.settings import CalibrationSettings, preset
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
@@ -73,7 +74,7 @@ def one(
         )  # fmt: skip
         ingest(sources, frames, settings=SETTINGS.ingest, progress=Silent())
         odometry.mkdir()
-        run_odometry(FrameStore.open(frames), odometry, settings=SETTINGS, progress=Silent())
+        run_odometry(WalkInputs(FrameStore.open(frames), SETTINGS, Silent()), odometry)
     began = time.process_time()
     store = FrameStore.open(frames)
     found = run_calibration(store, odometry, settings=SETTINGS, progress=Silent())

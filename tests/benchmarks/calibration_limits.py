@@ -27,6 +27,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.rig import Rig
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.store.arrays import load_arrays
 from recon4.store.frames import FrameStore
 from tests import scanned_room
@@ -74,7 +75,7 @@ def far_off(name: str, frames: FrameStore, true: Rig, *, calibrate: bool) -> Non
     settings = replace(SETTINGS, calibration=replace(SETTINGS.calibration, mode=mode))
     with tempfile.TemporaryDirectory() as folder:
         odometry = Path(folder)
-        run_odometry(frames, odometry, settings=settings, progress=Silent())
+        run_odometry(WalkInputs(frames, settings, Silent()), odometry)
         lost = int(load_arrays(odometry / "steps.npz", ["lost"])["lost"].sum())
         began = time.process_time()
         found = run_calibration(frames, odometry, settings=settings, progress=Silent())

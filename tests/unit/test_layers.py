@@ -51,7 +51,8 @@ MAY_IMPORT = {
     "recon4/live/project_files.py": STAGE
     | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar_stages"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
-    "recon4/registration/stage.py": MODEL | {"recon4.registration", "recon4.store.arrays"},
+    "recon4/registration/stage.py": MODEL
+    | {"recon4.registration", "recon4.store.arrays", "recon4.store.tried"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
     "recon4/slam2d": STAGE
     | {"recon4.slam2d"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.samples.clean import join
 from recon4.recording.samples.measured import feels_gravity, imu_channels
+from recon4.registration.hypothesis import ImuAssumption
+from recon4.registration.imu_choice import AS_RECORDED, choose_imu
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.settings import Settings
@@ -23,8 +25,8 @@ _TRIED_FRAMES = 20
 _BAD_FRAMES = 8
 """Number of them, lost or with a large residual, that starts a check."""
 _FAR_M = 0.08
-_BETTER = 0.75
-_CLOCK = "its clock the same?"
+_WHY_NOT = f"{IMU_WRONG}, its clock the same?"
+_UNIT = "is its unit m/s²?"
 _EARLY_FRAMES = 100
 """If the IMU is rejected before this multiframe, the map made with it is reset."""
 _INTERRUPTED_NS = 2_000_000_000
@@ -48,6 +50,8 @@ class Tracker:
         """End of the last multiframe."""
         self._with_forces: bool | None = None
         """Whether the odometry began with accelerations; None = it has not begun."""
+        self._bias_rad_s = np.zeros(3)
+        """Of the gyroscope, subtracted."""
         self._imu_ns: int | None = None
         self._imu_hole_ns = 0
         """Longest time without an IMU sample since the last multiframe."""
@@ -78,6 +82,7 @@ class Tracker:
 
     def _measured(self, imu: ImuSamples) -> ImuSamples:
         """The samples as the odometry began with them: all with accelerations, or all without."""
+        imu = replace(imu, gyro_rad_s=imu.gyro_rad_s - self._bias_rad_s)
         if self._with_forces is None:
             return imu
         if not self._with_forces:
@@ -129,8 +134,8 @@ class Tracker:
         last = self._tracked
         imu = join(list(self._imu)) if self.with_imu else None
         before, self._odometry = self._odometry, Odometry(self._rig, self._settings, imu)
-        if before is not None:
-            self._odometry.remember_imu(before)
+        if before is not None and before.imu_state is not None:
+            self._odometry.remember_imu(before.imu_state)
         step = self._odometry.push(frame)
         self.move(last, step)
         return step
@@ -143,18 +148,14 @@ class Tracker:
         self.T_map_odom = T_map_body @ step.T_odom_body.inverse()
 
     def _check_imu(self, step: OdometryStep) -> OdometryStep:
-        """Continue without the IMU if the recent multiframes fit clearly better without it."""
-        frames = [frame for frame, _ in self._recent]
-        imu = join(list(self._imu))
-        with_imu, _, _ = self._tried(frames, imu)
-        without, odometry, last = self._tried(frames, None)
-        if not without < _BETTER * with_imu:
+        """Choose the IMU again by the last multiframes, and go on with what was chosen."""
+        recent = _Recent(self._rig, [frame for frame, _ in self._recent], join(list(self._imu)))
+        found = choose_imu(recent, self._settings, [range(len(recent))])
+        if found.best is None or found.imu.choice == AS_RECORDED:
             return step
-        T_map_body = self.T_map_odom @ step.T_odom_body
-        self._odometry, self.with_imu = odometry, False
-        fault = imu_channels(imu).no_gyroscope if imu is not None else ""
-        why = f"its gyroscope does not measure ({fault})" if fault else f"{IMU_WRONG}, {_CLOCK}"
-        self.remark = f"the IMU contradicts the LiDARs and is not used: {why}"
+        self._use(found.imu)
+        T_map_body, last = self.T_map_odom @ step.T_odom_body, found.best.last
+        self._odometry = found.best.odometry
         self.map_reset = self._frames < _EARLY_FRAMES
         if self.map_reset:
             self.T_map_odom = SE3.identity()
@@ -163,13 +164,37 @@ class Tracker:
             self.move(T_map_body, last)
         return last
 
-    def _tried(
-        self, frames: list[Multiframe], imu: ImuSamples | None
-    ) -> tuple[float, Odometry, OdometryStep]:
-        odometry = Odometry(self._rig, self._settings, imu)
-        steps = [odometry.push(frame) for frame in frames]
-        errors = [1.0 if step.lost else np.nan_to_num(step.error_m, nan=1.0) for step in steps[1:]]
-        return float(np.mean(errors)), odometry, steps[-1]
+    def _use(self, imu: ImuAssumption) -> None:
+        """Treat the samples to come as those of the choice, and say what is wrong with them."""
+        recorded = join(list(self._imu))
+        self.with_imu = imu.samples is not None
+        self._imu = deque([imu.samples] if imu.samples else [], maxlen=self._imu.maxlen)
+        match imu.choice.outcome:
+            case "bias removed":
+                self._bias_rad_s += np.array(imu.choice.bias_rad_s)
+                self.remark = "the gyroscope has a bias at rest, which is subtracted"
+            case "accelerometer not used":
+                self._with_forces = False
+                self.remark = f"the accelerometer contradicts the LiDARs and is not used: {_UNIT}"
+            case _:
+                fault = imu_channels(recorded).no_gyroscope if recorded else ""
+                why = f"its gyroscope does not measure ({fault})" if fault else _WHY_NOT
+                self.remark = f"the IMU contradicts the LiDARs and is not used: {why}"
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Recent:
+    """The last multiframes of a live walk, with the IMU samples so far."""
+
+    rig: Rig
+    frames: list[Multiframe]
+    imu: ImuSamples | None
+
+    def __len__(self) -> int:
+        return len(self.frames)
+
+    def __getitem__(self, k: int) -> Multiframe:
+        return self.frames[k]
 
 
 def _upright(imu: ImuSamples, rig: Rig) -> bool:

@@ -17,6 +17,7 @@ from recon4.pose_graph.search import build_graph
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.settings import Settings, VerificationSettings, override
 from tests.project_builder import build_project
 from tests.scanned_room import strolling, walk
@@ -183,7 +184,7 @@ def test_events_of_real_stages_make_the_graph_they_leave(tmp_path):
     settings = override(Settings(), ["graph.workers=1", "graph.node_stride=3"])
     for name in ("odometry", "graph"):
         (tmp_path / name).mkdir()
-    run_odometry(frames, tmp_path / "odometry", settings=settings, progress=events)
+    run_odometry(WalkInputs(frames, settings, events), tmp_path / "odometry")
     build_graph(
         frames, tmp_path / "odometry", tmp_path / "graph", settings=settings, progress=events
     )

@@ -11,6 +11,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.settings import CalibrationSettings, OdometrySettings, Settings
 from recon4.store.frames import FrameStore, FrameWriter
 from tests import scanned_room
@@ -115,7 +116,7 @@ def tracked(folder: Path, frames: FrameStore, true: Rig) -> Recorded:
     """Run the odometry of a recording."""
     odometry = folder / "odometry"
     odometry.mkdir(parents=True, exist_ok=True)
-    run_odometry(frames, odometry, settings=SETTINGS, progress=Silent())
+    run_odometry(WalkInputs(frames, SETTINGS, Silent()), odometry)
     return Recorded(frames, odometry, true)
 
 

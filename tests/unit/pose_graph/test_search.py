@@ -22,6 +22,7 @@ from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
 from recon4.registration.submap import NodeRangeImages
+from recon4.registration.walk import WalkInputs
 from recon4.semi_rigid.refine import refine
 from recon4.settings import (
     RegistrationSettings,
@@ -50,7 +51,7 @@ def searched(stroll, tmp_path_factory):
     folder, watch = tmp_path_factory.mktemp("searched"), Silent()
     (folder / "odometry").mkdir()
     (folder / "graph").mkdir()
-    run_odometry(stroll, folder / "odometry", settings=Settings(), progress=Silent())
+    run_odometry(WalkInputs(stroll, Settings(), Silent()), folder / "odometry")
     facts = build_graph(
         stroll,
         folder / "odometry",
@@ -253,7 +254,7 @@ def tiny(frames, folder):
     for name in ("odometry", "graph", "verified", "refined"):
         (folder / name).mkdir()
     settings = settings_of()
-    run_odometry(frames, folder / "odometry", settings=settings, progress=Silent())
+    run_odometry(WalkInputs(frames, settings, Silent()), folder / "odometry")
     build_graph(frames, folder / "odometry", folder / "graph", settings=settings, progress=Silent())
     found = verify(load_graph(folder / "graph"), settings=VerificationSettings())
     save_graph(folder / "verified", found.graph)

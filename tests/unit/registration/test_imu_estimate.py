@@ -35,7 +35,7 @@ def walked(office_frames):
         wrong = ImuSamples(imu.t_ns + late_ns, scale * imu.gyro_rad_s, imu.accel_m_s2)
         odometry = Odometry(office_frames.rig, settings, wrong)
         steps = [odometry.push(frame) for frame in office_frames]
-        return odometry.imu_estimate, steps
+        return ImuEstimate.of(odometry.imu_state), steps
 
     return run
 
@@ -96,4 +96,4 @@ def test_without_an_imu_there_is_no_estimate(office_frames):
     odometry = Odometry(office_frames.rig, SETTINGS, None)
     odometry.push(office_frames[0])
 
-    assert odometry.imu_estimate is None
+    assert odometry.imu_state is None

@@ -24,6 +24,7 @@ from recon4.registration.moving import (
     with_points_around,
 )
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.arrays import load_record
 from tests.said import odometry_findings, texts
@@ -244,7 +245,7 @@ def test_what_does_not_hold_the_trajectory_is_severe() -> None:
 def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
     walk = Walk(GROUP[2:], ROWS, seconds=4.0)
 
-    figures = run_odometry(walk, tmp_path, settings=Settings(), progress=Silent())
+    figures = run_odometry(WalkInputs(walk, Settings(), Silent()), tmp_path)
 
     assert figures.moving is not None and figures.moving.outcome == MovingOutcome.LEFT_OUT
     assert any("moving objects" in text for text in odometry_texts(figures.moving))
@@ -261,7 +262,7 @@ def test_odometry_leaves_moving_objects_out_and_says_so(tmp_path: Path) -> None:
 def test_odometry_keeps_them_if_the_settings_say_so(tmp_path: Path) -> None:
     walk, kept = Walk(GROUP, ROWS, seconds=4.5), OdometrySettings(leave_out_moving=False)
 
-    figures = run_odometry(walk, tmp_path, settings=Settings(odometry=kept), progress=Silent())
+    figures = run_odometry(WalkInputs(walk, Settings(odometry=kept), Silent()), tmp_path)
 
     assert figures.moving is not None and figures.moving.outcome == MovingOutcome.KEPT
     assert any("Their points are in the map" in text for text in odometry_texts(figures.moving))

@@ -11,9 +11,10 @@ from recon4.recording.formats.poses import read_tum
 from recon4.registration.line_odometry import LineOdometry, averaged
 from recon4.registration.make import make_odometry
 from recon4.registration.odometry import Odometry
-from recon4.registration.passes import dense_trajectory
 from recon4.registration.result import Registration, StopReason
+from recon4.registration.smoother import dense_trajectory, smooth
 from recon4.registration.stage import run_odometry
+from recon4.registration.walk import WalkInputs
 from recon4.settings import Settings, override, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from tests.room_walks import FRAME_NS, T0_NS
@@ -57,7 +58,7 @@ def office_odometry(office_walk, tmp_path_factory):
     from recon4.store.frames import FrameStore
 
     out, watch = tmp_path_factory.mktemp("odometry"), Silent()
-    figures = run_odometry(FrameStore.open(office_walk), out, settings=Settings(), progress=watch)
+    figures = run_odometry(WalkInputs(FrameStore.open(office_walk), Settings(), watch), out)
     return out, figures, watch
 
 
@@ -145,7 +146,7 @@ def test_with_an_imu_a_new_map_is_begun_in_an_unknown_place(stroll):
 
 def test_single_frames_and_the_stage_give_the_same_result(stroll, tmp_path):
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll)
-    run_odometry(stroll, tmp_path, settings=Settings(), progress=Silent())
+    run_odometry(WalkInputs(stroll, Settings(), Silent()), tmp_path)
 
     # The stage also knows where the next multiframe begins.
     of_stage = load_arrays(tmp_path / "steps.npz", ["t_m"])["t_m"]
@@ -168,9 +169,7 @@ def test_the_stage_reports_a_lost_frame(stroll, tmp_path):
     frames[7] = without_points(frames[7])
     watch = Silent()
 
-    figures = run_odometry(
-        replace(stroll, frames=frames), tmp_path, settings=Settings(), progress=watch
-    )
+    figures = run_odometry(WalkInputs(replace(stroll, frames=frames), Settings(), watch), tmp_path)
 
     assert watch.events == [TrackingLost(frame_id=7, t_ns=frames[7].t_mid_ns)]
     assert figures.lost == 1
@@ -336,7 +335,7 @@ def test_line_odometry_loses_an_empty_frame():
 def test_dense_poses_are_thinned_but_ends_stay(stroll):
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), stroll.frames[:3])
 
-    dense = dense_trajectory(steps)
+    dense = dense_trajectory(smooth(steps))
 
     assert dense.t_ns[0] == T0_NS
     assert dense.t_ns[-1] == T0_NS + 3 * FRAME_NS
@@ -385,7 +384,7 @@ def test_a_gap_in_the_recording_is_bridged(stroll):
 
     steps = push_all(Odometry(stroll.rig, Settings(), stroll.imu), frames)
 
-    dense = dense_trajectory(steps)
+    dense = dense_trajectory(smooth(steps))
     assert steps[5].t_ns[0] <= frames[5].t_ns
     assert steps[5].t_ns[-1] == frames[5].t_ns + FRAME_NS
     assert not any(step.lost for step in steps)

@@ -7,10 +7,14 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.model.odometry_figures import MovingFigures, MovingOutcome
+from recon4.model.tried_hypotheses import Because
 from recon4.progress import Silent
 from recon4.registration.aiding import GnssAiding
-from recon4.registration.moving_passes import Found, leave_out_moving, less_sure
-from recon4.registration.passes import OdometryPass, register_all
+from recon4.registration.hypotheses import Choice, choose_walk
+from recon4.registration.hypothesis import Hypothesis, ImuAssumption
+from recon4.registration.imu_choice import AS_RECORDED
+from recon4.registration.pulled import less_sure
+from recon4.registration.walk import TrackedWalk, WalkInputs, track_walk
 from recon4.settings import Settings
 from tests.unit.registration.test_moving import GROUP, ROWS, Walk
 
@@ -39,20 +43,27 @@ def fixes(walk: Walk, *, scale: float = 1.0) -> GnssAiding:
     )
 
 
-def largest_error_m(walk: Walk, made: OdometryPass) -> float:
+def largest_error_m(walk: Walk, made: TrackedWalk) -> float:
     places = np.stack([walk.place(t) for t in walk.t_mid_ns])
     found = SE3.stack(step.T_odom_body for step in made.steps).t
     return float(np.linalg.norm((found - found[0]) - (places - places[0]), axis=1).max())
 
 
-def processed(walk: Walk, aiding: GnssAiding) -> tuple[OdometryPass, Found]:
-    """Odometry with all points, and what is found without the moving ones."""
+def processed(walk: Walk, aiding: GnssAiding) -> tuple[TrackedWalk, Choice]:
+    """Odometry with all points, and what is chosen."""
+    recording = WalkInputs(walk, SETTINGS, Silent(), aiding)
+    return tracked_with_all(walk, aiding), choose_walk(recording)
 
-    def register(seen, *, trusted=False):
-        return register_all(seen, SETTINGS, progress=Silent(), aiding=aiding, trusted=trusted)
 
-    made = register(walk)
-    return made, leave_out_moving(walk, made, register=register, aiding=aiding)
+def tracked_with_all(walk: Walk, aiding: GnssAiding | None = None) -> TrackedWalk:
+    imu = ImuAssumption(walk.imu, AS_RECORDED)
+    hypothesis = Hypothesis(because=Because.START, imu=imu, aiding=aiding)
+    return track_walk(WalkInputs(walk, SETTINGS, Silent(), aiding), hypothesis)
+
+
+def walks(choice: Choice) -> list[Because]:
+    """Why each walk over the recording was tried."""
+    return [row.because for row in choice.tried if row.whole]
 
 
 @pytest.mark.slow
@@ -62,8 +73,10 @@ def test_fixes_show_who_pulled_the_odometry_along() -> None:
     made, found = processed(walk, fixes(walk))
 
     assert largest_error_m(walk, made) > 1.0
-    assert largest_error_m(walk, found.made) < 0.2
-    assert found.hidden is not None and found.moving.outcome == MovingOutcome.LEFT_OUT
+    assert largest_error_m(walk, found.best.tracked) < 0.2
+    assert found.best.hypothesis.hidden is not None
+    assert found.moving.outcome == MovingOutcome.LEFT_OUT
+    assert walks(found)[:2] == [Because.START, Because.MOVING_BY_FIXES] and len(walks(found)) <= 4
 
 
 @pytest.mark.slow
@@ -79,22 +92,20 @@ def test_what_contradicts_the_fixes_without_them_is_not_said_to_hold() -> None:
 def test_wrong_fixes_hide_nothing_that_stands() -> None:
     walk = Walk(standing=ROWS, seconds=6.0)
 
-    made, found = processed(walk, fixes(walk, scale=1.5))
+    _, found = processed(walk, fixes(walk, scale=1.5))
 
-    assert found.made is made and found.hidden is None
-    assert largest_error_m(walk, found.made) < 0.05
+    assert walks(found) == [Because.START] and found.best.hypothesis.hidden is None
+    assert largest_error_m(walk, found.best.tracked) < 0.05
 
 
 def test_where_the_rest_does_not_hold_it_the_trajectory_is_as_unsure_as_people_walk_fast() -> None:
-    walk = WithoutImu(seconds=3.0)
-    made = register_all(walk, SETTINGS, progress=Silent())
-    spread = [replace(s, t_mid_ns=s.t_mid_ns + 500_000_000 * k) for k, s in enumerate(made.steps)]
-    made = replace(made, steps=spread)
+    made = tracked_with_all(WithoutImu(seconds=3.0)).steps
+    spread = [replace(s, t_mid_ns=s.t_mid_ns + 500_000_000 * k) for k, s in enumerate(made)]
     moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.NOT_HELD)
 
     sure, unsure = (
         np.array([step.motion_cov for step in steps])
-        for steps in (made.steps, less_sure(Found(made, moving)))
+        for steps in (spread, less_sure(spread, moving, with_imu=False))
     )
 
     added = np.sqrt(np.einsum("nii->ni", unsure - sure))
@@ -105,8 +116,7 @@ def test_where_the_rest_does_not_hold_it_the_trajectory_is_as_unsure_as_people_w
 
 
 def test_what_was_left_out_makes_nothing_less_sure() -> None:
-    walk = WithoutImu(seconds=1.0)
-    made = register_all(walk, SETTINGS, progress=Silent())
+    steps = tracked_with_all(WithoutImu(seconds=1.0)).steps
     moving = MovingFigures(t_s=(0.0,), ratio=(0.5,), outcome=MovingOutcome.LEFT_OUT)
 
-    assert less_sure(Found(made, moving)) is made.steps
+    assert less_sure(steps, moving, with_imu=False) is steps

@@ -1,0 +1,92 @@
+"""What is known of the poses inside a multiframe only when the next one came.
+
+The filter reports each multiframe at once. Afterwards the next one says how fast the first began,
+and where each one really ended; both bend poses that were reported already. Equations:
+``docs/explanation/odometry.md``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from recon4.geometry.se3 import SE3, proper, so3_exp, so3_log
+from recon4.model.trajectory import Trajectory
+from recon4.registration.motion import middle_of
+from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
+from recon4.registration.step import OdometryStep
+
+_MOST_TURN_RAD, _MOST_SHIFT_M = 2e-3, 5e-3
+"""A larger jump from one multiframe to the next is a contradiction, and stays where it is."""
+_DENSE_NS = 9_000_000
+"""Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
+
+
+def smooth(steps: list[OdometryStep]) -> list[OdometryStep]:
+    """The steps of an odometry with all that is known of the poses inside them."""
+    return _without_jumps(_begun_in_motion(steps))
+
+
+def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
+    """The dense poses of smoothed steps as one trajectory, at most about 100 Hz."""
+    t_ns = np.concatenate([step.t_ns for step in steps])
+    R = np.concatenate([step.T_dense.R for step in steps])
+    t_m = np.concatenate([step.T_dense.t for step in steps])
+    # The first pose of a frame updates the last pose of the frame before.
+    newest = len(t_ns) - 1 - np.unique(t_ns[::-1], return_index=True)[1]
+    t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
+    slot = (t_ns - t_ns[0]) // _DENSE_NS
+    kept = np.append(np.diff(slot) > 0, True)
+    kept[0] = True
+    return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
+
+
+def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
+    """The steps with a first frame that moves as fast as the second one begins.
+
+    The velocity at the start is known only with the second frame, when the poses inside the first
+    one were already reported: half a frame of a walk puts them 6 cm beside their places.
+    """
+    if len(steps) < 2 or len(steps[0].t_ns) < 2 or steps[1].lost:
+        return steps
+    first, second = steps[:2]
+    span_ns = second.t_mid_ns - first.t_mid_ns
+    if second.piece != first.piece or not 0 < span_ns <= LONGEST_NS:
+        return steps
+    # Both at the end of the first frame; what the IMU measured inside it stays.
+    there = (second.T_odom_body.t - first.T_odom_body.t) / (1e-9 * span_ns)
+    reported = (first.T_dense.t[-1] - first.T_dense.t[-2]) / (1e-9 * np.diff(first.t_ns)[-1])
+    missing = there - reported
+    if float(np.linalg.norm(missing)) < MOVING_M_S:
+        return steps
+    since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
+    moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
+    return [replace(first, T_dense=moving), *steps[1:]]
+
+
+def _without_jumps(steps: list[OdometryStep]) -> list[OdometryStep]:
+    """The steps with inner poses that lead to where the next one begins.
+
+    The next multiframe corrects the pose between both, by up to a millimeter. What it says of the
+    end is true of the motion that led there, in proportion to the time: a jump in the last 10 ms
+    of every revolution would always meet the same azimuths. How the first multiframe began is not
+    known better than by itself.
+    """
+    if len(steps) < 3:
+        return steps
+    return [steps[0], *(_led_to(step, after) for step, after in pairwise(steps[1:])), steps[-1]]
+
+
+def _led_to(step: OdometryStep, after: OdometryStep) -> OdometryStep:
+    if step.lost or after.lost or step.piece != after.piece or step.t_ns[-1] != after.t_ns[0]:
+        return step
+    T, begin = step.T_dense, after.T_dense[0]
+    part = ((step.t_ns - step.t_ns[0]) / max(1, int(step.t_ns[-1] - step.t_ns[0])))[:, None]
+    turn, shift = so3_log(begin.R @ T.R[-1].T), begin.t - T.t[-1]
+    if np.linalg.norm(turn) > _MOST_TURN_RAD or np.linalg.norm(shift) > _MOST_SHIFT_M:
+        return step
+    led = SE3(proper(so3_exp(part * turn) @ T.R), T.t + part * shift)
+    t_s = 1e-9 * (step.t_ns - step.t_ns[0])
+    return replace(step, T_dense=led, T_odom_body=middle_of(t_s, led))

@@ -1,0 +1,153 @@
+"""One walk over the recording: the odometry of all multiframes with one hypothesis."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.events import PosesAdded, TrackingLost, positions_of
+from recon4.model.frames import RecordedFrames
+from recon4.model.hidden import HiddenPoints
+from recon4.model.odometry_figures import MovingFigures
+from recon4.model.trajectory import Trajectory
+from recon4.progress import Progress, track
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.hypothesis import Hypothesis
+from recon4.registration.imu_estimate import ImuEstimate
+from recon4.registration.line_odometry import LineOdometry
+from recon4.registration.make import make_odometry
+from recon4.registration.motion import MotionState
+from recon4.registration.moving import StandingFrames, find_moving
+from recon4.registration.odometry import Odometry
+from recon4.registration.score import Score
+from recon4.registration.smoother import dense_trajectory, smooth
+from recon4.registration.step import OdometryStep
+from recon4.settings import Settings
+
+_REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
+"""The pose of every n-th multiframe is reported while the stage runs, some per event."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class EarlierWalks:
+    """What the odometry found before the calibration changed the rig."""
+
+    walks: int
+    """How often it tracked the whole recording."""
+    hidden: HiddenPoints | None = None
+    """Points on moving objects that it left out; None = none."""
+    positions_m: Array | None = None
+    """Where the multiframes were [m], (N, 3); None = nothing was left out."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class WalkInputs:
+    """What the stage ``odometry`` is given."""
+
+    frames: RecordedFrames
+    settings: Settings
+    progress: Progress
+    aiding: GnssAiding | None = None
+    """Fixes of a GNSS/INS, outdoors."""
+    earlier: EarlierWalks | None = None
+    """None = the rig is that of the recording."""
+
+    def seen(self, hidden: HiddenPoints | None) -> RecordedFrames:
+        """The multiframes without some points."""
+        return self.frames if hidden is None else StandingFrames(self.frames, hidden)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class TrackedWalk:
+    """Odometry of all multiframes, and what it showed of IMU and moving objects."""
+
+    steps: list[OdometryStep]
+    trajectory: Trajectory
+    """``T_odom_body``, dense."""
+    score: Score
+    moving: MovingFigures
+    imu_state: MotionState | None
+    """The last state that knows the IMU; None without one."""
+
+    @property
+    def estimate(self) -> ImuEstimate | None:
+        """What was found out about the IMU."""
+        return None if self.imu_state is None else ImuEstimate.of(self.imu_state)
+
+    @property
+    def pieces(self) -> NDArray[np.int64]:
+        """Number of the piece of each multiframe, -1 = lost, (N,)."""
+        return np.array([-1 if step.lost else step.piece for step in self.steps], np.int64)
+
+
+def track_walk(recording: WalkInputs, hypothesis: Hypothesis) -> TrackedWalk:
+    """Register all multiframes in order with what a hypothesis assumes."""
+    frames = recording.seen(hypothesis.hidden)
+    odometry = make_odometry(
+        frames.rig, recording.settings, hypothesis.imu.samples, aiding=hypothesis.aiding
+    )
+    if isinstance(odometry, Odometry) and hypothesis.imu.known is not None:
+        odometry.remember_imu(hypothesis.imu.known)
+    steps = smooth(_register(frames, odometry, recording.progress))
+    trajectory = dense_trajectory(steps)
+    pieces = np.array([-1 if step.lost else step.piece for step in steps], np.int64)
+    return TrackedWalk(
+        steps,
+        trajectory,
+        _score(steps, trajectory, hypothesis),
+        find_moving(recording.frames, trajectory, pieces),
+        odometry.imu_state if isinstance(odometry, Odometry) else None,
+    )
+
+
+def _score(steps: list[OdometryStep], trajectory: Trajectory, hypothesis: Hypothesis) -> Score:
+    aiding, before, after = hypothesis.aiding, hypothesis.suggested_by, positions_m(steps)
+    return Score(
+        multiframes=len(steps),
+        lost=sum(step.lost for step in steps),
+        residuals_m=np.array([step.error_m for step in steps]),
+        contradicted=None if aiding is None else aiding.rejected_ratio(trajectory),
+        moved_m=None if before is None else _moved_m(before, after),
+    )
+
+
+def positions_m(steps: Sequence[OdometryStep]) -> Array:
+    """Positions in the middle of the multiframes [m], (N, 3)."""
+    return SE3.stack(step.T_odom_body for step in steps).t
+
+
+def _moved_m(a: Array, b: Array) -> float:
+    """Largest distance of the positions of two walks, which begin at the same place [m]."""
+    return float(np.linalg.norm((a - a[0]) - (b - b[0]), axis=1).max())
+
+
+def _register(
+    frames: RecordedFrames, odometry: Odometry | LineOdometry, progress: Progress
+) -> list[OdometryStep]:
+    """Register all multiframes in order, and report the growing trajectory."""
+    steps: list[OdometryStep] = []
+    for frame in track(frames, progress, what="odometry", unit="multiframe"):
+        step = odometry.push(frame)
+        if step.lost:
+            progress.event(TrackingLost(frame_id=step.frame_id, t_ns=step.t_mid_ns))
+        steps.append(step)
+        if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
+            _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
+    return steps
+
+
+def _report_poses(steps: list[OdometryStep], progress: Progress) -> None:
+    """Report some poses as an event, for a display of the growing trajectory."""
+    T = SE3.stack(step.T_odom_body for step in steps)
+    quaternions = np.round(T.quat_xyzw(), 5).tolist()
+    progress.event(
+        PosesAdded(
+            t_ns=tuple(step.t_mid_ns for step in steps),
+            t_m=positions_of(T.t),
+            quat_xyzw=tuple((x, y, z, w) for x, y, z, w in quaternions),
+        )
+    )
