@@ -13,7 +13,12 @@ from recon4.calibration.held_out import Agreement
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.slices import LidarSlices
 from recon4.geometry.se3 import SE3
-from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import (
+    CalibrationFigures,
+    CalibrationOutcome,
+    ParameterFigures,
+    RigOutcome,
+)
 from recon4.model.rig import Rig
 from recon4.progress import Silent
 from recon4.settings import Settings
@@ -78,11 +83,7 @@ def _beams() -> tuple[ParameterFigures, ...]:
 
 
 def _calibration(context: StageContext, *, found: Rig | None, **_: Any) -> None:
-    outcome = (
-        "calibrated: windows that were not used confirm it"
-        if found
-        else "the rig file contradicts the recording"
-    )
+    outcome = CalibrationOutcome(rig=RigOutcome.CALIBRATED if found else RigOutcome.CONTRADICTS)
     figures = CalibrationFigures(
         parameters=_parameters(),
         beams=_beams() if found else (),

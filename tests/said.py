@@ -10,7 +10,7 @@ from recon4.findings.finding import Finding
 from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.lines import line_findings
-from recon4.findings.witnesses.rig import rig_findings
+from recon4.findings.witnesses.rig import agreement, rig_findings
 from recon4.findings.wording import whole_text
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.odometry_figures import OdometryFigures
@@ -26,6 +26,11 @@ def texts(findings: Iterable[Finding]) -> list[str]:
 def rig_texts(figures: CalibrationFigures) -> list[str]:
     """What an audit of the rig says."""
     return texts(rig_findings(figures))
+
+
+def outcome_text(figures: CalibrationFigures) -> str:
+    """What came of the calibration of a rig."""
+    return whole_text(agreement(figures.outcome, figures.statuses))
 
 
 def line_texts(figures: OdometryFigures) -> list[str]:

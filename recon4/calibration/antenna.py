@@ -9,8 +9,17 @@ import msgspec
 from recon4.calibration.note import with_antenna_note
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.walk import RecordedWalk
-from recon4.georeference.antenna_calibration import AntennaCalibration, calibrate_antenna
-from recon4.model.calibration_figures import GNSS
+from recon4.georeference.antenna_calibration import (
+    AntennaCalibration,
+    GnssRefusal,
+    calibrate_antenna,
+)
+from recon4.model.calibration_figures import (
+    GNSS,
+    CalibrationFigures,
+    CalibrationOutcome,
+    GnssOutcome,
+)
 from recon4.progress import Progress
 from recon4.settings import Settings
 
@@ -46,11 +55,9 @@ def with_antenna(
     moved = replace(moved, trajectory=moved.tracked_freely(settings, progress))
     free = _estimate(moved, settings)
     if free is None or not free.is_off:
-        return _with_rows(
-            found, _doubted(antenna), "; without the fixes the walk shows no error of theirs"
-        )
+        return _with_rows(found, _doubted(antenna), GnssRefusal(GnssOutcome.ONLY_AIDED))
     if free.refusal:
-        return _with_rows(found, free, f"; GNSS inconclusive: {free.refusal}")
+        return _with_rows(found, free, free.refusal)
     return _corrected(found, free, recorded_ns=walk.start_ns)
 
 
@@ -70,15 +77,15 @@ def _doubted(antenna: AntennaCalibration) -> AntennaCalibration:
 
 
 def _with_rows(
-    found: CalibrationResult, antenna: AntennaCalibration, remark: str = ""
+    found: CalibrationResult, antenna: AntennaCalibration, refusal: GnssRefusal | None = None
 ) -> CalibrationResult:
     """The rows of the receiver beside the others; its contradictions are said with the map."""
     figures = found.figures
-    remark = remark or ("; GNSS fixes contradict it" if antenna.is_off else "")
+    said = refusal or GnssRefusal(GnssOutcome.CONTRADICTS if antenna.is_off else GnssOutcome.AGREES)
     figures = msgspec.structs.replace(
         figures,
         parameters=(*figures.parameters, *antenna.rows),
-        outcome=figures.outcome + remark,
+        outcome=_with_gnss(figures, said.outcome, said.names),
     )
     return replace(found, figures=figures)
 
@@ -87,12 +94,18 @@ def _corrected(
     found: CalibrationResult, antenna: AntennaCalibration, *, recorded_ns: int
 ) -> CalibrationResult:
     figures = found.figures
-    outcome = figures.outcome if figures.applied else "calibrated"
     figures = msgspec.structs.replace(
         figures,
         parameters=(*figures.parameters, *antenna.rows),
         applied=True,
-        outcome=f"{outcome}; fixes that were not used confirm the GNSS receiver",
+        outcome=_with_gnss(figures, GnssOutcome.CONFIRMED),
     )
     rig = with_antenna_note(antenna.rig, antenna.rows, recorded_ns=recorded_ns)
     return replace(found, figures=figures, rig=rig)
+
+
+def _with_gnss(
+    figures: CalibrationFigures, gnss: GnssOutcome, names: tuple[str, ...] = ()
+) -> CalibrationOutcome:
+    assert isinstance(figures.outcome, CalibrationOutcome)  # not of an earlier project
+    return msgspec.structs.replace(figures.outcome, gnss=gnss, gnss_names=names)

@@ -35,7 +35,7 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-from recon4.model.calibration_figures import GNSS, IMU, ParameterFigures
+from recon4.model.calibration_figures import GNSS, IMU, CalibrationOutcome, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress, track
 from recon4.settings import CalibrationSettings, Settings
@@ -58,8 +58,8 @@ class Calibration:
     """Of windows that were not used, with the rig file."""
     after: Agreement
     """Of the same windows, with the calibrated rig."""
-    refusal: str
-    """Why it must not be used; empty = it may."""
+    refusal: CalibrationOutcome | None
+    """Why it must not be used; None = it may."""
 
 
 def reference_of(rig: Rig, settings: CalibrationSettings) -> int | None:
@@ -193,7 +193,7 @@ def calibrate(
     if why_not:
         return Calibration(first, table, before, after, why_not)
     final = estimator.of_all(windows, first, unknown, recorded=recorded)
-    return Calibration(*final, before, after, "")
+    return Calibration(*final, before, after, None)
 
 
 def _is_near(found: JointEstimate, recorded: Rig) -> bool:

@@ -12,7 +12,7 @@ from recon4.calibration.equations import Fit
 from recon4.calibration.joint import SIGMAS, JointEstimate
 from recon4.calibration.parameters import Parameters, Unit
 from recon4.geometry.se3 import Array
-from recon4.model.calibration_figures import ParameterFigures
+from recon4.model.calibration_figures import CalibrationOutcome, ParameterFigures, RigOutcome
 from recon4.model.rig import Rig
 
 _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s": 0.005}
@@ -102,8 +102,8 @@ def _contradicted(first: JointEstimate, second: JointEstimate) -> NDArray[np.boo
 
 def refusal(
     rows: Sequence[ParameterFigures], first: JointEstimate, second: JointEstimate | None
-) -> str:
-    """Why two estimates from different windows must not be used; empty = they agree.
+) -> CalibrationOutcome | None:
+    """Why two estimates from different windows must not be used; None = they agree.
 
     Args:
         rows: The table of the first.
@@ -111,21 +111,20 @@ def refusal(
         second: From the others, begun with known errors; None = there are too few.
     """
     if second is None:
-        return "the walk is too short to check the calibrated rig on another part of it"
+        return CalibrationOutcome(rig=RigOutcome.TOO_SHORT)
     if not any(row.status == "off" for row in rows):
-        if first.parameters.beams:
-            return "nothing is corrected: mounts, clocks and beams agree with the rig file"
-        return "inconclusive: longer windows do not confirm what the audit found"
+        beams = bool(first.parameters.beams)
+        return CalibrationOutcome(rig=RigOutcome.BEAMS_AGREE if beams else RigOutcome.NOT_CONFIRMED)
     checked = np.array([row.status != "not observable" for row in rows])
     wrong = np.flatnonzero(checked & _contradicted(first, second))
     if len(wrong):
-        names = ", ".join(first.parameters.listed[k].name for k in wrong)
-        return f"inconclusive: another part of the walk gives another value for {names}"
-    return ""
+        names = tuple(first.parameters.listed[k].name for k in wrong)
+        return CalibrationOutcome(rig=RigOutcome.OTHER_VALUES, names=names)
+    return None
 
 
-def unexplained(before: Agreement, after: Agreement) -> str:
-    """Why a rig must not be used that explains other windows so; empty = it may.
+def unexplained(before: Agreement, after: Agreement) -> CalibrationOutcome | None:
+    """Why a rig must not be used that explains other windows so; None = it may.
 
     Args:
         before: With the rig file.
@@ -134,17 +133,17 @@ def unexplained(before: Agreement, after: Agreement) -> str:
     worse = [
         name
         for name, old, new in (
-            ("the distance of points from planes", before.rms_m, after.rms_m),
-            ("the residual of the IMU", before.imu_rms, after.imu_rms),
+            ("planes", before.rms_m, after.rms_m),
+            ("IMU", before.imu_rms, after.imu_rms),
         )
         if new > _NOT_WORSE * old
     ]
     if worse:
-        return f"inconclusive: {' and '.join(worse)} grows in another part of the walk"
+        return CalibrationOutcome(rig=RigOutcome.EXPLAINED_WORSE, names=tuple(worse))
     gains = [after.rms_m / before.rms_m, after.imu_rms / before.imu_rms]
     if not np.nanmin(gains) < _BETTER:
-        return "inconclusive: another part of the walk is explained no better"
-    return ""
+        return CalibrationOutcome(rig=RigOutcome.NO_BETTER)
+    return None
 
 
 def _median(values: Sequence[float]) -> float:

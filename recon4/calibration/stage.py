@@ -27,7 +27,12 @@ from recon4.calibration.result import CalibrationResult
 from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.walk import RecordedWalk
-from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
+from recon4.model.calibration_figures import (
+    CalibrationFigures,
+    CalibrationOutcome,
+    ParameterFigures,
+    RigOutcome,
+)
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.progress import Progress
@@ -50,11 +55,11 @@ def run_calibration(
         progress: Counts rounds; a rig that is off is an event.
     """
     if settings.calibration.mode == "off":
-        return CalibrationResult(figures=CalibrationFigures(outcome="switched off"))
+        return CalibrationResult(figures=_of(RigOutcome.OFF))
     walk = RecordedWalk.of(frames, odometry, settings.odometry)
     reference = reference_of(frames.rig, settings.calibration)
     if reference is None:
-        return CalibrationResult(figures=CalibrationFigures(outcome="no LiDAR is enabled"))
+        return CalibrationResult(figures=_of(RigOutcome.NO_LIDAR))
     start = find_start(walk, reference=reference, settings=settings)
     parameters = parameters_of(
         frames.rig, reference=reference, with_imu=start.imu_usable, settings=settings.calibration
@@ -82,11 +87,10 @@ def _audit(
     progress: Progress,
 ) -> CalibrationResult:
     if not len(parameters):
-        text = "nothing to compare: neither a second LiDAR nor a usable IMU"
-        return _nothing(text, start.faults)
+        return _nothing(RigOutcome.NOTHING_TO_COMPARE, start.faults)
     estimate = audit(walk, start.rig, parameters, settings=settings, progress=progress)
     if estimate is None:
-        return _nothing("no window of the walk has planes to compare", start.faults)
+        return _nothing(RigOutcome.NO_PLANES, start.faults)
     rows, exchanged = judge(estimate), _exchanged(walk.frames.rig, estimate)
     changes = estimate.changes and not exchanged
     # Of a rig that changes no parameter has one value.
@@ -99,9 +103,8 @@ def _audit(
         scatter=scatter_of(estimate) if changes else None,
         changes=changes,
     )
-    contradicted = "the rig file contradicts the recording"
-    outcome = contradicted if figures.contradicts else _consistent(rows)
-    figures = msgspec.structs.replace(figures, outcome=outcome)
+    outcome = RigOutcome.CONTRADICTS if figures.contradicts else _consistent(rows)
+    figures = msgspec.structs.replace(figures, outcome=CalibrationOutcome(rig=outcome))
     return CalibrationResult(figures=figures, begin=estimate.rig)
 
 
@@ -118,9 +121,12 @@ def _to_calibrate(
     return audited.begin or rig, parameters.with_beams(rig, counts)
 
 
-def _nothing(outcome: str, faults: tuple[ImuFault, ...]) -> CalibrationResult:
-    figures = CalibrationFigures(outcome=outcome, imu_faults=faults)
-    return CalibrationResult(figures=figures)
+def _of(outcome: RigOutcome) -> CalibrationFigures:
+    return CalibrationFigures(outcome=CalibrationOutcome(rig=outcome))
+
+
+def _nothing(outcome: RigOutcome, faults: tuple[ImuFault, ...]) -> CalibrationResult:
+    return CalibrationResult(figures=msgspec.structs.replace(_of(outcome), imu_faults=faults))
 
 
 def _exchanged(rig: Rig, found: JointEstimate) -> tuple[tuple[str, str], ...]:
@@ -136,12 +142,9 @@ def _exchanged(rig: Rig, found: JointEstimate) -> tuple[tuple[str, str], ...]:
     return tuple(pairs)
 
 
-def _consistent(rows: tuple[ParameterFigures, ...]) -> str:
-    unknown = sum(row.status == "not observable" for row in rows)
-    if unknown == len(rows):
-        return f"the walk shows nothing of the rig: {unknown} parameters are not observable"
-    text = "the rig file agrees with the recording"
-    return f"{text}; {unknown} of {len(rows)} parameters are not observable" if unknown else text
+def _consistent(rows: tuple[ParameterFigures, ...]) -> RigOutcome:
+    unobserved = all(row.status == "not observable" for row in rows)
+    return RigOutcome.UNOBSERVED if unobserved else RigOutcome.AGREES
 
 
 def _calibrated(
@@ -158,7 +161,7 @@ def _calibrated(
         windows=len(found.estimate.fits),
         rms_m=found.estimate.rms_m,
         applied=True,
-        outcome="calibrated: windows that were not used confirm it",
+        outcome=CalibrationOutcome(rig=RigOutcome.CALIBRATED),
         imu_faults=audited.figures.imu_faults,
     )
     note = calibration_note("joint", figures, recorded_ns=recorded_ns)

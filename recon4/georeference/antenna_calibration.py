@@ -13,7 +13,7 @@ from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.gnss import align_heading
 from recon4.georeference.gnss_priors import GnssPriors, positioned
 from recon4.georeference.level import level
-from recon4.model.calibration_figures import GNSS, ParameterFigures, ParameterStatus
+from recon4.model.calibration_figures import GNSS, GnssOutcome, ParameterFigures, ParameterStatus
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
@@ -34,6 +34,15 @@ _BETTER = 0.99
 _AXES = ("x", "y", "z", "")
 
 
+@dataclass(frozen=True, slots=True)
+class GnssRefusal:
+    """Why a corrected receiver must not be used."""
+
+    outcome: GnssOutcome
+    names: tuple[str, ...] = ()
+    """Parameters that another part of the walk gives another value for."""
+
+
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class AntennaCalibration:
     """What the fixes say of the receiver in the rig file."""
@@ -42,8 +51,8 @@ class AntennaCalibration:
     """Lever arm along x, y, z of the body, and clock."""
     rig: Rig
     """With the values that are off corrected."""
-    refusal: str
-    """Why the corrected rig must not be used; empty = it may."""
+    refusal: GnssRefusal | None
+    """Why the corrected rig must not be used; None = it may."""
 
     @property
     def is_off(self) -> bool:
@@ -130,28 +139,30 @@ def _off(found: AntennaFigures) -> NDArray[np.bool_]:
     return np.asarray(certain & (change > np.maximum(_SIGMAS * sd, 0.5 * _TOLERANCE)))
 
 
-def _refusal(placed: _Placed, gnss: GnssSamples, rig: Rig, *, off: NDArray[np.bool_]) -> str:
-    """Why the corrected rig must not be used; empty = it may."""
+def _refusal(
+    placed: _Placed, gnss: GnssSamples, rig: Rig, *, off: NDArray[np.bool_]
+) -> GnssRefusal | None:
+    """Why the corrected rig must not be used; None = it may."""
     if not off.any():
-        return ""
+        return None
     odd = (gnss.t_ns - gnss.t_ns[0]) // _BLOCK_NS % 2 == 1
     used, others = gnss.take(~odd), gnss.take(odd)
     first = placed.audit(used, rig)
     second = placed.audit(_later(others, _KNOWN_ERROR[3]), _corrected(rig, _KNOWN_ERROR))
     if first is None or second is None:
-        return "the walk is too short to check the receiver on another part of it"
+        return GnssRefusal(GnssOutcome.TOO_SHORT)
     apart = np.abs(_change(first) - _change(second) - _KNOWN_ERROR)
     scatter = _SIGMAS * np.hypot(_deviation(first), _deviation(second))
     wrong = off & (apart > np.maximum(scatter, 0.5 * np.abs(_KNOWN_ERROR)))
     if wrong.any():
-        names = ", ".join(f"position {axis}" if axis else "clock"
-                          for axis, bad in zip(_AXES, wrong, strict=True) if bad)  # fmt: skip
-        return f"another part of the walk gives another value for the {names} of the receiver"
+        named = (f"position {axis}" if axis else "clock" for axis in _AXES)
+        names = tuple(name for name, bad in zip(named, wrong, strict=True) if bad)
+        return GnssRefusal(GnssOutcome.OTHER_VALUES, names)
     change = np.where(off, _change(first), 0.0)
     after = placed.unexplained(_later(others, change[3]), _corrected(rig, change))
     if not after < _BETTER * placed.unexplained(others, rig):
-        return "the fixes of another part of the walk are explained no better"
-    return ""
+        return GnssRefusal(GnssOutcome.NO_BETTER)
+    return None
 
 
 def _corrected(rig: Rig, change: Array) -> Rig:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Literal
 
 import msgspec
@@ -60,6 +61,54 @@ class RigScatter(msgspec.Struct, frozen=True, kw_only=True):
     """How many times more than noise explains, over all parameters."""
 
 
+class RigOutcome(StrEnum):
+    """What came of comparing a rig with a recording; the words are in the catalog of findings."""
+
+    OFF = "rig-switched-off"
+    NO_LIDAR = "rig-no-lidar"
+    NOTHING_TO_COMPARE = "rig-nothing-to-compare"
+    NO_PLANES = "rig-no-planes"
+    UNOBSERVED = "rig-unobserved"
+    AGREES = "rig-agrees"
+    CONTRADICTS = "rig-contradicts"
+    CALIBRATED = "rig-calibrated"
+    """Windows that were not used confirm it."""
+    TOO_SHORT = "rig-too-short"
+    """For another part of the walk to check the calibrated rig on."""
+    BEAMS_AGREE = "rig-beams-agree"
+    NOT_CONFIRMED = "rig-not-confirmed"
+    OTHER_VALUES = "rig-other-values"
+    """In another part of the walk, of the parameters that are named."""
+    EXPLAINED_WORSE = "rig-explained-worse"
+    NO_BETTER = "rig-no-better"
+
+
+class GnssOutcome(StrEnum):
+    """What came of comparing the receiver in a rig file with its fixes."""
+
+    NOT_COMPARED = ""
+    AGREES = "gnss-agrees"
+    CONTRADICTS = "gnss-contradicts"
+    ONLY_AIDED = "gnss-only-aided"
+    """Without the fixes the walk shows no error of theirs."""
+    TOO_SHORT = "gnss-too-short"
+    OTHER_VALUES = "gnss-other-values"
+    NO_BETTER = "gnss-no-better"
+    CONFIRMED = "gnss-confirmed"
+    """Fixes that were not used confirm the corrected receiver."""
+
+
+class CalibrationOutcome(msgspec.Struct, frozen=True, kw_only=True):
+    """Why a calibrated rig is used, or why not."""
+
+    rig: RigOutcome = RigOutcome.OFF
+    names: tuple[str, ...] = ()
+    """Parameters that speak against it, or what is explained worse."""
+    gnss: GnssOutcome = GnssOutcome.NOT_COMPARED
+    gnss_names: tuple[str, ...] = ()
+    """The same of the receiver."""
+
+
 class CalibrationFigures(Figures, frozen=True, kw_only=True):
     """Audit of the rig against the recording and, if requested, its calibration."""
 
@@ -73,8 +122,8 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
     """Distance of the points from common planes after the estimate [m]."""
     applied: bool = False
     """Whether the calibrated rig is used from here on."""
-    outcome: str = ""
-    """Why it was applied, or why not."""
+    outcome: CalibrationOutcome | str = CalibrationOutcome()
+    """Why it was applied, or why not; a sentence in projects of version 0.1."""
     imu_faults: tuple[ImuFault, ...] = ()
     """What no calibration corrects: wrong units, axes with a wrong sign."""
     exchanged: tuple[tuple[str, str], ...] = ()
@@ -83,6 +132,11 @@ class CalibrationFigures(Figures, frozen=True, kw_only=True):
     """What differs most, if the rig does not stay the same during the walk."""
     changes: bool = False
     """Whether the rig does not stay the same during the walk."""
+
+    @property
+    def statuses(self) -> tuple[ParameterStatus, ...]:
+        """Of each parameter, without those of single beams."""
+        return tuple(row.status for row in self.parameters)
 
     @property
     def contradicts(self) -> bool:

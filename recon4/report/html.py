@@ -26,7 +26,7 @@ from recon4.report.edges import EdgeRow, edge_rows
 from recon4.report.facts import ReportFacts
 from recon4.report.findings import LEVELS, shown_findings
 from recon4.report.maps import map_chunks, rasterize
-from recon4.report.rig import origin_rows, rig_rows
+from recon4.report.rig import origin_rows, rig_outcome, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
 from recon4.report.tried import COLUMNS, tried_rows
 from recon4.settings import Settings, preset
@@ -76,6 +76,7 @@ def render(assessed: Assessment) -> str:
             intensity=chart_groups.intensity_figures(results, rasters),
             rig_origin=origin_rows(facts.rig_origin),
             rig_rows=rig_rows(results.calibration),
+            rig_outcome=rig_outcome(results.calibration),
             rig_figures=chart_groups.rig_figures(results),
             placed=placed_rows(results.georeference),
             placed_charts=chart_groups.georeference_figures(results),

@@ -8,6 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from recon4.evaluation.table import number
+from recon4.findings.witnesses.rig import agreement
+from recon4.findings.wording import text_of
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
@@ -34,6 +36,11 @@ class RigRow(NamedTuple):
 def rig_rows(found: CalibrationFigures | None) -> list[RigRow]:
     """What the recording says of each parameter of the rig."""
     return [_row(one) for one in found.parameters] if found else []
+
+
+def rig_outcome(found: CalibrationFigures | None) -> str:
+    """What came of comparing and calibrating the rig, in words."""
+    return text_of(agreement(found.outcome, found.statuses)) if found else ""
 
 
 def origin_rows(origin: RigOrigin | None) -> list[tuple[str, str]]:

@@ -28,8 +28,8 @@ from recon4.calibration.pose_pairs import (
 from recon4.calibration.slices import slice_points
 from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
-from recon4.findings.witnesses.rig import rig_findings
-from recon4.findings.wording import whole_text
+from recon4.findings.witnesses.rig import agreement, rig_findings
+from recon4.findings.wording import text_of, whole_text
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.model.rig import Rig
@@ -168,7 +168,8 @@ def _joint(task: _Task) -> MethodResult:
         *_table(figures.beams),
         *map(whole_text, rig_findings(figures)),
     )
-    return MethodResult(rig, figures.outcome, report_lines, figures)
+    outcome = text_of(agreement(figures.outcome, figures.statuses))
+    return MethodResult(rig, outcome, report_lines, figures)
 
 
 def _maps(task: _Task) -> MethodResult:

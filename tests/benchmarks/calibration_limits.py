@@ -32,7 +32,7 @@ from recon4.store.arrays import load_arrays
 from recon4.store.frames import FrameStore
 from tests import scanned_room
 from tests.benchmarks.calibration import SETTINGS, row, true_rig
-from tests.said import rig_texts
+from tests.said import outcome_text, rig_texts
 from tests.unit.calibration.conftest import (
     AUTO,
     COLUMNS,
@@ -83,7 +83,7 @@ def far_off(name: str, frames: FrameStore, true: Rig, *, calibrate: bool) -> Non
     rig = found.rig or found.begin
     left = "" if rig is None else f"{apart(rig, true)}; "
     print(
-        f"{name}: {lost} lost; {left}{found.figures.outcome}, {cpu_s:.0f} s; "
+        f"{name}: {lost} lost; {left}{outcome_text(found.figures)}, {cpu_s:.0f} s; "
         f"{len(rig_texts(found.figures))} warnings",
         flush=True,
     )
@@ -159,7 +159,7 @@ def moving(name: str, motion: Callable[[ArrayLike], SE3]) -> None:
         with tempfile.TemporaryDirectory() as folder:
             made = store(Path(folder), walk, rig, walk.imu)
             found = run_calibration(made.frames, made.odometry, settings=AUTO, progress=Silent())
-        print(f"{name}, rig file {title}: {found.figures.outcome}")
+        print(f"{name}, rig file {title}: {outcome_text(found.figures)}")
         print(f"  before: {row(parameters.between(walk.rig, rig))}")
         if found.rig is not None:
             print(f"  after:  {row(parameters.between(walk.rig, found.rig))}")

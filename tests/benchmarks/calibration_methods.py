@@ -31,6 +31,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.settings import EntropySettings
 from recon4.store.frames import FrameStore
 from tests.benchmarks.calibration import SETTINGS, true_rig
+from tests.said import outcome_text
 
 STOPS, POSE_SD_RAD, POSE_SD_M = 20, float(np.deg2rad(0.1)), 0.005
 """Pairs of poses, and the errors drawn for each of the two."""
@@ -70,7 +71,7 @@ def joint(walk: RecordedWalk, folder: Path) -> str:
     """The product's own."""
     found = run_calibration(walk.frames, folder / "odometry", settings=SETTINGS, progress=Silent())
     if found.rig is None:
-        return found.figures.outcome
+        return outcome_text(found.figures)
     return error(found.rig.sensors[-1].T_body_sensor, folder)
 
 

@@ -10,6 +10,9 @@ from typing import TypeVar
 from pydantic import BaseModel, Field, ValidationError
 
 from recon4.errors import StoreError
+from recon4.findings.witnesses.rig import agreement
+from recon4.findings.wording import text_of
+from recon4.model.calibration_figures import CalibrationOutcome, GnssOutcome, RigOutcome
 from recon4.store.frames import CALIBRATED_RIG, CALIBRATION_SLICES
 from recon4.store.json_files import read_object
 from recon4.untrusted.names import visible
@@ -26,15 +29,31 @@ _SHOWN = {"rad": (math.degrees(1.0), "°", 3), "m": (100.0, " cm", 2), "s": (1e3
 _Model = TypeVar("_Model", bound=BaseModel)
 
 
-class _Figures(BaseModel):
-    """`recon4.model.figures.CalibrationFigures` as stored."""
+class _Outcome(BaseModel):
+    """`recon4.model.calibration_figures.CalibrationOutcome` as stored."""
 
-    outcome: str = ""
+    rig: RigOutcome
+    names: tuple[str, ...] = Field(default=(), max_length=20_000)
+    gnss: GnssOutcome = GnssOutcome.NOT_COMPARED
+    gnss_names: tuple[str, ...] = Field(default=(), max_length=10)
+
+
+class _Figures(BaseModel):
+    """`recon4.model.calibration_figures.CalibrationFigures` as stored."""
+
+    outcome: _Outcome | str = ""
     applied: bool = False
     windows: int = 0
     rms_m: float | None = None
     parameters: list[ParameterView] = Field(default=[], max_length=1000)
     beams: list[ParameterView] = Field(default=[], max_length=20_000)
+
+    @property
+    def said(self) -> str:
+        """What came of the calibration, in words."""
+        kept = self.outcome
+        outcome = kept if isinstance(kept, str) else CalibrationOutcome(**kept.model_dump())
+        return text_of(agreement(outcome, [row.status for row in self.parameters]))
 
 
 class _Stored(BaseModel):
@@ -64,7 +83,7 @@ class Calibrations:
         stored = _parsed(_Stored, folder / "calibration.json")
         calibrated = folder / CALIBRATED_RIG
         return CalibrationView(
-            outcome=visible(stored.figures.outcome, most=400),
+            outcome=visible(stored.figures.said, most=400),
             applied=stored.figures.applied and calibrated.is_file(),
             windows=stored.figures.windows,
             rms_m=stored.figures.rms_m,
@@ -105,7 +124,7 @@ class Calibrations:
 
 def evidence_of(view: CalibrationView, project_id: str) -> str:
     """The evidence for a calibrated rig as text, a line for each parameter that changed."""
-    lines = [f"Calibrated from the recording of project {project_id}: {view.outcome}."]
+    lines = [f"Calibrated from the recording of project {project_id}. {view.outcome}"]
     lines += [_line(row) for row in view.parameters if row.status == "off"]
     unknown = [row for row in view.parameters if row.status == "not observable"]
     if unknown:

@@ -16,7 +16,9 @@ from recon4.model.calibration_figures import (
     GNSS,
     IMU,
     CalibrationFigures,
+    CalibrationOutcome,
     ParameterFigures,
+    ParameterStatus,
     RigScatter,
 )
 from recon4.model.rig_origin import RigOrigin
@@ -38,7 +40,7 @@ class RigFile:
         if figures is None:
             return
         found = list(rig_findings(figures, untimed=has_untimed_clouds(walk)))
-        yield from found or [_agreement(figures)]
+        yield from found or [agreement(figures.outcome, figures.statuses)]
 
 
 class RigAge:
@@ -109,11 +111,31 @@ def _costs_nothing(row: ParameterFigures, *, untimed: bool) -> bool:
     return row.sensor == IMU and abs(row.change) <= _ESTIMATED.get(row.quantity, 0.0)
 
 
-def _agreement(figures: CalibrationFigures) -> Finding:
-    status = {row.status for row in figures.parameters}
-    agrees = "consistent" in status and "off" not in status
+def agreement(outcome: CalibrationOutcome | str, statuses: Sequence[ParameterStatus]) -> Finding:
+    """What came of comparing the rig file with a recording, and of calibrating it.
+
+    Args:
+        outcome: Of the calibration; a sentence in projects of version 0.1.
+        statuses: Of each parameter.
+    """
+    agrees = "consistent" in statuses and "off" not in statuses
     kind = FindingKind.RIG_AGREES if agrees else FindingKind.RIG_NOT_COMPARED
-    return finding(kind, Level.GOOD if agrees else Level.NOTE, {"outcome": figures.outcome})
+    return finding(kind, Level.GOOD if agrees else Level.NOTE, _outcome(outcome, statuses))
+
+
+def _outcome(
+    outcome: CalibrationOutcome | str, statuses: Sequence[ParameterStatus]
+) -> dict[str, Value]:
+    if isinstance(outcome, str):
+        return {"earlier": outcome}
+    return {
+        "rig": str(outcome.rig),
+        "names": ", ".join(outcome.names),
+        "gnss": str(outcome.gnss),
+        "gnss_names": ", ".join(outcome.gnss_names),
+        "unknown": statuses.count("not observable"),
+        "parameters": len(statuses),
+    }
 
 
 def _changes(scatter: RigScatter, level: Level) -> Finding:

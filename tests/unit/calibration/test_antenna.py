@@ -11,7 +11,12 @@ from recon4.calibration.stage import run_calibration
 from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
 from recon4.georeference.stage import RefinedWalk, level_and_georeference
-from recon4.model.calibration_figures import CalibrationFigures
+from recon4.model.calibration_figures import (
+    CalibrationFigures,
+    CalibrationOutcome,
+    GnssOutcome,
+    RigOutcome,
+)
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.rig import load_rig, parse_rig
 from recon4.model.samples import GnssSamples
@@ -58,7 +63,9 @@ def walk(outdoors):
 @pytest.fixture(scope="module")
 def agreed():
     """What was found of LiDARs that are where the rig says."""
-    return CalibrationResult(figures=CalibrationFigures(outcome="the rig file agrees"))
+    return CalibrationResult(
+        figures=CalibrationFigures(outcome=CalibrationOutcome(rig=RigOutcome.AGREES))
+    )
 
 
 def test_heights_above_sea_level_are_raised_by_the_geoid_that_the_settings_have(walk):
@@ -92,7 +99,8 @@ def test_an_audit_compares_the_receiver_and_changes_nothing(walk, agreed):
     found = with_antenna(agreed, walk, settings=settings("audit"), progress=Silent())
 
     assert [row.sensor for row in found.figures.parameters] == ["gnss"] * 4
-    assert found.figures.outcome == "the rig file agrees; GNSS fixes contradict it"
+    assert found.figures.outcome.rig is RigOutcome.AGREES
+    assert found.figures.outcome.gnss is GnssOutcome.CONTRADICTS
     assert not found.figures.applied
     assert found.rig is None
     assert not found.figures.is_severe

@@ -15,7 +15,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_imu
 from recon4.store.arrays import load_arrays, save_arrays
 from recon4.store.frames import FrameStore, FrameWriter
-from tests.said import rig_texts
+from tests.said import outcome_text, rig_texts
 from tests.unit.calibration.conftest import AUTO, SETTINGS, mounted, store, tracked
 
 WRONG = {"turn_deg": (0.9, -0.8, 0.9), "shift_m": (0.012, -0.010, 0.012)}
@@ -51,7 +51,9 @@ def test_a_walk_of_five_seconds_shows_nothing_and_changes_nothing(dance, tmp_pat
 
     assert not found.figures.applied
     assert found.rig is None
-    assert "nothing of the rig: 14 parameters are not observable" in found.figures.outcome
+    assert outcome_text(found.figures) == (
+        "Rig: the walk shows nothing of it. 14 of 14 parameters are not observable."
+    )
 
 
 @pytest.mark.parametrize(("with_imu", "windows"), [(True, 3), (False, 0)])

@@ -9,11 +9,12 @@ from recon4.calibration.parameters import Parameters
 from recon4.calibration.stage import run_calibration
 from recon4.errors import ConfigError, StoreError
 from recon4.geometry.se3 import so3_exp
+from recon4.model.calibration_figures import RigOutcome
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.store.frames import FrameStore, open_frames
 from tests import scanned_room
-from tests.said import rig_texts
+from tests.said import outcome_text, rig_texts
 from tests.unit.calibration.conftest import (
     AUTO,
     CALIBRATION,
@@ -60,7 +61,7 @@ def test_a_rig_file_that_is_right_is_confirmed(right):
     found = run(right)
 
     assert not rig_texts(found.figures)
-    assert found.figures.outcome.startswith("the rig file agrees with the recording")
+    assert found.figures.outcome.rig is RigOutcome.AGREES
     assert not any(row.status == "off" for row in found.figures.parameters)
     assert not found.figures.changes
     assert sum(row.status == "consistent" for row in found.figures.parameters) >= 11
@@ -190,7 +191,7 @@ def test_one_lidar_without_an_imu_leaves_nothing_to_compare(dance, tmp_path):
     rig = replace(dance.rig, sensors=(first, replace(second, enabled=False)))
     found = run(store(tmp_path, dance, rig, None))
 
-    assert found.figures.outcome == "nothing to compare: neither a second LiDAR nor a usable IMU"
+    assert found.figures.outcome.rig is RigOutcome.NOTHING_TO_COMPARE
     assert found.figures.parameters == ()
 
 
@@ -275,9 +276,8 @@ def test_a_calibration_that_is_refused_leaves_the_warnings_of_the_audit(wrong, a
     found = run(wrong, replace(SETTINGS, calibration=short))
 
     assert not found.figures.applied
-    assert found.figures.outcome == (
-        "the walk is too short to check the calibrated rig on another part of it"
-    )
+    assert found.figures.outcome.rig is RigOutcome.TOO_SHORT
+    assert "too short to check the calibrated rig" in outcome_text(found.figures)
     assert rig_texts(found.figures) == rig_texts(audited.figures)
     assert found.figures.is_severe
 
@@ -292,7 +292,7 @@ def test_a_few_multiframes_are_too_few(dance, tmp_path):
 def test_off_is_off(right):
     found = run(right, replace(SETTINGS, calibration=replace(CALIBRATION, mode="off")))
 
-    assert found.figures.outcome == "switched off"
+    assert found.figures.outcome.rig is RigOutcome.OFF
 
 
 def test_a_calibrated_rig_of_other_sensors_is_refused(right, dance):

@@ -354,7 +354,7 @@ def test_the_rig_is_compared_parameter_by_parameter(facts: ReportFacts, tmp_path
 
     assert "+1.375 ± 0.029 °" in page.text
     assert "<vertical> rotation x: off" in page.text
-    assert "Outcome: the rig file differs." in page.text
+    assert "standard deviation. the rig file differs." in page.text
     assert ("data-name", "rig-rad") in page.attributes
     assert ("data-name", "rig-s") not in page.attributes  # without any standard deviation
 
