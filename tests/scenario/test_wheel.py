@@ -25,7 +25,7 @@ SOURCES = (
     *("pyproject.toml", "zensical.toml", "README.md", "LICENSE", "NOTICE"),
     *("recon4", "app", "web", "docs", "tools"),
 )
-PAGES = ("/", "/docs/", "/docs/recordings", "/live", "/rigs")
+PAGES = ("/", "/docs/", "/docs/reference/recordings.html", "/live", "/rigs")
 ADDRESS = re.compile(r'(?:href|src)="([^"#]+)')
 CHECKOUT = """
 import importlib.util, recon4, recon4_app
