@@ -84,7 +84,7 @@ bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \
 		echo "== $$name"; $(BIN)/python -m tests.benchmarks.$$name || exit 1; \
 	done
-	@echo 'Those that need a recording or a project: docs/explanation/benchmarks.md'
+	@echo 'Those that need a recording or a project: docs/studies'
 
 site: site/index.html
 
@@ -95,6 +95,7 @@ docs: $(VENV)/installed-dev
 	$(BIN)/recon4 settings --markdown > docs/reference/settings.md
 	$(BIN)/python -m recon4.findings.explain > docs/reference/findings.md
 	$(BIN)/python -m tools.http_types
+	$(BIN)/python -m tools.reference_pages
 	$(BIN)/python -m tools.notice
 
 examples: $(VENV)/installed-dev

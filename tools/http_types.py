@@ -30,10 +30,15 @@ NAMES = {
 JSON = "application/json"
 
 
+def described() -> dict[str, Any]:
+    """The OpenAPI description of the server as it is."""
+    with tempfile.TemporaryDirectory() as root:
+        return description(create_app(ServerSettings(root=Path(root))))
+
+
 def http_types() -> str:
     """The text of `http_types.d.ts` for the server as it is."""
-    with tempfile.TemporaryDirectory() as root:
-        api = description(create_app(ServerSettings(root=Path(root))))
+    api = described()
     schemas = api["components"]["schemas"]
     operations = [
         (f"{method.upper()} {path}", operation)

@@ -4,7 +4,7 @@ The error of a pose is a turn about its own origin and a shift, both in the axes
 the sum of the errors of all odometry edges before it (turns with their lever arms), which are
 correlated over seconds: scans that follow each other are matched to the same map with the same
 errors. Registered edges and positions then add what they measured. The factors of `ErrorModel`
-come from walks with known truth (``docs/explanation/trust.md``).
+come from walks with known truth (``docs/studies/covariances.md``).
 """
 
 from __future__ import annotations

@@ -16,7 +16,7 @@ from recon4.geometry.se3 import TRANSLATION, Array
 _WEAK_SD_M = 0.06
 """Deviation of a position by the points of one multiframe at which half of the error remains [m].
 Measured on walks with known truth: up to 2 cm the motion of half a second is wrong by 2 mm, at 5 cm
-by 0.1 m, above 10 cm by 0.25 m (``docs/explanation/trust.md``)."""
+by 0.1 m, above 10 cm by 0.25 m (``docs/studies/covariances.md``)."""
 OBSERVED_SD_M = 0.02
 """Below this a direction is observed, and nothing is added [m]."""
 _SPEED_M_S = 0.6

@@ -40,7 +40,7 @@ class ReportFacts:
     settings: Settings
     artifacts: Mapping[str, Path] = field(default_factory=dict)
     """Stage -> folder of its artifact (``store.project.read_artifacts``); see
-    docs/explanation/architecture.md for the files in each."""
+    docs/reference/files.md for the files in each."""
     stages: tuple[StageTiming, ...] = ()
     inputs: tuple[InputFile, ...] = ()
     versions: Mapping[str, str] = field(default_factory=dict)

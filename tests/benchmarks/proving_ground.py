@@ -6,7 +6,7 @@
 Every walk is simulated once and written with every degradation. Each recording goes through the
 stages up to the final trajectory and the verdict; no map is made. Each run is one line of
 ``OUT/runs.jsonl``; runs that are there are not repeated, so a stopped table continues. The table
-is ``OUT/table.md``. What the classes mean is in `judge` and in ``docs/explanation/trust.md``.
+is ``OUT/table.md``. What the classes mean is in `judge` and in ``docs/studies/proving-ground.md``.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """How quickly the viewer shows a map of 20 million points, to one and to twenty people.
 
 ``python -m tests.benchmarks.viewer_figures FOLDER`` makes the maps there once (some 900 MB) and
-prints the figures of ``docs/explanation/benchmarks.md``. The client is a Python one that answers at
+prints the figures of ``docs/studies/viewer-speed.md``. The client is a Python one that answers at
 once, as a
 browser with a graphics card does; drawing is not measured.
 """

@@ -35,7 +35,7 @@ REPOSITORY_PATH = re.compile(
 )
 PYTHON_FILE = re.compile(r"(?<![\w./*{},-])[\w/]+\.py\b")
 MODULE = re.compile(r"`((?:recon4|recon4_app)(?:\.\w+)+)")
-ROUTE = re.compile(r"(?:^|`)(GET|HEAD|POST|PUT|PATCH|DELETE) +(/api[\w/<>{}-]*)", re.MULTILINE)
+ROUTE = re.compile(r"(?:^|`)(GET|HEAD|POST|PUT|PATCH|DELETE) +(/api[\w/<>{}.-]*)", re.MULTILINE)
 SETTING = re.compile(r"`(?:--set )?(\w+)\.(\w+)(?: ?=[^`]*)?`")
 IDENTIFIER = re.compile(r"`([A-Za-z_][\w.]*(?:\([^`\n]*)?)`")
 INVENTED = {"run_x", "g_beam", "H_k", "g_k"}

@@ -94,9 +94,9 @@ def test_what_the_page_of_findings_quotes_is_what_was_counted():
 
 
 def test_the_published_table_is_counted_in_the_catalog():
-    lines = table_lines(Path(__file__).parents[3] / "docs" / "explanation" / "trust.md")
+    lines = table_lines(Path(__file__).parents[3] / "docs" / "studies" / "proving-ground.md")
 
-    source = next(one for one in sources() if "table in trust.md" in one.name)
+    source = next(one for one in sources() if "table of all runs" in one.name)
 
     assert len(lines) == source.right + source.wrong
     counts = kind_counts(lines)

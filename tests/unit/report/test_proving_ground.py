@@ -1,4 +1,4 @@
-"""The instrument of docs/explanation/trust.md, and the fastest of its walks."""
+"""The instrument of docs/studies/proving-ground.md, and the fastest of its walks."""
 
 from dataclasses import replace
 
