@@ -1,4 +1,4 @@
-"""Every command of the tutorial, in its order, on the walk it simulates; signed as its page does."""
+"""Every command of the tutorial, in its order, on a simulated walk; signed as on its page."""
 
 import re
 import shlex
