@@ -34,8 +34,8 @@ map has no place there.
 
 *Measured* counts the alarms (*check* or *do not use*) in runs with known truth. An alarm is true in
 a run whose trajectory is wrong, or whose fault it names; wrong runs without it may have others.
-[Precision](../studies/precision.md) says how the runs were made. Of a published table only the first
-reason of each run is known, by the code of its time.
+[Precision](../studies/precision.md) says how the runs were made. Of a published table only the
+first reason of each run is known, by the code of its time.
 
 This page is made from the catalog of the texts and the counts in `measured.toml`: `make docs`.
 """

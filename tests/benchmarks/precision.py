@@ -1,6 +1,6 @@
 """How often each kind of finding is right: precision and recall over runs of the proving ground.
 
-    python -m tests.benchmarks.precision OUT/runs.jsonl [docs/studies/proving-ground.md …] [--toml NAME]
+    python -m tests.benchmarks.precision OUT/runs.jsonl [docs/studies/… …] [--toml NAME]
 
 Of a page with the published table (``.md``) only the first reason of each run is known.
 ``--toml`` prints a source for ``recon4/findings/measured.toml``, whose figures the page
