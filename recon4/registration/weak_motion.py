@@ -12,6 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import TRANSLATION, Array
+from recon4.registration.frame_fit import FrameFit
 
 _WEAK_SD_M = 0.06
 """Deviation of a position by the points of one multiframe at which half of the error remains [m].
@@ -59,3 +60,23 @@ def weak_motion_cov(
     if not converged:
         cov[TRANSLATION, TRANSLATION] = unknown_m**2 * np.eye(3)
     return cov
+
+
+def unknown_motion_cov(fit: FrameFit, *, seconds: float, most_m: float = float("inf")) -> Array:
+    """Covariance of the motion over a multiframe that its fit does not exclude, (6, 6).
+
+    Args:
+        fit: Of the multiframe; one at rest excludes all motion.
+        seconds: Duration of the multiframe [s].
+        most_m: Bound of the motion by something else [m].
+    """
+    if fit.stationary:
+        return np.zeros((6, 6))
+    moved_m = float(np.linalg.norm(fit.T_dense.t[-1] - fit.T_dense.t[0]))
+    unknown_m = seconds * unknown_speed_sd(moved_m / seconds, with_imu=fit.with_imu)
+    return weak_motion_cov(
+        fit.match.weak_direction,
+        fit.weak_sd_m,
+        unknown_m=min(unknown_m, most_m),
+        converged=fit.with_imu or fit.converged,
+    )

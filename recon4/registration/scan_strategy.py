@@ -1,0 +1,148 @@
+"""The motion by registering each scan to the last good one, and by fixes where that is not sure."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from recon4.geometry.se3 import SE3, Array
+from recon4.model.multiframe import Multiframe
+from recon4.model.samples import ImuSamples
+from recon4.registration.aiding import GnssAiding
+from recon4.registration.fix_start import start_at_fixes
+from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.lost import FreshChain, LostLimits
+from recon4.registration.motion import FreeMotion, MotionState, Prediction, Rest
+from recon4.registration.motion_strategy import is_numeric
+from recon4.registration.scan_chain import ScanChain
+from recon4.registration.step import OdometryStep
+from recon4.registration.tracking import Seen, TrackingState
+from recon4.registration.view import FrameView
+from recon4.registration.weak_motion import unknown_motion_cov
+from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
+from recon4.settings import Settings
+
+_UNSEEN_NS = 200_000_000
+"""Least time without a frame in which the body moved unseen [ns]. Without such a gap a scan that is
+lost shows a change of what stands around: the doors of an elevator that opened elsewhere."""
+
+
+class ScanStrategy:
+    """Without an IMU: the last scan says where the next one is expected."""
+
+    def __init__(self, settings: Settings, aiding: GnssAiding | None) -> None:
+        self._settings, self._aiding = settings, aiding
+        self._free, self._chain = FreeMotion(settings.odometry), ScanChain(settings.scans)
+        self._fresh: FreshChain | None = None
+        """The scans since tracking was lost."""
+        self._fixes: GnssAiding | None = None
+        """The aiding, if the odometry began in its frame."""
+        self.longest_map = settings.odometry.longest_map(with_imu=False)
+        self.fitter = FrameFitter(
+            settings.odometry,
+            settings.registration.converged_step_m,
+            coarse=settings.planes.levels - 1,
+            rounds=settings.odometry.rounds_without_imu,
+            with_imu=False,
+            aiding=aiding,
+        )
+
+    def remember(self, known: MotionState) -> None:
+        """See `MotionStrategy.remember`: there is no IMU."""
+
+    def extend(self, imu: ImuSamples) -> None:
+        """See `MotionStrategy.extend`: an IMU that comes later is not used."""
+
+    def moving_start(self, frame: Multiframe) -> tuple[Multiframe, MotionState] | None:
+        """See `MotionStrategy.moving_start`: the first two scans are distorted alike."""
+        return None
+
+    def covers(self, start_ns: int, end_ns: int) -> bool:
+        """See `MotionStrategy.covers`: a scan hardly overlaps with one long before."""
+        return False
+
+    def bridge(self, view: FrameView, last_ns: int) -> Prediction | None:
+        """See `MotionStrategy.bridge`."""
+        if view.start_ns - last_ns < _UNSEEN_NS:
+            return None
+        found = self._chain.bridge(view.scan(), view.frame.t_mid_ns)
+        if found is None:
+            return None
+        return self._through(self._chain.last[0] @ found, view)
+
+    def predict(
+        self, state: MotionState | None, view: FrameView, tracking: TrackingState
+    ) -> Prediction:
+        """See `MotionStrategy.predict`; its ``expected`` is None if nothing places the scan."""
+        found = self._chain.locate(view.scan(), view.frame.t_mid_ns)
+        if state is None:
+            state = self._free.initial(view.start_ns)
+            if self._aiding is not None:
+                state, self._fixes = start_at_fixes(state, self._aiding, self._settings.odometry)
+            return self._move(state, view)
+        by_scans = self._chain.last[0] @ found if found else None
+        expected = self._placed(by_scans, view.frame.t_mid_ns)
+        if expected is None:
+            return self._move(self._free.at_rest(state, view.start_ns), view)
+        if not tracking.is_velocity_known:
+            return self._through(expected, view)
+        return replace(self._move(state, view), expected=expected)
+
+    def _placed(self, by_scans: SE3 | None, t_ns: int) -> SE3 | None:
+        """Pose by the last good scan, else by fixes."""
+        if self._chain.is_sure or self._fixes is None:
+            return by_scans
+        return self._fixes.pose(t_ns) or by_scans
+
+    def _through(self, now: SE3, view: FrameView) -> Prediction:
+        """Constant velocity from the last good scan to a pose in the middle of a frame."""
+        before, before_ns = self._chain.last
+        T, times_ns = SE3.stack([before, now]), (before_ns, view.frame.t_mid_ns)
+        state = self._free.between(T, times_ns, view.start_ns)
+        return replace(self._move(state, view), expected=now)
+
+    def _move(self, state: MotionState, view: FrameView) -> Prediction:
+        if state.t_ns < view.start_ns:  # frames are missing in between
+            state = self._free.predict(state, view.start_ns).end
+        return self._free.predict(state, view.end_ns)
+
+    def rest(self, end: MotionState, *, weak: bool) -> Rest:
+        """See `MotionStrategy.rest`."""
+        return self._free.rest(end, weak=weak)
+
+    def is_lost(self, fit: FrameFit, prediction: Prediction, limits: LostLimits) -> bool:
+        """See `MotionStrategy.is_lost`."""
+        missing = prediction.expected is None or not is_numeric(fit)
+        return missing or limits.is_lost(fit.match, sure=self._chain.is_sure)
+
+    def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
+        """See `MotionStrategy.refined`: two scans that agree are those of a body at rest."""
+        if not is_stationary(self._chain.located):
+            return fit
+        return zero_velocity_update(fit, prediction, self._chain.last[0])
+
+    def unknown_cov(self, frame: Multiframe, fit: FrameFit) -> Array:
+        """See `MotionStrategy.unknown_cov`: fixes bound what no velocity excludes."""
+        aided = self._aiding and self._aiding.pose(frame.t_ns + frame.duration_ns)
+        most_m = self._settings.odometry.gnss_sd_m if aided else float("inf")
+        return unknown_motion_cov(fit, seconds=1e-9 * frame.duration_ns, most_m=most_m)
+
+    def keep(self, step: OdometryStep) -> None:
+        """See `MotionStrategy.keep`."""
+        self._fresh = None
+        self._chain.keep(step.T_odom_body, step.t_mid_ns)
+
+    def after_loss(self, view: FrameView, tracking: TrackingState) -> Seen | None:
+        """See `MotionStrategy.after_loss`."""
+        if self._fresh is None:
+            self._fresh = FreshChain(self._settings.scans)
+        sure = self._fresh.push(view.scan(), view.frame.t_mid_ns)
+        return Seen.SURE_AGAIN if sure else None
+
+    def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
+        """See `MotionStrategy.at_rest`."""
+        self._chain, self._fresh = ScanChain(self._settings.scans), None
+        return self._free.at_rest(state, t_ns)
+
+    def imu_state(self, good: MotionState | None) -> MotionState | None:
+        """See `MotionStrategy.imu_state`."""
+        return None

@@ -1,0 +1,41 @@
+"""One multiframe as the odometry looks at it: sampled once, however often it is fitted."""
+
+from __future__ import annotations
+
+from recon4.geometry.se3 import Array
+from recon4.model.multiframe import Multiframe
+from recon4.model.rig import Rig
+from recon4.registration.point_map import FramePoints, frame_points
+from recon4.registration.scan_chain import body_points
+from recon4.registration.segments import Segments, sample_segments
+from recon4.settings import SegmentSettings
+
+
+class FrameView:
+    """A frame with its segments; its points are worked out when they are needed."""
+
+    def __init__(self, frame: Multiframe, rig: Rig, settings: SegmentSettings) -> None:
+        self.frame = frame
+        self.segments: Segments = sample_segments(frame, rig, settings)
+        self._rig = rig
+        self._points: FramePoints | None = None
+
+    @property
+    def start_ns(self) -> int:
+        """When it begins [ns]."""
+        return self.frame.t_ns
+
+    @property
+    def end_ns(self) -> int:
+        """When it ends [ns]."""
+        return self.frame.t_ns + self.frame.duration_ns
+
+    def points(self) -> FramePoints:
+        """Points for the point map."""
+        if self._points is None:
+            self._points = frame_points(self.frame, self._rig)
+        return self._points
+
+    def scan(self) -> Array:
+        """All points, in the body [m], (N, 3)."""
+        return body_points(self.frame, self._rig)
