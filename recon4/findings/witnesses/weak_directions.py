@@ -144,9 +144,9 @@ class WeakStretches:
         georeferenced = walk.placement.gnss.georeferenced
         bad = seconds >= UNOBSERVED_SECONDS and not georeferenced
         level = Level.DO_NOT_USE if bad else Level.CHECK
-        held = known_to(walk) if is_known(walk) else {}
+        level = Level.NOTE if is_known(walk) else level
         for stretch in stretches:
-            yield _finding(stretch, Level.NOTE if held else level, held)
+            yield _finding(stretch, level, known_to(walk))
 
 
 def _observed_by_profiler(planar: Sequence[WeakStretch]) -> Iterator[Finding]:
@@ -159,7 +159,7 @@ def _observed_by_profiler(planar: Sequence[WeakStretch]) -> Iterator[Finding]:
         )
 
 
-def _finding(stretch: WeakStretch, level: Level, held: dict[str, float]) -> Finding:
+def _finding(stretch: WeakStretch, level: Level, uncertainty: dict[str, float]) -> Finding:
     stated = bool(np.isfinite(stretch.sd_m))
     known = bool(np.isfinite(stretch.direction_odom).all())
     direction = "horizontal" if stretch.horizontal else "vertical"
@@ -172,9 +172,9 @@ def _finding(stretch: WeakStretch, level: Level, held: dict[str, float]) -> Find
             "known": stated and stretch.sd_m < _UNLIMITED_M,
             "unlimited": stated and stretch.sd_m >= _UNLIMITED_M,
             "unstated": not stated,
-            "open": not held,
+            "open": not uncertainty,
         }
-        | held,
+        | uncertainty,
         span_s=(stretch.start_s, stretch.end_s),
     )
     return replace(found, direction=direction if known else "unknown")

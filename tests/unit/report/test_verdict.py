@@ -241,8 +241,8 @@ def uncertain(largest_sd_m: float, *, point_sd_m: float = 0.01) -> WalkRecord:
 @pytest.mark.parametrize(
     ("largest_sd_m", "usability", "words"),
     [
-        (0.03, Usability.GOOD, "What else holds it keeps the positions to ± 6.0 cm"),
-        (0.06, Usability.DO_NOT_USE, "may be wrong by meters"),
+        (0.03, Usability.GOOD, "the positions are known to ± 6.0 cm (2σ)"),
+        (0.06, Usability.DO_NOT_USE, "the positions are known to ± 12.0 cm (2σ)"),
     ],
 )
 def test_a_direction_that_no_lidar_observes_is_no_fault_where_something_else_holds_it(
