@@ -78,10 +78,15 @@ def _section(kind: FindingKind, entry: KindText) -> str:
     shown = " ".join(_readable(text) for text in sentences)
     rows = [f"## {kind}", "", f"**{entry.title}.** {entry.meaning}", ""]
     rows += [f"- says: {shown}", f"- detected: {entry.detection}"]
-    rows.append(f"- measured: {'; '.join(source.words(kind) for source in sources())}")
+    rows.append(f"- measured: {'. '.join(_capital(source.words(kind)) for source in sources())}")
     if entry.remedy:
         rows.append(f"- what to do: {_readable(entry.remedy)}")
     return "\n".join([*rows, ""])
+
+
+def _capital(text: str) -> str:
+    """The text as the begin of a sentence."""
+    return text[:1].upper() + text[1:]
 
 
 def _readable(text: str) -> str:
