@@ -205,7 +205,7 @@ def sensors_are_shown(page):
     page.locator("#sensors").click()
     rows = page.locator("#lidars tr")
     for row, name in ((0, "horizontal"), (1, "vertical")):
-        expect(rows.nth(row)).to_have_text(re.compile(rf"{name}\d+/s0\.\d %in step"))
+        expect(rows.nth(row)).to_have_text(re.compile(rf"{name}\s*\d+/s\s*0\.\d %\s*in step"))
     page.get_by_role("button", name="Close").click()
 
 

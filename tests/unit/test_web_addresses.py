@@ -49,12 +49,12 @@ def test_the_check_knows_the_routes(first_parts):
 @pytest.mark.parametrize(
     "code",
     [
-        'make("a", { href: "/rigs" })',
+        'html`<a href="/rigs">Rigs</a>`',
         'fetch("/api/me")',
         'new WebSocket(location.host + "x")',
         "const url = `/projects/${id}/`;",
         'location.assign("/")',
-        'make("a", { href: "/" })',
+        'html`<a href="/">Projects</a>`',
         'const id = location.pathname.split("/")[2];',
         "import x from '/web/shared/dom.js'",
         'localStorage.setItem("a", "b")',

@@ -2,7 +2,7 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 
 import { beamRows, calibratingJob, outcomeOf, rowsOf } from "../../web/projects/rig_audit.js";
-import { slug } from "../../web/rigs/rig_dialogs.js";
+import { slug } from "../../web/rigs/rig_math.js";
 
 const parameter = (more = {}) => ({
   sensor: "vertical",

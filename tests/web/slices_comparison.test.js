@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { bars } from "../../web/slices/comparison.js";
+import { bars } from "../../web/slices/bars.js";
 import { inFrames, poseInMap, unpacked } from "../../web/slices/align_math.js";
 
 test("the highest class has the full height", () => {

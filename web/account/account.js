@@ -1,11 +1,11 @@
 // The account of the signed-in person: sessions and password.
 
 import { changePassword, endMySession, listMySessions, readCurrentUser } from "../shared/api.js";
-import { attempt, byId, fields, onSubmit } from "../shared/dom.js";
+import { attempt, byId, fields, only, onSubmit } from "../shared/dom.js";
 import "../shared/page_head.js";
 import "./session_list.js";
 
-const list = document.querySelector("session-list");
+const list = only("session-list");
 const form = byId("password", HTMLFormElement);
 
 const me = await attempt(byId("message"), readCurrentUser);

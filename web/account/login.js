@@ -2,7 +2,7 @@
 
 import { forgetFragment, pathInside, wholeUrl } from "../shared/address.js";
 import { isSignedIn, setUp, signIn } from "../shared/api.js";
-import { byId, fields, onSubmit, targetOf } from "../shared/dom.js";
+import { asError, byId, fields, onSubmit, targetOf } from "../shared/dom.js";
 
 const form = byId("login", HTMLFormElement);
 const controls = fields(form);
@@ -24,7 +24,7 @@ function offerSetup() {
   controls.password.minLength = 12;
 }
 
-async function submit(event) {
+async function submit(/** @type {SubmitEvent} */ event) {
   event.preventDefault();
   const message = byId("message");
   message.textContent = "";
@@ -34,7 +34,7 @@ async function submit(event) {
     await (setup ? setUp(setup, name, password) : signIn(name, password));
     location.replace(next());
   } catch (error) {
-    message.textContent = error.message;
+    message.textContent = asError(error).message;
     go.disabled = false;
     controls.password.select();
   }

@@ -8,12 +8,13 @@ import {
   liveUrl,
   redeemInvitation,
 } from "../shared/api.js";
-import { attempt, byId, fields, onSubmit } from "../shared/dom.js";
+import { asError, attempt, byId, fields, onSubmit, say } from "../shared/dom.js";
 
 const CLAIM_EVERY_MS = 2000;
 const AGAIN = "again"; // the session has ended
 const token = location.hash.slice(1);
 forgetFragment();
+const form = byId("ask", HTMLFormElement);
 
 async function useInvitation() {
   byId("ask").hidden = true;
@@ -24,11 +25,9 @@ async function useInvitation() {
   byId("ask").hidden = false;
 }
 
-async function ask(event) {
+async function ask(/** @type {SubmitEvent} */ event) {
   event.preventDefault();
-  const asked = await attempt(byId("message"), () =>
-    requestPairing(fields(event.target).phone.value),
-  );
+  const asked = await attempt(byId("message"), () => requestPairing(fields(form).phone.value));
   if (!asked) return;
   byId("ask").hidden = byId("else").hidden = true;
   byId("words").textContent =
@@ -38,6 +37,10 @@ async function ask(event) {
   await wait(asked, performance.now() + 1000 * asked.seconds);
 }
 
+/**
+ * @param {{token: string, seconds: number}} asked
+ * @param {number} untilMs
+ */
 async function wait(asked, untilMs) {
   const left = Math.max(0, Math.round((untilMs - performance.now()) / 1000));
   byId("left").textContent =
@@ -45,22 +48,23 @@ async function wait(asked, untilMs) {
   try {
     if (await claimPairing(asked.token)) return location.replace(liveUrl);
   } catch (error) {
-    if (error.status !== 0) return over(error.message); // without a link: try again
+    const { status, message } = asError(error);
+    if (status !== 0) return over(message); // without a link: try again
   }
   setTimeout(wait, CLAIM_EVERY_MS, asked, untilMs);
 }
 
-function over(text) {
+function over(/** @type {string} */ text) {
   byId("digits").hidden = byId("left").hidden = true;
   byId("words").textContent = "";
-  byId("message").textContent = text;
+  say(byId("message"), text);
   byId("ask").hidden = byId("else").hidden = false;
 }
 
 /** Whether this browser is signed in; false without a link, so that the page can be used. */
 const isIn = () => isSignedIn().catch(() => false);
 
-onSubmit(byId("ask"), ask);
+onSubmit(form, ask);
 const ended =
   token === AGAIN ? "The session of this phone has ended; a running capture goes on. " : "";
 if (await isIn()) location.replace(liveUrl);

@@ -2,32 +2,39 @@
 
 import { wholeUrl } from "../shared/address.js";
 import { approvePhone, invitePhone, readPairing } from "../shared/api.js";
-import { attempt, byId, fields, make, onSubmit } from "../shared/dom.js";
+import { attempt, byId, fields, html, onSubmit, render, within } from "../shared/dom.js";
 import "../shared/page_head.js";
 
+/** @import {Role} from "../shared/http_types" */
+
+/** @type {Record<string, string>} */
 const MAY = { operator: "look, and start, mark and stop", viewer: "look only" };
-let timer = null;
+/** @type {{timer: ReturnType<typeof setInterval> | undefined}} */
+const shown = { timer: undefined };
+
+const form = byId("approve", HTMLFormElement);
 
 const role = () =>
-  /** @type {HTMLInputElement} */ (document.querySelector("input[name=role]:checked")).value;
+  /** @type {Role} */ (within(document, "input[name=role]:checked", HTMLInputElement).value);
 
-function showRoles(roles) {
+function showRoles(/** @type {string[]} */ roles) {
+  /**
+   * @param {string} value
+   * @param {number} k
+   */
   const one = (value, k) => {
-    const radio = make("input", {
-      type: "radio",
-      name: "role",
-      value,
-      checked: k === 0,
-      onchange: chose,
-    });
-    return make(
-      "label",
-      { className: "check" },
-      radio,
-      make("span", {}, make("b", {}, value), `: ${MAY[value]}`),
-    );
+    const radio = html`<input
+      type="radio"
+      name="role"
+      value=${value}
+      .checked=${k === 0}
+      @change=${chose}
+    />`;
+    return html`<label class="check"
+      >${radio}<span><b>${value}</b>: ${MAY[value]}</span></label
+    >`;
   };
-  byId("roles").append(...roles.map(one));
+  render(roles.map(one), byId("roles"));
   chose();
 }
 
@@ -42,10 +49,14 @@ async function invite() {
   if (!invitation) return;
   const show = () => {
     const link = invitation.links[byId("host", HTMLSelectElement).selectedIndex];
+    if (!link) return;
     byId("qr", HTMLImageElement).src = link.qr;
     byId("pair-url").textContent = link.url.split("#")[0];
   };
-  byId("host").replaceChildren(...invitation.links.map(({ host }) => make("option", {}, host)));
+  render(
+    invitation.links.map(({ host }) => html`<option>${host}</option>`),
+    byId("host"),
+  );
   byId("host").onchange = show;
   byId("address").hidden = invitation.links.length < 2;
   byId("shown").hidden = false;
@@ -54,36 +65,40 @@ async function invite() {
   countDown(performance.now() + 1000 * invitation.seconds, invitation.role);
 }
 
+/**
+ * @param {number} untilMs
+ * @param {string} given
+ */
 function countDown(untilMs, given) {
-  clearInterval(timer);
+  clearInterval(shown.timer);
   const tick = () => {
     const left = Math.round((untilMs - performance.now()) / 1000);
     byId("left").textContent = `For one phone, as ${given}, ${left} s left`;
     if (left <= 0) hideCode();
   };
-  timer = setInterval(tick, 1000);
+  shown.timer = setInterval(tick, 1000);
   tick();
 }
 
 function hideCode() {
-  clearInterval(timer);
+  clearInterval(shown.timer);
   byId("shown").hidden = true;
   byId("qr").removeAttribute("src");
   byId("invite").textContent = "Show QR code";
 }
 
-async function approve(event) {
+async function approve(/** @type {SubmitEvent} */ event) {
   event.preventDefault();
   byId("approved").textContent = "";
-  const code = fields(event.target).code.value.replace(/\s/g, "");
+  const code = fields(form).code.value.replace(/\s/g, "");
   const phone = await attempt(byId("approve-message"), () => approvePhone(code, role()));
   if (!phone) return;
-  event.target.reset();
+  form.reset();
   byId("approved").textContent = `✓ ${phone.name} at ${phone.address} is signed in as ${role()}`;
 }
 
 byId("invite").addEventListener("click", invite);
-onSubmit(byId("approve"), approve);
+onSubmit(form, approve);
 const pairing = await attempt(byId("message"), readPairing);
 if (pairing) {
   byId("without").hidden = pairing.login;

@@ -1,12 +1,14 @@
 // <session-list>: sessions with a button to end each.
 
-import { attempt, make, succeeds } from "../shared/dom.js";
+import { attempt, html, messagePlace, render, repeat, succeeds, within } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 
-const moment = (time_s) => when(new Date(time_s * 1000).toISOString());
+/** @import {SessionView} from "../shared/http_types" */
+
+const moment = (/** @type {number} */ time_s) => when(new Date(time_s * 1000).toISOString());
 
 /** The browser and system in a user agent, as far as people care. */
-export function device(agent) {
+export function device(/** @type {string} */ agent) {
   const browser = ["Edg", "Firefox", "Chrome", "Safari"].find((one) => agent.includes(`${one}/`));
   const system = ["Android", "iPhone", "iPad", "Windows", "Mac OS", "Linux"].find((one) =>
     agent.includes(one),
@@ -16,63 +18,74 @@ export function device(agent) {
     : agent.slice(0, 40) || "Unknown program";
 }
 
+/** @typedef {{read: () => Promise<SessionView[]>, end: (id: string) => Promise<unknown>}} Source */
+
+const TITLES = ["Person", "Device", "From", "Signed in", "Last seen", "Action"];
+
 export class SessionList extends HTMLElement {
-  #source;
-  #message = make("p", { className: "error", role: "alert" });
-  #body = make("tbody");
+  /** @type {Source | null} */
+  #source = null;
 
   connectedCallback() {
-    const titles = ["Person", "Device", "From", "Signed in", "Last seen", "Action"];
-    const head = make("tr", {}, ...titles.map((text) => make("th", { scope: "col" }, text)));
-    this.replaceChildren(
-      this.#message,
-      make("table", { className: "rows" }, make("thead", {}, head), this.#body),
+    render(
+      html`${messagePlace()}
+        <table class="rows">
+          <thead>
+            <tr>
+              ${TITLES.map((text) => html`<th scope="col">${text}</th>`)}
+            </tr>
+          </thead>
+          <tbody></tbody>
+        </table>`,
+      this,
     );
   }
 
-  /** {read, end}: where the sessions come from, and how one is ended. */
-  set source(source) {
+  get #message() {
+    return within(this, ".error");
+  }
+
+  /** Where the sessions come from, and how one is ended. */
+  set source(/** @type {Source} */ source) {
     this.#source = source;
     this.reload();
   }
 
   async reload() {
-    const views = await attempt(this.#message, this.#source.read);
-    if (views) this.#body.replaceChildren(...views.map((view) => this.#row(view)));
-  }
-
-  #row({ session, current }) {
-    const end = make(
-      "button",
-      {
-        type: "button",
-        ariaLabel: `End session of ${session.person}, ${device(session.agent)}`,
-        onclick: () => this.#end(session.id),
-      },
-      "End",
-    );
-    return make(
-      "tr",
-      {},
-      make("th", { scope: "row" }, session.person),
-      make("td", { title: session.agent, "data-label": "Device" }, device(session.agent)),
-      make("td", { "data-label": "From" }, session.address),
-      make("td", { "data-label": "Signed in" }, make("time", {}, moment(session.began_s))),
-      make("td", { "data-label": "Last seen" }, make("time", {}, moment(session.seen_s))),
-      make(
-        "td",
-        {},
-        make(
-          "div",
-          { className: "actions" },
-          current ? make("span", { className: "here" }, "✓ This one") : end,
-        ),
+    const views = await attempt(this.#message, () => this.#source?.read());
+    if (!views) return;
+    render(
+      repeat(
+        views,
+        ({ session }) => session.id,
+        (view) => this.#row(view),
       ),
+      within(this, "tbody"),
     );
   }
 
-  async #end(id) {
-    if (await succeeds(this.#message, () => this.#source.end(id))) await this.reload();
+  #row(/** @type {SessionView} */ { session, current }) {
+    const end = html`<button
+      type="button"
+      aria-label="End session of ${session.person}, ${device(session.agent)}"
+      @click=${() => this.#end(session.id)}
+    >
+      End
+    </button>`;
+    return html`<tr>
+      <th scope="row">${session.person}</th>
+      <td title=${session.agent} data-label="Device">${device(session.agent)}</td>
+      <td data-label="From">${session.address}</td>
+      <td data-label="Signed in"><time>${moment(session.began_s)}</time></td>
+      <td data-label="Last seen"><time>${moment(session.seen_s)}</time></td>
+      <td>
+        <div class="actions">${current ? html`<span class="here">✓ This one</span>` : end}</div>
+      </td>
+    </tr>`;
+  }
+
+  async #end(/** @type {string} */ id) {
+    if (await succeeds(this.#message, () => this.#source?.end(id))) await this.reload();
   }
 }
 

@@ -8,15 +8,35 @@ import {
   startCapture,
   steerCapture,
 } from "../shared/api.js";
-import { attempt, byId, make } from "../shared/dom.js";
+import { attempt, byId, fields, html, nothing, render, say, within } from "../shared/dom.js";
+
+/**
+ * @import {NewCapture, RigChoice} from "../shared/http_types"
+ * @import {Template} from "../shared/dom.js"
+ * @import {Message} from "./messages"
+ * @typedef {Record<string, HTMLInputElement>} Fields
+ * @typedef {object} ActionState what the buttons depend on
+ * @property {string} state of the capture
+ * @property {string} project
+ * @property {boolean | null} mayCapture null = not known yet
+ * @property {boolean} linked
+ * @property {() => Message["loop"]} loop
+ */
 
 const LONGEST_NOTE_S = 600;
+const LAST = "recon4.live.last";
+/** Time of the Mark button; the operator walks on while typing. */
+const touched = { ms: 0 };
 
-/** A dialog with a form; it closes when `act(form)` succeeds. */
+/**
+ * A dialog with a form; it closes when `act(fields)` succeeds.
+ * @param {string} id
+ * @param {(given: Fields) => Promise<unknown>} act
+ */
 function dialog(id, act) {
   const element = byId(id, HTMLDialogElement);
-  const form = element.querySelector("form");
-  const message = element.querySelector(".error");
+  const form = formOf(id);
+  const message = within(element, ".error");
   form.querySelector(".cancel")?.addEventListener("click", () => element.close());
   form.addEventListener("submit", async (event) => {
     const submitter = /** @type {HTMLButtonElement | null} */ (event.submitter);
@@ -24,106 +44,114 @@ function dialog(id, act) {
     event.preventDefault();
     const text = submitter?.textContent ?? "";
     if (submitter) [submitter.disabled, submitter.textContent] = [true, "One moment…"];
-    const done = await attempt(message, () => act(form));
+    const done = await attempt(message, () => act(fields(form)));
     if (submitter) [submitter.disabled, submitter.textContent] = [false, text];
     if (done !== undefined) element.close();
   });
   return () => {
-    message.textContent = "";
+    say(message, "");
     if (!element.open) element.showModal();
   };
 }
+
+const formOf = (/** @type {string} */ id) => within(byId(id), "form", HTMLFormElement);
 
 const showStart = dialog("begin", ({ rig, preset, place }) => {
   keep(LAST, JSON.stringify({ rig: rig.value, preset: preset.value }));
   return startCapture({ rig: rig.value, preset: preset.value, place: place.value });
 });
-const showMark = dialog("note", (form) => {
-  const ago = Math.max(0, (performance.now() - touched) / 1000);
-  return markHere({ text: form.text.value, ago_s: Math.min(ago, LONGEST_NOTE_S) });
+const showMark = dialog("note", ({ text }) => {
+  const ago = Math.max(0, (performance.now() - touched.ms) / 1000);
+  return markHere({ text: text.value, ago_s: Math.min(ago, LONGEST_NOTE_S) });
 });
-const showName = dialog("naming", (form) => markHere({ what: "place", text: form.text.value }));
+const showName = dialog("naming", ({ text }) => markHere({ what: "place", text: text.value }));
 const showEnd = dialog("ending", () => steerCapture("stop"));
 
-let touched = 0; // time of the Mark button; the operator walks on while typing
-
-const LAST = "recon4.live.last";
-
-/** The last choices on this phone. */
+/**
+ * The last choices on this phone.
+ * @returns {Partial<Pick<NewCapture, "rig" | "preset">>}
+ */
 const lastChosen = () => JSON.parse(kept(LAST) ?? "{}");
 
-/** Fills a select and restores the last choice. */
-function offer(select, options, last) {
-  select.replaceChildren(...options);
-  const usable = options.filter((option) => !option.disabled);
-  select.value = (usable.find((option) => option.value === last) ?? usable[0]).value;
+/**
+ * Fills a select and restores the last choice.
+ * @param {HTMLInputElement} control
+ * @param {Template[]} options
+ * @param {string | undefined} last
+ */
+function offer(control, options, last) {
+  render(options, control);
+  const select = /** @type {HTMLSelectElement} */ (/** @type {unknown} */ (control));
+  const usable = [...select.options].filter((option) => !option.disabled);
+  select.value = (usable.find((option) => option.value === last) ?? usable[0])?.value ?? "";
 }
 
 async function begin() {
-  const form = byId("begin").querySelector("form");
+  const { rig, preset, place } = fields(formOf("begin"));
   const choices = await attempt(byId("message"), readCaptureChoices);
   if (!choices) return;
-  const rig = ({ rig: value, name, sensors, problem }) =>
-    make(
-      "option",
-      { value, disabled: problem !== "" },
-      `${name}: ${problem || sensors.join(", ")}`,
-    );
-  offer(form.rig, choices.rigs.map(rig), lastChosen().rig);
+  const rigOption = (/** @type {RigChoice} */ { rig: value, name, sensors, problem }) =>
+    html`<option value=${value} ?disabled=${problem !== ""}>
+      ${name}: ${problem || sensors.join(", ")}
+    </option>`;
+  offer(rig, choices.rigs.map(rigOption), lastChosen().rig);
   offer(
-    form.preset,
-    choices.presets.map((name) =>
-      make("option", { value: name }, `${name}: ${choices.preset_texts[name]}`),
+    preset,
+    choices.presets.map(
+      (name) => html`<option value=${name}>${name}: ${choices.preset_texts[name]}</option>`,
     ),
     lastChosen().preset,
   );
   const now = new Date(Date.now() - 60_000 * new Date().getTimezoneOffset()).toISOString();
-  form.place.value = `Walk ${now.slice(0, 16).replace("T", " ")}`;
+  place.value = `Walk ${now.slice(0, 16).replace("T", " ")}`;
   showStart();
 }
 
 export function mark() {
-  if (!byId("note", HTMLDialogElement).open) touched = performance.now();
-  byId("note").querySelector("form").reset();
+  if (!byId("note", HTMLDialogElement).open) touched.ms = performance.now();
+  formOf("note").reset();
   showMark();
 }
 
 export const nameThePlace = () => (byId("more", HTMLDialogElement).close(), showName());
 
-function stop(text) {
+function stop(/** @type {string} */ text) {
   byId("ending-words").textContent = text;
   showEnd();
 }
 
 async function makeMap() {
   const view = await attempt(byId("message"), () => steerCapture("process"));
-  if (view) location.assign(projectUrl(view.job.project));
+  if (view && "job" in view) location.assign(projectUrl(view.job.project));
 }
 
-let shown = "";
-
 /** Shows the buttons of a state; none to a user without the permission. */
-export function drawActions({ state, project, mayCapture, linked, loop }) {
-  const key = `${state}/${mayCapture}/${project}/${linked}`;
-  if (key === shown) return;
-  shown = key;
-  const button = (text, className, onclick) =>
-    make("button", { type: "button", className, onclick, disabled: !linked }, text);
-  const steer = (what) => () => attempt(byId("message"), () => steerCapture(what));
+export function drawActions(
+  /** @type {ActionState} */ { state, project, mayCapture, linked, loop },
+) {
+  const button = (
+    /** @type {string} */ text,
+    /** @type {string} */ className,
+    /** @type {() => unknown} */ act,
+  ) =>
+    html`<button type="button" class=${className} @click=${act} ?disabled=${!linked}>
+      ${text}
+    </button>`;
+  const steer = (/** @type {"pause" | "resume"} */ what) => () =>
+    attempt(byId("message"), () => steerCapture(what));
   const atStart = () =>
     loop()?.closed
       ? "The loop is closed."
       : "The loop is not closed yet: the map is better if you return to the start first.";
   const end = button("Stop", "stop", () => stop(atStart()));
+  /** @type {Record<string, () => Template>} */
   const rows = {
-    none: () => [button("Start…", "primary", begin)],
-    recording: () => [button("Mark", "", mark), button("Pause", "", steer("pause")), end],
-    paused: () => [button("Resume", "primary", steer("resume")), end],
-    ready: () => [
-      make("a", { className: "button", href: projectUrl(project) }, "Project"),
-      button("Make the map", "primary", makeMap),
-      button("New…", "", begin),
-    ],
+    none: () => html`${button("Start…", "primary", begin)}`,
+    recording: () => html`${button("Mark", "", mark)}${button("Pause", "", steer("pause"))}${end}`,
+    paused: () => html`${button("Resume", "primary", steer("resume"))}${end}`,
+    ready: () =>
+      html`<a class="button" href=${projectUrl(project)}>Project</a>
+        ${button("Make the map", "primary", makeMap)}${button("New…", "", begin)}`,
   };
-  byId("actions").replaceChildren(...(mayCapture ? (rows[state]?.() ?? []) : []));
+  render(mayCapture ? (rows[state]?.() ?? nothing) : nothing, byId("actions"));
 }

@@ -32,8 +32,11 @@ export class Camera {
     return [c, -s * u, s * f, s, c * u, -c * f, 0, f, u];
   }
 
-  /** Pixel coordinates of a point, relative to the target in the image, y down. */
-  project([x, y, z]) {
+  /**
+   * Pixel coordinates of a point, relative to the target in the image, y down.
+   * @returns {[number, number]}
+   */
+  project(/** @type {number[]} */ [x, y, z]) {
     const t = this.turn;
     const [a, b, c] = [x - this.target[0], y - this.target[1], z - this.target[2]];
     return [
@@ -42,6 +45,10 @@ export class Camera {
     ];
   }
 
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   */
   pan(dx, dy) {
     const [c, s] = [Math.cos(this.yaw), Math.sin(this.yaw)];
     const right = -dx / this.pxPerM;
@@ -50,13 +57,17 @@ export class Camera {
     this.target[1] += s * right + c * up;
   }
 
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   */
   orbit(dx, dy) {
     this.yaw -= dx * 0.008;
     this.pitch = Math.min(Math.max(this.pitch + dy * 0.006, 0.12), ABOVE - 0.01);
   }
 
   /** Zooms about the pixel `x`, `y` relative to the target. */
-  zoom(factor, /** @type {number[]} */ [x, y] = [0, 0]) {
+  zoom(/** @type {number} */ factor, /** @type {number[]} */ [x, y] = [0, 0]) {
     const before = this.pxPerM;
     this.pxPerM = Math.min(Math.max(before * factor, 1), 400);
     const grown = this.pxPerM / before;
@@ -64,13 +75,17 @@ export class Camera {
   }
 
   /** Rotates the image clockwise about the pixel `x`, `y` relative to the target. */
-  rotate(angle, /** @type {number[]} */ [x, y] = [0, 0]) {
+  rotate(/** @type {number} */ angle, /** @type {number[]} */ [x, y] = [0, 0]) {
     this.yaw += angle;
     const [c, s] = [Math.cos(angle), Math.sin(angle)];
     this.pan(x - (c * x - s * y), y - (s * x + c * y));
   }
 
-  /** Fits a horizontal box, [[x, y], [x, y]], into a window of `width` x `height` pixels. */
+  /**
+   * Fits a horizontal box, [[x, y], [x, y]], into a window of `width` x `height` pixels.
+   * @param {number[][]} given
+   * @param {{width: number, height: number}} given1
+   */
   fit([[x0, y0], [x1, y1]], { width, height }) {
     this.target = [(x0 + x1) / 2, (y0 + y1) / 2, this.target[2]];
     this.pxPerM = 1;
@@ -91,6 +106,10 @@ export class Camera {
  * One finger pans (or orbits in 3-D), two zoom, rotate and pan, a wheel zooms. `middle()` is the
  * target's position in the element [px]; while `following()` fingers zoom and rotate about it and
  * do not pan.
+ * @param {HTMLElement} element
+ * @param {Camera} camera
+ * @param {{onMove: () => void, onPan: () => void, middle: () => number[],
+ *   following: () => boolean}} on
  */
 export function moveByPointer(element, camera, { onMove, onPan, middle, following }) {
   let turned = 0; // rotation of the current touch
@@ -99,6 +118,10 @@ export function moveByPointer(element, camera, { onMove, onPan, middle, followin
     return following() ? [0, 0] : [x - left, y - top];
   };
 
+  /**
+   * @param {number} angle
+   * @param {number[]} place
+   */
   function rotate(angle, place) {
     const turn = Math.atan2(Math.sin(angle), Math.cos(angle));
     turned += turn;

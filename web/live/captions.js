@@ -1,5 +1,9 @@
 // Texts of the operator's page, from the messages of the stream. No elements, no state.
 
+/** @import {Battery, Fix, Gaps, Lidar, Message, Phone} from "./messages" */
+/** @typedef {{text: string, error?: boolean, silent?: string}} Chip */
+
+/** @type {Record<string, string>} */
 const STATES = {
   none: "Nothing is recorded",
   recording: "Recording",
@@ -7,7 +11,9 @@ const STATES = {
   finishing: "Finishing",
   ready: "Ready",
 };
+/** @type {Record<number, string>} */
 const FIXES = { 1: "single", 2: "DGNSS", 4: "RTK fixed", 5: "RTK float" };
+/** @type {Record<string, string>} */
 const CLOCKS = { "own, shifted": "own clock", jumped: "clock jumped" };
 const NEAR_START_M = 4;
 const LOOP_WALKED_M = 20; // shortest path of a loop
@@ -16,23 +22,33 @@ const LOW_BATTERY = 0.15;
 const HIGH_LOSS = 0.01;
 const GRACE_S = 3; // no sensor is shown as silent this soon after the start
 
-export const isCapturing = (state) => state === "recording" || state === "paused";
+export const isCapturing = (/** @type {string} */ state) =>
+  state === "recording" || state === "paused";
 
-export function clock(seconds) {
+export function clock(/** @type {number} */ seconds) {
   const s = Math.floor(seconds);
-  const pad = (n) => String(n).padStart(2, "0");
+  const pad = (/** @type {number} */ n) => String(n).padStart(2, "0");
   return s >= 3600
     ? `${Math.floor(s / 3600)}:${pad(Math.floor(s / 60) % 60)}:${pad(s % 60)}`
     : `${Math.floor(s / 60)}:${pad(s % 60)}`;
 }
 
-/** Text and CSS class of the state: {text, className}. */
+/**
+ * Text and CSS class of the state: {text, className}.
+ * @param {string} state
+ * @param {boolean} linked
+ */
 export function stateText(state, linked) {
   if (!linked) return { text: state ? "No link" : "Connecting", className: state ? "error" : "" };
   return { text: STATES[state] ?? "Connecting", className: state === "recording" ? "on" : "" };
 }
 
-/** The warning shown in place of all others while there is no link. */
+/**
+ * The warning shown in place of all others while there is no link.
+ * @param {string} state
+ * @param {number} seconds
+ * @returns {import("./messages").Warning}
+ */
 export const linkLost = (state, seconds) => ({
   level: "error",
   text:
@@ -40,17 +56,24 @@ export const linkLost = (state, seconds) => ({
     (isCapturing(state) ? " The recording continues" : ""),
 });
 
-/** Sensors, disk and batteries in brief: [{text, error}]. */
+/**
+ * Sensors, disk and batteries in brief: [{text, error}].
+ * @param {Message} given
+ * @param {string} state
+ * @param {Phone | null} phone
+ */
 export function chips({ lidars = [], rates = {}, fix, status, battery }, state, phone) {
   if (!status || !isCapturing(state)) return [];
   const samples = Object.entries(rates).filter(([name, rate]) =>
     name === "GNSS" ? rate > 0 && !fix : name === "IMU",
   );
   const fresh = status.seconds < GRACE_S;
-  const found = [
+  /** @type {Chip[]} */
+  const sensors = [
     ...lidars.map(lidarChip),
     ...samples.map(([name, rate]) => rateChip(name, rate)),
-  ].map((chip) => (fresh && chip.silent ? { text: `${chip.silent} …` } : chip));
+  ];
+  const found = sensors.map((chip) => (fresh && chip.silent ? { text: `${chip.silent} …` } : chip));
   if (fix) found.push({ text: fixText(fix), error: !(fix.quality > 0) });
   const left = status.disk.left_s;
   if (left !== null) found.push({ text: `disk ${duration(left)}`, error: left < LOW_DISK_S });
@@ -70,13 +93,20 @@ export function chips({ lidars = [], rates = {}, fix, status, battery }, state, 
   }));
 }
 
-function lidarChip({ name, per_s: rate, lost, clock: keeps }) {
-  if (lost > HIGH_LOSS) return { text: `${name} ${percent(lost)} lost`, error: true };
+/** @returns {Chip} */
+function lidarChip(/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps }) {
+  if (lost !== null && lost > HIGH_LOSS)
+    return { text: `${name} ${percent(lost)} lost`, error: true };
   if (rate >= 1 && keeps && keeps !== "in step")
     return { text: `${name} ${Math.round(rate)}/s, ${CLOCKS[keeps] ?? keeps}` };
   return rateChip(name, rate);
 }
 
+/**
+ * @param {string} name
+ * @param {number} rate
+ * @returns {Chip}
+ */
 const rateChip = (name, rate) =>
   rate < 1
     ? { text: `${name} silent`, error: true, silent: name }
@@ -84,7 +114,9 @@ const rateChip = (name, rate) =>
 
 /**
  * All values of sensors and supplies: [[name, value], …]; LiDARs have a separate table.
- * @param {Record<string, any>} newest
+ * @param {Message} newest
+ * @param {Phone | null} phone
+ * @returns {Array<[string, string]>}
  */
 export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
   if (!status) return [];
@@ -118,25 +150,26 @@ export function supplies({ rates = {}, fix, status, battery, notes }, phone) {
       "Phone",
       phone ? `${percent(phone.level)}${phone.charging ? ", charging" : ""}` : "battery unknown",
     ],
-    ...(notes?.counts.clock_jumps
-      ? [["Clocks", `jumped ${notes.counts.clock_jumps} times, corrected`]]
-      : []),
+    ...(notes?.counts.clock_jumps ? [clocksRow(notes.counts.clock_jumps)] : []),
   ];
 }
 
+/** @returns {[string, string]} */
+const clocksRow = (/** @type {number} */ jumps) => ["Clocks", `jumped ${jumps} times, corrected`];
+
 /** A row of the table of LiDARs: [name, rate, lost, clock]. */
-export const lidarRow = ({ name, per_s: rate, lost, clock: keeps }) => [
+export const lidarRow = (/** @type {Lidar} */ { name, per_s: rate, lost, clock: keeps }) => [
   name,
   rate < 1 ? "silent" : `${Math.round(rate)}/s`,
   lost === null ? "–" : `${(100 * lost).toFixed(1)} %`,
   keeps || "–",
 ];
 
-const percent = (ratio) => `${Math.round(100 * ratio)} %`;
-const charge = ({ charge: ratio, left_s: left }) =>
+const percent = (/** @type {number} */ ratio) => `${Math.round(100 * ratio)} %`;
+const charge = (/** @type {Battery} */ { charge: ratio, left_s: left }) =>
   `${percent(ratio)}${left === null ? "" : `, ${duration(left)}`}`;
 
-function fixText({ quality, sd_m: sd }) {
+function fixText(/** @type {Fix} */ { quality, sd_m: sd }) {
   const name = FIXES[quality] ?? "no fix";
   const within = sd && quality > 0 ? Math.max(sd[0], sd[1]) : null;
   return within === null
@@ -144,13 +177,13 @@ function fixText({ quality, sd_m: sd }) {
     : `GNSS ${name} ±${within < 1 ? `${Math.round(100 * within)} cm` : `${within.toFixed(1)} m`}`;
 }
 
-const duration = (s) =>
+const duration = (/** @type {number} */ s) =>
   s > 7200 ? `${Math.floor(s / 3600)} h` : `${Math.max(0, Math.floor(s / 60))} min`;
 
 /**
  * What the operator should do next.
  * @param {string} state
- * @param {Record<string, any>} newest
+ * @param {Pick<Message, "loop">} newest
  * @param {{mayCapture: boolean | null, mapped: boolean}} page
  */
 export function hint(state, { loop }, { mayCapture, mapped }) {
@@ -165,7 +198,7 @@ export function hint(state, { loop }, { mayCapture, mapped }) {
       : "The walk is over; everything is stored";
   if (state === "paused") return "Stay here: resume where the pause began";
   if (!mapped) return "Stand still: the map starts in a few seconds";
-  if (!loop || !(loop.walked_m > LOOP_WALKED_M))
+  if (!loop || !((loop.walked_m ?? 0) > LOOP_WALKED_M))
     return "Open all rooms and walk slowly through each";
   if (loop.closed)
     return loop.drift_m == null
@@ -175,9 +208,14 @@ export function hint(state, { loop }, { mayCapture, mapped }) {
   return `Loop open: return to the start, ${Math.round(loop.start_m)} m`;
 }
 
-/** Texts of the coverage bar: {well, poor, text, count, all (gaps), one (chosen gap)}. */
+/**
+ * Texts of the coverage bar: {well, poor, text, count, all (gaps), one (chosen gap)}.
+ * @param {Gaps | null | undefined} gaps
+ * @param {number} chosen
+ */
 export function coverageTexts(gaps, chosen) {
-  const ratio = (value) => (value === null || value === undefined ? "–" : percent(value));
+  const ratio = (/** @type {number | null | undefined} */ value) =>
+    value === null || value === undefined ? "–" : percent(value);
   const count = gaps?.gaps.length ?? 0;
   const elsewhere = gaps?.elsewhere ?? 0; // on other floors
   const gap = gaps?.gaps[chosen];

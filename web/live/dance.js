@@ -1,41 +1,40 @@
 // The sheet of the calibration dance, drawn again with every message while it is open.
 
-import { byId, make } from "../shared/dom.js";
+import { byId, html, render } from "../shared/dom.js";
 import { axisRows, next, steps } from "./dance_captions.js";
-import { fill } from "./health.js";
+
+/** @import {Message} from "./messages" */
 
 const dialog = byId("dance", HTMLDialogElement);
 
 /** Opens the sheet. */
-export function showDance(newest) {
+export function showDance(/** @type {Message} */ newest) {
   byId("more", HTMLDialogElement).close();
   dialog.showModal();
   drawDance(newest);
 }
 
-/**
- * Draws the sheet if it is open.
- * @param {{motion?: any, loop?: any}} newest
- */
-export function drawDance({ motion, loop }) {
+/** Draws the sheet if it is open. */
+export function drawDance(/** @type {Message} */ { motion, loop }) {
   if (!dialog.open) return;
-  const text = next(motion, loop);
-  if (byId("dance-next").textContent !== text) byId("dance-next").textContent = text;
-  fill(byId("dance-steps"), steps(motion, loop), ({ name, text, done, now }) =>
-    make(
-      "li",
-      { className: done ? "good" : "" },
-      make("b", {}, `${done ? "✓ " : ""}${name}`),
-      ` ${text}`,
-      make("small", {}, now),
+  render(next(motion, loop), byId("dance-next"));
+  render(
+    steps(motion, loop).map(
+      ({ name, text, done, now }) =>
+        html`<li class=${done ? "good" : ""}>
+          <b>${done ? "✓ " : ""}${name}</b> ${text}<small>${now}</small>
+        </li>`,
     ),
+    byId("dance-steps"),
   );
-  fill(byId("dance-axes"), axisRows(motion), ([quantity, ...cells]) =>
-    make(
-      "tr",
-      {},
-      make("th", { scope: "row" }, quantity),
-      ...cells.map((cell) => make("td", { className: cell.startsWith("✓") ? "good" : "" }, cell)),
+  render(
+    axisRows(motion).map(
+      ([quantity, ...cells]) =>
+        html`<tr>
+          <th scope="row">${quantity}</th>
+          ${cells.map((cell) => html`<td class=${cell.startsWith("✓") ? "good" : ""}>${cell}</td>`)}
+        </tr>`,
     ),
+    byId("dance-axes"),
   );
 }

@@ -1,5 +1,7 @@
 // The calibration dance as texts: what to do next, and which axes the walk has shown. No elements.
 
+/** @import {Loop, Motion} from "./messages" */
+
 const STILL_S = 3;
 const TILT_DEG = 25; // from one side to the other
 const TURN_DEG = 360;
@@ -10,8 +12,8 @@ const NOTHING = { still_s: 0, tilt_deg: [0, 0], turned_deg: [0, 0] };
 
 /**
  * The four steps: [{name, text, done, now}]; `now` is what was reached.
- * @param {{still_s: number, tilt_deg: number[], turned_deg: number[]} | undefined} motion
- * @param {{walked_m?: number | null, start_m?: number | null} | undefined} loop
+ * @param {Omit<Motion, "axes"> | null | undefined} motion
+ * @param {Pick<Loop, "walked_m" | "start_m"> | null | undefined} loop
  */
 export function steps(motion, loop) {
   const { still_s: still, tilt_deg: tilt, turned_deg: turned } = motion ?? NOTHING;
@@ -45,10 +47,11 @@ export function steps(motion, loop) {
   ];
 }
 
-const degrees = (values) => values.map((value) => `${value.toFixed(0)}°`).join(" and ");
+const degrees = (/** @type {number[]} */ values) =>
+  values.map((value) => `${value.toFixed(0)}°`).join(" and ");
 
 /** Rows of the table: [quantity, …texts of x, y, z]; a clock has one text. */
-export function axisRows(motion) {
+export function axisRows(/** @type {Motion | null | undefined} */ motion) {
   const axes = motion?.axes ?? [];
   return QUANTITIES.map((quantity) => [
     quantity,
@@ -56,9 +59,14 @@ export function axisRows(motion) {
   ]).filter((row) => row.length > 1);
 }
 
-const shownText = (ratio) => (ratio >= 1 ? "✓ observed" : `${Math.floor(100 * ratio)} %`);
+const shownText = (/** @type {number} */ ratio) =>
+  ratio >= 1 ? "✓ observed" : `${Math.floor(100 * ratio)} %`;
 
-/** What to do next, in a sentence. */
+/**
+ * What to do next, in a sentence.
+ * @param {Motion | null | undefined} motion
+ * @param {Loop | null | undefined} loop
+ */
 export function next(motion, loop) {
   if (!motion) return "Stand still: the map starts in a few seconds";
   const open = steps(motion, loop).find((one) => !one.done);

@@ -1,32 +1,36 @@
 // Sensors, disk, batteries and warnings: in brief on the page, all values in a sheet.
 
-import { byId, make } from "../shared/dom.js";
+import { byId, html, nothing, render } from "../shared/dom.js";
 import { chips, lidarRow, linkLost, supplies } from "./captions.js";
 
-const shown = new Map();
+/**
+ * @import {Message, Phone, Warning} from "./messages"
+ * @import {LiveScene} from "./scene.js"
+ */
+
+/** @type {Warning} */
 const NO_POINTS = {
   level: "info",
   text: "This browser cannot draw points (no WebGL 2); plan, path and warnings work",
 };
 const SHORT_PX = 700;
-let shownErrors = new Set(); // texts without their numbers
+/** Kinds of the errors that are shown: their texts without numbers. */
+const shown = { errors: /** @type {Set<string>} */ (new Set()) };
 
-/** Fills an element only if its items have changed: ten messages arrive per second. */
-export function fill(element, items, show) {
-  const key = JSON.stringify(items);
-  if (shown.get(element) === key) return;
-  shown.set(element, key);
-  element.replaceChildren(...items.map(show));
-}
+const kindOf = (/** @type {Warning} */ { text }) => text.replace(/\d+/g, "#");
 
-/** Shows sensors and warnings; `battery` is the phone's. */
+/**
+ * Shows sensors and warnings; `battery` is the phone's.
+ * @param {{scene: LiveScene, linked: boolean, battery: Phone | null, drawsPoints: boolean}} live
+ */
 export function drawHealth({ scene, linked, battery, drawsPoints }) {
   const { state, newest } = scene;
   const found = chips(newest, state, battery);
   byId("sensors").hidden = found.length === 0;
   byId("sensors").classList.toggle("old", !linked);
-  fill(byId("sensors"), found, (one) =>
-    make("span", { className: one.error ? "error" : "" }, one.text),
+  render(
+    found.map(({ text, error }) => html`<span class=${error ? "error" : ""}>${text}</span>`),
+    byId("sensors"),
   );
   const warnings = linked
     ? [...(newest.findings ?? []), ...(drawsPoints ? [] : [NO_POINTS])]
@@ -35,45 +39,63 @@ export function drawHealth({ scene, linked, battery, drawsPoints }) {
   if (byId("health", HTMLDialogElement).open) drawSheet(newest, warnings, battery);
 }
 
-function drawWarnings(warnings) {
+const lines = (/** @type {Warning[]} */ warnings) =>
+  warnings.map(({ level, text }) => html`<li class=${level}>${text}</li>`);
+
+function drawWarnings(/** @type {Warning[]} */ warnings) {
   const most = innerHeight < SHORT_PX ? 2 : 3;
   const more = warnings.length - most;
-  fill(byId("findings"), more > 0 ? [...warnings.slice(0, most), { more }] : warnings, (one) =>
-    one.more ? moreOf(one.more) : line(one),
-  );
+  const others = html`<li class="more">
+    <button type="button" @click=${() => byId("sensors").click()}>and ${more} more</button>
+  </li>`;
+  render([lines(warnings.slice(0, most)), more > 0 ? others : nothing], byId("findings"));
   vibrateOnNew(warnings.filter(({ level }) => level === "error"));
 }
 
-const line = ({ level, text }) => make("li", { className: level }, text);
-const moreOf = (count) =>
-  make(
-    "li",
-    { className: "more" },
-    make("button", { type: "button", onclick: () => byId("sensors").click() }, `and ${count} more`),
-  );
-
 /** Vibrates for a new error, because the operator does not always look at the phone. */
-function vibrateOnNew(errors) {
-  const kinds = new Set(errors.map(({ text }) => text.replace(/\d+/g, "#")));
-  if ([...kinds].some((kind) => !shownErrors.has(kind)) && navigator.userActivation?.hasBeenActive)
+function vibrateOnNew(/** @type {Warning[]} */ errors) {
+  const kinds = new Set(errors.map(kindOf));
+  if ([...kinds].some((kind) => !shown.errors.has(kind)) && navigator.userActivation?.hasBeenActive)
     navigator.vibrate?.([120, 80, 120]);
-  shownErrors = kinds;
+  shown.errors = kinds;
 }
 
-/** Opens the sheet. */
+/**
+ * Opens the sheet.
+ * @param {{scene: LiveScene, battery: Phone | null}} live
+ */
 export function showHealth({ scene, battery }) {
   byId("health", HTMLDialogElement).showModal();
   drawSheet(scene.newest, scene.newest.findings ?? [], battery);
 }
 
+/**
+ * @param {Message} newest
+ * @param {Warning[]} warnings
+ * @param {Phone | null} battery
+ */
 function drawSheet(newest, warnings, battery) {
-  fill(byId("all-findings"), warnings, line);
-  const cell = (text, k) =>
-    make(k ? "td" : "th", { className: k === 1 || k === 2 ? "number" : "" }, text);
-  fill(byId("lidars"), (newest.lidars ?? []).map(lidarRow), (row) =>
-    make("tr", {}, ...row.map(cell)),
+  render(lines(warnings), byId("all-findings"));
+  render(
+    (newest.lidars ?? []).map(lidarRow).map(
+      ([name, rate, lost, clock]) =>
+        html`<tr>
+          <th>${name}</th>
+          <td class="number">${rate}</td>
+          <td class="number">${lost}</td>
+          <td>${clock}</td>
+        </tr>`,
+    ),
+    byId("lidars"),
   );
-  fill(byId("supplies"), supplies(newest, battery), ([name, value]) =>
-    make("div", {}, make("dt", {}, name), make("dd", {}, value)),
+  render(
+    supplies(newest, battery).map(
+      ([name, value]) =>
+        html`<div>
+          <dt>${name}</dt>
+          <dd>${value}</dd>
+        </div>`,
+    ),
+    byId("supplies"),
   );
 }

@@ -3,7 +3,7 @@
 import { keep, kept } from "../shared/address.js";
 import { readCurrentUser } from "../shared/api.js";
 import { CloudCanvas } from "../shared/cloud_canvas.js";
-import { attempt, byId, targetOf } from "../shared/dom.js";
+import { attempt, byId, say, targetOf, within } from "../shared/dom.js";
 import { drawActions, mark, nameThePlace } from "./actions.js";
 import { Camera, moveByPointer } from "./camera.js";
 import { drawDance, showDance } from "./dance.js";
@@ -12,39 +12,54 @@ import { drawOverlay, planImage } from "./overlay.js";
 import { LiveScene } from "./scene.js";
 import { clock, coverageTexts, hint, isCapturing, stateText } from "./captions.js";
 
+/**
+ * @import {Me} from "../shared/http_types"
+ * @import {Phone, Plan} from "./messages"
+ * @import {Area, Styles} from "./overlay.js"
+ * @typedef {(...values: number[]) => number} Best
+ */
+
 const HEAD_M = 0.5;
 const MIN_FREE_PX = 80;
 const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor"];
 const SUN = "recon4.live.sun";
-const cloud = new CloudCanvas(byId("points"));
+const cloud = new CloudCanvas(byId("points", HTMLCanvasElement));
 const camera = new Camera();
 const overlay = byId("overlay", HTMLCanvasElement).getContext("2d");
 const dark = matchMedia("(prefers-color-scheme: dark)");
-let [follow, byHeight, ceiling, linked, due] = [true, false, false, true, false];
-let chosen = -1; // index of the chosen gap
-let me = null; // the user
-let battery = null;
-let whole = ""; // project whose whole map was shown at the end
-let fitted = false; // the whole map is shown and was not moved since
+
+/** What the page shows of the scene, and how. */
+const page = {
+  follow: true, // the map moves with the operator
+  byHeight: false,
+  ceiling: false, // what is above head height is shown
+  linked: true,
+  due: false, // it is drawn before the next frame
+  chosen: -1, // index of the chosen gap
+  me: /** @type {Me | null} */ (null),
+  battery: /** @type {Phone | null} */ (null),
+  whole: "", // project whose whole map was shown at the end
+  fitted: false, // the whole map is shown and was not moved since
+};
 
 const scene = new LiveScene(cloud, {
   news: () => (drawTexts(), redraw()),
-  link: (yes, reason = "") => {
-    if (reason) byId("message").textContent = reason;
-    if (yes === linked) return;
-    linked = yes;
-    if (yes) byId("message").textContent = ""; // errors of requests without a link
+  link: (/** @type {boolean} */ yes, reason = "") => {
+    if (reason) say(byId("message"), reason);
+    if (yes === page.linked) return;
+    page.linked = yes;
+    if (yes) say(byId("message"), ""); // errors of requests without a link
     drawTexts();
-    if (yes && !me)
+    if (yes && !page.me)
       readCurrentUser(true).then(
-        (found) => ((me = found), drawTexts()),
+        (found) => ((page.me = found), drawTexts()),
         () => {},
       );
   },
   plan: paintPlan,
 });
 
-async function paintPlan(plan) {
+async function paintPlan(/** @type {Plan} */ plan) {
   const { poor, well } = styles();
   const painted = await planImage(plan, [poor, well]);
   if (plan !== scene.newest.plan) return painted.bitmap.close();
@@ -55,29 +70,33 @@ async function paintPlan(plan) {
 
 /** Draws everything with new colors. */
 function repaint() {
-  if (scene.plan) paintPlan(scene.newest.plan);
+  if (scene.newest.plan) paintPlan(scene.newest.plan);
   redraw();
 }
 
+/** @returns {Styles} */
 function styles() {
   const style = getComputedStyle(document.body);
-  return Object.fromEntries(
-    COLORS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]),
+  return /** @type {Styles} */ (
+    Object.fromEntries(COLORS.map((name) => [name, style.getPropertyValue(`--${name}`).trim()]))
   );
 }
 
 function redraw() {
-  if (!due) requestAnimationFrame(draw);
-  due = true;
+  if (!page.due) requestAnimationFrame(draw);
+  page.due = true;
 }
 
-/** Area of the map no bar covers, {left, top, right, bottom}, and its center [px]. */
+/**
+ * Area of the map no bar covers, {left, top, right, bottom}, and its center [px].
+ * @returns {{map: DOMRect, free: Area, middle: [number, number]}}
+ */
 function space() {
   const [map, top, bottom, views] = [
     byId("map"),
-    document.querySelector(".top"),
+    within(document, ".top"),
     byId("bottom"),
-    document.querySelector(".views"),
+    within(document, ".views"),
   ].map((one) => one.getBoundingClientRect());
   const beside = top.right <= map.left + 1; // bars beside the map, not over it
   const free = {
@@ -91,11 +110,13 @@ function space() {
 }
 
 function showWhole() {
-  const boxes = [scene.plan?.box, ...scene.path.map((place) => [place, place])].filter(Boolean);
+  const planBox = scene.plan?.box;
+  const boxes = [...(planBox ? [planBox] : []), ...scene.path.map((place) => [place, place])];
   if (!boxes.length) return;
-  const pick = (best, corner, axis) => best(...boxes.map((box) => box[corner][axis]));
+  const pick = (/** @type {Best} */ best, /** @type {0 | 1} */ corner, /** @type {0 | 1} */ axis) =>
+    best(...boxes.map((box) => box[corner][axis]));
   const { map, free } = space();
-  const right = document.querySelector(".views").getBoundingClientRect().left - map.left;
+  const right = within(document, ".views").getBoundingClientRect().left - map.left;
   /** @type {[[number, number], [number, number]]} */
   const box = [
     [pick(Math.min, 0, 0), pick(Math.min, 0, 1)],
@@ -103,14 +124,14 @@ function showWhole() {
   ];
   camera.fit(box, { width: right - free.left, height: free.bottom - free.top });
   camera.pan((right - free.right) / 2, 0);
-  press("follow", (follow = false));
-  fitted = true;
+  press("follow", (page.follow = false));
+  page.fitted = true;
 }
 
 function draw() {
-  due = false;
-  if (["finishing", "ready"].includes(scene.state) && scene.plan && whole !== scene.project)
-    ((whole = scene.project), showWhole());
+  page.due = false;
+  if (["finishing", "ready"].includes(scene.state) && scene.plan && page.whole !== scene.project)
+    ((page.whole = scene.project), showWhole());
   const ratio = Math.min(devicePixelRatio || 1, 2);
   const {
     map: { width, height },
@@ -120,32 +141,39 @@ function draw() {
   for (const canvas of [byId("points", HTMLCanvasElement), byId("overlay", HTMLCanvasElement)])
     if (canvas.width !== Math.round(width * ratio) || canvas.height !== Math.round(height * ratio))
       [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
-  if (follow && scene.me) camera.target = [...scene.me.p];
+  if (page.follow && scene.me) camera.target = [...scene.me.p];
   const z = scene.me?.p[2] ?? 0;
-  cloud.heights = [z - 1.6, z + (ceiling ? 1.8 : HEAD_M)];
+  cloud.heights = [z - 1.6, z + (page.ceiling ? 1.8 : HEAD_M)];
   cloud.draw({
     turn: camera.turn,
     target: camera.target,
     scale: [(2 * camera.pxPerM) / width, (2 * camera.pxPerM) / height],
     shift: [(2 * middle[0]) / width - 1, 1 - (2 * middle[1]) / height],
     size: Math.max(1.5, cloud.voxelM * camera.pxPerM * ratio),
-    top: ceiling || !scene.me ? 1e6 : z + HEAD_M,
-    byHeight,
+    top: page.ceiling || !scene.me ? 1e6 : z + HEAD_M,
+    byHeight: page.byHeight,
     ink: document.body.classList.contains("sun") || !dark.matches,
   });
-  const marks = scene.marks.filter((one) => one.what === "point" && one.p);
+  const marks = scene.marks.flatMap((one) =>
+    one.what === "point" && one.p ? [{ ...one, p: one.p }] : [],
+  );
+  if (!overlay) return;
   drawOverlay(
     overlay,
     { width, height, ratio, middle, free },
     camera,
-    { ...scene, marks, chosen },
+    { ...scene, marks, chosen: page.chosen },
     styles(),
   );
   byId("upright").hidden = Math.abs(Math.sin(camera.yaw / 2)) < 0.01;
   byId("needle").style.transform = `rotate(${camera.yaw}rad)`;
 }
 
-/** Sets a text only if it has changed, so that a screen reader reads it once. */
+/**
+ * Sets a text only if it has changed, so that a screen reader reads it once.
+ * @param {string} id
+ * @param {string} text
+ */
 function write(id, text) {
   if (byId(id).textContent !== text) byId(id).textContent = text;
 }
@@ -154,26 +182,28 @@ function drawTexts() {
   if (scene.renewed && !document.querySelector("dialog[open]")) location.reload();
   const { state, newest } = scene;
   document.body.classList.toggle("walking", isCapturing(state));
-  const { text, className } = stateText(state, linked);
+  const { text, className } = stateText(state, page.linked);
   write("state", text);
   byId("state").className = className;
   const place = scene.marks.findLast((one) => one.what === "place")?.text;
   write("place", !state || state === "none" ? "" : (place ?? scene.project));
   const walked = newest.loop?.walked_m ? ` · ${Math.round(newest.loop.walked_m)} m` : "";
   write("time", newest.status && state !== "none" ? clock(newest.status.seconds) + walked : "");
+  const { linked, battery } = page;
   drawHealth({ scene, linked, battery, drawsPoints: cloud.works });
   drawDance(newest);
   drawCoverage();
-  const mayCapture = me?.may.includes("capture") ?? null;
-  drawActions({ state, project: scene.project, mayCapture, linked, loop: () => scene.newest.loop });
+  const mayCapture = page.me?.may.includes("capture") ?? null;
+  const { project } = scene;
+  drawActions({ state, project, mayCapture, linked, loop: () => scene.newest.loop });
 }
 
 function drawCoverage() {
   byId("map").dataset.points = String(cloud.count);
   const { newest, state } = scene;
   byId("coverage").hidden = !newest.gaps || newest.gaps.well === null || state === "none";
-  if (chosen >= (newest.gaps?.gaps.length ?? 0)) chosen = -1;
-  const { well, poor, text, count, all, one } = coverageTexts(newest.gaps, chosen);
+  if (page.chosen >= (newest.gaps?.gaps.length ?? 0)) page.chosen = -1;
+  const { well, poor, text, count, all, one } = coverageTexts(newest.gaps, page.chosen);
   write("well", well);
   write("poor", poor);
   write("gap-words", text);
@@ -184,48 +214,53 @@ function drawCoverage() {
     one ||
       (state
         ? hint(state, newest, {
-            mayCapture: me?.may.includes("capture") ?? null,
+            mayCapture: page.me?.may.includes("capture") ?? null,
             mapped: cloud.count > 0,
           })
         : ""),
   );
 }
 
+/**
+ * @param {string} id
+ * @param {boolean} yes
+ */
 const press = (id, yes) => byId(id).setAttribute("aria-pressed", String(yes));
 
 function nextGap() {
   if (!scene.gaps.length) return;
-  chosen = (chosen + 1) % scene.gaps.length;
-  byHand(() => (camera.target = [...scene.gaps[chosen].p, scene.me?.p[2] ?? 0]));
+  page.chosen = (page.chosen + 1) % scene.gaps.length;
+  byHand(() => (camera.target = [...scene.gaps[page.chosen].p, scene.me?.p[2] ?? 0]));
   if (!scene.showPlan) views.plan();
   drawCoverage();
 }
 
-function byHand(act) {
-  press("follow", (follow = fitted = false));
+function byHand(/** @type {() => void} */ act) {
+  press("follow", (page.follow = page.fitted = false));
   act();
 }
 
 function toggleFollow() {
-  chosen = -1;
-  const off = follow;
+  page.chosen = -1;
+  const off = page.follow;
   if (off) showWhole();
-  press("follow", (follow = !off));
-  fitted &&= off;
+  press("follow", (page.follow = !off));
+  page.fitted &&= off;
   drawCoverage();
 }
 
-function setSun(yes) {
+function setSun(/** @type {boolean} */ yes) {
   press("sun", document.body.classList.toggle("sun", yes));
   keep(SUN, yes ? "1" : "");
   repaint();
 }
 
+/** @type {Record<string, () => unknown>} */
 const views = {
   upright: () => (camera.yaw = 0),
   tilt: () => (camera.tilt(), press("tilt", !camera.above)),
   follow: toggleFollow,
-  color: () => press("color", (byHeight = !byHeight)),
+  color: () => press("color", (page.byHeight = !page.byHeight)),
   plan: () => press("plan", (scene.showPlan = !scene.showPlan)),
   sun: () => setSun(!document.body.classList.contains("sun")),
   gap: nextGap,
@@ -233,21 +268,21 @@ const views = {
 for (const [id, act] of Object.entries(views))
   byId(id).addEventListener("click", () => (act(), redraw()));
 
-function showAll(yes) {
-  byId("ceiling", HTMLInputElement).checked = ceiling = yes;
+function showAll(/** @type {boolean} */ yes) {
+  byId("ceiling", HTMLInputElement).checked = page.ceiling = yes;
   redraw();
 }
 
 function help() {
-  const who = me?.login ? `Signed in as ${me.name}, ${me.role}. ` : "";
+  const who = page.me?.login ? `Signed in as ${page.me.name}, ${page.me.role}. ` : "";
   const points = `${scene.total.toLocaleString("en")} points on this phone.`;
-  byId("about").textContent = me ? who + points : "";
-  byId("name-it").hidden = !me?.may.includes("capture") || !isCapturing(scene.state);
+  byId("about").textContent = page.me ? who + points : "";
+  byId("name-it").hidden = !page.me?.may.includes("capture") || !isCapturing(scene.state);
   byId("dance-it").hidden = !isCapturing(scene.state) || !scene.newest.motion;
   byId("more", HTMLDialogElement).showModal();
 }
 
-const sensors = () => isCapturing(scene.state) && showHealth({ scene, battery });
+const sensors = () => isCapturing(scene.state) && showHealth({ scene, battery: page.battery });
 
 byId("help").addEventListener("click", help);
 byId("sensors").addEventListener("click", sensors);
@@ -255,6 +290,7 @@ byId("name-it").addEventListener("click", nameThePlace);
 byId("dance-it").addEventListener("click", () => showDance(scene.newest));
 byId("ceiling").addEventListener("change", (event) => showAll(targetOf(event).checked));
 
+/** @type {Record<string, () => unknown>} */
 const KEYS = {
   t: views.tilt,
   f: views.follow,
@@ -265,8 +301,8 @@ const KEYS = {
   u: views.upright,
   v: sensors,
   "?": help,
-  h: () => showAll(!ceiling),
-  m: () => scene.state === "recording" && me?.may.includes("capture") && mark(),
+  h: () => showAll(!page.ceiling),
+  m: () => scene.state === "recording" && page.me?.may.includes("capture") && mark(),
   q: () => camera.rotate(-0.2),
   e: () => camera.rotate(0.2),
   "+": () => camera.zoom(1.25),
@@ -286,9 +322,9 @@ addEventListener("keydown", (event) => {
 });
 
 moveByPointer(byId("overlay"), camera, {
-  onMove: () => ((fitted = false), redraw()),
-  onPan: () => follow && press("follow", (follow = false)),
-  following: () => follow && scene.me !== null,
+  onMove: () => ((page.fitted = false), redraw()),
+  onPan: () => page.follow && press("follow", (page.follow = false)),
+  following: () => page.follow && scene.me !== null,
   middle: () => space().middle,
 });
 
@@ -297,15 +333,15 @@ const stayAwake = () => document.hidden || navigator.wakeLock?.request("screen")
 stayAwake();
 document.addEventListener("visibilitychange", stayAwake);
 navigator.getBattery?.().then(
-  (found) => (battery = found),
+  (found) => (page.battery = found),
   () => {},
 );
-for (const bar of [byId("bottom"), document.querySelector(".top")])
+for (const bar of [byId("bottom"), within(document, ".top")])
   new ResizeObserver(redraw).observe(bar);
-new ResizeObserver(() => (fitted && showWhole(), redraw())).observe(byId("map"));
+new ResizeObserver(() => (page.fitted && showWhole(), redraw())).observe(byId("map"));
 dark.addEventListener("change", repaint);
-setInterval(() => linked || drawTexts(), 1000); // updates the duration of a lost link
+setInterval(() => page.linked || drawTexts(), 1000); // updates the duration of a lost link
 if (kept(SUN)) setSun(true);
 
-me = (await attempt(byId("message"), readCurrentUser)) ?? null;
+page.me = (await attempt(byId("message"), readCurrentUser)) ?? null;
 drawTexts();

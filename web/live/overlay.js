@@ -2,9 +2,30 @@
 
 import { drawScaleBar } from "../shared/scale_bar.js";
 
+/**
+ * @import {Gap, Mark, Plan, Pose} from "./messages"
+ * @import {Camera} from "./camera.js"
+ * @typedef {Mark & {p: number[]}} PlacedMark
+ * @typedef {number[][]} Box its corners, [[x, y], [x, y]] [m]
+ * @typedef {Plan & {bitmap: ImageBitmap, box: Box | null}} PaintedPlan
+ * @typedef {Record<"path" | "gap" | "me" | "ink" | "sky" | "accent" | "well" | "poor",
+ *   string>} Styles
+ * @typedef {{left: number, right: number, top: number, bottom: number}} Area [px]
+ * @typedef {CanvasRenderingContext2D} Context
+ * @typedef {object} Drawn what is drawn
+ * @property {Array<[number, number, number]>} path
+ * @property {PlacedMark[]} marks
+ * @property {Gap[]} gaps
+ * @property {Pose | null} me
+ * @property {PaintedPlan | null} plan
+ * @property {boolean} showPlan
+ * @property {number} chosen index of the chosen gap
+ */
+
 const SEEN = { FREE: 1, POOR: 2, WELL: 3 };
 
 const PX = 4;
+/** @type {Record<number, (x: number, y: number) => number>} */
 const INKS = {
   [SEEN.FREE]: () => 0.12,
   [SEEN.POOR]: (x, y) => ((x + y) % PX < 2 ? 0.95 : 0.3),
@@ -16,6 +37,8 @@ const LONGEST_NOTE = 24;
  * The plan as an image of 4 x 4 pixels per cell, x to the right and y up; cells seen poorly are
  * hatched. `box` is the bounding box of the cells seen well, [[x, y], [x, y]] in meters; null if
  * there are none.
+ * @param {Plan} plan
+ * @param {[string, string]} given
  */
 export async function planImage(plan, [poor, well]) {
   const bytes = Uint8Array.from(atob(plan.seen), (letter) => letter.charCodeAt(0));
@@ -24,25 +47,31 @@ export async function planImage(plan, [poor, well]) {
   const [along, across] = plan.shape;
   const image = new ImageData(PX * along, PX * across);
   const pixels = new Uint32Array(image.data.buffer);
-  const stamps = {
-    [SEEN.FREE]: stamp(well, INKS[SEEN.FREE]),
-    [SEEN.POOR]: stamp(poor, INKS[SEEN.POOR]),
-    [SEEN.WELL]: stamp(well, INKS[SEEN.WELL]),
-  };
+  const stamps = new Map(
+    Object.entries(INKS).map(([kind, ink]) => [
+      Number(kind),
+      stamp(Number(kind) === SEEN.POOR ? poor : well, ink),
+    ]),
+  );
   const cells = { from: [Infinity, Infinity], to: [-Infinity, -Infinity] };
   for (let i = 0; i < along; i++)
     for (let j = 0; j < across; j++) {
       const kind = seen[i * across + j];
-      if (!kind) continue;
+      const pattern = stamps.get(kind);
+      if (!pattern) continue;
       const first = PX * ((across - 1 - j) * PX * along + i);
       for (let y = 0; y < PX; y++)
-        pixels.set(stamps[kind].subarray(PX * y, PX * (y + 1)), first + y * PX * along);
+        pixels.set(pattern.subarray(PX * y, PX * (y + 1)), first + y * PX * along);
       if (kind === SEEN.WELL) widen(cells, i, j);
     }
   return { ...plan, bitmap: await createImageBitmap(image), box: boxOf(plan, cells) };
 }
 
-/** The pixels of one cell. */
+/**
+ * The pixels of one cell.
+ * @param {string} color
+ * @param {(x: number, y: number) => number} ink
+ */
 function stamp(color, ink) {
   const bytes = new Uint8ClampedArray(4 * PX * PX);
   for (let y = 0; y < PX; y++)
@@ -50,6 +79,11 @@ function stamp(color, ink) {
   return new Uint32Array(bytes.buffer);
 }
 
+/**
+ * @param {{from: number[], to: number[]}} given
+ * @param {number} i
+ * @param {number} j
+ */
 function widen({ from, to }, i, j) {
   if (i < from[0]) from[0] = i;
   if (j < from[1]) from[1] = j;
@@ -57,6 +91,10 @@ function widen({ from, to }, i, j) {
   if (j > to[1]) to[1] = j;
 }
 
+/**
+ * @param {Plan} given
+ * @param {{from: number[], to: number[]}} given1
+ */
 function boxOf({ first_cell: first, cell_m: size }, { from, to }) {
   if (to[0] < from[0]) return null;
   return [
@@ -65,11 +103,18 @@ function boxOf({ first_cell: first, cell_m: size }, { from, to }) {
   ];
 }
 
-const rgb = (hex) => [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
+const rgb = (/** @type {string} */ hex) =>
+  [1, 3, 5].map((at) => parseInt(hex.slice(at, at + 2), 16));
 
 /**
  * Draws; `middle` is the target's position, `free` the area no bar covers: {left, top, right,
  * bottom} [px].
+ * @param {Context} context
+ * @param {{width: number, height: number, ratio: number, middle: [number, number],
+ *   free: Area}} window
+ * @param {Camera} camera
+ * @param {Drawn} scene
+ * @param {Styles} styles
  */
 export function drawOverlay(
   context,
@@ -105,6 +150,11 @@ export function drawOverlay(
   });
 }
 
+/**
+ * @param {Context} context
+ * @param {Camera} camera
+ * @param {PaintedPlan} plan
+ */
 function drawPlan(context, camera, plan) {
   const [i, j] = plan.first_cell;
   const [along, across] = plan.shape;
@@ -126,24 +176,40 @@ function drawPlan(context, camera, plan) {
   context.restore();
 }
 
+/**
+ * @param {Context} context
+ * @param {Camera} camera
+ * @param {number[][]} path
+ * @param {Styles} styles
+ */
 function drawPath(context, camera, path, styles) {
   if (path.length < 2) return;
   context.beginPath();
   for (const place of path) context.lineTo(...camera.project(place));
   context.lineJoin = "round";
-  for (const [width, color] of [
+  /** @type {Array<[number, string]>} */
+  const lines = [
     [6, styles.sky],
     [3, styles.path],
-  ]) {
+  ];
+  for (const [width, color] of lines) {
     context.lineWidth = width;
     context.strokeStyle = color;
     context.stroke();
   }
 }
 
-/** A ring at the start of the path; if it is out of sight, an arrow at the edge points there. */
+/**
+ * A ring at the start of the path; if it is out of sight, an arrow at the edge points there.
+ * @param {Context} context
+ * @param {Camera} camera
+ * @param {number[]} place
+ * @param {Area} inside
+ * @param {Styles} styles
+ */
 function drawStart(context, camera, place, inside, styles) {
   const [x, y] = camera.project(place);
+  /** @type {[number, number]} */
   const at = [
     Math.min(Math.max(x, inside.left + 40), inside.right - 40),
     Math.min(Math.max(y, inside.top + 40), inside.bottom - 50),
@@ -170,6 +236,14 @@ function drawStart(context, camera, place, inside, styles) {
   label(context, "start", ...at, styles.path, styles.sky);
 }
 
+/**
+ * @param {Context} context
+ * @param {Camera} camera
+ * @param {number[]} place
+ * @param {Gap} gap
+ * @param {Styles} styles
+ * @param {boolean} chosen
+ */
 function drawGap(context, camera, place, gap, styles, chosen) {
   const [x, y] = camera.project(place);
   const r = Math.max(10, (gap.width_m * camera.pxPerM) / 2);
@@ -183,6 +257,12 @@ function drawGap(context, camera, place, gap, styles, chosen) {
   label(context, "?", x, y, styles.gap, styles.sky);
 }
 
+/**
+ * @param {Context} context
+ * @param {Camera} camera
+ * @param {PlacedMark} mark
+ * @param {Styles} styles
+ */
 function drawMark(context, camera, mark, styles) {
   const [x, y] = camera.project(mark.p);
   circle(context, x, y, 6, styles.accent, styles.sky);
@@ -191,6 +271,12 @@ function drawMark(context, camera, mark, styles) {
   if (text) label(context, text, x + 11, y, styles.ink, styles.sky, "left");
 }
 
+/**
+ * @param {Context} context
+ * @param {Camera} camera
+ * @param {Pose} me
+ * @param {Styles} styles
+ */
 function drawMe(context, camera, me, styles) {
   const [x, y] = camera.project(me.p);
   const [fx, fy] = camera.project([
@@ -215,6 +301,14 @@ function drawMe(context, camera, me, styles) {
   context.restore();
 }
 
+/**
+ * @param {Context} context
+ * @param {number} x
+ * @param {number} y
+ * @param {number} r
+ * @param {string} inside
+ * @param {string} around
+ */
 function circle(context, x, y, r, inside, around) {
   context.beginPath();
   context.arc(x, y, r, 0, 2 * Math.PI);
@@ -224,6 +318,12 @@ function circle(context, x, y, r, inside, around) {
   context.stroke();
 }
 
+/**
+ * @param {Context} context
+ * @param {Array<[number, number]>} corners
+ * @param {string} inside
+ * @param {string} around
+ */
 function polygon(context, corners, inside, around) {
   context.beginPath();
   for (const corner of corners) context.lineTo(...corner);
@@ -234,7 +334,23 @@ function polygon(context, corners, inside, around) {
   context.stroke();
 }
 
-function label(context, text, x, y, color, around, align = "center") {
+/**
+ * @param {Context} context
+ * @param {string} text
+ * @param {number} x
+ * @param {number} y
+ * @param {string} color
+ * @param {string} around
+ */
+function label(
+  context,
+  text,
+  x,
+  y,
+  color,
+  around,
+  align = /** @type {CanvasTextAlign} */ ("center"),
+) {
   context.font = "600 14px system-ui, sans-serif";
   context.textAlign = align;
   context.textBaseline = "middle";

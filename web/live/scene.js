@@ -2,6 +2,16 @@
 
 import { openLiveStream, readCurrentUser } from "../shared/api.js";
 
+/**
+ * @import {CloudCanvas} from "../shared/cloud_canvas.js"
+ * @import {Gap, Mark, Message, Plan, Points, Pose} from "./messages"
+ * @import {PaintedPlan} from "./overlay.js"
+ * @typedef {object} SceneListeners
+ * @property {() => unknown} news something has changed
+ * @property {(linked: boolean, reason?: string) => unknown} link
+ * @property {(plan: Plan) => unknown} plan a new coverage plan
+ */
+
 const SILENT_MS = 5000;
 const CONNECT_MS = 3000;
 const RETRY_MS = 700;
@@ -12,25 +22,37 @@ const PRESENT_EVERY_MS = 30_000;
 export class LiveScene {
   project = "";
   state = "";
+  /** @type {Array<[number, number, number]>} */
   path = [];
+  /** @type {Mark[]} */
   marks = [];
+  /** @type {Gap[]} */
   gaps = [];
+  /** @type {Pose | null} */
   me = null;
+  /** @type {PaintedPlan | null} */
   plan = null;
   showPlan = true;
+  /** @type {Message} */
   newest = {};
   total = 0;
   server = "";
   renewed = false; // the server has another version than this page
   #cloud;
   #on;
-  #socket;
+  /** @type {WebSocket | null} */
+  #socket = null;
   #received = 0;
   #receivedLast = performance.now();
+  /** @type {Points | null} */
   #announced = null;
   #generation = -1;
   #open = false;
 
+  /**
+   * @param {CloudCanvas} cloud
+   * @param {SceneListeners} handlers
+   */
   constructor(cloud, handlers) {
     this.#cloud = cloud;
     this.#on = handlers;
@@ -59,6 +81,7 @@ export class LiveScene {
   #connect() {
     this.#received = performance.now();
     this.#open = false;
+    /** @type {WebSocket} */
     const socket = (this.#socket = openLiveStream(this.have, {
       onMessage: (message) => socket === this.#socket && this.#take(message),
       onPoints: (data) => socket === this.#socket && this.#takePoints(data),
@@ -95,7 +118,7 @@ export class LiveScene {
     if (this.#open && !document.hidden) this.#socket?.send("{}");
   }
 
-  #take(message) {
+  #take(/** @type {Message} */ message) {
     this.#received = this.#receivedLast = performance.now();
     this.#open = true;
     this.#on.link(true);
@@ -116,7 +139,7 @@ export class LiveScene {
     this.#on.news();
   }
 
-  #takePoints(data) {
+  #takePoints(/** @type {ArrayBuffer} */ data) {
     this.#received = performance.now();
     const announced = this.#announced;
     if (!announced) return;
@@ -127,7 +150,7 @@ export class LiveScene {
     this.#on.news();
   }
 
-  #forget(project) {
+  #forget(/** @type {string} */ project) {
     this.project = project;
     this.path = [];
     this.marks = [];

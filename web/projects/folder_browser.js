@@ -1,16 +1,19 @@
 // <folder-browser>: folders of the server with recordings. Event "pick" has a path.
 
 import { browse } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import { bytes } from "../shared/format.js";
 
-export class FolderBrowser extends HTMLElement {
-  #list = make("div", { className: "folder" });
-  #message = make("p", { className: "error", role: "alert" });
+/** @import {FolderEntry} from "../shared/http_types" */
 
+export class FolderBrowser extends HTMLElement {
   connectedCallback() {
     this.hidden = true;
-    this.replaceChildren(this.#list, this.#message);
+    render(
+      html`<div class="folder"></div>
+        ${messagePlace()}`,
+      this,
+    );
   }
 
   async toggle() {
@@ -18,35 +21,39 @@ export class FolderBrowser extends HTMLElement {
     if (!this.hidden) await this.#open("");
   }
 
-  #pick(path) {
+  #pick(/** @type {string} */ path) {
     this.hidden = true;
     this.dispatchEvent(new CustomEvent("pick", { detail: path }));
   }
 
-  async #open(path) {
-    this.#list.inert = true; // no choice in a folder that is being left
-    const entries = await attempt(this.#message, () => browse(path));
-    this.#list.inert = false;
+  async #open(/** @type {string} */ path) {
+    const list = within(this, ".folder");
+    list.inert = true; // no choice in a folder that is being left
+    const entries = await attempt(within(this, ".error"), () => browse(path));
+    list.inert = false;
     if (!entries) return;
     const up = path.split("/").slice(0, -1).join("/");
-    const row = (text, note, onclick) =>
-      make("button", { type: "button", onclick }, make("span", {}, text), make("small", {}, note));
-    this.#list.replaceChildren(
-      make("p", { className: "path" }, path || "Folders of this server"),
-      ...(path
-        ? [
-            row("↩ All folders", "", () => this.#open("")),
-            row("Use this folder", "", () => this.#pick(path)),
-          ]
-        : []),
-      ...(up && path ? [row("↑ Up", "", () => this.#open(up))] : []),
-      ...entries.map((entry) =>
-        entry.folder
-          ? row(`${entry.name}/`, "", () => this.#open(entry.path))
-          : row(entry.name, bytes(entry.bytes), () => this.#pick(entry.path)),
-      ),
+    render(
+      html`<p class="path">${path || "Folders of this server"}</p>
+        ${path ? row("↩ All folders", () => this.#open("")) : nothing}
+        ${path ? row("Use this folder", () => this.#pick(path)) : nothing}
+        ${up ? row("↑ Up", () => this.#open(up)) : nothing}
+        ${entries.map((entry) => this.#entry(entry))}`,
+      list,
     );
   }
+
+  #entry(/** @type {FolderEntry} */ { name, path, folder, bytes: size }) {
+    if (folder) return row(`${name}/`, () => this.#open(path));
+    return row(name, () => this.#pick(path), bytes(size));
+  }
 }
+
+/**
+ * @param {string} text
+ * @param {() => unknown} act
+ */
+const row = (text, act, note = "") =>
+  html`<button type="button" @click=${act}><span>${text}</span><small>${note}</small></button>`;
 
 customElements.define("folder-browser", FolderBrowser);

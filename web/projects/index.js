@@ -13,144 +13,168 @@ import {
 } from "../shared/api.js";
 import { approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
-import { attempt, byId, fill, make, succeeds } from "../shared/dom.js";
+import {
+  attempt,
+  byId,
+  html,
+  nothing,
+  only,
+  render,
+  repeat,
+  succeeds,
+  within,
+} from "../shared/dom.js";
 import { stateOf, when } from "../shared/format.js";
 import { headline } from "../shared/figures.js";
 import "./job_status.js";
 import "./new_job.js";
 import "../shared/page_head.js";
 
+/** @import {Deleted, JobView, ProjectCard} from "../shared/http_types" */
+
 const MANY = 12;
-const cards = new Map();
-const jobs = new Map();
-let projects = [];
-let asked = null;
+const RELOAD_AFTER_MS = 100;
 
-function card(id) {
-  if (!cards.has(id)) {
-    const facts = make("div", { className: "facts" });
-    const status = make("job-status");
-    cards.set(id, { root: make("li", { className: "card" }, facts, status), facts, status });
-  }
-  return cards.get(id);
-}
+/** What the page shows. */
+const state = {
+  /** @type {ProjectCard[]} */
+  projects: [],
+  /** @type {Map<string, JobView>} */
+  jobs: new Map(), // the newest job of each project
+  reloads: false, // soon
+  draws: false, // before the next frame
+};
 
-function draw(id, project = projects.find((one) => one.id === id)) {
-  const view = jobs.get(id);
-  const { root, facts, status } = card(id);
+/**
+ * The card of a project; undefined = there is only its first job so far.
+ * @param {string} id
+ * @param {ProjectCard | undefined} project
+ */
+function card(id, project) {
+  const view = state.jobs.get(id);
   const open = view && view.job.state !== "succeeded";
-  const thumbnail = project?.has_map
-    ? make("img", {
-        src: thumbnailUrl(id, project.updated),
-        alt: "",
-        loading: "lazy",
-        width: 320,
-        height: 180,
-      })
-    : make("div", { className: "no-thumbnail", ariaHidden: "true" }, "No map yet");
-  const text = project
-    ? [...headline(project), when(project.updated)]
-    : [view ? view.job.inputs.recordings.map((path) => path.split("/").at(-1)).join(", ") : ""];
-  fill(
-    facts,
-    make(
-      "a",
-      { href: projectUrl(id), className: "cover" },
-      thumbnail,
-      make("strong", {}, project?.name ?? (view?.job.inputs.title || id)),
-    ),
-    open ? null : badge(stateOf(project, view)),
-    project?.finished ? approvalMark(project.approval) : null,
-    project && project.name !== id ? make("p", { className: "quiet" }, id) : null,
-    make("p", { className: "quiet" }, text.join(" · ")),
-    project?.problem ? make("p", { className: "error" }, `Damaged: ${project.problem}`) : null,
-  );
-  status.hidden = !open;
-  if (view) status.view = view;
-  return root;
+  return html`<li class="card">
+    <div class="facts">
+      <a href=${projectUrl(id)} class="cover"
+        >${thumbnail(project)}<strong>${project?.name ?? (view?.job.inputs.title || id)}</strong></a
+      >
+      ${open ? nothing : badge(stateOf(project, view))}
+      ${project?.finished ? approvalMark(project.approval) : nothing}
+      ${project && project.name !== id ? html`<p class="quiet">${id}</p>` : nothing}
+      <p class="quiet">${factsOf(project, view)}</p>
+      ${project?.problem ? html`<p class="error">Damaged: ${project.problem}</p>` : nothing}
+    </div>
+    ${open ? html`<job-status .view=${view}></job-status>` : nothing}
+  </li>`;
 }
 
-function drawAll() {
+const thumbnail = (/** @type {ProjectCard | undefined} */ project) =>
+  project?.has_map
+    ? html`<img
+        src=${thumbnailUrl(project.id, project.updated)}
+        alt=""
+        loading="lazy"
+        width="320"
+        height="180"
+      />`
+    : html`<div class="no-thumbnail" aria-hidden="true">No map yet</div>`;
+
+/**
+ * In one line what is known of a project, or of the job that makes it.
+ * @param {ProjectCard | undefined} project
+ * @param {JobView | undefined} view
+ */
+function factsOf(project, view) {
+  if (project) return [...headline(project), when(project.updated)].join(" · ");
+  return (view?.job.inputs.recordings ?? []).map((path) => path.split("/").at(-1)).join(", ");
+}
+
+function draw() {
+  state.draws = false;
+  const { projects, jobs } = state;
   const known = new Set(projects.map((one) => one.id));
-  const waiting = [...jobs.keys()].filter((id) => !known.has(id) && !jobs.get(id).job.finished);
+  const waiting = [...jobs].filter(([id, { job }]) => !known.has(id) && !job.finished);
   const wanted = byId("find", HTMLInputElement).value.trim().toLowerCase();
-  const fits = (project) => `${project.name} ${project.id}`.toLowerCase().includes(wanted);
-  const roots = [
-    ...waiting.map((id) => draw(id)),
-    ...projects.filter(fits).map((one) => draw(one.id, one)),
+  const shown = projects.filter(({ name, id }) => `${name} ${id}`.toLowerCase().includes(wanted));
+  /** @type {Array<[string, ProjectCard | undefined]>} */
+  const cards = [
+    ...waiting.map(([id]) => /** @type {[string, undefined]} */ ([id, undefined])),
+    ...shown.map((project) => /** @type {[string, ProjectCard]} */ ([project.id, project])),
   ];
-  const list = byId("projects");
-  if (roots.some((root, k) => list.children[k] !== root) || list.children.length !== roots.length)
-    list.replaceChildren(...roots);
+  render(
+    repeat(
+      cards,
+      ([id]) => id,
+      ([id, project]) => card(id, project),
+    ),
+    byId("projects"),
+  );
   byId("empty").hidden = projects.length + waiting.length > 0;
-  byId("none").hidden = roots.length > 0 || !wanted;
-  byId("find").closest("label").hidden = projects.length <= MANY;
+  byId("none").hidden = waiting.length + shown.length > 0 || !wanted;
+  within(document, "label.find").hidden = projects.length <= MANY;
+}
+
+/** Several jobs may change at once: they are drawn together. */
+function drawSoon() {
+  if (state.draws) return;
+  state.draws = true;
+  requestAnimationFrame(draw);
 }
 
 async function reload() {
-  projects = (await attempt(byId("message"), listProjects)) ?? projects;
-  drawAll();
+  state.reloads = false;
+  state.projects = (await attempt(byId("message"), listProjects)) ?? state.projects;
+  draw();
 }
 
 /** Several jobs may change at once: one request is enough. */
 function reloadSoon() {
-  asked ??= setTimeout(() => {
-    asked = null;
-    reload();
-  }, 100);
+  if (state.reloads) return;
+  state.reloads = true;
+  setTimeout(reload, RELOAD_AFTER_MS);
 }
 
 async function showTrash() {
   const message = byId("trash-message"); // reading the projects again clears the other one
   const deleted = (await attempt(message, listTrash)) ?? [];
-  const act = (action) => async () => {
+  const act = (/** @type {() => unknown} */ action) => async () => {
     if (!(await succeeds(message, action))) return;
     await showTrash();
     reloadSoon();
   };
-  const row = ({ id, kind, project, goes }) =>
-    make(
-      "li",
-      {},
-      make(
-        "div",
-        {},
-        make("strong", {}, kind === "recording" ? `Recording ${project}` : project),
-        make("small", {}, ` is deleted permanently on ${when(goes)}`),
-      ),
-      make(
-        "button",
-        {
-          type: "button",
-          onclick: act(() => restoreProject(id)),
-          ariaLabel: `Restore ${project}`,
-        },
-        "Restore",
-      ),
-      make(
-        "button",
-        {
-          type: "button",
-          onclick: act(() => removeProject(id)),
-          ariaLabel: `Delete ${project} permanently`,
-        },
-        "Delete now",
-      ),
-    );
+  const row = (/** @type {Deleted} */ { id, kind, project, goes }) =>
+    html`<li>
+      <div>
+        <strong>${kind === "recording" ? `Recording ${project}` : project}</strong
+        ><small> is deleted permanently on ${when(goes)}</small>
+      </div>
+      <button type="button" aria-label="Restore ${project}" @click=${act(() => restoreProject(id))}>
+        Restore
+      </button>
+      <button
+        type="button"
+        aria-label="Delete ${project} permanently"
+        @click=${act(() => removeProject(id))}
+      >
+        Delete now
+      </button>
+    </li>`;
   byId("trash").hidden = deleted.length === 0;
-  byId("trash")
-    .querySelector("ul")
-    .replaceChildren(...deleted.map(row));
+  render(
+    repeat(deleted, (one) => one.id, row),
+    within(byId("trash"), "ul"),
+  );
 }
 
 async function begin() {
   const { may } = await readCurrentUser();
   const processes = may.includes("process");
   byId("new").hidden = byId("to-new").hidden = !processes;
-  document.querySelector("main").classList.toggle("alone", !processes);
+  within(document, "main").classList.toggle("alone", !processes);
   const server = await attempt(byId("message"), readServer);
-  byId("notices").replaceChildren(
-    ...(server?.notices ?? []).map((text) => make("p", { className: "notice" }, `▲ ${text}`)),
+  render(
+    (server?.notices ?? []).map((text) => html`<p class="notice">▲ ${text}</p>`),
+    byId("notices"),
   );
   if (processes) await showTrash();
 }
@@ -158,15 +182,15 @@ async function begin() {
 watchJobs(
   (view) => {
     const id = view.job.project;
-    const before = jobs.get(id);
-    jobs.set(id, view);
+    const before = state.jobs.get(id);
+    state.jobs.set(id, view);
     if (before?.job.state !== view.job.state) reloadSoon();
-    else draw(id);
+    else drawSoon();
   },
   (linked) => {
-    document.querySelector("page-head").linked = linked;
+    only("page-head").linked = linked;
   },
 );
-byId("find").addEventListener("input", drawAll);
+byId("find").addEventListener("input", draw);
 begin();
 reload();

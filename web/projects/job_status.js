@@ -2,68 +2,69 @@
 
 import { cancelJob, readCurrentUser, retryJob } from "../shared/api.js";
 import { badge } from "../shared/badge.js";
-import { attempt, fill, make, remedyLink } from "../shared/dom.js";
+import { attempt, html, messagePlace, nothing, remedyLink, render, within } from "../shared/dom.js";
 import { runProgressText, progressText } from "../shared/format.js";
 
+/** @import {JobView} from "../shared/http_types" */
+
 export class JobStatus extends HTMLElement {
-  #view;
-  #line = make("div", { className: "job-line" });
-  #bar = make("progress", { max: 1, ariaLabel: "Progress of the whole run" });
-  #text = make("p", { className: "job-words", role: "status" });
-  #piece = make("p", { className: "job-words" });
-  #buttons = make("div", { className: "buttons" });
-  #message = make("p", { className: "error", role: "alert" });
+  /** @type {{view: JobView | null, mayProcess: boolean}} */
+  #state = { view: null, mayProcess: false };
 
   connectedCallback() {
-    this.replaceChildren(
-      this.#line,
-      this.#bar,
-      this.#text,
-      this.#piece,
-      this.#buttons,
-      this.#message,
+    readCurrentUser().then(
+      ({ may }) => {
+        this.#state.mayProcess = may.includes("process");
+        this.#draw();
+      },
+      () => {}, // the head of the page says why
     );
   }
 
-  set view(view) {
-    const before = this.#view?.job;
-    this.#view = view;
+  set view(/** @type {JobView} */ view) {
+    this.#state.view = view;
+    this.#draw();
+  }
+
+  #draw() {
+    const { view } = this.#state;
+    if (!view) return;
     const { job, status } = view;
     const running = job.state === "running";
-    fill(
-      this.#line,
-      badge(job.state),
-      running && status.what ? make("strong", {}, status.what) : null,
+    const text = running ? runProgressText(view) : job.note;
+    const part = running && status.what ? progressText(view) : "";
+    render(
+      html`<div class="job-line">
+          ${badge(job.state)}${part ? html`<strong>${status.what}</strong>` : nothing}
+        </div>
+        <progress
+          max="1"
+          aria-label="Progress of the whole run"
+          .value=${view.run_progress}
+          ?hidden=${!running}
+        ></progress>
+        <p class="job-words" role="status" ?hidden=${!text}>${text}</p>
+        <p class="job-words" ?hidden=${!part}>${part}</p>
+        <div class="buttons">${this.#buttons(view)}</div>
+        ${messagePlace()}`,
+      this,
     );
-    this.#bar.hidden = !running;
-    this.#bar.value = view.run_progress;
-    this.#text.textContent = running ? runProgressText(view) : job.note;
-    this.#text.hidden = !this.#text.textContent;
-    this.#piece.hidden = !running || !status.what;
-    this.#piece.textContent = this.#piece.hidden ? "" : progressText(view);
-    if (before?.state !== job.state || before?.id !== job.id) this.#offer(job);
   }
 
-  async #offer(job) {
-    const button = (text, action) =>
-      make(
-        "button",
-        { type: "button", onclick: () => attempt(this.#message, () => action(job.id)) },
-        text,
-      );
+  #buttons(/** @type {JobView} */ { job, resumable, remedy }) {
+    if (!this.#state.mayProcess) return nothing;
+    const button = (/** @type {string} */ text, /** @type {() => unknown} */ action) =>
+      html`<button type="button" @click=${() => attempt(within(this, ".error"), action)}>
+        ${text}
+      </button>`;
     const open = job.state === "queued" || job.state === "running";
-    const tools = /** @type {any} */ (document.querySelector("project-tools")); // on its own page
-    const other = () => tools.runAgain();
-    const { may } = await readCurrentUser();
-    if (this.#view.job.state !== job.state || !may.includes("process")) return;
-    this.#buttons.replaceChildren(
-      ...(open ? [button("Cancel", cancelJob)] : []),
-      ...(this.#view.resumable ? [button("Resume", retryJob)] : []),
-      ...(!open && tools
-        ? [make("button", { type: "button", onclick: other }, "Other settings…")]
-        : []),
-      ...(this.#view.remedy ? [remedyLink(this.#view.remedy)] : []),
-    );
+    const tools = document.querySelector("project-tools"); // on its own page
+    return [
+      open ? button("Cancel", () => cancelJob(job.id)) : nothing,
+      resumable ? button("Resume", () => retryJob(job.id)) : nothing,
+      !open && tools ? button("Other settings…", () => tools.runAgain()) : nothing,
+      remedy ? remedyLink(remedy) : nothing,
+    ];
   }
 }
 

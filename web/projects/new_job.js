@@ -2,112 +2,192 @@
 // With `again` it repeats a job: in the same project, or in a new one that reuses finished stages.
 
 import { addJob, listProjects, listRigs, projectUrl, readChoices } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
-import "./folder_browser.js";
-import "./recording_summary.js";
-import "./setting_editor.js";
+import {
+  asError,
+  attempt,
+  detailOf,
+  html,
+  messagePlace,
+  nothing,
+  render,
+  say,
+  targetOf,
+  within,
+} from "../shared/dom.js";
+import { FolderBrowser } from "./folder_browser.js";
+import { RecordingLook } from "./recording_summary.js";
+import { SettingEditor } from "./setting_editor.js";
 import "./upload_box.js";
 
-const field = (text, control, hint) =>
-  make("label", {}, make("span", {}, text), control, hint ? make("small", {}, hint) : null);
+/**
+ * @import {Content} from "../shared/dom.js"
+ * @import {Inputs, RecordingSummary} from "../shared/http_types"
+ * @typedef {import("../shared/http_types").NewJob} JobRequest
+ * @typedef {{project: string,
+ *   inputs: Partial<Inputs> & Pick<Inputs, "recordings" | "settings">}} RepeatedJob
+ * @typedef {"project" | "preset" | "rig" | "imu" | "gnss"} Suggested a field with suggestions
+ */
+
+/** @type {Suggested[]} */
+const SUGGESTED = ["project", "preset", "rig", "imu", "gnss"];
+const REPEATS =
+  "The same name runs again in this project, another name makes a new one. " +
+  "Finished stages with unchanged inputs are reused.";
 
 /** The name of a file or folder without its ending. */
-const titleOf = (path) =>
-  path
-    .split("/")
-    .at(-1)
-    .replace(/\.[A-Za-z0-9]+$/, "")
-    .slice(0, 90);
+const titleOf = (/** @type {string} */ path) =>
+  (path.split("/").at(-1) ?? "").replace(/\.[A-Za-z0-9]+$/, "").slice(0, 90);
 
-const text = (name, more = {}) =>
-  make("input", { name, autocomplete: "off", spellcheck: false, ...more });
+/**
+ * @param {string} text
+ * @param {Content} control
+ * @param {Content} hint
+ */
+const field = (text, control, hint = nothing) =>
+  html`<label
+    ><span>${text}</span>${control}${hint ? html`<small>${hint}</small>` : nothing}</label
+  >`;
 
 export class NewJob extends HTMLElement {
-  #recording = text("recording", { required: true, onchange: () => this.#look() });
-  #browser = make("folder-browser", { onpick: (event) => this.#choose(event.detail) });
-  #found = make("recording-look", { onpick: (event) => this.#choose(event.detail) });
-  #project = text("project", {
-    required: true,
-    maxLength: 100,
-    oninput: () => this.#touched.add("project"),
-  });
-  #preset = make("select", {
-    name: "preset",
-    onchange: () => {
-      this.#touched.add("preset");
-      this.#explainPreset();
-      this.#editor.show(this.#preset.value);
-    },
-  });
-  #presetText = make("span");
-  #presetTexts = {}; // preset -> what it is for
-  #rig = make(
-    "select",
-    { name: "rig", onchange: () => this.#touched.add("rig") },
-    make("option", { value: "" }, "Detect from the recording"),
-  );
-  #imu = text("imu", { oninput: () => this.#touched.add("imu") });
-  #gnss = text("gnss", { oninput: () => this.#touched.add("gnss") });
-  #editor = make("setting-editor");
-  #settings = make("details", {}, make("summary", {}, "All settings"), this.#editor);
-  #message = make("p", { className: "error", role: "alert" });
+  #state = {
+    recording: "",
+    /** @type {Record<Suggested, string>} */
+    values: { project: "", preset: "", rig: "", imu: "", gnss: "" },
+    /** @type {string[]} */
+    presets: [],
+    /** @type {Record<string, string>} */
+    presetTexts: {}, // what each is for
+    /** @type {Array<[string, string]>} */
+    rigs: [], // path and caption
+    busy: "", // what is being done
+  };
+  /** @type {Set<Suggested>} */
   #touched = new Set(); // fields the person filled in: no suggestion overwrites them
+  /** @type {Set<string>} */
   #taken = new Set(); // names of the existing projects: a new one gets another
+  /** @type {string[]} */
   #others = []; // recordings of the repeated job after the first
+  /** @type {RepeatedJob | null} */
   #again = null;
-  #start = make("button", { className: "primary" }, "Start");
-  #checked = { path: "", found: Promise.resolve(null) }; // the last recording that was looked at
+  /** The last recording that was looked at. */
+  #checked = {
+    path: "",
+    found: /** @type {Promise<RecordingSummary | null>} */ (Promise.resolve(null)),
+  };
   #offered = Promise.resolve(); // until presets, rigs and taken names are known
 
   connectedCallback() {
-    this.replaceChildren(
-      make(
-        "form",
-        { onsubmit: (event) => this.#submit(event) },
-        ...(this.#again
-          ? []
-          : [
-              make("upload-box", {
-                onrecording: (event) => this.#choose(event.detail, { isNamed: true }),
-                onremoved: () => this.#choose(""),
-                onchosen: (event) => this.#suggest({ project: titleOf(event.detail) }),
-              }),
-            ]),
-        field(
-          this.#again ? "Recording" : "Or a recording on the server",
-          this.#recording,
-          "File or folder: pcap, bag, mcap, frames",
-        ),
-        make("button", { type: "button", onclick: () => this.#browser.toggle() }, "Browse…"),
-        this.#browser,
-        this.#found,
-        field(
-          "Project name",
-          this.#project,
-          this.#again
-            ? "The same name runs again in this project, another name makes a new one. " +
-                "Finished stages with unchanged inputs are reused."
-            : "",
-        ),
-        field("Preset", this.#preset, this.#presetText),
-        field("Rig", this.#rig),
-        make(
-          "details",
-          {},
-          make("summary", {}, "IMU and GNSS files"),
-          field("IMU, CSV", this.#imu, "Empty: from the recording"),
-          field("GNSS, CSV", this.#gnss, "Empty: from the recording"),
-        ),
-        this.#settings,
-        this.#start,
-        this.#message,
-      ),
-    );
-    this.#settings.addEventListener(
-      "toggle",
-      () => this.#settings.open && this.#editor.show(this.#preset.value),
-    );
+    this.#draw();
     this.#offered = this.#offer();
+  }
+
+  #draw() {
+    const { recording, values, presets, presetTexts, rigs, busy } = this.#state;
+    const again = this.#again !== null;
+    const pick = (/** @type {Event} */ event) => this.#choose(detailOf(event));
+    const type = (/** @type {Event} */ event) => (this.#state.recording = targetOf(event).value);
+    const browse = () => within(this, "folder-browser", FolderBrowser).toggle();
+    render(
+      html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#submit(event)}>
+        ${again ? nothing : this.#upload()}
+        ${field(
+          again ? "Recording" : "Or a recording on the server",
+          html`<input
+            name="recording"
+            autocomplete="off"
+            spellcheck="false"
+            required
+            .value=${recording}
+            @input=${type}
+            @change=${() => this.#look()}
+          />`,
+          "File or folder: pcap, bag, mcap, frames",
+        )}
+        <button type="button" @click=${browse}>Browse…</button>
+        <folder-browser @pick=${pick}></folder-browser>
+        <recording-look @pick=${pick}></recording-look>
+        ${field("Project name", this.#text("project", true), again ? REPEATS : nothing)}
+        ${field(
+          "Preset",
+          this.#select(
+            "preset",
+            presets.map((name) => [name, name]),
+          ),
+          html`<span>${presetTexts[values.preset]}</span>`,
+        )}
+        ${field("Rig", this.#select("rig", [["", "Detect from the recording"], ...rigs]))}
+        <details>
+          <summary>IMU and GNSS files</summary>
+          ${field("IMU, CSV", this.#text("imu"), "Empty: from the recording")}
+          ${field("GNSS, CSV", this.#text("gnss"), "Empty: from the recording")}
+        </details>
+        <details class="settings" @toggle=${() => this.#showSettings()}>
+          <summary>All settings</summary>
+          <setting-editor></setting-editor>
+        </details>
+        <button class="primary" ?disabled=${busy !== ""}>${busy || "Start"}</button>
+        ${messagePlace()}
+      </form>`,
+      this,
+    );
+  }
+
+  #upload() {
+    const received = (/** @type {Event} */ event) =>
+      this.#choose(detailOf(event), { isNamed: true });
+    const chosen = (/** @type {Event} */ event) =>
+      this.#suggest({ project: titleOf(detailOf(event)) });
+    return html`<upload-box
+      @recording=${received}
+      @removed=${() => this.#choose("")}
+      @chosen=${chosen}
+    ></upload-box>`;
+  }
+
+  #text(/** @type {Suggested} */ name, required = false) {
+    const type = (/** @type {Event} */ event) => {
+      this.#touched.add(name);
+      this.#state.values[name] = targetOf(event).value;
+    };
+    return html`<input
+      name=${name}
+      autocomplete="off"
+      spellcheck="false"
+      maxlength=${name === "project" ? 100 : nothing}
+      ?required=${required}
+      .value=${this.#state.values[name]}
+      @input=${type}
+    />`;
+  }
+
+  /**
+   * @param {"preset" | "rig"} name
+   * @param {Array<[string, string]>} options value and caption of each
+   */
+  #select(name, options) {
+    const choose = (/** @type {Event} */ event) => {
+      this.#touched.add(name);
+      this.#put({ [name]: targetOf(event).value });
+    };
+    const chosen = this.#state.values[name];
+    return html`<select name=${name} @change=${choose}>
+      ${options.map(
+        ([value, text]) =>
+          html`<option value=${value} .selected=${value === chosen}>${text}</option>`,
+      )}
+    </select>`;
+  }
+
+  get #message() {
+    return within(this, "form > .error");
+  }
+
+  get #editor() {
+    return within(this, "setting-editor", SettingEditor);
+  }
+
+  get #settings() {
+    return within(this, ".settings", HTMLDetailsElement);
   }
 
   async #offer() {
@@ -116,49 +196,49 @@ export class NewJob extends HTMLElement {
         Promise.all([readChoices(), this.#again ? [] : listProjects(), listRigs()]),
       )) ?? [];
     this.#taken = new Set(projects?.flatMap(({ id, name }) => [id, name]));
-    const option = (name) => make("option", { value: name }, name);
-    this.#preset.append(...(choices?.presets ?? []).map(option));
-    this.#presetTexts = choices?.preset_texts ?? {};
-    this.#explainPreset();
-    this.#rig.append(
-      ...(rigs ?? []).map(({ id, path, shipped, version }) =>
-        make("option", { value: path }, shipped ? id : `${id}, version ${version}`),
-      ),
-    );
+    const state = this.#state;
+    state.presets = choices?.presets ?? [];
+    state.presetTexts = choices?.preset_texts ?? {};
+    state.values.preset ||= state.presets[0] ?? "";
+    state.rigs = (rigs ?? []).map(({ id, path, shipped, version }) => [
+      path,
+      shipped ? id : `${id}, version ${version}`,
+    ]);
     if (this.#again) this.#fill(this.#again);
-    else this.#suggest({ project: this.#project.value || undefined }); // may be taken
-  }
-
-  #explainPreset() {
-    this.#presetText.textContent = this.#presetTexts[this.#preset.value] ?? "";
+    else this.#suggest({ project: state.values.project || undefined }); // may be taken
   }
 
   /** A job to repeat; set before the form is shown. */
-  set again(job) {
+  set again(/** @type {RepeatedJob} */ job) {
     this.#again = job;
   }
 
-  #fill({ project, inputs }) {
+  #fill(/** @type {RepeatedJob} */ { project, inputs }) {
     const [first = "", ...others] = inputs.recordings;
     this.#others = others;
-    this.#recording.value = first;
-    this.#suggest({ project, ...inputs });
-    for (const name of ["project", "preset", "rig", "imu", "gnss"]) this.#touched.add(name);
+    this.#state.recording = first;
+    this.#suggest({ ...inputs, project });
+    for (const name of SUGGESTED) this.#touched.add(name);
     this.#editor.set(inputs.settings);
     if (inputs.settings.length) this.#settings.open = true;
   }
 
-  /** @param {{isNamed?: boolean}} [known] whether it has a name from its sender */
+  /**
+   * @param {string} path
+   * @param {{isNamed?: boolean}} [known] whether it has a name from its sender
+   */
   #choose(path, known) {
-    this.#recording.value = path;
+    this.#state.recording = path;
     this.#others = [];
+    this.#draw();
     this.#look(known);
   }
 
   async #look({ isNamed = false } = {}) {
-    const path = this.#recording.value.trim();
+    const path = this.#state.recording.trim();
     if (!isNamed) this.#suggest({ project: titleOf(path) });
-    const looked = Promise.all([this.#found.look(path), this.#offered]);
+    const looks = within(this, "recording-look", RecordingLook);
+    const looked = Promise.all([looks.look(path), this.#offered]);
     this.#checked = { path, found: looked.then(([found]) => found) };
     const found = await this.#checked.found;
     if (found) this.#suggest(isNamed ? { ...found, project: undefined } : found);
@@ -166,80 +246,94 @@ export class NewJob extends HTMLElement {
 
   /** Whether the recording can be read; looks at it unless that was done. */
   async #isReadable() {
-    if (this.#checked.path !== this.#recording.value.trim()) this.#look();
+    if (this.#checked.path !== this.#state.recording.trim()) this.#look();
     const found = await this.#checked.found;
     if (!found) this.#checked = { path: "", found: Promise.resolve(null) }; // look again next time
     return found !== null;
   }
 
-  /**
-   * Puts values into the fields that the person has not filled in.
-   * @param {{project?: string, preset?: string, rig?: string, imu?: string, gnss?: string}} values
-   */
-  #suggest({ project, preset, rig, imu, gnss }) {
-    const put = (name, input, value) => {
-      if (value === undefined || this.#touched.has(name)) return;
-      if (name === "rig" && value && ![...input.options].some((one) => one.value === value)) {
-        input.append(make("option", { value }, value.split("/").at(-1)));
-      }
-      input.value = value;
-    };
-    put("project", this.#project, this.#again ? project : project && this.#free(project));
-    put("preset", this.#preset, preset);
-    this.#explainPreset();
-    put("rig", this.#rig, rig);
-    put("imu", this.#imu, imu);
-    put("gnss", this.#gnss, gnss);
-    if (preset !== undefined && this.#settings.open) this.#editor.show(this.#preset.value);
+  /** Puts values into the fields that the person has not filled in. */
+  #suggest(/** @type {Partial<Record<Suggested, string>>} */ suggested) {
+    const { project } = suggested;
+    const named = this.#again ? project : project && this.#free(project);
+    const values = { ...suggested, project: named };
+    this.#put(
+      Object.fromEntries(
+        SUGGESTED.filter((name) => values[name] !== undefined && !this.#touched.has(name)).map(
+          (name) => [name, values[name]],
+        ),
+      ),
+    );
+  }
+
+  /** Puts values into fields; a rig that is no choice yet becomes one. */
+  #put(/** @type {Partial<Record<Suggested, string>>} */ values) {
+    const { rig, preset } = values;
+    const { rigs } = this.#state;
+    if (rig && !rigs.some(([path]) => path === rig))
+      this.#state.rigs = [...rigs, [rig, rig.split("/").at(-1) ?? rig]];
+    Object.assign(this.#state.values, values);
+    this.#draw();
+    if (preset !== undefined) this.#showSettings();
+  }
+
+  /** Shows the settings of the preset, if the list of settings is open. */
+  #showSettings() {
+    if (this.#settings.open) this.#editor.show(this.#state.values.preset);
   }
 
   /** The name, with a number if there is a project of that name. */
-  #free(project) {
+  #free(/** @type {string} */ project) {
     let found = project;
     for (let n = 2; this.#taken.has(found); n += 1) found = `${project}-${n}`;
     return found;
   }
 
-  async #submit(event) {
+  async #submit(/** @type {SubmitEvent} */ event) {
     event.preventDefault();
-    this.#message.textContent = "";
-    [this.#start.disabled, this.#start.textContent] = [true, "Checking the recording…"];
+    say(this.#message, "");
+    this.#doing("Checking the recording…");
     const readable = await this.#isReadable();
     if (!readable) {
-      this.#message.textContent = "This recording cannot be read, see above: nothing was started";
-      this.#recording.focus();
+      say(this.#message, "This recording cannot be read, see above: nothing was started");
+      within(this, "[name=recording]").focus();
     } else {
-      this.#start.textContent = "Starting…";
+      this.#doing("Starting…");
       const added = await attempt(this.#message, () => this.#add(this.#job()));
       if (added) location.assign(projectUrl(added.job.project));
     }
-    [this.#start.disabled, this.#start.textContent] = [false, "Start"];
+    this.#doing("");
   }
 
+  #doing(/** @type {string} */ busy) {
+    this.#state.busy = busy;
+    this.#draw();
+  }
+
+  /** @returns {JobRequest} */
   #job() {
-    const name = this.#project.value.trim();
+    const { recording, values } = this.#state;
+    const name = values.project.trim();
     const repeats = this.#again?.project === name;
     return {
+      ...values,
       project: repeats ? name : "",
       title: repeats ? "" : name,
-      recordings: [this.#recording.value.trim(), ...this.#others],
-      preset: this.#preset.value,
-      rig: this.#rig.value,
-      imu: this.#imu.value,
-      gnss: this.#gnss.value,
+      recordings: [recording.trim(), ...this.#others],
       settings: this.#editor.texts(),
       clone_of: this.#again && !repeats ? this.#again.project : "",
     };
   }
 
-  async #add(job) {
+  async #add(/** @type {JobRequest} */ job) {
     try {
       return await addJob(job);
     } catch (error) {
-      if (Object.keys(error.problems).length) {
+      const { problems = {} } = asError(error);
+      if (Object.keys(problems).length) {
         this.#settings.open = true;
-        await this.#editor.show(this.#preset.value);
-        if (this.#editor.complain(error.problems))
+        await this.#editor.show(this.#state.values.preset);
+        if (this.#editor.complain(problems))
           throw new Error("Some settings are invalid, see above");
       }
       throw error;

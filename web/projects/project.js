@@ -13,8 +13,19 @@ import {
 } from "../shared/api.js";
 import { approvalLines, approvalMark } from "../shared/approval_lines.js";
 import { badge } from "../shared/badge.js";
-import { byId, fill, make, showError, targetOf } from "../shared/dom.js";
-import { checked } from "../shared/download.js";
+import {
+  byId,
+  detailOf,
+  html,
+  nothing,
+  only,
+  render,
+  say,
+  showError,
+  targetOf,
+  within,
+} from "../shared/dom.js";
+import { askFirst } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
@@ -24,36 +35,38 @@ import "../shared/page_head.js";
 import "./project_tools.js";
 import "./rig_section.js";
 
-const id = idHere();
-const status = document.querySelector("job-status");
-const log = document.querySelector("job-log");
+/** @import {JobView, ProjectView, ResultFile} from "../shared/http_types" */
+
 const COMPARED_AGAIN_MS = 3000;
+/** @type {Record<string, string>} */
 const STAGE_WORDS = { done: "✓ Done", reused: "✓ Reused", running: "▶ Running" };
-let project = null;
-let view = null;
-let lacking = null;
+
+/** What the page shows. */
+const state = {
+  id: idHere(),
+  /** @type {ProjectView | null} */
+  project: null,
+  /** @type {JobView | null} */
+  view: null, // the newest job
+  lacking: /** @type {unknown} */ (null), // why there is no project
+};
 
 function draw() {
+  const { id, project, view } = state;
   const name = project?.name ?? id;
   document.title = `${name} · recon4`;
-  document.querySelector("page-head").name = name;
+  only("page-head").name = name;
   byId("title").textContent = name;
-  document.querySelector("project-tools").name = name;
-  const facts = project
-    ? [
-        project.preset && `preset ${project.preset}`,
-        project.rig && `rig ${project.rig}`,
-        bytes(project.bytes),
-        when(project.updated),
-      ]
-    : [];
-  status.hidden = !view || view.job.state === "succeeded";
-  fill(
+  only("project-tools").name = name;
+  const open = view !== null && view.job.state !== "succeeded";
+  render(
+    html`${open ? nothing : badge(stateOf(project, view))}
+      ${project?.finished ? approvalMark(project.approval) : nothing}
+      <p class="quiet">${project ? factsOf(project) : nothing}</p>`,
     byId("state"),
-    status.hidden ? badge(stateOf(project, view)) : null,
-    project?.finished ? approvalMark(project.approval) : null,
-    make("p", { className: "quiet" }, facts.filter(Boolean).join(" · ")),
   );
+  const status = only("job-status");
+  status.hidden = !open;
   if (view) status.view = view;
   drawMessage();
   drawFigures();
@@ -62,78 +75,97 @@ function draw() {
   showMap();
 }
 
+const factsOf = (/** @type {ProjectView} */ { preset, rig, bytes: size, updated }) =>
+  [preset && `preset ${preset}`, rig && `rig ${rig}`, bytes(size), when(updated)]
+    .filter(Boolean)
+    .join(" · ");
+
 function drawFigures() {
-  const rows = figures(project?.summary ?? {});
+  const rows = figures(state.project?.summary ?? {});
   byId("figures").hidden = rows.length === 0;
-  fill(
-    byId("figures").querySelector("dl"),
-    ...rows.map(([text, value]) => make("div", {}, make("dt", {}, text), make("dd", {}, value))),
+  render(
+    rows.map(
+      ([text, value]) =>
+        html`<div>
+          <dt>${text}</dt>
+          <dd>${value}</dd>
+        </div>`,
+    ),
+    within(byId("figures"), "dl"),
   );
-  const facts = factsIn(project?.summary);
+  const facts = factsIn(state.project?.summary);
   byId("verdict").hidden = !facts || firstText(facts) === "";
   if (facts) byId("reasons", FindingList).facts = facts;
 }
 
 function drawFiles() {
+  const { project } = state;
   const files = project?.files ?? [];
   byId("files").hidden = files.length === 0;
-  const row = (file) => {
-    const report = file.name === "report.html";
-    const link = report
-      ? make("a", { href: reportUrl(id), target: "_blank", rel: "noopener" }, file.label)
-      : checked(make("a", { href: fileUrl(id, file.name), download: "" }, file.label), {
-          message: byId("files-message"),
-          status: byId("files-status"),
-        });
-    return make("li", {}, link, make("small", {}, `${file.name}, ${bytes(file.bytes)}`));
-  };
-  fill(byId("approval"), ...(project ? approvalLines(project.approval) : []));
-  const found = project?.summary?.findings ? ["csv", "geojson"] : [];
-  fill(byId("files").querySelector("ul"), ...files.map(row), ...found.map(findingsRow));
+  render(project ? approvalLines(project.approval) : nothing, byId("approval"));
+  const found = project?.summary.findings ? ["csv", "geojson"] : [];
+  render([files.map(fileRow), found.map(findingsRow)], within(byId("files"), "ul"));
+}
+
+const filePlaces = () => ({ message: byId("files-message"), status: byId("files-status") });
+
+/** A result: the report opens beside the page, other files are downloads. */
+function fileRow(/** @type {ResultFile} */ { name, label, bytes: size }) {
+  const { id } = state;
+  const link =
+    name === "report.html"
+      ? html`<a href=${reportUrl(id)} target="_blank" rel="noopener">${label}</a>`
+      : html`<a href=${fileUrl(id, name)} download @click=${askFirst(filePlaces)}>${label}</a>`;
+  return html`<li>${link}<small>${name}, ${bytes(size)}</small></li>`;
 }
 
 /** A download of the findings: a table, or for a GIS. */
-const findingsRow = (ending) =>
-  make(
-    "li",
-    {},
-    make(
-      "a",
-      { href: findingsUrl(id, ending), download: "" },
-      ending === "csv" ? "Findings, CSV" : "Findings, GeoJSON",
-    ),
-    make("small", {}, `findings.${ending}`),
-  );
+const findingsRow = (/** @type {string} */ ending) =>
+  html`<li>
+    <a href=${findingsUrl(state.id, ending)} download
+      >Findings, ${ending === "csv" ? "CSV" : "GeoJSON"}</a
+    ><small>findings.${ending}</small>
+  </li>`;
 
 function drawStages() {
+  const { project, view } = state;
   const done = new Map((project?.stages ?? []).map((row) => [row.stage, row]));
   const live = view?.job.state === "running" ? view.status.stages : [];
   const rows = live.length
-    ? live.map((row) => [
-        row.stage,
-        STAGE_WORDS[row.state] ?? row.state,
-        row.seconds,
-        done.get(row.stage)?.peak_bytes,
-      ])
-    : [...done.values()].map((row) => [row.stage, STAGE_WORDS.done, row.seconds, row.peak_bytes]);
+    ? live.map((row) => ({
+        stage: row.stage,
+        state: STAGE_WORDS[row.state] ?? row.state,
+        time_s: row.seconds,
+        memory: done.get(row.stage)?.peak_bytes,
+      }))
+    : [...done.values()].map((row) => ({
+        stage: row.stage,
+        state: STAGE_WORDS.done,
+        time_s: row.seconds,
+        memory: row.peak_bytes,
+      }));
   byId("stages").hidden = rows.length === 0;
-  const cells = ([stage, state, time, memory]) =>
-    make(
-      "tr",
-      {},
-      make("th", { scope: "row" }, stage),
-      make("td", {}, state),
-      make("td", { className: "number" }, typeof time === "number" ? seconds(time) : ""),
-      make("td", { className: "number" }, memory ? bytes(memory) : ""),
-    );
-  fill(byId("stages").querySelector("tbody"), ...rows.map(cells));
+  render(
+    rows.map(
+      ({ stage, state: word, time_s, memory }) =>
+        html`<tr>
+          <th scope="row">${stage}</th>
+          <td>${word}</td>
+          <td class="number">${typeof time_s === "number" ? seconds(time_s) : nothing}</td>
+          <td class="number">${memory ? bytes(memory) : nothing}</td>
+        </tr>`,
+    ),
+    within(byId("stages"), "tbody"),
+  );
 }
 
 function showMap() {
+  const { id, project, view } = state;
   const walking =
     view?.job.state === "running" && view.status.stages.some((row) => row.stage === "odometry");
   if (!(project?.viewable || walking) || byId("viewer").querySelector("iframe")) return;
-  const viewer = make("iframe", { src: viewerUrl(id) + location.hash, title: "Map in 3-D" });
+  const viewer = document.createElement("iframe");
+  Object.assign(viewer, { src: viewerUrl(id) + location.hash, title: "Map in 3-D" });
   // Keys work without a click first: the viewer takes them unless another control has the focus.
   const takeKeys = () => document.activeElement === document.body && viewer.focus();
   viewer.addEventListener("load", takeKeys);
@@ -143,69 +175,71 @@ function showMap() {
 
 /** Has the viewer fly to the stretch of the walk in the fragment of the address. */
 function showStretch() {
-  const viewer = byId("viewer").querySelector("iframe");
-  if (!viewer || !location.hash) return;
+  const shown = byId("viewer").querySelector("iframe")?.contentWindow?.location;
+  if (!shown || !location.hash) return;
   byId("viewer").scrollIntoView({ block: "nearest" });
-  const { location: shown } = viewer.contentWindow; // viser adds a query to it
-  shown.replace(shown.href.split("#")[0] + location.hash);
+  shown.replace(shown.href.split("#")[0] + location.hash); // viser adds a query to it
 }
 
 function drawLog() {
-  if (view) log.job = view.job.id;
+  const log = only("job-log");
+  if (!state.view) return;
+  log.job = state.view.job.id;
   log.read();
 }
 
 async function reload() {
   try {
-    project = await readProject(id);
-    lacking = null;
-    if (project.approval.checking) setTimeout(reload, COMPARED_AGAIN_MS);
-    document.querySelector("rig-section").reload();
+    state.project = await readProject(state.id);
+    state.lacking = null;
+    if (state.project.approval.checking) setTimeout(reload, COMPARED_AGAIN_MS);
+    only("rig-section").reload();
   } catch (error) {
-    lacking = error;
+    state.lacking = error;
   }
   draw();
 }
 
 /** Shows why there is no project; before its job made a folder, that is expected. */
 function drawMessage() {
+  const { lacking, view, project } = state;
   const expected = lacking instanceof ApiError && lacking.status === 404 && view;
-  const damage = project?.problem ? `Damaged: ${project.problem}` : "";
   if (lacking && !expected) showError(byId("message"), lacking);
-  else byId("message").textContent = damage;
+  else say(byId("message"), project?.problem ? `Damaged: ${project.problem}` : "");
 }
 
-function onJob(fresh) {
-  if (fresh.job.project !== id) return;
-  const before = view;
-  view = fresh;
-  const stagesDone = (one) => one?.status.stages.filter((row) => row.state !== "running").length;
-  if (before?.job.state !== view.job.state || stagesDone(before) !== stagesDone(view)) reload();
+function onJob(/** @type {JobView} */ fresh) {
+  if (fresh.job.project !== state.id) return;
+  const before = state.view;
+  state.view = fresh;
+  const stagesDone = (/** @type {JobView | null} */ one) =>
+    one?.status.stages.filter((row) => row.state !== "running").length;
+  if (before?.job.state !== fresh.job.state || stagesDone(before) !== stagesDone(fresh)) reload();
   else draw();
   drawLog();
 }
 
 addEventListener("hashchange", showStretch);
 byId("reasons").addEventListener("click", (event) => {
-  const again = targetOf(event).closest("a.stretch");
-  if (again && again.getAttribute("href").endsWith(location.hash)) showStretch();
+  const again = targetOf(event).closest("a.stretch")?.getAttribute("href");
+  if (again?.endsWith(location.hash)) showStretch();
 });
-document.querySelector("project-tools").addEventListener("renamed", (event) => {
-  project = /** @type {CustomEvent} */ (event).detail;
+only("project-tools").addEventListener("renamed", (event) => {
+  state.project = detailOf(event);
   draw();
 });
 const receive = watchJobs(onJob, (linked) => {
-  document.querySelector("page-head").linked = linked;
+  only("page-head").linked = linked;
 });
 
 /** Finds the newest job, with its log, also when it succeeded: the stream sends only the others. */
 async function findJob() {
-  const [newest] = await listJobsOf(id);
-  if (newest && !view) receive(newest);
+  const [newest] = await listJobsOf(state.id);
+  if (newest && !state.view) receive(newest);
 }
 
 reload();
 findJob().catch((error) => {
-  lacking ??= error;
+  state.lacking ??= error;
   draw();
 });

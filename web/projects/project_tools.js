@@ -9,135 +9,155 @@ import {
   readCurrentUser,
   renameProject,
 } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { closeButton, openDialog } from "../shared/dialog.js";
+import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import "./new_job.js";
+
+/** @import {RepeatedJob} from "./new_job.js" */
 
 const MAX_LETTERS = 200_000;
 
 export class ProjectTools extends HTMLElement {
   #id = idHere();
-  #again = make("details", {}, make("summary", {}, "Run again, with other settings"));
-  #name = make("input", { name: "name", maxLength: 100, required: true, autocomplete: "off" });
-  #message = make("p", { className: "error", role: "alert" });
-  #dialog = make("dialog", { ariaLabel: "Delete the project" });
+  #state = {
+    name: "",
+    mayProcess: false,
+    /** @type {RepeatedJob | null} */
+    again: null, // the job that the form repeats, once it was opened
+  };
 
   async connectedCallback() {
+    this.hidden = true;
     const { may } = await readCurrentUser();
-    this.hidden = !may.includes("process");
-    if (this.hidden) return;
-    this.#again.addEventListener("toggle", () => this.#again.open && this.#form());
-    this.replaceChildren(
-      this.#again,
-      make(
-        "details",
-        {},
-        make("summary", {}, "Rename or delete"),
-        make(
-          "form",
-          { onsubmit: (event) => this.#rename(event) },
-          make("label", {}, make("span", {}, "Name"), this.#name),
-          make(
-            "div",
-            { className: "buttons" },
-            make("button", {}, "Rename"),
-            make("button", { type: "button", onclick: () => this.#ask() }, "Delete…"),
-          ),
-        ),
-      ),
-      this.#message,
-      this.#dialog,
+    this.#state.mayProcess = may.includes("process");
+    this.#draw();
+  }
+
+  /** The project's name as it is; what is being typed stays. */
+  set name(/** @type {string} */ name) {
+    this.#state.name = name;
+    this.#draw();
+  }
+
+  #draw() {
+    const { name, mayProcess, again } = this.#state;
+    this.hidden = !mayProcess;
+    if (!mayProcess) return;
+    render(
+      html`<details class="again" @toggle=${() => this.#form()}>
+          <summary>Run again, with other settings</summary>
+          ${again ? html`<new-job .again=${again}></new-job>` : nothing}
+        </details>
+        <details>
+          <summary>Rename or delete</summary>
+          <form @submit=${(/** @type {SubmitEvent} */ event) => this.#rename(event)}>
+            <label
+              ><span>Name</span
+              ><input name="name" maxlength="100" required autocomplete="off" .value=${name}
+            /></label>
+            <div class="buttons">
+              <button>Rename</button
+              ><button type="button" @click=${() => this.#askToDelete()}>Delete…</button>
+            </div>
+          </form>
+        </details>
+        ${messagePlace()}`,
+      this,
     );
   }
 
-  /** The project's name as it is. */
-  set name(text) {
-    if (document.activeElement !== this.#name) this.#name.value = text;
+  get #message() {
+    return within(this, ":scope > .error");
+  }
+
+  get #name() {
+    return within(this, "input[name=name]", HTMLInputElement);
   }
 
   /** Opens the form that runs this project with other settings. */
   runAgain() {
-    this.#again.open = true;
-    this.#again.scrollIntoView({ block: "start" });
-    this.#again.querySelector("summary").focus({ preventScroll: true });
+    const again = within(this, ".again", HTMLDetailsElement);
+    again.open = true;
+    again.scrollIntoView({ block: "start" });
+    within(again, "summary").focus({ preventScroll: true });
   }
 
   async #form() {
-    if (this.#again.querySelector("new-job")) return;
+    if (this.#state.again) return;
     const views = await attempt(this.#message, () => listJobsOf(this.#id));
     if (!views) return;
-    const form = document.createElement("new-job");
-    form.again = views[0]?.job ?? { project: this.#id, inputs: { recordings: [], settings: [] } };
-    this.#again.append(form);
+    const none = { project: this.#id, inputs: { recordings: [], settings: [] } };
+    this.#state.again = views[0]?.job ?? none;
+    this.#draw();
   }
 
-  async #rename(event) {
+  async #rename(/** @type {SubmitEvent} */ event) {
     event.preventDefault();
     const project = await attempt(this.#message, () => renameProject(this.#id, this.#name.value));
     if (project) this.dispatchEvent(new CustomEvent("renamed", { detail: project }));
   }
 
-  #ask() {
-    const close = () => this.#dialog.close();
+  #askToDelete() {
     const go = async () => {
-      close();
+      dialog.close();
       if (await attempt(this.#message, () => deleteProject(this.#id))) location.assign(at("/"));
     };
-    this.#dialog.replaceChildren(
-      make("h2", {}, `Delete ${this.#name.value || this.#id}?`),
-      make(
-        "p",
-        {},
-        "It can be restored from the list of projects for a week. The recording is not deleted.",
-      ),
-      make(
-        "div",
-        { className: "buttons" },
-        make("button", { type: "button", autofocus: true, onclick: close }, "Keep"),
-        make("button", { type: "button", className: "danger", onclick: go }, "Delete"),
-      ),
+    const dialog = openDialog(
+      `Delete ${this.#name.value || this.#id}?`,
+      html`<p>
+          It can be restored from the list of projects for a week. The recording is not deleted.
+        </p>
+        <div class="buttons">
+          ${closeButton("Keep")}<button type="button" class="danger" @click=${go}>Delete</button>
+        </div>`,
     );
-    this.#dialog.showModal();
   }
 }
 
 /** <job-log>: the log of a job as it grows; read only while it is open. */
 export class JobLog extends HTMLElement {
-  #pre = make("pre", { tabIndex: 0, ariaLabel: "Log" });
-  #link = make("a", { download: "" }, "Download the log");
-  #details = make("details", {}, make("summary", {}, "Log"), this.#pre, this.#link);
-  #job = "";
-  #next = 0;
-  #busy = false;
+  #state = { job: "", text: "", next: 0, busy: false };
 
-  connectedCallback() {
-    this.replaceChildren(this.#details);
-    this.#details.addEventListener("toggle", () => this.read());
+  set job(/** @type {string} */ job) {
+    if (job === this.#state.job) return;
+    Object.assign(this.#state, { job, text: "", next: 0 });
+    this.hidden = false;
+    this.#draw();
   }
 
-  set job(id) {
-    if (id === this.#job) return;
-    [this.#job, this.#next] = [id, 0];
-    this.#pre.textContent = "";
-    this.#link.href = logUrl(id);
-    this.hidden = false;
+  #draw() {
+    const { job, text } = this.#state;
+    render(
+      html`<details @toggle=${() => this.read()}>
+        <summary>Log</summary>
+        <pre tabindex="0" aria-label="Log">${text}</pre>
+        <a download href=${logUrl(job)}>Download the log</a>
+      </details>`,
+      this,
+    );
   }
 
   /** Reads what was appended since. */
   async read() {
-    if (!this.#job || !this.#details.open || this.#busy) return;
-    this.#busy = true;
+    const state = this.#state;
+    if (!state.job || state.busy || !within(this, "details", HTMLDetailsElement).open) return;
+    state.busy = true;
     try {
-      for (let piece; piece === undefined || piece.text;) {
-        piece = await readLog(this.#job, this.#next);
-        this.#next = piece.next;
-        const atEnd = this.#pre.scrollHeight - this.#pre.scrollTop - this.#pre.clientHeight < 40;
-        if (piece.text)
-          this.#pre.textContent = (this.#pre.textContent + piece.text).slice(-MAX_LETTERS);
-        if (atEnd) this.#pre.scrollTop = this.#pre.scrollHeight;
-      }
+      for (let more = true; more;) more = this.#append(await readLog(state.job, state.next));
     } finally {
-      this.#busy = false;
+      state.busy = false;
     }
+  }
+
+  /** Shows a piece of the log, and its end if that was in view; whether there may be more. */
+  #append(/** @type {{text: string, next: number}} */ { text, next }) {
+    const pre = within(this, "pre");
+    const atEnd = pre.scrollHeight - pre.scrollTop - pre.clientHeight < 40;
+    this.#state.text = (this.#state.text + text).slice(-MAX_LETTERS);
+    this.#state.next = next;
+    this.#draw();
+    if (atEnd) pre.scrollTop = pre.scrollHeight;
+    return text !== "";
   }
 }
 

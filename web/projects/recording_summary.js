@@ -1,8 +1,10 @@
 // <recording-look>: the contents of a recording as a list.
 
 import { lookAt } from "../shared/api.js";
-import { make, showError } from "../shared/dom.js";
+import { asError, html, nothing, render, showError, within } from "../shared/dom.js";
 import { bytes, count, seconds } from "../shared/format.js";
+
+/** @import {RecordingSummary, SensorSummary} from "../shared/http_types" */
 
 export class RecordingLook extends HTMLElement {
   #asked = 0;
@@ -13,15 +15,15 @@ export class RecordingLook extends HTMLElement {
   }
 
   /** The summary of a recording; null if unreadable or if another was requested meanwhile. */
-  async look(path) {
+  async look(/** @type {string} */ path) {
     const mine = (this.#asked += 1);
     this.hidden = !path;
     if (!path) return null;
-    this.replaceChildren(make("p", { className: "quiet" }, "Reading the recording…"));
+    render(html`<p class="quiet">Reading the recording…</p>`, this);
     try {
       const found = await lookAt(path);
       if (mine !== this.#asked) return null;
-      this.#show(found);
+      render(summary(found), this);
       return found;
     } catch (error) {
       if (mine === this.#asked) this.#refuse(path, error);
@@ -29,63 +31,78 @@ export class RecordingLook extends HTMLElement {
     }
   }
 
-  /** The reason, and a button for each recording in the folder. */
+  /**
+   * The reason, and a button for each recording in the folder.
+   * @param {string} folder
+   * @param {unknown} error
+   */
   #refuse(folder, error) {
-    const { candidates = [] } = error;
-    const reason = make("p", { className: "error" });
-    showError(reason, error);
-    const choose = (path) => this.dispatchEvent(new CustomEvent("pick", { detail: path }));
-    const label = (path) => (path.startsWith(`${folder}/`) ? path.slice(folder.length + 1) : path);
-    this.replaceChildren(
-      reason,
-      make(
-        "div",
-        { className: "buttons" },
-        ...candidates.map((path) =>
-          make("button", { type: "button", onclick: () => choose(path) }, `Use ${label(path)}`),
-        ),
-      ),
+    const { candidates = [] } = asError(error);
+    const choose = (/** @type {string} */ path) =>
+      this.dispatchEvent(new CustomEvent("pick", { detail: path }));
+    const label = (/** @type {string} */ path) =>
+      path.startsWith(`${folder}/`) ? path.slice(folder.length + 1) : path;
+    render(
+      html`<p class="error"></p>
+        <div class="buttons">
+          ${candidates.map(
+            (path) =>
+              html`<button type="button" @click=${() => choose(path)}>Use ${label(path)}</button>`,
+          )}
+        </div>`,
+      this,
     );
-  }
-
-  #show(found) {
-    const about = found.estimated ? "about " : "";
-    const facts = [
-      found.kind,
-      bytes(found.bytes),
-      ...(found.seconds > 0 ? [`${about}${seconds(found.seconds)}`] : []),
-    ];
-    const sensor = (one) => {
-      const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)}/s`;
-      return [
-        "LiDAR",
-        `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`,
-      ];
-    };
-    const rows = [
-      ...found.sensors.map(sensor),
-      ...found.samples.map((text) => ["Samples", text]),
-      ...(found.rig ? [["Rig", `${file(found.rig)}, next to it`]] : []),
-      ...(found.imu ? [["IMU", `${file(found.imu)}, next to it`]] : []),
-      ...(found.gnss ? [["GNSS", `${file(found.gnss)}, next to it`]] : []),
-      ...found.derived.map((text) => ["Derived", text]),
-      ...found.missing.map((text) => ["Missing", text]),
-    ];
-    const warnings = found.warnings.map((text) => make("li", {}, text));
-    this.replaceChildren(
-      make("p", {}, make("strong", {}, facts.join(" · "))),
-      make(
-        "dl",
-        { className: "found" },
-        ...rows.flatMap(([term, text]) => [make("dt", {}, term), make("dd", {}, text)]),
-      ),
-      ...(warnings.length
-        ? [make("p", { className: "warn" }, "▲ Warnings"), make("ul", {}, ...warnings)]
-        : []),
-    );
+    showError(within(this, ".error"), error);
   }
 }
 
-const file = (path) => path.split("/").at(-1);
+function summary(/** @type {RecordingSummary} */ found) {
+  const { kind, bytes: size, seconds: duration, warnings } = found;
+  const about = found.estimated ? "about " : "";
+  const facts = [kind, bytes(size), duration > 0 ? `${about}${seconds(duration)}` : ""];
+  return html`<p><strong>${facts.filter(Boolean).join(" · ")}</strong></p>
+    <dl class="found">
+      ${rowsOf(found, about).map(
+        ([term, text]) =>
+          html`<dt>${term}</dt>
+            <dd>${text}</dd>`,
+      )}
+    </dl>
+    ${
+      warnings.length
+        ? html`<p class="warn">▲ Warnings</p>
+            <ul>
+              ${warnings.map((text) => html`<li>${text}</li>`)}
+            </ul>`
+        : nothing
+    }`;
+}
+
+/**
+ * What is in it: a term and a text each.
+ * @param {RecordingSummary} found
+ * @param {string} about in front of what is estimated
+ * @returns {Array<[string, string]>}
+ */
+function rowsOf({ sensors, samples, rig, imu, gnss, derived, missing }, about) {
+  const sensor = (/** @type {SensorSummary} */ one) => {
+    const rate = one.rate_hz === null ? "" : `, ${one.rate_hz.toFixed(1)}/s`;
+    return `${one.model} (${one.label}): ${about}${count(one.count)} ${one.content}${rate}`;
+  };
+  const beside = (/** @type {string} */ path) => `${path.split("/").at(-1)}, next to it`;
+  /** @type {Array<[string, string[]]>} */
+  const all = [
+    ["LiDAR", sensors.map(sensor)],
+    ["Samples", samples],
+    ["Rig", rig ? [beside(rig)] : []],
+    ["IMU", imu ? [beside(imu)] : []],
+    ["GNSS", gnss ? [beside(gnss)] : []],
+    ["Derived", derived],
+    ["Missing", missing],
+  ];
+  return all.flatMap(([term, texts]) =>
+    texts.map((text) => /** @type {[string, string]} */ ([term, text])),
+  );
+}
 
 customElements.define("recording-look", RecordingLook);

@@ -1,6 +1,7 @@
 // Sends the files of one recording, resumes after an interruption, reports progress. No DOM.
 
 import {
+  ApiError,
   beginUpload,
   createFile,
   deleteRecording,
@@ -11,6 +12,14 @@ import {
   removeUpload,
   sendBytes,
 } from "../shared/api.js";
+
+/**
+ * @import {UploadView} from "../shared/http_types"
+ * @import {Picked} from "../slices/picking.js"
+ * @typedef {"waiting" | "sending" | "paused" | "trying" | "failed" | "done" | "removed"}
+ *   SendingState
+ * @typedef {{url: string, offset: number}} KnownFile a file that is on the server in part
+ */
 
 export const CHUNK = 8 << 20;
 const SMALLEST_CHUNK = 512 << 10;
@@ -23,7 +32,7 @@ const SYSTEM_FILES = new Set(["Thumbs.db", "desktop.ini"]);
  * Of picked or dropped {file, name}: the name of the whole, the files with names below it, and how
  * many were left out.
  */
-export function sorted(picked) {
+export function sorted(/** @type {Picked[]} */ picked) {
   const meant = picked.filter(({ name }) =>
     name.split("/").every((part) => !part.startsWith(".") && !SYSTEM_FILES.has(part)),
   );
@@ -32,12 +41,16 @@ export function sorted(picked) {
   const files = meant
     .map(({ file, name }) => ({ file, name: folder ? name.slice(name.indexOf("/") + 1) : name }))
     .sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
-  const name = folder ? [...tops][0] : files.length === 1 ? files[0].name : "recording";
+  const name = folder
+    ? ([...tops][0] ?? "")
+    : files.length === 1
+      ? (files[0]?.name ?? "")
+      : "recording";
   return { name, files, leftOut: picked.length - meant.length };
 }
 
 /** A key by which the same files are recognized after an interruption. */
-export async function fingerprint(files) {
+export async function fingerprint(/** @type {Picked[]} */ files) {
   const text = JSON.stringify(files.map(({ file, name }) => [name, file.size, file.lastModified]));
   const digest = await crypto.subtle?.digest("SHA-256", new TextEncoder().encode(text));
   if (!digest) return text.slice(0, 200);
@@ -45,19 +58,24 @@ export async function fingerprint(files) {
 }
 
 export class Sending extends EventTarget {
-  state = "waiting"; // sending, paused, trying, failed, done, removed
+  /** @type {SendingState} */
+  state = "waiting";
   text = "";
-  error = null; // why it failed
+  error = /** @type {unknown} */ (null); // why it failed
   sent = 0;
   recording = "";
+  /** @type {UploadView | null} */
   #upload = null;
-  #known = new Map(); // name -> {url, offset}
+  /** @type {Map<string, KnownFile>} */
+  #known = new Map(); // by name
+  /** @type {Array<{t: number, sent: number}>} */
   #samples = [];
   #chunk = CHUNK;
+  /** @type {AbortController | null} */
   #stop = null;
   #run = Promise.resolve(); // one at a time
 
-  constructor({ name, files }) {
+  constructor(/** @type {{name: string, files: Picked[]}} */ { name, files }) {
     super();
     this.name = name;
     this.files = files;
@@ -67,7 +85,7 @@ export class Sending extends EventTarget {
   /** Recent bytes per second; 0 = not known. */
   get rate() {
     const [first, last] = [this.#samples[0], this.#samples.at(-1)];
-    return last && last.t > first.t ? (last.sent - first.sent) / (last.t - first.t) : 0;
+    return first && last && last.t > first.t ? (last.sent - first.sent) / (last.t - first.t) : 0;
   }
 
   get eta() {
@@ -84,18 +102,17 @@ export class Sending extends EventTarget {
     return this.#run;
   }
 
-  async #go(stop) {
+  async #go(/** @type {AbortController} */ stop) {
     this.#samples = [];
     try {
-      await this.#find(stop.signal);
-      if (!this.#upload.finished) await this.#sendAll(stop.signal);
-      this.recording = (
-        await this.#again(stop.signal, () => readUpload(this.#upload.id))
-      ).recording;
+      const upload = await this.#find(stop.signal);
+      if (!upload.finished) await this.#sendAll(upload.id, stop.signal);
+      const sent = await this.#again(stop.signal, () => readUpload(upload.id));
+      this.recording = sent.recording;
       this.#tell("done", "");
     } catch (error) {
       this.error = error;
-      if (!stop.signal.aborted) this.#tell("failed", error.message);
+      if (!stop.signal.aborted) this.#tell("failed", messageOf(error));
       stop.abort();
     }
   }
@@ -106,7 +123,7 @@ export class Sending extends EventTarget {
   }
 
   async remove() {
-    if (this.#upload?.finished || this.state === "done") {
+    if (this.#upload && (this.#upload.finished || this.state === "done")) {
       await deleteRecording(this.#upload.folder);
     } else {
       this.pause();
@@ -116,12 +133,12 @@ export class Sending extends EventTarget {
   }
 
   /** The upload of these files: one begun before, or a new one. */
-  async #find(signal) {
+  async #find(/** @type {AbortSignal} */ signal) {
     const mark = await fingerprint(this.files);
     const uploads = await this.#again(signal, listUploads);
-    const same = (one) =>
+    const same = (/** @type {UploadView} */ one) =>
       one.fingerprint === mark && one.bytes === this.total && one.files === this.files.length;
-    this.#upload =
+    const upload =
       uploads.find(same) ??
       (await beginUpload({
         name: this.name,
@@ -129,24 +146,35 @@ export class Sending extends EventTarget {
         bytes: this.total,
         fingerprint: mark,
       }));
-    if (this.#upload.finished) return;
-    const rows = await this.#again(signal, () => listUploadFiles(this.#upload.id));
+    this.#upload = upload;
+    if (upload.finished) return upload;
+    const rows = await this.#again(signal, () => listUploadFiles(upload.id));
     this.#known = new Map(rows.map((row) => [row.name, row]));
     this.#count();
+    return upload;
   }
 
-  async #sendAll(signal) {
+  /**
+   * @param {string} upload
+   * @param {AbortSignal} signal
+   */
+  async #sendAll(upload, signal) {
     const waiting = this.files.filter(
       ({ file, name }) => this.#known.get(name)?.offset !== file.size || !this.#known.has(name),
     );
     const lane = async () => {
       for (let next = waiting.shift(); next; next = waiting.shift())
-        await this.#sendFile(next, signal);
+        await this.#sendFile(upload, next, signal);
     };
     await Promise.all(Array.from({ length: AT_ONCE }, lane));
   }
 
-  async #sendFile({ file, name }, signal) {
+  /**
+   * @param {string} upload
+   * @param {Picked} picked
+   * @param {AbortSignal} signal
+   */
+  async #sendFile(upload, { file, name }, signal) {
     do {
       await this.#again(signal, async (again) => {
         const row = this.#known.get(name);
@@ -156,21 +184,25 @@ export class Sending extends EventTarget {
         const began = performance.now();
         const bytes = await readBytes(file.slice(from, from + this.#chunk), name);
         if (row) row.offset = await sendBytes(row.url, from, bytes, signal);
-        else
-          this.#known.set(name, await createFile(this.#upload.id, name, file.size, bytes, signal));
+        else this.#known.set(name, await createFile(upload, name, file.size, bytes, signal));
         this.#suit((performance.now() - began) / 1000);
         this.#count();
       });
-    } while (this.#known.get(name).offset < file.size);
+    } while ((this.#known.get(name)?.offset ?? 0) < file.size);
   }
 
   /** Chunks take about a second or more: a slow line shows progress, a fast one is used. */
-  #suit(tookS) {
+  #suit(/** @type {number} */ tookS) {
     if (tookS > 4) this.#chunk = Math.max(this.#chunk / 2, SMALLEST_CHUNK);
     else if (tookS < 1) this.#chunk = Math.min(this.#chunk * 2, CHUNK);
   }
 
-  /** Tries again as long as another try can help. */
+  /**
+   * Tries again as long as another try can help.
+   * @template T
+   * @param {AbortSignal} signal
+   * @param {(again: boolean) => Promise<T>} action
+   */
   async #again(signal, action) {
     for (let wait = 1, again = false; ; wait = Math.min(wait * 2, LONGEST_WAIT_S), again = true) {
       if (signal.aborted) throw new Error("stopped");
@@ -179,9 +211,10 @@ export class Sending extends EventTarget {
         if (this.state === "trying") this.#tell("sending", "");
         return result;
       } catch (error) {
-        const helps = [0, 409, 423, 429, 460, 502, 503, 504].includes(error.status);
+        const status = error instanceof ApiError ? error.status : NaN;
+        const helps = [0, 409, 423, 429, 460, 502, 503, 504].includes(status);
         if (!helps || signal.aborted) throw error;
-        this.#tell("trying", `${error.message}; trying again in ${wait} s`);
+        this.#tell("trying", `${messageOf(error)}; trying again in ${wait} s`);
         await pauseFor(wait, signal);
       }
     }
@@ -191,10 +224,15 @@ export class Sending extends EventTarget {
     this.sent = [...this.#known.values()].reduce((sum, row) => sum + row.offset, 0);
     const t = performance.now() / 1000;
     this.#samples.push({ t, sent: this.sent });
-    while (this.#samples.length > 2 && t - this.#samples[0].t > RATE_OVER_S) this.#samples.shift();
+    while (this.#samples.length > 2 && t - (this.#samples[0]?.t ?? t) > RATE_OVER_S)
+      this.#samples.shift();
     this.#tell(this.state === "trying" ? "sending" : this.state, "");
   }
 
+  /**
+   * @param {SendingState} state
+   * @param {string} text
+   */
   #tell(state, text) {
     this.state = state;
     this.text = text;
@@ -202,6 +240,13 @@ export class Sending extends EventTarget {
   }
 }
 
+const messageOf = (/** @type {unknown} */ error) =>
+  error instanceof Error ? error.message : String(error);
+
+/**
+ * @param {Blob} blob
+ * @param {string} name
+ */
 async function readBytes(blob, name) {
   try {
     return await blob.arrayBuffer();
@@ -210,6 +255,11 @@ async function readBytes(blob, name) {
   }
 }
 
+/**
+ * @returns {Promise<void>}
+ * @param {number} seconds
+ * @param {AbortSignal} signal
+ */
 function pauseFor(seconds, signal) {
   return new Promise((resolve, reject) => {
     const timer = setTimeout(resolve, seconds * 1000);

@@ -12,24 +12,45 @@ import {
   rigUrl,
   saveCalibratedRig,
 } from "../shared/api.js";
-import { attempt, fields, fill, make } from "../shared/dom.js";
+import { closeButton, openDialog } from "../shared/dialog.js";
+import {
+  attempt,
+  fields,
+  html,
+  messagePlace,
+  nothing,
+  render,
+  targetOf,
+  within,
+} from "../shared/dom.js";
 import { calibrationSlices } from "./calibration_slices.js";
 import { beamRows, calibratingJob, outcomeOf, rowsOf } from "./rig_audit.js";
+
+/**
+ * @import {CalibrationSlices, CalibrationView, SavedRig} from "../shared/http_types"
+ * @import {Content} from "../shared/dom.js"
+ */
 
 const BEAM_HEADS = ["LiDAR and ring", "Range", "Elevation", "Azimuth"];
 const HEADS = ["Sensor", "Quantity", "Change ± σ", "Result"];
 
 export class RigSection extends HTMLElement {
   #id = idHere();
-  #body = make("div");
-  #message = make("p", { className: "error", role: "alert" });
-  #dialog = make("dialog", { ariaLabel: "Save the calibrated rig" });
   #mayProcess = false;
   #read = 0; // number of the newest request
 
   connectedCallback() {
     this.hidden = true;
-    this.replaceChildren(make("h2", {}, "Rig"), this.#body, this.#message, this.#dialog);
+    render(
+      html`<h2>Rig</h2>
+        <div></div>
+        ${messagePlace()}`,
+      this,
+    );
+  }
+
+  get #message() {
+    return within(this, ":scope > .error");
   }
 
   /** Reads the audit of the latest run again. */
@@ -47,75 +68,42 @@ export class RigSection extends HTMLElement {
     this.#draw(found.audit, found.slices);
   }
 
+  /**
+   * @param {CalibrationView} audit
+   * @param {CalibrationSlices | null} slices
+   */
   #draw(audit, slices) {
     const { mark, word, className } = outcomeOf(audit);
-    fill(
-      this.#body,
-      make("p", { className }, make("b", {}, `${mark} ${word}`)),
-      make("p", {}, audit.outcome),
-      this.#rigLine(audit),
-      audit.parameters.length ? this.#table(audit) : null,
-      audit.beams.length ? this.#beams(audit) : null,
-      audit.before && audit.after ? this.#agreement(audit) : null,
-      slices ? calibrationSlices(slices) : null,
-      this.#mayProcess ? this.#buttons(audit) : null,
+    render(
+      html`<p class=${className}><b>${mark} ${word}</b></p>
+        <p>${audit.outcome}</p>
+        ${rigLine(audit)} ${audit.parameters.length ? auditTable(audit) : nothing}
+        ${audit.beams.length ? beamTable(audit) : nothing} ${agreement(audit)}
+        ${slices ? calibrationSlices(slices) : nothing}
+        ${this.#mayProcess ? this.#buttons(audit) : nothing}`,
+      within(this, "div"),
     );
   }
 
-  #rigLine({ rig, saved }) {
-    const link = ({ id, version }) =>
-      make("a", { href: rigUrl(id) }, version ? `${id}, version ${version}` : id);
-    const parts = [
-      ...(rig ? ["Rig of the recording: ", link(rig), ". "] : []),
-      ...(saved ? ["The calibrated rig is saved as ", link(saved), "."] : []),
-    ];
-    return parts.length ? make("p", { className: "quiet" }, ...parts) : null;
-  }
-
-  #table(audit) {
-    const rows = rowsOf(audit.parameters);
-    const off = audit.parameters.some((one) => one.status === "off");
-    const cells = rows.map(({ sensor, quantity, change, mark, word, className }) => [
-      make("th", { scope: "row" }, sensor),
-      make("td", {}, quantity),
-      make("td", { className: "number" }, change),
-      make("td", { className }, `${mark} ${word}`),
-    ]);
-    return folded(`${rows.length} parameters compared`, "Audit", table(HEADS, cells), off);
-  }
-
-  #beams({ beams }) {
-    const rows = beamRows(beams);
-    const summary = `Corrections of ${rows.length} single beams`;
-    return folded(summary, "Beams", table(BEAM_HEADS, rows.map(numbers)));
-  }
-
-  #agreement({ before, after }) {
-    const text = (value) => (value === null ? "–" : `${(1e3 * value).toFixed(1)} mm`);
-    const rows = [
-      ["Distance of points from common planes", before.rms_m, after.rms_m],
-      ["One surface seen by two LiDARs", before.offset_m, after.offset_m],
-    ].filter(([, first, last]) => first !== null || last !== null);
-    return table(
-      ["", "Before", "After"],
-      rows.map(([name, ...values]) => numbers([name, ...values.map(text)])),
-      "Windows of the walk that were not used",
-    );
-  }
-
-  #buttons(audit) {
-    const calibrate = make("button", { type: "button", onclick: () => this.#calibrate() });
-    calibrate.textContent = "Calibrate and map again";
-    const save = make("button", { type: "button", onclick: () => this.#ask(audit) });
-    save.textContent = "Save as a new rig version…";
-    const done = audit.applied;
-    const off = audit.parameters.some((one) => one.status === "off");
-    return make(
-      "div",
-      { className: "buttons" },
-      ...(off && !done ? [calibrate] : []),
-      ...(done && !audit.saved ? [save] : []),
-    );
+  #buttons(/** @type {CalibrationView} */ audit) {
+    const { applied, saved, parameters } = audit;
+    const off = parameters.some((one) => one.status === "off");
+    return html`<div class="buttons">
+      ${
+        off && !applied
+          ? html`<button type="button" @click=${() => this.#calibrate()}>
+              Calibrate and map again
+            </button>`
+          : nothing
+      }
+      ${
+        applied && !saved
+          ? html`<button type="button" @click=${() => this.#ask(audit)}>
+              Save as a new rig version…
+            </button>`
+          : nothing
+      }
+    </div>`;
   }
 
   async #calibrate() {
@@ -131,92 +119,154 @@ export class RigSection extends HTMLElement {
     if (added) location.assign(projectUrl(this.#id));
   }
 
-  async #ask(audit) {
+  async #ask(/** @type {CalibrationView} */ { rig: used }) {
     const rigs = await attempt(this.#message, listRigs);
     if (!rigs) return;
     const own = rigs.filter((rig) => !rig.shipped).map((rig) => rig.id);
-    const mine = own.includes(audit.rig?.id) ? audit.rig.id : "";
-    const option = (value, text) => make("option", { value, selected: value === mine }, text);
-    const into = make(
-      "select",
-      { name: "into" },
-      ...own.map((id) => option(id, `A new version of ${id}`)),
-      option("", "A new rig"),
+    const mine = own.find((id) => id === used?.id) ?? "";
+    const option = (/** @type {string} */ value, /** @type {string} */ text) =>
+      html`<option value=${value} ?selected=${value === mine}>${text}</option>`;
+    const choose = (/** @type {string} */ into) => {
+      const name = within(dialog, "[name=rig]", HTMLInputElement);
+      name.disabled = /** @type {HTMLElement} */ (name.closest("label")).hidden = into !== "";
+    };
+    const dialog = openDialog(
+      "Save the calibrated rig",
+      html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#save(event, dialog)}>
+        <label
+          ><span>Save as</span
+          ><select name="into" @change=${(/** @type {Event} */ e) => choose(targetOf(e).value)}>
+            ${own.map((id) => option(id, `A new version of ${id}`))} ${option("", "A new rig")}
+          </select></label
+        >
+        <label
+          ><span>Name of the new rig</span
+          ><input
+            name="rig"
+            value=${this.#id}
+            pattern="[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}"
+            required
+            autocomplete="off"
+        /></label>
+        <label
+          ><span>Note</span><input name="note" maxlength="500" autocomplete="off" /><small
+            >The changes and their standard deviations are stored with it.</small
+          ></label
+        >
+        ${messagePlace()}
+        <div class="buttons">${closeButton()}<button class="primary">Save</button></div>
+      </form>`,
     );
-    const name = make("input", {
-      name: "rig",
-      value: this.#id,
-      pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}",
-      required: true,
-      autocomplete: "off",
-    });
-    const label = make("label", {}, make("span", {}, "Name of the new rig"), name);
-    const choose = () => (label.hidden = name.disabled = into.value !== "");
-    into.addEventListener("change", choose);
-    choose();
-    const message = make("p", { className: "error", role: "alert" });
-    this.#dialog.replaceChildren(
-      make("h2", {}, "Save the calibrated rig"),
-      make(
-        "form",
-        { onsubmit: (event) => this.#save(event, message) },
-        make("label", {}, make("span", {}, "Save as"), into),
-        label,
-        make(
-          "label",
-          {},
-          make("span", {}, "Note"),
-          make("input", { name: "note", maxLength: 500, autocomplete: "off" }),
-          make("small", {}, "The changes and their standard deviations are stored with it."),
-        ),
-        message,
-        make(
-          "div",
-          { className: "buttons" },
-          make("button", { type: "button", onclick: () => this.#dialog.close() }, "Cancel"),
-          make("button", { className: "primary" }, "Save"),
-        ),
-      ),
-    );
-    this.#dialog.showModal();
+    choose(mine);
   }
 
-  async #save(event, message) {
+  /**
+   * @param {SubmitEvent} event
+   * @param {HTMLDialogElement} dialog
+   */
+  async #save(event, dialog) {
     event.preventDefault();
-    const { into, rig, note } = fields(event.target);
+    const { into, rig, note } = fields(within(dialog, "form", HTMLFormElement));
     const create = into.value === "";
     const version = { rig: create ? rig.value : into.value, create, note: note.value.trim() };
-    if (!(await attempt(message, () => saveCalibratedRig(this.#id, version)))) return;
-    this.#dialog.close();
+    const save = () => saveCalibratedRig(this.#id, version);
+    if (!(await attempt(within(dialog, ".error"), save))) return;
+    dialog.close();
     await this.reload();
   }
 }
 
 customElements.define("rig-section", RigSection);
 
-/** A table of rows of cells. */
-function table(heads, rows, caption = "") {
-  return make(
-    "table",
-    { className: "audit" },
-    caption ? make("caption", {}, caption) : null,
-    make("thead", {}, make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text)))),
-    make("tbody", {}, ...rows.map((cells) => make("tr", {}, ...cells))),
+function rigLine(/** @type {CalibrationView} */ { rig, saved }) {
+  const link = (/** @type {SavedRig} */ { id, version }) =>
+    html`<a href=${rigUrl(id)}>${version ? `${id}, version ${version}` : id}</a>`;
+  if (!rig && !saved) return nothing;
+  return html`<p class="quiet">
+    ${rig ? html`Rig of the recording: ${link(rig)}. ` : nothing}
+    ${saved ? html`The calibrated rig is saved as ${link(saved)}.` : nothing}
+  </p>`;
+}
+
+function auditTable(/** @type {CalibrationView} */ { parameters }) {
+  const rows = rowsOf(parameters);
+  const off = parameters.some((one) => one.status === "off");
+  const cells = rows.map(
+    ({ sensor, quantity, change, mark, word, className }) =>
+      html`<th scope="row">${sensor}</th>
+        <td>${quantity}</td>
+        <td class="number">${change}</td>
+        <td class=${className}>${mark} ${word}</td>`,
+  );
+  const summary = `${rows.length} parameters compared`;
+  return folded({ summary, label: "Audit", open: off }, table(HEADS, cells));
+}
+
+function beamTable(/** @type {CalibrationView} */ { beams }) {
+  const rows = beamRows(beams);
+  const summary = `Corrections of ${rows.length} single beams`;
+  return folded({ summary, label: "Beams" }, table(BEAM_HEADS, rows.map(numbers)));
+}
+
+/** How well points agree before and after; nothing if that was not worked out. */
+function agreement(/** @type {CalibrationView} */ { before, after }) {
+  if (!before || !after) return nothing;
+  const text = (/** @type {number | null} */ value) =>
+    value === null ? "–" : `${(1e3 * value).toFixed(1)} mm`;
+  /** @type {Array<[string, number | null, number | null]>} */
+  const rows = [
+    ["Distance of points from common planes", before.rms_m, after.rms_m],
+    ["One surface seen by two LiDARs", before.offset_m, after.offset_m],
+  ];
+  const known = rows.filter(([, first, last]) => first !== null || last !== null);
+  return table(
+    ["", "Before", "After"],
+    known.map(([name, first, last]) => numbers([name, text(first), text(last)])),
+    "Windows of the walk that were not used",
   );
 }
+
+/**
+ * A table of rows of cells.
+ * @param {string[]} heads
+ * @param {Content[]} rows
+ */
+const table = (heads, rows, caption = "") =>
+  html`<table class="audit">
+    ${
+      caption
+        ? html`<caption>
+            ${caption}
+          </caption>`
+        : nothing
+    }
+    <thead>
+      <tr>
+        ${heads.map((text) => html`<th scope="col">${text}</th>`)}
+      </tr>
+    </thead>
+    <tbody>
+      ${rows.map(
+        (cells) =>
+          html`<tr>
+            ${cells}
+          </tr>`,
+      )}
+    </tbody>
+  </table>`;
 
 /** Cells of a row: its name, then numbers. */
-const numbers = ([name, ...texts]) => [
-  make("th", { scope: "row" }, name),
-  ...texts.map((text) => make("td", { className: "number" }, text)),
-];
+const numbers = (/** @type {string[]} */ [name, ...texts]) =>
+  html`<th scope="row">${name}</th>
+    ${texts.map((text) => html`<td class="number">${text}</td>`)}`;
 
-/** What can be opened, and scrolled by the keyboard. */
-function folded(summary, label, content, open = false) {
-  return make(
-    "details",
-    { open },
-    make("summary", {}, summary),
-    make("div", { className: "scroll", tabIndex: 0, role: "region", ariaLabel: label }, content),
-  );
-}
+/**
+ * What can be opened, and scrolled by the keyboard.
+ * @param {{summary: string, label: string, open?: boolean}} about
+ * @param {Content} content
+ */
+const folded = ({ summary, label, open = false }, content) =>
+  html`<details ?open=${open}>
+    <summary>${summary}</summary>
+    <div class="scroll" tabindex="0" role="region" aria-label=${label}>${content}</div>
+  </details>`;

@@ -2,176 +2,223 @@
 // Returns only what differs from the preset; problems are shown at the field.
 
 import { checkSettings, readSettings } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import {
+  attempt,
+  html,
+  messagePlace,
+  nothing,
+  render,
+  repeat,
+  say,
+  targetOf,
+  within,
+} from "../shared/dom.js";
 
+/** @import {GroupView, SettingView} from "../shared/http_types" */
+
+/** @type {Record<string, string>} */
 const TYPES = { int: "whole number", float: "number", text: "text" };
-let numbers = 0;
 
 export class SettingEditor extends HTMLElement {
-  #preset = "";
-  #rows = new Map(); // path -> {input, value, error, row}
-  #wanted = new Map(); // path -> text, of settings not shown yet
-  #find = make("input", {
-    type: "search",
-    placeholder: "voxel, odometry, GNSS…",
-    autocomplete: "off",
-    oninput: () => this.#filter(),
-  });
-  #only = make("input", { type: "checkbox", onchange: () => this.#filter() });
-  #text = make("p", { className: "quiet", role: "status" });
-  #groups = make("div", { className: "groups" });
-  #message = make("p", { className: "error", role: "alert" });
+  #state = {
+    preset: "",
+    /** @type {GroupView[]} */
+    groups: [],
+    /** @type {Map<string, string>} */
+    texts: new Map(), // of the fields, by path; of settings that are not shown too
+    /** @type {Record<string, string>} */
+    problems: {}, // by path
+    find: "",
+    onlyChanged: false,
+  };
 
   connectedCallback() {
-    this.replaceChildren(
-      make("label", {}, make("span", {}, "Find a setting"), this.#find),
-      make("label", { className: "check" }, this.#only, make("span", {}, "Only changed ones")),
-      this.#text,
-      this.#groups,
-      this.#message,
-    );
+    this.#draw();
   }
 
   /** Shows a preset; changes made before are kept. */
-  async show(preset) {
-    if (preset === this.#preset) return;
-    const kept = new Map(
-      this.texts().map((text) => [
-        text.slice(0, text.indexOf("=")),
-        text.slice(text.indexOf("=") + 1),
-      ]),
-    );
-    const groups = await attempt(this.#message, () => readSettings(preset));
+  async show(/** @type {string} */ preset) {
+    if (preset === this.#state.preset) return;
+    const groups = await attempt(within(this, ":scope > .error"), () => readSettings(preset));
     if (!groups) return;
-    this.#preset = preset;
-    this.#wanted = kept;
-    this.#rows.clear();
-    this.#groups.replaceChildren(...groups.map((group) => this.#group(group)));
-    this.#wanted = new Map();
-    this.#filter();
+    const changes = new Map(this.#changes());
+    Object.assign(this.#state, { preset, groups, texts: changes, problems: {} });
+    this.#draw();
+  }
+
+  /** Settings that differ from the preset, or are not shown yet. */
+  #changes() {
+    const { groups, texts } = this.#state;
+    const usual = new Map(
+      groups.flatMap(({ settings }) => settings.map((one) => [one.path, String(one.value)])),
+    );
+    return [...texts].filter(([path, text]) => text !== usual.get(path));
   }
 
   /** The changes to the preset, as `group.field=value` texts. */
   texts() {
-    const changed = [...this.#rows].filter(([, row]) => row.input.value !== row.value);
-    const unseen = [...this.#wanted].map(([path, value]) => `${path}=${value}`);
-    return [...unseen, ...changed.map(([path, row]) => `${path}=${row.input.value}`)];
+    return this.#changes().map(([path, text]) => `${path}=${text}`);
   }
 
   /** Applies the changes of another job; before or after `show`. */
-  set(texts) {
-    for (const text of texts) {
-      const [path, value] = [
-        text.slice(0, text.indexOf("=")).trim(),
-        text.slice(text.indexOf("=") + 1).trim(),
-      ];
-      const row = this.#rows.get(path);
-      if (row) row.input.value = value;
-      else this.#wanted.set(path, value);
+  set(/** @type {string[]} */ changes) {
+    for (const text of changes) {
+      const at = text.indexOf("=");
+      this.#state.texts.set(text.slice(0, at).trim(), text.slice(at + 1).trim());
     }
-    this.#filter();
+    this.#draw();
   }
 
   /** Shows the problems the server found, each at its field; returns whether there are any. */
-  complain(problems) {
-    for (const [path, row] of this.#rows) {
-      row.error.textContent = problems[path] ?? "";
-      row.input.setAttribute("aria-invalid", String(path in problems));
-    }
-    const elsewhere = Object.entries(problems).filter(([path]) => !this.#rows.has(path));
-    this.#message.textContent = elsewhere.map(([, text]) => text).join("; ");
-    const first = [...this.#rows.values()].find((row) => row.error.textContent);
-    if (first) {
-      first.row.closest("details").open = true;
-      first.row.hidden = false;
-      first.input.focus();
+  complain(/** @type {Record<string, string>} */ problems) {
+    this.#state.problems = problems;
+    this.#draw();
+    const first = this.querySelector("[aria-invalid=true]");
+    if (first instanceof HTMLElement) {
+      /** @type {HTMLDetailsElement} */ (first.closest("details")).open = true;
+      first.focus();
     }
     return Object.keys(problems).length > 0;
   }
 
-  #group({ name, text, settings }) {
-    const rows = settings.map((setting) => this.#setting(setting));
-    return make(
-      "details",
-      { className: "group" },
-      make("summary", {}, name),
-      make("p", { className: "quiet" }, text),
-      ...rows,
+  /**
+   * A field was left with a text.
+   * @param {string} path
+   * @param {string} text
+   */
+  async #change(path, text) {
+    this.#state.texts.set(path, text);
+    this.#draw();
+    const { preset } = this.#state;
+    const verdict = await attempt(within(this, ":scope > .error"), () =>
+      checkSettings(preset, this.texts()),
     );
+    this.#state.problems = verdict?.problems ?? {};
+    this.#draw();
   }
 
-  #setting({ path, name, kind, choices, unit, text, default: usual, value }) {
-    const id = `setting-${(numbers += 1)}`;
-    const shown = String(value);
-    const input = this.#input(kind, choices, { id, value: this.#wanted.get(path) ?? shown });
-    const error = make("p", { className: "error", id: `${id}-error` });
+  #draw() {
+    const { groups, problems, find, onlyChanged } = this.#state;
+    const changed = this.#changes().length;
+    const filters = find !== "" || onlyChanged;
+    const change = (/** @type {Partial<{find: string, onlyChanged: boolean}>} */ filter) => {
+      Object.assign(this.#state, filter);
+      this.#draw();
+    };
+    const search = (/** @type {Event} */ event) =>
+      change({ find: targetOf(event).value.trim().toLowerCase() });
+    const restrict = (/** @type {Event} */ event) =>
+      change({ onlyChanged: targetOf(event).checked });
+    render(
+      html`<label
+          ><span>Find a setting</span
+          ><input
+            type="search"
+            placeholder="voxel, odometry, GNSS…"
+            autocomplete="off"
+            @input=${search}
+        /></label>
+        <label class="check"
+          ><input type="checkbox" @change=${restrict} /><span>Only changed ones</span></label
+        >
+        <p class="quiet" role="status">${changed ? `${changed} changed` : "None changed"}</p>
+        <div class="groups">
+          ${repeat(
+            groups,
+            ({ name }) => name,
+            (group) => this.#group(group),
+          )}
+        </div>
+        ${messagePlace()}`,
+      this,
+    );
+    if (filters) for (const group of this.querySelectorAll("details")) group.open = !group.hidden;
+    const shown = new Set(groups.flatMap(({ settings }) => settings.map(({ path }) => path)));
+    const elsewhere = Object.entries(problems).filter(([path]) => !shown.has(path));
+    if (elsewhere.length)
+      say(within(this, ":scope > .error"), elsewhere.map(([, text]) => text).join("; "));
+  }
+
+  #group(/** @type {GroupView} */ { name, text, settings }) {
+    const fits = settings.map((setting) => this.#fits(setting));
+    return html`<details class="group" ?hidden=${!fits.includes(true)}>
+      <summary>${name}</summary>
+      <p class="quiet">${text}</p>
+      ${settings.map((setting, k) => this.#setting(setting, !fits[k]))}
+    </details>`;
+  }
+
+  #textOf(/** @type {SettingView} */ { path, value }) {
+    return this.#state.texts.get(path) ?? String(value);
+  }
+
+  /** Whether a setting is what is searched for, or has a problem. */
+  #fits(/** @type {SettingView} */ setting) {
+    const { find, onlyChanged, problems } = this.#state;
+    if (problems[setting.path]) return true;
+    if (onlyChanged && this.#textOf(setting) === String(setting.value)) return false;
+    return `${setting.path} ${setting.name} ${setting.text}`.toLowerCase().includes(find);
+  }
+
+  /**
+   * @param {SettingView} setting
+   * @param {boolean} hidden
+   */
+  #setting(setting, hidden) {
+    const { path, name, kind, unit, text, default: usual, value } = setting;
+    const problem = this.#state.problems[path] ?? "";
     const about = [
-      kind in TYPES ? TYPES[kind] : "",
+      TYPES[kind] ?? "",
       `default ${String(usual) === "" ? "empty" : usual}`,
       value !== usual ? `preset ${value}` : "",
     ];
-    const label = make(
-      "label",
-      { htmlFor: id },
-      make("span", {}, name, unit ? make("small", {}, ` ${unit}`) : null),
-    );
-    const hint = make(
-      "p",
-      { className: "hint", id: `${id}-hint` },
-      text ? `${text} ` : "",
-      make("span", { className: "quiet" }, `(${about.filter(Boolean).join(", ")})`),
-    );
-    input.setAttribute("aria-describedby", `${id}-hint ${id}-error`);
-    input.addEventListener("change", () => this.#check());
-    const row = make("div", { className: "setting" }, label, input, hint, error);
-    this.#rows.set(path, { input, value: shown, error, row });
-    return row;
+    const id = `setting-${path}`;
+    const changed = this.#textOf(setting) !== String(value);
+    return html`<div class="setting ${changed ? "changed" : ""}" ?hidden=${hidden}>
+      <label for=${id}><span>${name}${unit ? html`<small> ${unit}</small>` : nothing}</span></label>
+      ${this.#input(setting, problem !== "")}
+      <p class="hint" id="${id}-hint">
+        ${text} <span class="quiet">(${about.filter(Boolean).join(", ")})</span>
+      </p>
+      <p class="error" id="${id}-error">${problem}</p>
+    </div>`;
   }
 
-  #input(kind, choices, props) {
+  /**
+   * @param {SettingView} setting
+   * @param {boolean} invalid
+   */
+  #input(setting, invalid) {
+    const { path, kind, choices } = setting;
+    const id = `setting-${path}`;
+    const text = this.#textOf(setting);
+    const about = `${id}-hint ${id}-error`;
+    const change = (/** @type {Event} */ event) => this.#change(path, targetOf(event).value);
     const options = kind === "bool" ? ["true", "false"] : kind === "choice" ? choices : null;
-    if (options) {
-      const select = make(
-        "select",
-        { id: props.id },
-        ...options.map((one) => make("option", { value: one }, one)),
-      );
-      select.value = props.value;
-      return select;
-    }
-    const numeric = kind === "int" || kind === "float";
-    return make("input", {
-      ...props,
-      inputMode: numeric ? "decimal" : "text",
-      autocomplete: "off",
-      spellcheck: false,
-    });
-  }
-
-  async #check() {
-    this.#filter();
-    const verdict = await attempt(this.#message, () => checkSettings(this.#preset, this.texts()));
-    for (const [path, row] of this.#rows) {
-      row.error.textContent = verdict?.problems[path] ?? "";
-      row.input.setAttribute("aria-invalid", String(row.error.textContent !== ""));
-    }
-  }
-
-  #filter() {
-    const text = this.#find.value.trim().toLowerCase();
-    for (const [path, row] of this.#rows) {
-      const changed = row.input.value !== row.value;
-      row.row.classList.toggle("changed", changed);
-      const fits = !text || path.includes(text) || row.row.textContent.toLowerCase().includes(text);
-      row.row.hidden = !fits || (this.#only.checked && !changed);
-    }
-    for (const group of this.#groups.children) {
-      const rows = [...group.querySelectorAll(".setting")];
-      group.hidden = rows.every((row) => row.hidden);
-      if (text || this.#only.checked) group.open = !group.hidden;
-    }
-    const n = this.texts().length;
-    this.#text.textContent = n ? `${n} changed` : "None changed";
+    if (options)
+      return html`<select
+        id=${id}
+        aria-describedby=${about}
+        aria-invalid=${invalid}
+        @change=${change}
+      >
+        ${options.map((one) => html`<option .selected=${one === text}>${one}</option>`)}
+      </select>`;
+    const type = (/** @type {Event} */ event) => {
+      this.#state.texts.set(path, targetOf(event).value);
+      this.#draw();
+    };
+    return html`<input
+      id=${id}
+      aria-describedby=${about}
+      aria-invalid=${invalid}
+      inputmode=${kind === "int" || kind === "float" ? "decimal" : "text"}
+      autocomplete="off"
+      spellcheck="false"
+      .value=${text}
+      @input=${type}
+      @change=${change}
+    />`;
   }
 }
 

@@ -2,11 +2,30 @@
 // Event "recording" has the path on the server once everything is there.
 
 import { listUploads, removeUpload } from "../shared/api.js";
-import { attempt, fill, make, showError, succeeds } from "../shared/dom.js";
+import {
+  attempt,
+  html,
+  messagePlace,
+  nothing,
+  render,
+  repeat,
+  say,
+  showError,
+  succeeds,
+  targetOf,
+  within,
+} from "../shared/dom.js";
 import { bytes, count, seconds, when } from "../shared/format.js";
 import { ofDrop, ofInput } from "../slices/picking.js";
 import { Sending, sorted } from "./resumable_upload.js";
 
+/**
+ * @import {UploadView} from "../shared/http_types"
+ * @import {Picked} from "../slices/picking.js"
+ * @import {SendingState} from "./resumable_upload.js"
+ */
+
+/** @type {Record<SendingState, string>} */
 const STATES = {
   waiting: "Begins",
   sending: "Sending",
@@ -14,172 +33,180 @@ const STATES = {
   paused: "Paused",
   failed: "Stopped",
   done: "On the server",
+  removed: "",
 };
+/** @type {SendingState[]} */
+const AT_REST = ["paused", "failed", "done", "removed"];
 
 export class UploadBox extends HTMLElement {
-  #sending = null;
-  #file = make("input", {
-    type: "file",
-    hidden: true,
-    onchange: () => this.#take(ofInput(this.#file)),
-  });
-  #folder = make("input", {
-    type: "file",
-    hidden: true,
-    webkitdirectory: true,
-    onchange: () => this.#take(ofInput(this.#folder)),
-  });
-  #zone = make(
-    "div",
-    { className: "drop" },
-    make("p", {}, "Drop a file or folder here"),
-    make(
-      "div",
-      { className: "buttons" },
-      make("button", { type: "button", onclick: () => this.#pick(this.#file) }, "File…"),
-      make("button", { type: "button", onclick: () => this.#pick(this.#folder) }, "Folder…"),
-    ),
-  );
-  #bar = make("progress", { max: 1, ariaLabel: "Upload" });
-  #title = make("p", { className: "upload-title" });
-  #text = make("p", { className: "job-words", role: "status" });
-  #buttons = make("div", { className: "buttons" });
-  #now = make(
-    "div",
-    { className: "upload-now", hidden: true },
-    this.#title,
-    this.#bar,
-    this.#text,
-    this.#buttons,
-  );
-  #open = make("ul", { className: "uploads", ariaLabel: "Unfinished uploads" });
-  #message = make("p", { className: "error", role: "alert" });
-  #leaving = (event) => event.preventDefault();
+  #state = {
+    /** @type {Sending | null} */
+    sending: null,
+    /** @type {UploadView[]} */
+    open: [], // unfinished uploads, also those begun before this page was opened
+    over: false, // whether files are dragged over it
+  };
+  #leaving = (/** @type {Event} */ event) => event.preventDefault();
 
   connectedCallback() {
-    this.replaceChildren(
-      this.#zone,
-      this.#file,
-      this.#folder,
-      this.#now,
-      this.#open,
-      this.#message,
-    );
-    this.#zone.addEventListener("dragover", (event) => this.#over(event, true));
-    this.#zone.addEventListener("dragleave", (event) => this.#over(event, false));
-    this.#zone.addEventListener("drop", (event) => this.#drop(event));
+    this.#draw();
     this.#listOpen();
   }
 
-  #pick(input) {
-    input.value = ""; // so that the same file can be chosen again
-    input.click();
+  get #message() {
+    return within(this, ":scope > .error");
   }
 
-  #over(event, on) {
+  #draw() {
+    const { sending, open, over } = this.#state;
+    const idle = !sending || ["failed", "removed", "done"].includes(sending.state);
+    const drag = (/** @type {DragEvent} */ event) => this.#over(event, true);
+    const leave = (/** @type {DragEvent} */ event) => this.#over(event, false);
+    const drop = (/** @type {DragEvent} */ event) => this.#drop(event);
+    const take = (/** @type {Event} */ event) => this.#take(ofInput(targetOf(event)));
+    const pick = (/** @type {string} */ selector) => () => {
+      const input = within(this, selector, HTMLInputElement);
+      input.value = ""; // so that the same file can be chosen again
+      input.click();
+    };
+    render(
+      html`<div
+          class="drop ${over ? "over" : ""}"
+          ?hidden=${!idle}
+          @dragover=${drag}
+          @dragleave=${leave}
+          @drop=${drop}
+        >
+          <p>Drop a file or folder here</p>
+          <div class="buttons">
+            <button type="button" @click=${pick(".one")}>File…</button
+            ><button type="button" @click=${pick(".folder")}>Folder…</button>
+          </div>
+        </div>
+        <input class="one" type="file" hidden @change=${take} />
+        <input class="folder" type="file" hidden webkitdirectory @change=${take} />
+        <div class="upload-now" ?hidden=${!sending || sending.state === "removed"}>
+          ${sending ? this.#progress(sending) : nothing}
+        </div>
+        <ul class="uploads" aria-label="Unfinished uploads" ?hidden=${open.length === 0}>
+          ${repeat(
+            open,
+            ({ id }) => id,
+            (one) => this.#row(one),
+          )}
+        </ul>
+        ${messagePlace()}`,
+      this,
+    );
+  }
+
+  #progress(/** @type {Sending} */ sending) {
+    const { state, name, files, sent, total } = sending;
+    const label = files.length > 1 ? `${name}, ${count(files.length)} files` : name;
+    return html`<p class="upload-title"><strong>${label}</strong> ${STATES[state]}</p>
+      <progress
+        max="1"
+        aria-label="Upload"
+        .value=${state === "done" || !total ? 1 : sent / total}
+      ></progress>
+      <p class="job-words" role="status"></p>
+      <div class="buttons">${this.#buttons(sending)}</div>`;
+  }
+
+  #buttons(/** @type {Sending} */ sending) {
+    const button = (
+      /** @type {string} */ text,
+      /** @type {() => unknown} */ action,
+      /** @type {SendingState[]} */ states,
+    ) =>
+      states.includes(sending.state)
+        ? html`<button type="button" @click=${() => attempt(this.#message, action)}>
+            ${text}
+          </button>`
+        : nothing;
+    return [
+      button("Pause", () => sending.pause(), ["sending", "trying"]),
+      button("Continue", () => sending.start(), ["paused", "failed"]),
+      button("Remove", () => sending.remove(), ["paused", "failed", "trying", "done"]),
+    ];
+  }
+
+  /**
+   * @param {DragEvent} event
+   * @param {boolean} over
+   */
+  #over(event, over) {
     event.preventDefault();
-    this.#zone.classList.toggle("over", on);
+    this.#state.over = over;
+    this.#draw();
   }
 
-  async #drop(event) {
+  async #drop(/** @type {DragEvent} */ event) {
     this.#over(event, false);
     const picked = await attempt(this.#message, () => ofDrop(event.dataTransfer));
     if (picked) this.#take(picked);
   }
 
-  #take(picked) {
+  #take(/** @type {Picked[]} */ picked) {
     const { name, files, leftOut } = sorted(picked);
-    this.#message.textContent = leftOut ? `${leftOut} hidden files are skipped` : "";
-    if (files.length === 0) {
-      this.#message.textContent = "It contains no file";
-      return;
-    }
-    this.#sending?.pause();
-    this.#sending = new Sending({ name, files });
-    this.#sending.addEventListener("change", (event) => this.#draw(event.target));
+    say(this.#message, leftOut ? `${leftOut} hidden files are skipped` : "");
+    if (files.length === 0) return say(this.#message, "It contains no file");
+    this.#state.sending?.pause();
+    const sending = new Sending({ name, files });
+    this.#state.sending = sending;
+    sending.addEventListener("change", () => this.#changed(sending));
     this.dispatchEvent(new CustomEvent("chosen", { detail: name }));
-    this.#sending.start();
+    sending.start();
   }
 
-  #draw(sending) {
-    if (sending !== this.#sending) return;
-    const { state, name, files, sent, total, text } = sending;
-    this.#now.hidden = state === "removed";
-    this.#zone.hidden = !["failed", "removed", "done"].includes(state);
-    const label = files.length > 1 ? `${name}, ${count(files.length)} files` : name;
-    fill(this.#title, make("strong", {}, label), ` ${STATES[state] ?? ""}`);
-    this.#bar.value = total ? (state === "done" ? 1 : sent / total) : 1;
-    if (state === "failed") showError(this.#text, sending.error);
-    else this.#text.textContent = text || this.#figures(sending);
-    this.#offer(state);
-    const busy = ["sending", "trying"].includes(state);
-    if (busy) addEventListener("beforeunload", this.#leaving);
+  #changed(/** @type {Sending} */ sending) {
+    if (sending !== this.#state.sending) return;
+    const { state, text, error, recording } = sending;
+    this.#draw();
+    const words = within(this, ".job-words");
+    if (state === "failed") showError(words, error);
+    else say(words, text || figures(sending));
+    if (["sending", "trying"].includes(state)) addEventListener("beforeunload", this.#leaving);
     else removeEventListener("beforeunload", this.#leaving);
-    if (["paused", "failed", "done", "removed"].includes(state)) this.#listOpen();
-    if (state === "done")
-      this.dispatchEvent(new CustomEvent("recording", { detail: sending.recording }));
+    if (AT_REST.includes(state)) this.#listOpen();
+    if (state === "done") this.dispatchEvent(new CustomEvent("recording", { detail: recording }));
     if (state === "removed") this.dispatchEvent(new CustomEvent("removed"));
   }
 
-  #figures({ state, sent, total, rate, eta }) {
-    if (state === "done") return bytes(total);
-    const parts = [`${bytes(sent)} of ${bytes(total)}`];
-    if (state === "sending" && rate > 0) parts.push(`${bytes(rate)}/s`, `${seconds(eta)} left`);
-    return parts.join(" · ");
-  }
-
-  #offer(state) {
-    if (this.#buttons.dataset.state === state) return;
-    this.#buttons.dataset.state = state;
-    const button = (text, action) =>
-      make("button", { type: "button", onclick: () => attempt(this.#message, action) }, text);
-    const pause = button("Pause", () => this.#sending.pause());
-    const resume = button("Continue", () => this.#sending.start());
-    const remove = button("Remove", () => this.#sending.remove());
-    this.#buttons.replaceChildren(
-      ...(["sending", "trying"].includes(state) ? [pause] : []),
-      ...(["paused", "failed"].includes(state) ? [resume] : []),
-      ...(["paused", "failed", "trying", "done"].includes(state) ? [remove] : []),
-    );
-  }
-
-  /** Lists unfinished uploads, also those begun before this page was opened. */
   async #listOpen() {
     const uploads = (await attempt(this.#message, listUploads)) ?? [];
-    const mine =
-      this.#sending && !["removed", "done"].includes(this.#sending.state)
-        ? this.#sending.name
-        : null;
-    const rows = uploads.filter((one) => !one.finished && one.name !== mine);
-    this.#open.hidden = rows.length === 0;
-    this.#open.replaceChildren(...rows.map((one) => this.#row(one)));
+    const { sending } = this.#state;
+    const mine = sending && !["removed", "done"].includes(sending.state) ? sending.name : null;
+    this.#state.open = uploads.filter((one) => !one.finished && one.name !== mine);
+    this.#draw();
   }
 
-  #row({ id, name, received, bytes: total, expires }) {
+  #row(/** @type {UploadView} */ { id, name, received, bytes: total, expires }) {
     const remove = async () => {
       if (await succeeds(this.#message, () => removeUpload(id))) this.#listOpen();
     };
-    return make(
-      "li",
-      {},
-      make(
-        "div",
-        {},
-        make("strong", {}, name),
-        make(
-          "small",
-          {},
-          ` ${bytes(received)} of ${bytes(total)} received. Select the same ` +
-            `${name.includes(".") ? "file" : "folder"} again to continue, until ${when(expires)}`,
-        ),
-      ),
-      make(
-        "button",
-        { type: "button", ariaLabel: `Remove the upload of ${name}`, onclick: remove },
-        "Remove",
-      ),
-    );
+    const what = name.includes(".") ? "file" : "folder";
+    return html`<li>
+      <div>
+        <strong>${name}</strong
+        ><small>
+          ${bytes(received)} of ${bytes(total)} received. Select the same ${what} again to continue,
+          until ${when(expires)}</small
+        >
+      </div>
+      <button type="button" aria-label="Remove the upload of ${name}" @click=${remove}>
+        Remove
+      </button>
+    </li>`;
   }
+}
+
+/** How much was sent, and how fast. */
+function figures(/** @type {Sending} */ { state, sent, total, rate, eta }) {
+  if (state === "done") return bytes(total);
+  const parts = [`${bytes(sent)} of ${bytes(total)}`];
+  if (state === "sending" && eta !== null) parts.push(`${bytes(rate)}/s`, `${seconds(eta)} left`);
+  return parts.join(" · ");
 }
 
 customElements.define("upload-box", UploadBox);

@@ -2,12 +2,16 @@
 
 import { approvalLine, inSpiteOf } from "../shared/approval.js";
 
+/** @import {ApprovalState, ReviewView} from "../shared/http_types" */
+
+/** @type {Record<string, {mark: string, word: string}>} */
 export const VERDICTS = {
   accepted: { mark: "✓", word: "Accepted" },
   rejected: { mark: "✕", word: "Rejected" },
   unverified: { mark: "◌", word: "Unverified" },
 };
 
+/** @type {Record<string, string>} */
 export const KINDS = {
   accept: "accepted",
   reject: "rejected",
@@ -20,7 +24,10 @@ export const KINDS = {
   acknowledge: "acknowledged a finding",
 };
 
-/** What each key does; the help sheet is made of this. */
+/**
+ * What each key does; the help sheet is made of this.
+ * @type {Array<[string, string]>}
+ */
 export const KEYS = [
   ["J", "Next pair"],
   ["K", "Previous pair"],
@@ -50,26 +57,32 @@ export const KEYS = [
   ],
 ];
 
-export const seconds = (s) =>
+export const seconds = (/** @type {number} */ s) =>
   s < 60
     ? `${s.toFixed(1)} s`
     : `${Math.floor(s / 60)}:${(s % 60).toFixed(0).padStart(2, "0")} min`;
 
-export function length(m) {
+export function length(/** @type {number | null | undefined} */ m) {
   if (m === null || m === undefined) return "–";
   if (m < 0.0995) return `${(m * 1000).toFixed(m < 0.00995 ? 1 : 0)} mm`;
   return m < 0.995 ? `${(m * 100).toFixed(0)} cm` : `${m.toFixed(2)} m`;
 }
 
-export const degrees = (rad, digits = 1) => `${((rad * 180) / Math.PI).toFixed(digits)}°`;
-export const percent = (v) => (v === null || v === undefined ? "–" : `${Math.round(v * 100)} %`);
-export const plain = (v, digits = 3) =>
+export const degrees = (/** @type {number} */ rad, digits = 1) =>
+  `${((rad * 180) / Math.PI).toFixed(digits)}°`;
+export const percent = (/** @type {number | null | undefined} */ v) =>
+  v === null || v === undefined ? "–" : `${Math.round(v * 100)} %`;
+export const plain = (/** @type {number | null | undefined} */ v, digits = 3) =>
   v === null || v === undefined ? "–" : Number(v.toPrecision(digits)).toString();
-export const keyOf = ([i, j]) => `${i}-${j}`;
+export const keyOf = (/** @type {number[]} */ [i, j]) => `${i}-${j}`;
 
 const CONTRADICTED = "verification median > limit"; // a reason as the server stores it
 
-/** How the program or a person came to the edge, with the figure that decided it. */
+/**
+ * How the program or a person came to the edge, with the figure that decided it.
+ * @param {Pick<import("./state.js").Row, "kind" | "reason" | "verification_m">} row
+ * @param {number} path_limit_m
+ */
 export function decisionText(row, path_limit_m) {
   if (row.kind === "manual") return "Created by a person";
   if (!row.reason) return "Accepted automatically";
@@ -81,11 +94,18 @@ export function decisionText(row, path_limit_m) {
 }
 
 /** Who approved which version, and in spite of which verdict. */
-export const approvalText = (approval) =>
+export const approvalText = (/** @type {ApprovalState} */ approval) =>
   approvalLine(approval).text + (approval.hash ? inSpiteOf(approval) : "");
 
 /** Whether the map was made with the decisions in force. */
-export function mapText({ busy, finished, in_map, standing: activeDecisions }) {
+export function mapText(
+  /** @type {Pick<ReviewView, "busy" | "finished" | "in_map" | "standing">} */ {
+    busy,
+    finished,
+    in_map,
+    standing: activeDecisions,
+  },
+) {
   if (busy) return "▶ A job waits or runs";
   if (!finished) return "◌ There is no finished map yet";
   if (!in_map) return "◌ The last decisions are not in the map yet";
@@ -94,11 +114,19 @@ export function mapText({ busy, finished, in_map, standing: activeDecisions }) {
     : "✓ The map was made without decisions of people";
 }
 
-export const permissionMissing = (permission) =>
+export const permissionMissing = (/** @type {string} */ permission) =>
   `Requires the permission to ${permission}, which you do not have`;
 
 /** Why the map cannot be approved now; empty if it can. */
-export function approvalObstacle({ busy, finished, in_map, may_review, approval }) {
+export function approvalObstacle(
+  /** @type {Pick<ReviewView, "busy" | "finished" | "in_map" | "may_review" | "approval">} */ {
+    busy,
+    finished,
+    in_map,
+    may_review,
+    approval,
+  },
+) {
   if (!may_review) return permissionMissing("review");
   if (busy) return "A job waits or runs";
   if (!finished) return "There is no finished map yet";

@@ -1,123 +1,128 @@
 // Dialogs of the review: the keys, and a loop closure between any two multiframes.
 
-import { make } from "../shared/dom.js";
+import { closeButton, openDialog } from "../shared/dialog.js";
+import { html, messagePlace, render, say, targetOf, within } from "../shared/dom.js";
 import { KEYS, seconds } from "./captions.js";
 import { FIRST_CSS, SECOND_CSS } from "./draw.js";
 
-export function open(title, ...children) {
-  const dialog = make(
-    "dialog",
-    { "aria-labelledby": "dialog-title" },
-    make("h2", { id: "dialog-title" }, title),
-    ...children,
-  );
-  dialog.addEventListener("close", () => dialog.remove());
-  document.body.append(dialog);
-  dialog.showModal();
-  return dialog;
-}
+/** @import {TrajectoryNodes} from "../shared/http_types" */
+
+const SIZE_PX = { width: 640, height: 400 };
+const CAPTIONS = ["First multiframe (blue)", "Second multiframe (orange)"];
 
 export function showKeys() {
-  const rows = KEYS.map(([keys, text]) =>
-    make("tr", {}, make("th", { scope: "row" }, make("kbd", {}, keys)), make("td", {}, text)),
+  const rows = KEYS.map(
+    ([keys, text]) =>
+      html`<tr>
+        <th scope="row"><kbd>${keys}</kbd></th>
+        <td>${text}</td>
+      </tr>`,
   );
-  const dialog = open(
-    "Keys",
-    make("table", {}, make("tbody", {}, ...rows)),
-    make("button", { type: "button", onclick: () => dialog.close() }, "Close"),
-  );
-  dialog.classList.add("wide");
+  const table = html`<table>
+      <tbody>
+        ${rows}
+      </tbody>
+    </table>
+    ${closeButton("Close")}`;
+  openDialog("Keys", table).classList.add("wide");
 }
 
-/** Asks for two multiframes by sliders or on the plan of the walk; `look([frame_i, frame_j])`. */
+/**
+ * Asks for two multiframes by sliders or on the plan of the walk; `look([frame_i, frame_j])`.
+ * @param {TrajectoryNodes} walk
+ * @param {[number, number] | undefined} chosen
+ * @param {(pair: [number, number]) => unknown} look
+ */
 export function askForFrames(walk, chosen, look) {
   const most = walk.frames.length - 1;
-  const nodeOf = (frame) =>
+  const nodeOf = (/** @type {number} */ frame) =>
     Math.max(
       0,
       walk.frames.findIndex((one) => one >= frame),
     );
-  const sliders = [0, 1].map((k) =>
-    make("input", {
-      type: "range",
-      min: 0,
-      max: most,
-      value: chosen ? nodeOf(chosen[k]) : k ? most : 0,
-    }),
-  );
-  const captions = sliders.map(() => make("output"));
-  const message = make("p", { className: "error", role: "alert" });
-  const plan = make("canvas", {
-    width: 640,
-    height: 400,
-    className: "plan",
-    ariaLabel: "The walk from above",
-    role: "img",
-  });
-  let active = 0;
-  const place = planner(walk, plan);
-  const draw = () => {
-    const nodes = sliders.map((one) => Number(one.value));
-    nodes.forEach(
-      (node, k) =>
-        (captions[k].textContent = `${seconds(walk.t_s[node])}, multiframe ${walk.frames[node]}`),
-    );
-    place.draw(nodes);
-  };
-  sliders.forEach((one, k) => {
-    one.addEventListener("input", draw);
-    one.addEventListener("focus", () => (active = k));
-  });
-  plan.addEventListener("pointerdown", (event) => {
-    sliders[active].value = place.nearest(event.offsetX, event.offsetY);
-    active = 1 - active;
+  const state = { nodes: chosen ? chosen.map(nodeOf) : [0, most], active: 0 };
+  const dialog = openDialog("Add a loop closure", html`<form></form>`);
+  const form = within(dialog, "form", HTMLFormElement);
+  const put = (/** @type {number} */ k, /** @type {number} */ node) => {
+    state.nodes[k] = node;
     draw();
-  });
-  const form = make(
-    "form",
-    {
-      onsubmit(event) {
-        event.preventDefault();
-        const pair = sliders.map((one) => walk.frames[Number(one.value)]).sort((a, b) => a - b);
-        if (pair[0] === pair[1]) return (message.textContent = "Both are the same multiframe");
-        dialog.close();
-        look(pair);
-      },
-    },
-    plan,
-    make("label", {}, make("span", {}, "First multiframe (blue)"), sliders[0], captions[0]),
-    make("label", {}, make("span", {}, "Second multiframe (orange)"), sliders[1], captions[1]),
-    message,
-    make(
-      "div",
-      { className: "buttons" },
-      make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-      make("button", { className: "primary" }, "Look at this pair"),
-    ),
-  );
-  const dialog = open("Add a loop closure", form);
+  };
+  const slider = (/** @type {string} */ caption, /** @type {number} */ k) => {
+    const node = state.nodes[k] ?? 0;
+    return html`<label
+      ><span>${caption}</span
+      ><input
+        type="range"
+        min="0"
+        max=${most}
+        .value=${String(node)}
+        @input=${(/** @type {Event} */ event) => put(k, Number(targetOf(event).value))}
+        @focus=${() => (state.active = k)}
+      /><output>${seconds(walk.t_s[node] ?? 0)}, multiframe ${walk.frames[node]}</output></label
+    >`;
+  };
+  const onPlan = (/** @type {PointerEvent} */ event) => {
+    const { active } = state;
+    state.active = 1 - active;
+    put(active, plan.nearest(event.offsetX, event.offsetY));
+  };
+  const submit = (/** @type {SubmitEvent} */ event) => {
+    event.preventDefault();
+    const [a = 0, b = 0] = state.nodes.map((node) => walk.frames[node] ?? 0);
+    if (a === b) return say(within(form, ".error"), "Both are the same multiframe");
+    dialog.close();
+    look([Math.min(a, b), Math.max(a, b)]);
+  };
+  const draw = () => {
+    render(
+      html`<canvas
+          class="plan"
+          width=${SIZE_PX.width}
+          height=${SIZE_PX.height}
+          role="img"
+          aria-label="The walk from above"
+          @pointerdown=${onPlan}
+        ></canvas>
+        ${CAPTIONS.map(slider)} ${messagePlace()}
+        <div class="buttons">
+          ${closeButton()}<button class="primary">Look at this pair</button>
+        </div>`,
+      form,
+    );
+    plan.draw(state.nodes);
+  };
+  const plan = planner(walk, () => within(form, "canvas", HTMLCanvasElement));
+  form.addEventListener("submit", submit);
   draw();
 }
 
-function planner(walk, canvas) {
-  const xs = walk.xyz_m.map((p) => p[0]);
-  const ys = walk.xyz_m.map((p) => p[1]);
+/**
+ * The walk from above on a canvas.
+ * @param {TrajectoryNodes} walk
+ * @param {() => HTMLCanvasElement} canvasOf
+ */
+function planner(walk, canvasOf) {
+  const xs = walk.xyz_m.map((p) => p[0] ?? 0);
+  const ys = walk.xyz_m.map((p) => p[1] ?? 0);
   const [left, right, low, high] = [
     Math.min(...xs),
     Math.max(...xs),
     Math.min(...ys),
     Math.max(...ys),
   ];
-  const scale = Math.min(600 / (right - left || 1), 360 / (high - low || 1));
-  const at = (node) => [
-    320 + (xs[node] - (left + right) / 2) * scale,
-    200 - (ys[node] - (low + high) / 2) * scale,
+  const { width, height } = SIZE_PX;
+  const scale = Math.min((width - 40) / (right - left || 1), (height - 40) / (high - low || 1));
+  /** @returns {[number, number]} */
+  const at = (/** @type {number} */ node) => [
+    width / 2 + ((xs[node] ?? 0) - (left + right) / 2) * scale,
+    height / 2 - ((ys[node] ?? 0) - (low + high) / 2) * scale,
   ];
   return {
-    draw(nodes) {
-      const context = canvas.getContext("2d");
+    draw(/** @type {number[]} */ nodes) {
+      const context = canvasOf().getContext("2d");
+      if (!context) return;
       context.fillStyle = "#0f1418";
-      context.fillRect(0, 0, 640, 400);
+      context.fillRect(0, 0, width, height);
       context.strokeStyle = "#8fa0ae";
       context.lineWidth = 2;
       context.beginPath();
@@ -130,9 +135,11 @@ function planner(walk, canvas) {
         context.fill();
       });
     },
-    nearest(x, y) {
-      const [u, v] = [(x * 640) / canvas.clientWidth, (y * 400) / canvas.clientHeight];
-      const far = (node) => Math.hypot(at(node)[0] - u, at(node)[1] - v);
+    /** The node nearest to a position on the canvas [px]. */
+    nearest(/** @type {number} */ x, /** @type {number} */ y) {
+      const { clientWidth, clientHeight } = canvasOf();
+      const [u, v] = [(x * width) / clientWidth, (y * height) / clientHeight];
+      const far = (/** @type {number} */ node) => Math.hypot(at(node)[0] - u, at(node)[1] - v);
       return xs.reduce((best, _, node) => (far(node) < far(best) ? node : best), 0);
     },
   };

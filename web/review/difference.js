@@ -7,7 +7,11 @@ export const ONLY_FIRST = 1;
 export const ONLY_SECOND = 2;
 export const BOTH = 3;
 
-/** Pixels within `reach` of a marked one, along rows (`step` 1) or columns (`step` = width). */
+/**
+ * Pixels within `reach` of a marked one, along rows (`step` 1) or columns (`step` = width).
+ * @param {Uint8Array} mask
+ * @param {{starts: number[], step: number, length: number, reach: number}} given
+ */
 function widened(mask, { starts, step, length, reach }) {
   const out = new Uint8Array(mask.length);
   for (const start of starts) {
@@ -21,9 +25,14 @@ function widened(mask, { starts, step, length, reach }) {
   return out;
 }
 
-const upTo = (n, step = 1) => Array.from({ length: n }, (_, k) => k * step);
+const upTo = (/** @type {number} */ n, step = 1) => Array.from({ length: n }, (_, k) => k * step);
 
-/** Pixels at most `reach` pixels, in each direction, from a marked one. */
+/**
+ * Pixels at most `reach` pixels, in each direction, from a marked one.
+ * @param {Uint8Array} mask
+ * @param {number} width
+ * @param {number} reach
+ */
 export function near(mask, width, reach) {
   const height = mask.length / width;
   const rows = { starts: upTo(height, width), step: 1, length: width, reach };

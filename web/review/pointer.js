@@ -3,9 +3,15 @@
 import { listenToGestures } from "../shared/gestures.js";
 import { HANDLE_PX, RING_PX } from "./draw.js";
 
+/** @import {PairView} from "./view.js" */
+
 const RING_TOLERANCE_PX = 14;
 
-/** What a pointer at a position drags: "pan", "orbit", "lay" or "turn". */
+/**
+ * What a pointer at a position drags: "pan", "orbit", "lay" or "turn".
+ * @param {PairView} view
+ * @param {boolean} shift
+ */
 function grabbed(view, /** @type {number[]} */ [x, y], shift) {
   if (!view.hasHandle) return view.isFree ? "orbit" : "pan";
   const [u, v] = view.on(view.pose);
@@ -17,7 +23,7 @@ function grabbed(view, /** @type {number[]} */ [x, y], shift) {
 
 /**
  * What a drag by some pixels does.
- * @type {Record<string, (view: any, by: number[], from: number[], to: number[]) => void>}
+ * @type {Record<string, (view: PairView, by: number[], from: number[], to: number[]) => void>}
  */
 const DRAGS = {
   pan: (view, [dx, dy]) => view.camera.pan(dx, dy),
@@ -28,13 +34,18 @@ const DRAGS = {
   lay: (view, [dx, dy]) => view.nudge(dx / view.camera.scale, -dy / view.camera.scale),
   turn(view, _, from, to) {
     const [u, v] = view.on(view.pose);
-    const angle = (p) => Math.atan2(v - p[1], p[0] - u);
+    const angle = (/** @type {number[]} */ p) => Math.atan2(v - p[1], p[0] - u);
     view.nudge(0, 0, angle(to) - angle(from));
   },
 };
 
-/** Listens on the canvas of a pair view. */
+/**
+ * Listens on the canvas of a pair view.
+ * @param {HTMLCanvasElement} canvas
+ * @param {PairView} view
+ */
 export function listenToPointer(canvas, view) {
+  /** @type {string | null} */
   let drag = null;
   listenToGestures(canvas, {
     onDown(at, event, count) {
@@ -44,7 +55,7 @@ export function listenToPointer(canvas, view) {
     },
     onDrag(from, to) {
       if (!drag || drag === "pinch") return;
-      DRAGS[drag](view, [to[0] - from[0], to[1] - from[1]], from, to);
+      DRAGS[drag]?.(view, [to[0] - from[0], to[1] - from[1]], from, to);
       view.draw();
     },
     onPinch(before, after) {

@@ -1,9 +1,12 @@
 // <review-queue>: the loop closures to decide about, in the order of the server: large influence
 // and doubtful ones first.
 
-import { make } from "../shared/dom.js";
+import { html, nothing, render, repeat, targetOf, within } from "../shared/dom.js";
 import { VERDICTS, length, seconds } from "./captions.js";
 
+/** @import {Row} from "./state.js" */
+
+/** @type {Record<string, [string, (row: Row) => boolean]>} */
 const SHOW = {
   loops: ["Loop closures", (row) => row.measured && row.kind !== "neighbor"],
   doubt: ["Rejected or unverified", (row) => row.measured && row.state !== "accepted"],
@@ -16,143 +19,143 @@ const SHOW = {
 const PAGE = 300; // rows in the list at a time
 
 export class ReviewQueue extends HTMLElement {
-  #rows = [];
+  #state = {
+    /** @type {Row[]} */
+    rows: [],
+    /** @type {Row[]} */
+    shown: [], // those of the filters
+    show: "loops",
+    reason: "",
+    chosen: "", // key of a pair
+  };
+  /** @type {Map<string, Row>} */
   #byKey = new Map();
-  #shown = [];
-  #chosen = null;
-  #page = 0;
-  #show = make("select", { ariaLabel: "Which pairs" });
-  #reason = make("select", { ariaLabel: "Reason of the rejection" });
-  #count = make("p", { className: "quiet", role: "status" });
-  #list = make("ol", { className: "queue" });
-  tools = make("div", { className: "buttons" });
 
   connectedCallback() {
-    this.#show.append(
-      ...Object.entries(SHOW).map(([key, [text]]) => make("option", { value: key }, text)),
-    );
-    for (const one of [this.#show, this.#reason])
-      one.addEventListener("change", () => this.#fill());
-    this.replaceChildren(
-      make("div", { className: "queue-head" }, make("h1", {}, "Loops"), this.tools),
-      make("div", { className: "filters" }, this.#show, this.#reason),
-      this.#count,
-      this.#list,
-    );
+    this.#draw();
   }
 
-  /** Rows as objects with the columns as fields. */
-  set rows(rows) {
-    this.#rows = rows;
-    this.#chosen = null;
+  /** Where the page puts buttons. */
+  get tools() {
+    return within(this, ".queue-head .buttons");
+  }
+
+  set rows(/** @type {Row[]} */ rows) {
+    Object.assign(this.#state, { rows, chosen: "" });
     this.#byKey = new Map(rows.map((row) => [row.key, row]));
-    const reasons = [...new Set(rows.map((row) => row.reason).filter(Boolean))].sort();
-    this.#reason.replaceChildren(
-      make("option", { value: "" }, "Any reason"),
-      ...reasons.map((text) => make("option", { value: text }, text)),
-    );
-    this.#fill();
+    this.#filter({});
   }
 
   get length() {
-    return this.#shown.length;
+    return this.#state.shown.length;
   }
 
-  get(key) {
+  get(/** @type {string} */ key) {
     return this.#byKey.get(key);
   }
 
-  /** Draws pairs again whose decision changed. */
-  refresh(keys) {
-    for (const key of keys) {
-      const row = this.#byKey.get(key);
-      const item = this.#list.querySelector(`[data-key="${key}"]`);
-      if (row && item) item.replaceWith(this.#item(row));
-    }
-    this.#say();
+  /** Draws again, as decisions changed; the filters stay as they were. */
+  refresh() {
+    this.#draw();
   }
 
-  add(row) {
-    this.#rows = [row, ...this.#rows];
+  add(/** @type {Row} */ row) {
+    this.#state.rows = [row, ...this.#state.rows];
     this.#byKey.set(row.key, row);
-    this.#fill();
+    this.#filter({});
   }
 
   /** The pair `steps` further on; from the beginning if none is chosen. */
-  step(steps) {
-    const at = this.#shown.findIndex((row) => row.key === this.#chosen);
-    const next = this.#shown[Math.min(this.#shown.length - 1, Math.max(0, at + steps))];
+  step(/** @type {number} */ steps) {
+    const { shown } = this.#state;
+    const next = shown[Math.min(shown.length - 1, Math.max(0, this.#at + steps))];
     if (next) this.choose(next.key);
   }
 
   neighbors() {
-    const at = this.#shown.findIndex((row) => row.key === this.#chosen);
-    return this.#shown.slice(at + 1, at + 3);
+    return this.#state.shown.slice(this.#at + 1, this.#at + 3);
   }
 
-  choose(key) {
-    const before = this.#chosen;
-    this.#chosen = key;
-    if (this.#pageOf(key) === this.#page) this.refresh([before, key]);
-    else this.#list.replaceChildren(...this.#turnTo(key));
-    this.#list.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
-    this.#say();
+  choose(/** @type {string} */ key) {
+    this.#state.chosen = key;
+    this.#draw();
+    this.querySelector("[aria-current]")?.scrollIntoView({ block: "nearest" });
     this.dispatchEvent(new CustomEvent("chosen", { detail: key }));
   }
 
-  #fill() {
-    const matches = SHOW[this.#show.value][1];
-    const reason = this.#reason.value;
-    this.#shown = this.#rows.filter((row) => matches(row) && (!reason || row.reason === reason));
-    this.#list.replaceChildren(...this.#turnTo(this.#chosen));
-    this.#say();
+  /** Index of the chosen pair among the shown ones; -1 = none. */
+  get #at() {
+    const { shown, chosen } = this.#state;
+    return shown.findIndex((row) => row.key === chosen);
   }
 
-  #pageOf(key) {
-    return Math.floor(
-      Math.max(
-        0,
-        this.#shown.findIndex((row) => row.key === key),
-      ) / PAGE,
+  /** Applies the filters, after one of them changed. */
+  #filter(/** @type {{show?: string, reason?: string}} */ changes) {
+    const state = Object.assign(this.#state, changes);
+    const matches = SHOW[state.show]?.[1] ?? (() => true);
+    state.shown = state.rows.filter(
+      (row) => matches(row) && (!state.reason || row.reason === state.reason),
+    );
+    this.#draw();
+  }
+
+  #draw() {
+    const { rows, shown, show, reason } = this.#state;
+    const reasons = [...new Set(rows.map((row) => row.reason).filter(Boolean))].sort();
+    const page = Math.floor(Math.max(0, this.#at) / PAGE);
+    const byShow = (/** @type {Event} */ event) => this.#filter({ show: targetOf(event).value });
+    const byReason = (/** @type {Event} */ event) =>
+      this.#filter({ reason: targetOf(event).value });
+    render(
+      html`<div class="queue-head">
+          <h1>Loops</h1>
+          <div class="buttons"></div>
+        </div>
+        <div class="filters">
+          <select aria-label="Which pairs" @change=${byShow}>
+            ${Object.entries(SHOW).map(
+              ([key, [text]]) =>
+                html`<option value=${key} .selected=${key === show}>${text}</option>`,
+            )}</select
+          ><select aria-label="Reason of the rejection" @change=${byReason}>
+            <option value="">Any reason</option>
+            ${reasons.map(
+              (text) => html`<option value=${text} .selected=${text === reason}>${text}</option>`,
+            )}
+          </select>
+        </div>
+        <p class="quiet" role="status">${this.#count}</p>
+        <ol class="queue">
+          ${repeat(
+            shown.slice(page * PAGE, (page + 1) * PAGE),
+            (row) => row.key,
+            (row) => this.#item(row),
+          )}
+        </ol>`,
+      this,
     );
   }
 
-  /** The rows of the page on which a pair is. */
-  #turnTo(key) {
-    this.#page = this.#pageOf(key);
-    return this.#shown
-      .slice(this.#page * PAGE, (this.#page + 1) * PAGE)
-      .map((row) => this.#item(row));
-  }
-
-  #say() {
-    const at = this.#shown.findIndex((row) => row.key === this.#chosen) + 1;
-    const decided = this.#shown.filter((row) => row.who).length;
-    this.#count.textContent = this.#shown.length
-      ? `${at || "–"} of ${this.#shown.length} · ${decided} decided by people`
+  get #count() {
+    const { shown } = this.#state;
+    const decided = shown.filter((row) => row.who).length;
+    return shown.length
+      ? `${this.#at + 1 || "–"} of ${shown.length} · ${decided} decided by people`
       : "None";
   }
 
-  #item(row) {
-    const { mark, word } = VERDICTS[row.state] ?? VERDICTS.rejected;
-    const chosen = row.key === this.#chosen;
-    return make(
-      "li",
-      { "data-key": row.key, ...(chosen ? { ariaCurrent: "true" } : {}) },
-      make(
-        "button",
-        { type: "button", tabIndex: chosen ? 0 : -1, onclick: () => this.choose(row.key) },
-        make(
-          "span",
-          { className: `mark ${row.state}`, title: word },
-          make("span", { ariaHidden: "true" }, mark),
-          make("span", { className: "unseen" }, word),
-        ),
-        make("span", {}, `${seconds(row.t_i_s)} – ${seconds(row.t_j_s)}`),
-        make("span", { className: "number" }, row.measured ? length(row.influence_m) : ""),
-        make("small", {}, row.who ? `by ${row.who}` : row.reason || row.kind),
-      ),
-    );
+  #item(/** @type {Row} */ row) {
+    const { mark, word } = VERDICTS[row.state] ?? { mark: "✕", word: "Rejected" };
+    const chosen = row.key === this.#state.chosen;
+    return html`<li data-key=${row.key} aria-current=${chosen ? "true" : nothing}>
+      <button type="button" tabindex=${chosen ? 0 : -1} @click=${() => this.choose(row.key)}>
+        <span class="mark ${row.state}" title=${word}
+          ><span aria-hidden="true">${mark}</span><span class="unseen">${word}</span></span
+        ><span>${seconds(row.t_i_s)} – ${seconds(row.t_j_s)}</span
+        ><span class="number">${row.measured ? length(row.influence_m) : nothing}</span
+        ><small>${row.who ? `by ${row.who}` : row.reason || row.kind}</small>
+      </button>
+    </li>`;
   }
 }
 

@@ -17,14 +17,14 @@ import {
   remakeMap,
   undoDecision,
 } from "../shared/api.js";
-import { attempt, byId, showError } from "../shared/dom.js";
+import { attempt, byId, detailOf, only, say, showError, within } from "../shared/dom.js";
 import { askForFrames, showKeys } from "./dialogs.js";
 import { journalNews, showApproval, showEffect, showJournal, showPair } from "./panels.js";
 import { keyOf } from "./captions.js";
 import { PairLoader } from "./loader.js";
 import { askToSign } from "./signing.js";
 import { ReviewState } from "./state.js";
-import { listenToActions, makeTools } from "./tools.js";
+import { drawTools, goesOn, listenToActions } from "./tools.js";
 import { watchProject } from "./watch.js";
 import { withPassword } from "../account/recent_login.js";
 import "../shared/map_verdict.js";
@@ -32,24 +32,27 @@ import "../shared/page_head.js";
 import "./queue.js";
 import "./view.js";
 
+/** @import {Effect, NewDecision, ReviewView} from "../shared/http_types" */
+
 const id = idHere();
-const queue = document.querySelector("review-queue");
-const view = document.querySelector("pair-view");
+const queue = only("review-queue");
+const view = only("pair-view");
 const message = byId("message");
 const state = new ReviewState();
 const loader = new PairLoader(id);
 const effects = { requested: 0, shown: 0 };
-let last = Promise.resolve(); // the requests that change something, one after the other
+/** The requests that change something, one after the other. */
+const turns = { last: /** @type {Promise<unknown>} */ (Promise.resolve()) };
 
 document.title = `Review of ${id} · recon4`;
 
 // -- the selected pair
 
-async function select(pair) {
+async function select(/** @type {[number, number]} */ pair) {
   const selected = state.select(pair, queue.get(keyOf(pair)) ?? state.newRow(pair));
   drawSelected();
   view.clear("Reading points…");
-  message.textContent = "";
+  say(message, "");
   try {
     const [facts, points] = await loader.load(pair, view.reach);
     if (state.selected !== selected) return;
@@ -72,30 +75,29 @@ async function select(pair) {
 
 function drawSelected() {
   const { selected } = state;
-  showPair(byId("pair"), selected?.row, selected?.facts, selected?.found, state.path_limit_m);
-  for (const [name, able] of Object.entries(state.enabled(queue.length)))
-    buttons[name].disabled = !able;
-  buttons.refine.firstChild.textContent = state.refineText;
+  showPair(byId("pair"), selected ?? {}, state.path_limit_m);
+  const enabled = state.enabled(queue.length);
+  drawTools(byId("decision"), queue.tools, actions, { enabled, refineText: state.refineText });
   byId("said").textContent = state.hint;
 }
 
 // -- decisions, sent in the order of the keys
 
-function inTurn(action) {
-  last = last.then(async () => {
+function inTurn(/** @type {() => unknown} */ action) {
+  turns.last = turns.last.then(async () => {
     byId("news").textContent = "";
     await attempt(message, action);
     if (message.textContent) update(await readReview(id).catch(() => null)); // others decided
   });
-  return last;
+  return turns.last;
 }
 
-function update(server) {
+function update(/** @type {ReviewView | null | undefined} */ server) {
   if (!server) return;
   const before = state.server;
   for (const row of state.update(server)) queue.add(row);
-  queue.refresh(state.refreshRows());
-  document.querySelector("map-verdict").facts = server.map;
+  if (state.refreshRows().length) queue.refresh();
+  only("map-verdict").facts = server.map;
   showApproval(byId("signing"), server, { remake, approve });
   drawSelected();
   if (before?.seq !== server.seq) updateEffect();
@@ -117,7 +119,7 @@ async function updateHistory() {
 
 /** Polls whether others decided, or a job made another map or another graph. */
 function poll() {
-  last = last.then(async () => {
+  turns.last = turns.last.then(async () => {
     const before = state.server;
     const server = await readReview(id).catch(() => null); // the page head shows a lost link
     if (!server || state.server !== before || JSON.stringify(server) === JSON.stringify(before))
@@ -134,7 +136,7 @@ function poll() {
 }
 
 /** Decides about the selected pair; refused until its points were drawn. */
-function send(kind, more = {}) {
+function send(/** @type {NewDecision["kind"]} */ kind, more = {}) {
   const { selected } = state;
   if (!selected || !state.server?.may_review) return undefined;
   const { pair, row, facts } = selected;
@@ -142,9 +144,10 @@ function send(kind, more = {}) {
     kind === "restore" ? !state.activeDecisionOf(pair) : !selected.drawn || selected.decided;
   if (blocked) return undefined;
   if (kind === "accept" && !state.isMeasured) {
-    message.textContent = "This pair is not registered: align it and refine it first";
+    say(message, "This pair is not registered: align it and refine it first");
     return undefined;
   }
+  const reason = reasonField();
   const why = reason.value.trim();
   reason.value = "";
   const T_i_j = row.measured ? (facts?.measured ?? []) : [];
@@ -160,14 +163,16 @@ function send(kind, more = {}) {
     }
   });
   drawSelected();
-  if (goOn.checked && kind !== "restore") queue.step(1);
+  if (goesOn() && kind !== "restore") queue.step(1);
   return sent;
 }
 
-function step(through) {
+function step(
+  /** @type {(id: string, after_seq: number | undefined) => Promise<ReviewView>} */ through,
+) {
   if (!state.server?.may_review) return;
   inTurn(async () => {
-    const server = await through(id, state.server.seq);
+    const server = await through(id, state.server?.seq);
     if (state.selected) state.selected.decided = false;
     update(server);
   });
@@ -224,19 +229,22 @@ async function addLoop() {
 
 // -- effect, journal, approval
 
+/** @returns {Promise<void>} */
 async function updateEffect() {
   const request = ++effects.requested;
   drawEffect();
+  /** @type {Effect | null} */
   let effect = null;
   if (state.hasDecisions) {
-    effect = await attempt(message, () => readEffect(id));
-    if (request !== effects.requested || !effect) return;
+    const found = await attempt(message, () => readEffect(id));
+    if (request !== effects.requested || !found) return;
     // Decided meanwhile, or an earlier request came late.
-    if ("superseded" in effect) return updateEffect();
+    if ("superseded" in found) return updateEffect();
+    effect = found;
   }
   state.setEffect(effect);
   effects.shown = request;
-  queue.refresh(state.refreshRows());
+  if (state.refreshRows().length) queue.refresh();
   drawEffect();
   drawSelected();
 }
@@ -249,10 +257,10 @@ const drawEffect = () =>
 
 async function drawJournal() {
   const rows = await attempt(message, () => readJournal(id));
-  if (rows) showJournal(byId("journal").querySelector("ol"), rows);
+  if (rows) showJournal(within(byId("journal"), "ol"), rows);
 }
 
-async function remake(error) {
+async function remake(/** @type {HTMLElement} */ error) {
   await attempt(error, async () => {
     await remakeMap(id);
     update(await readReview(id));
@@ -260,6 +268,7 @@ async function remake(error) {
 }
 
 function approve() {
+  if (!state.server?.map) return;
   const { seq: after_seq, graph, map } = state.server;
   askToSign(map, state.effect?.conflicts.length ?? 0, async (why, confirmed) => {
     update(await withPassword(() => approveMap(id, { why, confirmed, after_seq, graph })));
@@ -269,6 +278,7 @@ function approve() {
 
 // -- buttons and keys
 
+/** @type {import("./tools.js").Actions} */
 const actions = {
   previous: () => queue.step(-1),
   next: () => queue.step(1),
@@ -283,15 +293,14 @@ const actions = {
   pick,
   drop,
 };
-const { buttons, reason, goOn } = makeTools(byId("decision"), queue.tools, actions);
-listenToActions(actions, view, reason, () => Boolean(state.selected?.drawn));
+const reasonField = () => within(byId("decision"), "input", HTMLInputElement);
 
 queue.addEventListener("chosen", (event) => {
-  const row = queue.get(/** @type {CustomEvent} */ (event).detail);
-  select([row.frame_i, row.frame_j]);
+  const row = queue.get(detailOf(event));
+  if (row) select([row.frame_i, row.frame_j]);
 });
 view.addEventListener("laid", () => {
-  state.selected.moved = true;
+  if (state.selected) state.selected.moved = true;
   drawSelected();
 });
 view.addEventListener("reach", () => state.selected && select(state.selected.pair));
@@ -314,6 +323,7 @@ async function begin() {
 }
 
 drawSelected();
+listenToActions(actions, view, reasonField(), () => Boolean(state.selected?.drawn));
 await attempt(message, begin);
 if (message.textContent) view.clear("Nothing to review");
 watchProject(id, poll);

@@ -1,76 +1,94 @@
 // The dialog in which a map is approved: verdict, findings, figures, and the reason of the signer.
 
 import { badge } from "../shared/badge.js";
-import { attempt, make } from "../shared/dom.js";
+import { closeButton, openDialog } from "../shared/dialog.js";
+import { attempt, html, messagePlace, nothing, render, within } from "../shared/dom.js";
 import { figures } from "../shared/figures.js";
 import { fixedFindingList } from "../shared/finding_list.js";
 import { isReason, verdictState } from "../shared/verdict.js";
-import { open } from "./dialogs.js";
+
+/** @import {MapFacts} from "../shared/http_types" */
 
 const SIGNED =
   "Your name, the time, the verdict, the figures and the hashes of all results are signed. " +
   "A version is kept that no later run or decision changes.";
 
 /** What the signature is about: the verdict with its reasons, and the figures. */
-const about = (map) =>
-  make(
-    "section",
-    { className: "signed-map", tabIndex: 0, ariaLabel: "What is approved" },
-    make("p", {}, badge(verdictState(map.verdict))),
-    fixedFindingList(map),
-    make(
-      "dl",
-      {},
-      ...figures(map.figures).map(([text, value]) =>
-        make("div", {}, make("dt", {}, text), make("dd", {}, value)),
-      ),
-    ),
-  );
+const about = (/** @type {MapFacts} */ map) =>
+  html`<section class="signed-map" tabindex="0" aria-label="What is approved">
+    <p>${badge(verdictState(map.verdict))}</p>
+    ${fixedFindingList(map)}
+    <dl>
+      ${figures(map.figures).map(
+        ([text, value]) =>
+          html`<div>
+            <dt>${text}</dt>
+            <dd>${value}</dd>
+          </div>`,
+      )}
+    </dl>
+  </section>`;
 
-/** The field for the reason, with why and how long one is needed. */
-function reasonField(map, conflicts) {
-  const field = make("input", { name: "why", maxLength: 500, autocomplete: "off" });
+/**
+ * The field for the reason, with why and how long one is needed.
+ * @param {MapFacts} map
+ * @param {number} conflicts
+ */
+function reasonField({ reason_needed, min_reason_characters }, conflicts) {
   const hint =
-    `Needed in spite of the findings, at least ${map.min_reason_characters} characters. ` +
+    `Needed in spite of the findings, at least ${min_reason_characters} characters. ` +
     "It stands in the report and in every exported file";
-  const label = make(
-    "label",
-    {},
-    make("span", {}, map.reason_needed || conflicts ? "Reason (required)" : "Remark"),
-    field,
-    map.reason_needed ? make("small", {}, hint) : null,
-  );
-  return { field, label };
+  return html`<label
+    ><span>${reason_needed || conflicts ? "Reason (required)" : "Remark"}</span
+    ><input name="why" maxlength="500" autocomplete="off" />${
+      reason_needed ? html`<small>${hint}</small>` : nothing
+    }</label
+  >`;
 }
 
-/** Asks for a reason and, if there are conflicts, for confirmation; `sign(why, confirmed)`. */
+/**
+ * Asks for a reason and, if there are conflicts, for confirmation.
+ * @param {MapFacts} map
+ * @param {number} conflicts
+ * @param {(why: string, confirmed: boolean) => Promise<boolean>} sign whether it is signed
+ */
 export function askToSign(map, conflicts, sign) {
-  const why = reasonField(map, conflicts);
-  const confirmed = make("input", { type: "checkbox" });
-  const message = make("p", { className: "error", role: "alert" });
-  const button = make("button", { className: "primary" }, "Sign");
-  const allow = () => (button.disabled = !isReason(why.field.value, map));
-  const submit = async (event) => {
+  const dialog = openDialog("Approve map", html`<form></form>`);
+  dialog.classList.add("wide");
+  const form = within(dialog, "form", HTMLFormElement);
+  const list = about(map);
+  const why = () => within(form, "[name=why]", HTMLInputElement).value;
+  const isConfirmed = () => form.querySelector("[type=checkbox]:checked") !== null;
+  const draw = ({ signing = false, allowed = false }) =>
+    render(
+      html`${list}
+        <p>${SIGNED}</p>
+        ${reasonField(map, conflicts)}
+        ${
+          conflicts
+            ? html`<label class="check"
+                ><input type="checkbox" /><span
+                  >${conflicts} accepted loop closures do not fit the graph; sign anyway</span
+                ></label
+              >`
+            : nothing
+        }
+        ${messagePlace()}
+        <div class="buttons">
+          ${closeButton()}<button class="primary" ?disabled=${signing || !allowed}>
+            ${signing ? "Signing…" : "Sign"}
+          </button>
+        </div>`,
+      form,
+    );
+  const allow = () => draw({ allowed: isReason(why(), map) });
+  form.addEventListener("input", allow);
+  form.addEventListener("submit", async (event) => {
     event.preventDefault();
-    [button.disabled, button.textContent] = [true, "Signing…"];
-    const done = await attempt(message, () => sign(why.field.value, confirmed.checked));
-    button.textContent = "Sign";
+    draw({ signing: true });
+    const done = await attempt(within(form, "p.error"), () => sign(why(), isConfirmed()));
     allow();
     if (done) dialog.close();
-  };
-  const text = `${conflicts} accepted loop closures do not fit the graph; sign anyway`;
-  const cancel = make("button", { type: "button", onclick: () => dialog.close() }, "Cancel");
-  const form = make(
-    "form",
-    { onsubmit: submit, oninput: allow },
-    about(map),
-    make("p", {}, SIGNED),
-    why.label,
-    conflicts ? make("label", { className: "check" }, confirmed, make("span", {}, text)) : null,
-    message,
-    make("div", { className: "buttons" }, cancel, button),
-  );
-  const dialog = open("Approve map", form);
-  dialog.classList.add("wide");
-  allow();
+  });
+  draw({ allowed: isReason("", map) });
 }

@@ -2,15 +2,45 @@
 // the decisions. No DOM, no network.
 
 import { keyOf, length } from "./captions.js";
-import { apart } from "./math.js";
+import { IDENTITY, apart } from "./math.js";
 
 /**
  * @typedef {import("../shared/http_types").ReviewView} ReviewView
  * @typedef {import("../shared/http_types").AlignmentView} AlignmentView
+ * @import {Effect, Move, PairFacts} from "../shared/http_types"
+ * @typedef {object} Row a pair of the queue
+ * @property {string} key
+ * @property {string} title
+ * @property {number} frame_i
+ * @property {number} frame_j
+ * @property {number} t_i_s
+ * @property {number} t_j_s
+ * @property {string} kind
+ * @property {string} verdict of the program
+ * @property {string} reason of a rejection
+ * @property {boolean} measured whether it was registered
+ * @property {number} paths alternative paths
+ * @property {number | null} influence_m
+ * @property {number | null} overlap
+ * @property {number | null} error_m
+ * @property {number | null} limit_m
+ * @property {number | null} degeneracy
+ * @property {number | null} verification_m
+ * @property {number | null} chi2
+ * @property {string} state the verdict in force
+ * @property {string} who decided; empty = the program
+ * @property {string} why
+ * @typedef {Omit<Row, "key" | "title" | "state" | "who" | "why">} NewRow
+ * @typedef {Omit<Effect["last"], "moves"> & {moves: Array<Move & {t_s: number}>}} TimedDifference
+ * @typedef {Omit<Effect, "last" | "all"> &
+ *   {last: TimedDifference, all: TimedDifference}} TimedEffect
+ * @typedef {{rows: any[][], columns: string[], began_ns: number, limit_m: number}} Queue
+ * @typedef {Record<"previous" | "next" | "accept" | "reject" | "restore" | "refine" | "pick" |
+ *   "undo" | "redo" | "add" | "keys", boolean>} Enabled which actions are
  * @typedef {object} Selected the pair that is looked at
  * @property {[number, number]} pair frames of both places
- * @property {any} row
- * @property {any} facts details of the pair, null until they are read
+ * @property {Row} row
+ * @property {PairFacts | null} facts details of the pair, null until they are read
  * @property {AlignmentView | null} found registration made on this page
  * @property {boolean} moved by hand, since the last registration
  * @property {boolean} busy a registration runs
@@ -21,16 +51,21 @@ import { apart } from "./math.js";
 export class ReviewState {
   /** @type {ReviewView | null} */
   server = null;
-  /** @type {any} */
+  /** @type {TimedEffect | null} */
   effect = null;
   /** @type {Selected | null} */
   selected = null;
+  /** @type {Row[]} */
   rows = [];
   graph = ""; // that the rows are made of
   path_limit_m = 0.1; // largest path discrepancy
   began_ns = 0;
 
-  /** Starts again with the state and the queue of the server. */
+  /**
+   * Starts again with the state and the queue of the server.
+   * @param {ReviewView} server
+   * @param {Queue} queue
+   */
   reset(server, queue) {
     // no journal row of the server is older than -1: the first update always computes the effect
     this.server = { ...server, seq: -1 };
@@ -39,12 +74,14 @@ export class ReviewState {
     this.began_ns = queue.began_ns;
     this.path_limit_m = queue.limit_m;
     this.rows = queue.rows.map((row) =>
-      this.#described(Object.fromEntries(queue.columns.map((name, k) => [name, row[k]]))),
+      this.#described(
+        /** @type {NewRow} */ (Object.fromEntries(queue.columns.map((name, k) => [name, row[k]]))),
+      ),
     );
   }
 
   /** Takes the server's state; returns new rows of pairs that others added. */
-  update(server) {
+  update(/** @type {ReviewView} */ server) {
     this.server = server;
     const known = new Set(this.rows.map((row) => row.key));
     const added = server.standing
@@ -56,17 +93,25 @@ export class ReviewState {
   }
 
   /** Takes the effect of the decisions on the graph; null without decisions. */
-  setEffect(effect) {
-    this.effect = effect;
+  setEffect(/** @type {Effect | null} */ effect) {
+    this.effect = effect && this.#timed(effect);
     if (!effect) return;
-    for (const part of [effect.last, effect.all])
-      for (const move of part.moves) move.t_s = (move.t_ns - this.began_ns) / 1e9;
     const chi2 = new Map(effect.edges.map((one) => [keyOf(one.pair), one.chi2]));
-    for (const row of this.rows) if (chi2.has(row.key)) row.chi2 = chi2.get(row.key);
+    for (const row of this.rows) row.chi2 = chi2.get(row.key) ?? row.chi2;
+  }
+
+  /** The effect with the times of its moves in the walk. */
+  #timed(/** @type {Effect} */ effect) {
+    const timed = (/** @type {Effect["last"]} */ part) => ({
+      ...part,
+      moves: part.moves.map((move) => ({ ...move, t_s: (move.t_ns - this.began_ns) / 1e9 })),
+    });
+    return { ...effect, last: timed(effect.last), all: timed(effect.all) };
   }
 
   /** Brings the rows up to date; returns the keys of those that changed. */
   refreshRows() {
+    /** @type {string[]} */
     const changed = [];
     for (const row of this.rows) {
       if (row.kind === "manual") row.measured = this.#isMeasuredByPerson(row);
@@ -79,8 +124,13 @@ export class ReviewState {
     return changed;
   }
 
+  /**
+   * @param {[number, number]} pair
+   * @param {Row} row
+   */
   select(pair, row) {
-    this.selected = {
+    /** @type {Selected} */
+    const selected = {
       pair,
       row,
       facts: null,
@@ -90,33 +140,36 @@ export class ReviewState {
       drawn: false,
       decided: false,
     };
-    return this.selected;
+    this.selected = selected;
+    return selected;
   }
 
   /** The decision of a person that is in force for a pair. */
-  activeDecisionOf([i, j]) {
+  activeDecisionOf(/** @type {[number, number]} */ [i, j]) {
     return this.server?.standing.find((one) => one.frame_i === i && one.frame_j === j);
   }
 
   /** The measured pose of the selected pair; the graph's prediction if it was never registered. */
-  poseOf({ pair, facts }) {
+  poseOf(/** @type {Pick<Selected, "pair" | "facts">} */ { pair, facts }) {
     const decision = this.activeDecisionOf(pair);
-    return decision?.measured ? decision.T_i_j : (facts.measured ?? facts.predicted);
+    return decision?.measured ? decision.T_i_j : (facts?.measured ?? facts?.predicted ?? IDENTITY);
   }
 
   /** Whether the selected pair was registered, by the program or by a person. */
   get isMeasured() {
+    if (!this.selected) return false;
     const { row, pair } = this.selected;
     return Boolean(row.measured || this.activeDecisionOf(pair)?.measured);
   }
 
   get hasDecisions() {
+    if (!this.server) return false;
     const { standing: activeDecisions, undoable, redoable } = this.server;
     return Boolean(this.graph && (activeDecisions.length || undoable || redoable));
   }
 
   /** A row for a pair the program never tried. */
-  newRow(pair) {
+  newRow(/** @type {[number, number]} */ pair) {
     const unknown = {
       influence_m: null,
       overlap: null,
@@ -141,10 +194,11 @@ export class ReviewState {
   }
 
   /** Which actions are enabled, by the person's permissions and the selected pair. */
-  enabled(pairs) {
+  enabled(/** @type {number} */ pairs) {
     const may = Boolean(this.server?.may_review);
     const { selected } = this;
-    const drawn = may && Boolean(selected?.drawn); // a person decides about points they have seen
+    // a person decides about points they have seen
+    const drawn = may && selected !== null && selected.drawn;
     const open = drawn && !selected.decided;
     return {
       previous: pairs > 0,
@@ -154,8 +208,8 @@ export class ReviewState {
       restore: may && Boolean(selected && this.activeDecisionOf(selected.pair)),
       refine: drawn && !selected.busy,
       pick: drawn,
-      undo: may && this.server.undoable > 0,
-      redo: may && this.server.redoable > 0,
+      undo: may && (this.server?.undoable ?? 0) > 0,
+      redo: may && (this.server?.redoable ?? 0) > 0,
       add: Boolean(this.graph),
       keys: true,
     };
@@ -180,31 +234,33 @@ export class ReviewState {
       : "Not registered: refine it (move it first if it is far off), then create the edge";
   }
 
-  #isMeasuredByPerson(row) {
+  #isMeasuredByPerson(/** @type {Row} */ row) {
     return Boolean(this.activeDecisionOf([row.frame_i, row.frame_j])?.measured);
   }
 
-  #described(row) {
-    row.key = keyOf([row.frame_i, row.frame_j]);
-    row.title = `Multiframes ${row.frame_i} and ${row.frame_j}`;
-    return Object.assign(row, this.#decisionOf(row));
+  #described(/** @type {NewRow} */ row) {
+    const { frame_i, frame_j } = row;
+    const title = `Multiframes ${frame_i} and ${frame_j}`;
+    return { ...row, key: keyOf([frame_i, frame_j]), title, ...this.#decisionOf(row) };
   }
 
   /** A person's decision, else the program's after the decisions, else its first verdict. */
-  #decisionOf(row) {
+  #decisionOf(/** @type {Pick<Row, "frame_i" | "frame_j" | "verdict">} */ row) {
     const decision = this.activeDecisionOf([row.frame_i, row.frame_j]);
     if (decision) {
       const { accepted, who, why } = decision;
       return { state: accepted ? "accepted" : "rejected", who, why };
     }
-    const isIn = (pairs) => pairs?.some(([i, j]) => i === row.frame_i && j === row.frame_j);
+    const isIn = (/** @type {number[][] | undefined} */ pairs) =>
+      pairs?.some(([i, j]) => i === row.frame_i && j === row.frame_j);
     const rejected = isIn(this.effect?.all.rejected_automatically) && "rejected";
     const accepted = isIn(this.effect?.all.accepted_automatically) && "accepted";
     return { state: rejected || accepted || row.verdict, who: "", why: "" };
   }
 }
 
-function registrationHint({ found, facts }) {
+function registrationHint(/** @type {Selected} */ { found, facts }) {
+  if (!found || !facts) return "";
   const [m, degrees] = apart(found.T_i_j, facts.predicted);
   const moved = `${length(m)} and ${degrees.toFixed(2)}° from the graph`;
   if (!found.converged) return "Registration did not converge: move it nearer and refine again";

@@ -1,67 +1,92 @@
 // The buttons and keys of the review page: how each action is called.
 
 import { keep, kept } from "../shared/address.js";
-import { make } from "../shared/dom.js";
+import { html, render, targetOf } from "../shared/dom.js";
 import { listenToKeys } from "./keys.js";
+
+/**
+ * @import {Enabled} from "./state.js"
+ * @import {PairView} from "./view.js"
+ * @typedef {keyof Enabled | "drop"} ActionName
+ * @typedef {Record<ActionName, () => unknown>} Actions
+ * @typedef {{className?: string, action?: (event: MouseEvent) => unknown, caption?: string}} Look
+ *   of a button
+ * @typedef {{enabled: Enabled, refineText: string}} ToolState
+ */
 
 const GO_ON = "recon4-review-go-on"; // whether this browser goes on after a decision
 
-/** A double click acts once: its second click would hit the next pair. */
-const once = (action) => (event) => event.detail < 2 && action();
-
-const button = (text, key, action, className = "") =>
-  make(
-    "button",
-    { type: "button", className, onclick: action, title: `${text} (${key})` },
-    make("span", {}, text),
-    make("kbd", {}, key),
-  );
-
-const makeButtons = (act) => ({
-  previous: button("Previous", "K", act.previous),
-  next: button("Next", "J", act.next),
-  accept: button("Accept", "A", once(act.accept), "yes"),
-  reject: button("Reject", "R", once(act.reject), "no"),
-  restore: button("Restore", "U", act.restore),
-  refine: button("Refine", "Enter", act.refine),
-  pick: button("Pick points", "P", act.pick),
-  undo: button("Undo", "Ctrl Z", act.undo),
-  redo: button("Redo", "Ctrl Y", act.redo),
-  add: button("Add loop", "L", act.add),
-  keys: button("Keys", "?", act.keys),
-});
+/** Whether to go on to the next pair after a decision. */
+export const goesOn = () => kept(GO_ON) === "yes";
 
 /**
- * Fills the bar below the pair and adds to that of the queue; returns the buttons by action, the
- * field `reason`, and the check box `goOn` to the next pair after a decision.
+ * A double click acts once: its second click would hit the next pair.
+ * @param {() => unknown} action
  */
-export function makeTools(bar, queueBar, act) {
-  const buttons = makeButtons(act);
-  const { previous, reject, accept, next, restore, refine, pick, undo, redo } = buttons;
-  const reason = make("input", {
-    autocomplete: "off",
-    maxLength: 500,
-    placeholder: "Reason (optional)",
-    ariaLabel: "Reason",
-  });
-  const goOn = make("input", { type: "checkbox", checked: kept(GO_ON) === "yes" });
-  goOn.addEventListener("change", () => keep(GO_ON, goOn.checked ? "yes" : "no"));
-  const text = make("span", {}, "Go on to the next pair after a decision");
-  bar.append(
-    make("div", { className: "row main" }, previous, reject, accept, next),
-    make("div", { className: "row" }, restore, refine, pick, undo, redo),
-    make(
-      "div",
-      { className: "row reason" },
-      reason,
-      make("label", { className: "check" }, goOn, text),
-    ),
+const once = (action) => (/** @type {MouseEvent} */ event) => event.detail < 2 && action();
+
+/**
+ * Draws the bar below the pair, and the buttons of the queue.
+ * @param {HTMLElement} bar
+ * @param {HTMLElement} queueBar
+ * @param {Actions} act
+ * @param {ToolState} state
+ */
+export function drawTools(bar, queueBar, act, { enabled, refineText }) {
+  const button = (
+    /** @type {keyof Enabled} */ name,
+    /** @type {string} */ text,
+    /** @type {string} */ key,
+    { className = "", action = act[name], caption = text } = /** @type {Look} */ ({}),
+  ) =>
+    html`<button
+      type="button"
+      class=${className}
+      title="${text} (${key})"
+      ?disabled=${!enabled[name]}
+      @click=${action}
+    >
+      <span>${caption}</span><kbd>${key}</kbd>
+    </button>`;
+  const choose = (/** @type {Event} */ event) =>
+    keep(GO_ON, targetOf(event).checked ? "yes" : "no");
+  render(
+    html`<div class="row main">
+        ${button("previous", "Previous", "K")}
+        ${button("reject", "Reject", "R", { className: "no", action: once(act.reject) })}
+        ${button("accept", "Accept", "A", { className: "yes", action: once(act.accept) })}
+        ${button("next", "Next", "J")}
+      </div>
+      <div class="row">
+        ${button("restore", "Restore", "U")}
+        ${button("refine", "Refine", "Enter", { caption: refineText })}
+        ${button("pick", "Pick points", "P")} ${button("undo", "Undo", "Ctrl Z")}
+        ${button("redo", "Redo", "Ctrl Y")}
+      </div>
+      <div class="row reason">
+        <input
+          autocomplete="off"
+          maxlength="500"
+          placeholder="Reason (optional)"
+          aria-label="Reason"
+        /><label class="check"
+          ><input type="checkbox" .checked=${goesOn()} @change=${choose} /><span
+            >Go on to the next pair after a decision</span
+          ></label
+        >
+      </div>`,
+    bar,
   );
-  queueBar.append(buttons.add, buttons.keys);
-  return { buttons, reason, goOn };
+  render([button("add", "Add loop", "L"), button("keys", "Keys", "?")], queueBar);
 }
 
-/** Actions by key. */
+/**
+ * Actions by key.
+ * @param {Actions} act
+ * @param {PairView} view
+ * @param {HTMLElement} reason
+ * @returns {Record<string, () => unknown>}
+ */
 const keyActions = (act, view, reason) => ({
   j: act.next,
   k: act.previous,
@@ -84,7 +109,11 @@ const keyActions = (act, view, reason) => ({
   Escape: act.drop,
 });
 
-/** Movements of the second place by key, in meters and radians. */
+/**
+ * Movements of the second place by key, in meters and radians.
+ * @param {PairView} view
+ * @returns {Record<string, (m: number, turn: number) => void>}
+ */
 const moveActions = (view) => ({
   ArrowLeft: (m) => view.nudge(-m, 0),
   ArrowRight: (m) => view.nudge(m, 0),
@@ -96,7 +125,13 @@ const moveActions = (view) => ({
   Period: (m, turn) => view.nudge(0, 0, -turn),
 });
 
-/** Calls the actions by key; the second place moves by key while `canMove()`. */
+/**
+ * Calls the actions by key; the second place moves by key while `canMove()`.
+ * @param {Actions} act
+ * @param {PairView} view
+ * @param {HTMLElement} reason
+ * @param {() => boolean} canMove
+ */
 export function listenToActions(act, view, reason, canMove) {
   listenToKeys({
     press: keyActions(act, view, reason),

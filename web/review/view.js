@@ -2,88 +2,133 @@
 // difference.
 // Events: "laid" (the person moved the second place), "reach" (another number of multiframes).
 
-import { make } from "../shared/dom.js";
+import { html, nothing, render, targetOf, within } from "../shared/dom.js";
 import { drawScaleBar } from "../shared/scale_bar.js";
 import { HALO, INK, drawBoth, drawDifference, drawHandle, drawPicked, pointImage } from "./draw.js";
 import { Camera, IDENTITY, nudged, rotationOf, transposed, turn } from "./math.js";
 import { Picking } from "./picking.js";
 import { listenToPointer } from "./pointer.js";
+import { REACHES, SHOWN, VIEWS, after, group, key } from "./view_controls.js";
 
-const VIEWS = { above: "Above", side: "Side", free: "Free", cut: "Cut" };
-const SHOWN = { odometry: "Odometry", predicted: "Graph", after: "Aligned" };
+/**
+ * @import {PairPoints} from "./draw.js"
+ * @import {Xyz} from "./picking.js"
+ * @import {Shown, View} from "./view_controls.js"
+ * @typedef {Record<Shown, number[]>} Poses of the second place in the first
+ * @typedef {object} ViewState
+ * @property {View} view
+ * @property {Shown} shown
+ * @property {boolean} difference
+ * @property {number} cut_cm
+ * @property {boolean} upright the cut
+ * @property {number} reach multiframes shown around each place
+ * @property {string} empty text instead of points
+ * @property {string} words over the points
+ * @typedef {(picked: {p_i: Xyz[], p_j: Xyz[]}) => unknown} OnPicked
+ */
+
 const HALF_CUT_M = 0.1;
 const EVERYTHING = [-Infinity, Infinity];
 
 export class PairView extends HTMLElement {
   camera = new Camera();
-  #view = "above";
-  #shown = "after";
-  #difference = false;
+  /** @type {ViewState} */
+  #state = {
+    view: "above",
+    shown: "after",
+    difference: false,
+    cut_cm: 0,
+    upright: false,
+    reach: 0,
+    empty: "",
+    words: "",
+  };
   #agreeing = 0; // fraction of the pixels, in the difference
+  /** @type {PairPoints | null} */
   #points = null;
+  /** @type {Poses} */
   #poses = { odometry: IDENTITY, predicted: IDENTITY, after: IDENTITY };
   #upright = [1, 0, 0, 0, 1, 0, 0, 0, 1];
   /** @type {Picking | null} */
   #picking = null;
+  /** @type {OnPicked | null} */
   #onPicked = null;
   #requested = false; // a frame is requested
+  /** @type {(() => void) | null} */
   #drawn = null; // to call once the points are on the screen
-  #canvas = make("canvas", { tabIndex: 0, role: "img", ariaLabel: "Points of both places" });
-  #over = make("p", { className: "view-words" });
-  #empty = make("p", { className: "view-empty" });
-  #height = make("input", {
-    type: "range",
-    min: -300,
-    max: 300,
-    value: 0,
-    ariaLabel: "Position of the cut",
-  });
-  #upwards = make("input", { type: "checkbox" });
-  #cutText = make("output");
-  #cut = make("div", { className: "cut", hidden: true });
-  #reach = make("select", { ariaLabel: "Multiframes shown around each place" });
-  #buttons = {};
-  #differs = make(
-    "button",
-    { type: "button", onclick: () => this.toggleDifference() },
-    "Difference",
-  );
 
   connectedCallback() {
-    const reaches = [0, 2, 5, 10].map((n) =>
-      make("option", { value: n }, n ? `± ${n} multiframes` : "Nodes only"),
-    );
-    this.#reach.append(...reaches);
-    this.#reach.addEventListener("change", () => this.#emit("reach"));
-    this.#cut.append(
-      make("label", {}, make("span", {}, "Position of the cut"), this.#height, this.#cutText),
-      make("label", { className: "check" }, this.#upwards, make("span", {}, "Upright cut")),
-    );
-    this.#height.addEventListener("input", () => this.draw());
-    this.#upwards.addEventListener("change", () => this.show(this.#view));
-    const views = this.#group("View", VIEWS, (key) => this.show(key));
-    const shown = this.#group("Show", SHOWN, (key) => this.compare(key));
-    const stage = [this.#canvas, this.#over, this.#legend(), this.#empty];
-    const ofPlaces = this.#names ? [] : [shown, this.#reach];
-    this.replaceChildren(
-      make("div", { className: "view-tools" }, views, this.#differs, ...ofPlaces),
-      make("div", { className: "view-stage" }, ...stage),
-      this.#cut,
-    );
+    this.#show({});
     new ResizeObserver(() => this.draw()).observe(this.#canvas);
     listenToPointer(this.#canvas, this);
-    this.show("above");
-    this.compare("after");
-    this.#drawDifferenceButton();
   }
 
-  /** Buttons of which one is pressed. */
-  #group(label, choices, action) {
-    const buttons = Object.entries(choices).map(([key, text]) => {
-      this.#buttons[key] = make("button", { type: "button", onclick: () => action(key) }, text);
-      return this.#buttons[key];
-    });
-    return make("div", { role: "group", ariaLabel: label, className: "segmented" }, ...buttons);
+  get #canvas() {
+    return within(this, "canvas", HTMLCanvasElement);
+  }
+
+  /** Draws the controls and the points, after something was chosen. */
+  #show(/** @type {Partial<ViewState>} */ changes) {
+    Object.assign(this.#state, changes);
+    this.#drawControls();
+    this.draw();
+  }
+
+  #drawControls() {
+    const { view, shown, difference, cut_cm, upright, empty, words } = this.#state;
+    this.classList.toggle("difference", difference);
+    const cut = (/** @type {Event} */ event) =>
+      this.#show({ cut_cm: Number(targetOf(event).value) });
+    const turnUp = (/** @type {Event} */ event) => {
+      this.#state.upright = targetOf(event).checked;
+      this.show(view);
+    };
+    render(
+      html`<div class="view-tools">
+          ${group("View", VIEWS, view, (key) => this.show(key))}
+          <button type="button" aria-pressed=${difference} @click=${() => this.toggleDifference()}>
+            Difference
+          </button>
+          ${this.#names ? nothing : this.#choicesOfPlaces(shown)}
+        </div>
+        <div class="view-stage">
+          <canvas tabindex="0" role="img" aria-label="Points of both places"></canvas>
+          <p class="view-words">${words}</p>
+          ${this.#legend()}
+          <p class="view-empty">${empty}</p>
+        </div>
+        <div class="cut" ?hidden=${view !== "cut"}>
+          <label
+            ><span>Position of the cut</span
+            ><input
+              type="range"
+              min="-300"
+              max="300"
+              aria-label="Position of the cut"
+              .value=${String(cut_cm)}
+              @input=${cut}
+            /><output>${(cut_cm / 100).toFixed(2)} m</output></label
+          ><label class="check"
+            ><input type="checkbox" .checked=${upright} @change=${turnUp} /><span
+              >Upright cut</span
+            ></label
+          >
+        </div>`,
+      this,
+    );
+  }
+
+  #choicesOfPlaces(/** @type {Shown} */ shown) {
+    const choose = (/** @type {Event} */ event) => {
+      this.#state.reach = Number(targetOf(event).value);
+      this.#emit("reach");
+    };
+    return html`${group("Show", SHOWN, shown, (key) => this.compare(key))}
+      <select aria-label="Multiframes shown around each place" @change=${choose}>
+        ${REACHES.map(
+          (n) => html`<option value=${n}>${n ? `± ${n} multiframes` : "Nodes only"}</option>`,
+        )}
+      </select>`;
   }
 
   /** Names of two clouds that are no places of a walk, if the page gave data-first, -second. */
@@ -94,30 +139,31 @@ export class PairView extends HTMLElement {
 
   /** Multiframes shown around each place. */
   get reach() {
-    return Number(this.#reach.value);
+    return this.#state.reach;
   }
 
   /**
-   * Shows a pair: points of both, poses {odometry, predicted, after}, rotation to upright as a
-   * quaternion. The promise resolves once the points are drawn; never if another pair is set
-   * before.
+   * Shows a pair: points of both, poses, rotation to upright as a quaternion. The promise resolves
+   * once the points are drawn; never if another pair is set before.
+   * @param {PairPoints} points
+   * @param {Poses} poses
+   * @param {number[]} upright
+   * @returns {Promise<void>}
    */
   set(points, poses, upright) {
     this.#points = points;
     this.#poses = poses;
     this.#upright = rotationOf(upright);
     this.#picking = null;
-    this.#empty.textContent = "";
     this.camera.fit(points.i, Math.min(this.#canvas.clientWidth, this.#canvas.clientHeight));
-    this.draw();
+    this.#show({ empty: "" });
     return new Promise((resolve) => (this.#drawn = resolve));
   }
 
   /** Shows a text instead of points. */
-  clear(text) {
+  clear(/** @type {string} */ text) {
     this.#points = this.#drawn = null;
-    this.#empty.textContent = text;
-    this.draw();
+    this.#show({ empty: text });
   }
 
   /** Pose of the second place in the first, x y z qx qy qz qw. */
@@ -131,71 +177,61 @@ export class PairView extends HTMLElement {
   }
 
   /** Position on the canvas of a point in the frame of the first place [px]. */
-  on(p) {
+  on(/** @type {number[]} */ p) {
     const { clientWidth, clientHeight } = this.#canvas;
     return this.camera.toScreen(turn(this.#upright, p), clientWidth, clientHeight);
   }
 
-  show(view) {
-    this.#view = view;
-    const upright = view === "side" || (view === "cut" && this.#upwards.checked);
+  show(/** @type {View} */ view) {
+    const upright = view === "side" || (view === "cut" && this.#state.upright);
     if (view === "free") [this.camera.yaw, this.camera.pitch] = [0.6, 0.6];
     else [this.camera.yaw, this.camera.pitch] = [0, upright ? 0 : Math.PI / 2];
-    this.#cut.hidden = view !== "cut";
-    for (const key of Object.keys(VIEWS)) this.#buttons[key].ariaPressed = String(key === view);
-    this.draw();
+    this.#show({ view });
   }
 
-  compare(shown) {
-    this.#shown = shown;
-    for (const key of Object.keys(SHOWN)) this.#buttons[key].ariaPressed = String(key === shown);
-    this.draw();
+  compare(/** @type {Shown} */ shown) {
+    this.#show({ shown });
   }
 
   /** The next of odometry, graph, aligned. */
   compareNext() {
-    const keys = Object.keys(SHOWN);
-    this.compare(keys[(keys.indexOf(this.#shown) + 1) % keys.length]);
+    this.compare(after(SHOWN, this.#state.shown));
   }
 
   /** Shows both places over each other, or in color only what one of them has alone. */
   toggleDifference() {
-    this.#difference = !this.#difference;
-    this.#drawDifferenceButton();
-    this.draw();
-  }
-
-  #drawDifferenceButton() {
-    this.#differs.ariaPressed = String(this.#difference);
-    this.classList.toggle("difference", this.#difference);
+    this.#show({ difference: !this.#state.difference });
   }
 
   viewNext() {
-    const keys = Object.keys(VIEWS);
-    this.show(keys[(keys.indexOf(this.#view) + 1) % keys.length]);
+    this.show(after(VIEWS, this.#state.view));
   }
 
-  moveCut(steps) {
-    if (this.#view !== "cut") this.show("cut");
-    this.#height.value = Number(this.#height.value) + 5 * steps;
-    this.draw();
+  moveCut(/** @type {number} */ steps) {
+    if (this.#state.view !== "cut") this.show("cut");
+    const cut_cm = Math.min(300, Math.max(-300, this.#state.cut_cm + 5 * steps));
+    this.#show({ cut_cm });
   }
 
-  /** Moves the second place on the screen [m] and turns it about the line of sight [rad]. */
+  /**
+   * Moves the second place on the screen [m] and turns it about the line of sight [rad].
+   * @param {number} right
+   * @param {number} up
+   */
   nudge(right, up, angle = 0) {
     const [x, y, eye] = this.camera.axes();
     const shift = x.map((v, k) => v * right + y[k] * up);
     this.#lay(nudged(this.pose, this.#toBody(shift), this.#toBody(eye), angle));
   }
 
-  lift(height) {
+  lift(/** @type {number} */ height) {
     this.#lay(nudged(this.pose, this.#toBody([0, 0, height]), [0, 0, 1], 0));
   }
 
   /** Starts picking the same three points in both places; `done({p_i, p_j})`. */
-  pick(done) {
+  pick(/** @type {OnPicked} */ done) {
     const [first, second] = this.#names ?? [];
-    this.#picking = new Picking(first && [`${first} (blue)`, `${second} (orange)`]);
+    this.#picking = new Picking(first ? [`${first} (blue)`, `${second} (orange)`] : undefined);
     this.#onPicked = done;
     this.compare("after");
     this.#canvas.focus();
@@ -206,12 +242,12 @@ export class PairView extends HTMLElement {
   }
 
   get isFree() {
-    return this.#view === "free";
+    return this.#state.view === "free";
   }
 
   /** Whether the second place can be moved by its handle. */
   get hasHandle() {
-    return this.#shown === "after" && this.#view !== "cut";
+    return this.#state.shown === "after" && this.#state.view !== "cut";
   }
 
   get isPicking() {
@@ -224,22 +260,22 @@ export class PairView extends HTMLElement {
   }
 
   #legend() {
-    const key = (name, text) => make("span", { className: `key ${name}` }, text);
     const [first, second] = this.#names ?? ["first", "second"];
-    const keys = [key("first", first), key("second", second), key("both", "both")];
-    return make("div", { className: "view-key" }, ...keys);
+    return html`<div class="view-key">
+      ${key("first", first)} ${key("second", second)} ${key("both", "both")}
+    </div>`;
   }
 
-  #emit(name) {
+  #emit(/** @type {string} */ name) {
     this.dispatchEvent(new CustomEvent(name, { bubbles: true }));
   }
 
-  #lay(pose) {
+  #lay(/** @type {number[]} */ pose) {
     this.pose = pose;
     this.#emit("laid");
   }
 
-  #toBody(v) {
+  #toBody(/** @type {number[]} */ v) {
     return turn(transposed(this.#upright), v);
   }
 
@@ -258,12 +294,13 @@ export class PairView extends HTMLElement {
     const image = pointImage(this.#canvas);
     if (!image) return;
     const { context, ratio } = image;
-    const pose = this.#poses[this.#shown];
-    const slab = this.#view === "cut" ? this.#slab() : EVERYTHING;
+    const { shown, difference, view } = this.#state;
+    const pose = this.#poses[shown];
+    const slab = view === "cut" ? this.#slab() : EVERYTHING;
     const projection = { upright: this.#upright, camera: this.camera, slab };
     if (this.#points) {
       const poses = { i: IDENTITY, j: pose };
-      if (this.#difference) this.#agreeing = drawDifference(image, this.#points, poses, projection);
+      if (difference) this.#agreeing = drawDifference(image, this.#points, poses, projection);
       else drawBoth(image, this.#points, poses, projection);
     }
     image.show();
@@ -281,24 +318,30 @@ export class PairView extends HTMLElement {
 
   /** The range of a cut along the line of sight [m]. */
   #slab() {
-    const middle = Number(this.#height.value) / 100;
+    const middle = this.#state.cut_cm / 100;
     return [middle - HALF_CUT_M, middle + HALF_CUT_M];
   }
 
+  /** Says over the points what is drawn. */
   #describe() {
-    const texts = [];
-    if (this.#view === "cut") {
-      const at = `${(Number(this.#height.value) / 100).toFixed(2)} m`;
-      this.#cutText.textContent = at;
-      texts.push(`Cut of 20 cm at ${at}`);
-    }
-    if (this.#difference)
-      texts.push(`${Math.round(100 * this.#agreeing)} % of what is drawn agrees within 5 cm`);
-    if (this.#picking) texts.push(this.#picking.text);
-    this.#over.textContent = this.#points ? texts.join(" · ") : "";
+    const { view, cut_cm, difference, words: before } = this.#state;
+    const agreeing = Math.round(100 * this.#agreeing);
+    const texts = [
+      view === "cut" ? `Cut of 20 cm at ${(cut_cm / 100).toFixed(2)} m` : "",
+      difference ? `${agreeing} % of what is drawn agrees within 5 cm` : "",
+      this.#picking?.text ?? "",
+    ];
+    const words = this.#points ? texts.filter(Boolean).join(" · ") : "";
+    if (words === before) return;
+    this.#state.words = words;
+    this.#drawControls();
   }
 
-  zoom(factor, x = this.#canvas.clientWidth / 2, y = this.#canvas.clientHeight / 2) {
+  zoom(
+    /** @type {number} */ factor,
+    x = this.#canvas.clientWidth / 2,
+    y = this.#canvas.clientHeight / 2,
+  ) {
     const [dx, dy] = [x - this.#canvas.clientWidth / 2, y - this.#canvas.clientHeight / 2];
     this.camera.pan(-dx, -dy);
     this.camera.scale = Math.min(2000, Math.max(2, this.camera.scale * factor));
@@ -307,10 +350,11 @@ export class PairView extends HTMLElement {
   }
 
   /** Picks a point of the places by turns; after the last one reports all. */
-  pickAt(at) {
-    const [low, high] = this.#view === "cut" ? this.#slab() : EVERYTHING;
+  pickAt(/** @type {number[]} */ at) {
+    if (!this.#picking || !this.#points) return;
+    const [low = 0, high = 0] = this.#state.view === "cut" ? this.#slab() : EVERYTHING;
     const eye = this.camera.axes()[2];
-    const toScreen = (p) => {
+    const toScreen = (/** @type {number[]} */ p) => {
       const [x, y, z] = turn(this.#upright, p);
       const depth = eye[0] * x + eye[1] * y + eye[2] * z;
       return depth < low || depth > high ? null : this.on(p);
@@ -319,7 +363,7 @@ export class PairView extends HTMLElement {
     if (this.#picking.isDone) {
       const { i: p_i, j: p_j } = this.#picking;
       this.#picking = null;
-      this.#onPicked({ p_i, p_j });
+      this.#onPicked?.({ p_i, p_j });
     }
     this.draw();
   }

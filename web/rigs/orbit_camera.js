@@ -12,29 +12,39 @@ export class OrbitCamera {
   #fitted = 500;
 
   /** Looks at a sphere from the start direction, with all of it in a window of `size` pixels. */
-  reset({ middle, radius }, /** @type {number[]} */ [width, height]) {
+  reset(
+    /** @type {{middle: number[], radius: number}} */ { middle, radius },
+    /** @type {number[]} */ [width, height],
+  ) {
     Object.assign(this, START);
     this.fit({ middle, radius }, [width, height]);
   }
 
   /** Fits a sphere into a window and keeps the direction. */
-  fit({ middle, radius }, /** @type {number[]} */ [width, height]) {
+  fit(
+    /** @type {{middle: number[], radius: number}} */ { middle, radius },
+    /** @type {number[]} */ [width, height],
+  ) {
     this.middle = middle;
     this.pxPerM = this.#fitted = (MARGIN * Math.min(width, height)) / (2 * radius);
   }
 
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   */
   orbit(dx, dy) {
     this.yaw -= dx * 0.008;
     this.pitch = Math.min(Math.max(this.pitch + dy * 0.008, -LIMIT), LIMIT);
   }
 
-  zoom(factor) {
+  zoom(/** @type {number} */ factor) {
     const fitted = this.#fitted;
     this.pxPerM = Math.min(Math.max(this.pxPerM * factor, fitted / 4), fitted * 10);
   }
 
   /** [right, down] in pixels from the middle of the window, and the depth toward the viewer. */
-  project([x, y, z]) {
+  project(/** @type {number[]} */ [x, y, z]) {
     const [a, b, c] = [x - this.middle[0], y - this.middle[1], z - this.middle[2]];
     const [cy, sy] = [Math.cos(this.yaw), Math.sin(this.yaw)];
     const [cp, sp] = [Math.cos(this.pitch), Math.sin(this.pitch)];

@@ -1,107 +1,103 @@
 // The dialogs of the rig page: a name for a copy, and where an imported file goes.
 
 import { addRigVersion, createRig } from "../shared/api.js";
-import { attempt, fields, make } from "../shared/dom.js";
+import { closeButton, openDialog } from "../shared/dialog.js";
+import { attempt, fields, html, messagePlace, nothing, targetOf, within } from "../shared/dom.js";
+import { slug } from "./rig_math.js";
 
-const NAME = { pattern: "[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}", required: true };
+/**
+ * @import {Content} from "../shared/dom.js"
+ * @import {SavedRig} from "../shared/http_types"
+ * @typedef {(saved: SavedRig) => void} Done
+ */
+
 const MAX_BYTES = 128 * 1024;
 
-/** A name for a folder, from a file name or another name. */
-export const slug = (text) =>
-  text
-    .replace(/(-v\d+)?\.toml$/i, "")
-    .replace(/[^A-Za-z0-9._-]+/g, "-")
-    .replace(/^[^A-Za-z0-9]+/, "")
-    .slice(0, 64);
+const nameField = (/** @type {string} */ name) =>
+  html`<label
+    ><span>Name of the new rig</span
+    ><input
+      name="id"
+      value=${name}
+      pattern="[A-Za-z0-9][A-Za-z0-9._\\-]{0,63}"
+      title="Letters, digits, dot, dash and underscore"
+      autocomplete="off"
+      spellcheck="false"
+      required
+  /></label>`;
 
-const nameInput = (value) =>
-  make("input", {
-    name: "id",
-    value,
-    autocomplete: "off",
-    spellcheck: false,
-    title: "Letters, digits, dot, dash and underscore",
-    ...NAME,
-  });
+const noteField = () =>
+  html`<label><span>Note</span><input name="note" maxlength="500" autocomplete="off" /></label>`;
 
-/** Opens a dialog with a form; `action(form)` gives the saved rig, which `done` receives. */
-function open(dialog, { title, content, button, action, done }) {
-  const message = make("p", { className: "error", role: "alert" });
-  const submit = async (event) => {
+/**
+ * Opens a dialog with a form; `save` gives the saved rig, which `done` receives.
+ * @param {string} title
+ * @param {Content[]} content
+ * @param {{button: string, done: Done,
+ *   save: (given: Record<string, HTMLInputElement>) => Promise<SavedRig>}} how
+ */
+function open(title, content, { button, save, done }) {
+  const submit = async (/** @type {SubmitEvent} */ event) => {
     event.preventDefault();
-    const saved = await attempt(message, () => action(fields(event.target)));
+    const form = within(dialog, "form", HTMLFormElement);
+    const saved = await attempt(within(dialog, ".error"), () => save(fields(form)));
     if (!saved) return;
     dialog.close();
     done(saved);
   };
-  dialog.replaceChildren(
-    make("h2", { id: "dialog-title" }, title),
-    make(
-      "form",
-      { onsubmit: submit },
-      ...content,
-      message,
-      make(
-        "div",
-        { className: "buttons" },
-        make("button", { type: "button", onclick: () => dialog.close() }, "Cancel"),
-        make("button", { className: "primary" }, button),
-      ),
-    ),
+  const dialog = openDialog(
+    title,
+    html`<form @submit=${submit}>
+      ${content} ${messagePlace()}
+      <div class="buttons">${closeButton()}<button class="primary">${button}</button></div>
+    </form>`,
   );
-  dialog.showModal();
 }
 
-const noteField = () =>
-  make(
-    "label",
-    {},
-    make("span", {}, "Note"),
-    make("input", { name: "note", maxLength: 500, autocomplete: "off" }),
-  );
-
-export function askDuplicate(dialog, id, done) {
-  open(dialog, {
-    title: `Duplicate ${id}`,
-    content: [
-      make("label", {}, make("span", {}, "Name of the new rig"), nameInput(slug(`${id}-copy`))),
-      noteField(),
-    ],
+/**
+ * Asks for the name of a copy of a rig.
+ * @param {string} id
+ * @param {Done} done
+ */
+export function askDuplicate(id, done) {
+  open(`Duplicate ${id}`, [nameField(slug(`${id}-copy`)), noteField()], {
     button: "Duplicate",
-    action: ({ id: input, note }) =>
+    save: ({ id: input, note }) =>
       createRig({ id: input.value, copy_of: id, note: note.value.trim() }),
     done,
   });
 }
 
-/** Asks where a rig file goes: a new rig, or the next version of one of `own`. */
-export async function askImport(dialog, { file, own, done }) {
+/**
+ * Asks where a rig file goes: a new rig, or the next version of one of `own`.
+ * @param {File} file
+ * @param {string[]} own
+ * @param {Done} done
+ */
+export async function askImport(file, own, done) {
   const toml = file.size <= MAX_BYTES ? await file.text() : "";
-  const input = nameInput(slug(file.name));
-  const label = make("label", {}, make("span", {}, "Name of the new rig"), input);
-  const into = make(
-    "select",
-    { name: "into" },
-    make("option", { value: "" }, "A new rig"),
-    ...own.map((id) => make("option", { value: id }, `A new version of ${id}`)),
-  );
-  into.addEventListener("change", () => {
-    label.hidden = input.disabled = into.value !== "";
-  });
-  open(dialog, {
-    title: `Import ${file.name}`,
-    content: [
-      ...(own.length ? [make("label", {}, make("span", {}, "Import as"), into)] : []),
-      label,
-      noteField(),
-    ],
+  const choose = (/** @type {Event} */ event) => {
+    const select = targetOf(event);
+    const form = /** @type {HTMLFormElement} */ (select.closest("form"));
+    const name = within(form, "[name=id]", HTMLInputElement);
+    name.disabled = /** @type {HTMLElement} */ (name.closest("label")).hidden = select.value !== "";
+  };
+  const into = html`<label
+    ><span>Import as</span
+    ><select name="into" @change=${choose}>
+      <option value="">A new rig</option>
+      ${own.map((id) => html`<option value=${id}>A new version of ${id}</option>`)}
+    </select></label
+  >`;
+  const content = [own.length ? into : nothing, nameField(slug(file.name)), noteField()];
+  open(`Import ${file.name}`, content, {
     button: "Import",
-    action: ({ note }) => {
+    save: ({ into: rig, id, note }) => {
       if (!toml) throw new Error(`A rig file has 1 to ${MAX_BYTES} bytes, this one ${file.size}`);
       const version = { toml, note: note.value.trim() };
-      return into.value
-        ? addRigVersion(into.value, version)
-        : createRig({ id: input.value, ...version });
+      return rig?.value
+        ? addRigVersion(rig.value, version)
+        : createRig({ id: id.value, ...version });
     },
     done,
   });

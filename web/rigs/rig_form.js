@@ -1,16 +1,35 @@
 // <rig-form>: the fields of a rig. Each input changes its number only, the others stay exact.
 
-import { make, showError } from "../shared/dom.js";
+import {
+  html,
+  messagePlace,
+  nothing,
+  render,
+  repeat,
+  say,
+  showError,
+  targetOf,
+  within,
+} from "../shared/dom.js";
 import { short } from "./rig_math.js";
+
+/**
+ * @import {Content} from "../shared/dom.js"
+ * @import {Rig, RigImu, RigGnss, RigSensor, Triple} from "./rig_math.js"
+ * @typedef {{factor: number, digits: number, unit: string, whole?: boolean}} Unit
+ * @typedef {{label: string, path: string}} Label a caption, and the name of the field
+ */
 
 const CM = { factor: 100, digits: 4, unit: "cm" };
 const DEGREES = { factor: 1, digits: 6, unit: "°" };
 const MS = { factor: 1e3, digits: 6, unit: "ms" };
+const PLAIN = { factor: 1, digits: 0, unit: "", whole: true };
 const DECIMALS = 9; // of a changed number in its unit of the file
 const KINDS = { lidar: "LiDAR", profiler: "Profiler", laser2d: "2-D laser" };
 const XYZ = ["x", "y", "z"];
 const RPY = ["roll", "pitch", "yaw"];
 
+/** @type {RigSensor} */
 const NEW_SENSOR = {
   name: "",
   kind: "lidar",
@@ -25,100 +44,95 @@ const NEW_SENSOR = {
   head_rate_deg_s: 0,
   enabled: true,
   serial: "",
+  beams: null,
 };
 
 export class RigForm extends HTMLElement {
-  #content = null;
-  #models = [];
-  #note = make("input", { name: "note", maxLength: 500, autocomplete: "off" });
-  #save = make("button", { className: "primary" }, "Save as a new version");
-  #warnings = make("ul", { className: "warnings", role: "status" });
-  #message = make("p", { className: "error", role: "alert" });
+  /** @type {{content: Rig | null, models: string[], warnings: string[], mayBeSaved: boolean}} */
+  #state = { content: null, models: [], warnings: [], mayBeSaved: true };
 
-  /** Shows the fields of a rig; nothing of `content` itself is changed. */
+  /**
+   * Shows the fields of a rig; nothing of `content` itself is changed.
+   * @param {Rig} content
+   * @param {string[]} models
+   */
   edit(content, models) {
-    this.#content = structuredClone(content);
-    this.#models = models;
-    this.#note.value = "";
-    this.#message.textContent = "";
+    const fresh = { content: structuredClone(content), warnings: [], mayBeSaved: true };
+    Object.assign(this.#state, fresh, { models });
+    render(nothing, this); // what was typed before
     this.#draw();
   }
 
   get content() {
-    return this.#content;
+    if (!this.#state.content) throw new Error("no rig is edited");
+    return this.#state.content;
   }
 
   /** Whether every field has a value of its kind. */
   get isComplete() {
-    return this.querySelector("form").checkValidity();
+    return within(this, "form", HTMLFormElement).checkValidity();
   }
 
-  /** Shows what the server says of the rig; `problems` are field -> text. */
+  /**
+   * Shows what the server says of the rig; `problems` are field -> text.
+   * @param {{problems: Record<string, string>, warnings: string[]}} said
+   */
   complain({ problems, warnings }) {
+    Object.assign(this.#state, { warnings, mayBeSaved: Object.keys(problems).length === 0 });
+    this.#draw();
     for (const slot of this.querySelectorAll("[data-problem]")) {
-      const field = /** @type {HTMLElement} */ (slot).dataset.problem;
+      const { problem: field = "" } = /** @type {HTMLElement} */ (slot).dataset;
       const text = problems[field] ?? "";
       if (slot.textContent !== text) slot.textContent = text;
       for (const input of this.querySelectorAll(`[name="${field}"]`))
         if (text) input.setAttribute("aria-invalid", "true");
         else input.removeAttribute("aria-invalid");
     }
-    this.#warnings.replaceChildren(...warnings.map((text) => make("li", {}, `▲ ${text}`)));
-    this.#save.disabled = Object.keys(problems).length > 0;
   }
 
   /** Shows an error of saving; null = none. */
-  set error(error) {
-    if (error) showError(this.#message, error);
-    else this.#message.textContent = "";
+  set error(/** @type {unknown} */ error) {
+    const message = within(this, "p.error");
+    if (error) showError(message, error);
+    else say(message, "");
   }
 
   #draw() {
-    const { sensors, imu, gnss } = this.#content;
+    const { content, warnings, mayBeSaved } = this.#state;
+    if (!content) return;
+    const { sensors, imu, gnss } = content;
     const cancel = () => this.dispatchEvent(new CustomEvent("cancelled"));
-    this.replaceChildren(
-      make(
-        "form",
-        { onsubmit: (event) => this.#submit(event) },
-        this.#text(this.#content, "name", { label: "Name", path: "name", required: true }),
-        ...sensors.map((sensor, k) => this.#sensor(sensor, k)),
-        make("button", { type: "button", onclick: () => this.#add() }, "Add a sensor"),
-        this.#group(
-          "IMU",
-          this.#triple(imu, "xyz_m", { label: "Position", of: XYZ, path: "imu", ...CM }),
-          this.#triple(imu, "rpy_deg", { label: "Rotation", of: RPY, path: "imu", ...DEGREES }),
-          this.#numbers(
-            imu,
-            "imu",
-            this.#text(imu, "topic", { label: "Topic", path: "imu.topic" }),
-          ),
-        ),
-        this.#group(
-          "GNSS antenna",
-          this.#triple(gnss, "lever_arm_m", { label: "Lever arm", of: XYZ, path: "gnss", ...CM }),
-          this.#numbers(
-            gnss,
-            "gnss",
-            this.#text(gnss, "serial", { label: "Serial line", path: "gnss.serial" }),
-            this.#text(gnss, "topic", { label: "Topic", path: "gnss.topic" }),
-          ),
-        ),
-        make("label", {}, make("span", {}, "Note: what changed and why"), this.#note),
-        this.#warnings,
-        this.#message,
-        make(
-          "div",
-          { className: "buttons" },
-          this.#save,
-          make("button", { type: "button", onclick: cancel }, "Cancel"),
-        ),
-      ),
+    render(
+      html`<form @submit=${(/** @type {SubmitEvent} */ event) => this.#submit(event)}>
+        ${this.#text(content, "name", { label: "Name", path: "name", required: true })}
+        ${repeat(
+          sensors,
+          (sensor) => sensor,
+          (sensor, k) => this.#sensor(sensor, k),
+        )}
+        <button type="button" @click=${() => this.#add()}>Add a sensor</button>
+        ${this.#imu(imu)} ${this.#gnss(gnss)}
+        <label
+          ><span>Note: what changed and why</span
+          ><input name="note" maxlength="500" autocomplete="off"
+        /></label>
+        <ul class="warnings" role="status">
+          ${warnings.map((text) => html`<li>▲ ${text}</li>`)}
+        </ul>
+        ${messagePlace()}
+        <div class="buttons">
+          <button class="primary" ?disabled=${!mayBeSaved}>Save as a new version</button
+          ><button type="button" @click=${cancel}>Cancel</button>
+        </div>
+      </form>`,
+      this,
     );
   }
 
-  #submit(event) {
+  #submit(/** @type {SubmitEvent} */ event) {
     event.preventDefault();
-    this.dispatchEvent(new CustomEvent("saved", { detail: this.#note.value.trim() }));
+    const note = within(this, "[name=note]", HTMLInputElement).value.trim();
+    this.dispatchEvent(new CustomEvent("saved", { detail: note }));
   }
 
   #edited() {
@@ -126,7 +140,7 @@ export class RigForm extends HTMLElement {
   }
 
   #add() {
-    const sensors = this.#content.sensors;
+    const { sensors } = this.content;
     const ports = sensors.map((sensor) => sensor.port);
     const port = sensors.length ? Math.max(...ports) + 1 : NEW_SENSOR.port;
     sensors.push({ ...structuredClone(NEW_SENSOR), name: `sensor-${sensors.length + 1}`, port });
@@ -134,175 +148,238 @@ export class RigForm extends HTMLElement {
     this.#edited();
   }
 
-  #remove(k) {
-    this.#content.sensors.splice(k, 1);
+  #remove(/** @type {number} */ k) {
+    this.content.sensors.splice(k, 1);
     this.#draw();
     this.#edited();
   }
 
-  #group(title, ...children) {
-    return make("fieldset", {}, make("legend", {}, title), ...children);
+  #imu(/** @type {RigImu} */ imu) {
+    return group("IMU", [
+      this.#triple(imu.xyz_m, { label: "Position", path: "imu.xyz_m" }, XYZ),
+      this.#triple(imu.rpy_deg, { label: "Rotation", path: "imu.rpy_deg" }, RPY),
+      this.#numbers(imu, "imu", this.#text(imu, "topic", { label: "Topic", path: "imu.topic" })),
+    ]);
   }
 
+  #gnss(/** @type {RigGnss} */ gnss) {
+    return group("GNSS antenna", [
+      this.#triple(gnss.lever_arm_m, { label: "Lever arm", path: "gnss.lever_arm_m" }, XYZ),
+      this.#numbers(gnss, "gnss", [
+        this.#text(gnss, "serial", { label: "Serial line", path: "gnss.serial" }),
+        this.#text(gnss, "topic", { label: "Topic", path: "gnss.topic" }),
+      ]),
+    ]);
+  }
+
+  /**
+   * @param {RigSensor} sensor
+   * @param {number} k
+   */
   #sensor(sensor, k) {
     const path = `sensors.${k}`;
-    const redraw = () => {
-      if (sensor.kind !== "lidar") sensor.model = "generic";
-      if (sensor.kind !== "profiler") Object.assign(sensor, { head_topic: "", head_rate_deg_s: 0 });
-      this.#draw();
+    const use = (/** @type {Event} */ event) => {
+      sensor.enabled = targetOf(event).checked;
       this.#edited();
     };
-    const models = sensor.kind === "lidar" ? this.#models : ["generic"];
-    const head = sensor.kind === "profiler" && [
-      this.#text(sensor, "head_topic", { label: "Topic of the head", path: `${path}.head_topic` }),
-      this.#number(sensor, "head_rate_deg_s", {
-        label: "Turn rate of the head",
-        path: `${path}.head_rate_deg_s`,
-        ...DEGREES,
-        unit: "°/s",
-      }),
-    ];
-    const row = (...children) => make("div", { className: "fields" }, ...children);
-    const checkbox = make("input", { type: "checkbox", checked: sensor.enabled });
-    checkbox.addEventListener("change", () => {
-      sensor.enabled = checkbox.checked;
-      this.#edited();
-    });
-    return this.#group(
-      sensor.name || `Sensor ${k + 1}`,
-      row(
-        this.#text(sensor, "name", { label: "Name", path: `${path}.name`, required: true }),
-        this.#choice(sensor, "kind", { label: "Kind", path, options: KINDS, then: redraw }),
-        this.#choice(sensor, "model", {
-          label: "Model",
-          path,
-          options: Object.fromEntries(models.map((name) => [name, name])),
-        }),
-      ),
-      this.#triple(sensor, "xyz_m", { label: "Position", of: XYZ, path, ...CM }),
-      this.#triple(sensor, "rpy_deg", { label: "Rotation", of: RPY, path, ...DEGREES }),
-      this.#numbers(
-        sensor,
-        path,
+    return group(sensor.name || `Sensor ${k + 1}`, [
+      this.#kind(sensor, path),
+      this.#triple(sensor.xyz_m, { label: "Position", path: `${path}.xyz_m` }, XYZ),
+      this.#triple(sensor.rpy_deg, { label: "Rotation", path: `${path}.rpy_deg` }, RPY),
+      this.#numbers(sensor, path, [
         this.#text(sensor, "address", { label: "Address", path: `${path}.address`, hint: "any" }),
         this.#text(sensor, "topic", { label: "Topic", path: `${path}.topic`, hint: "detected" }),
         this.#text(sensor, "serial", { label: "Serial number", path: `${path}.serial` }),
-      ),
-      head ? row(...head) : null,
-      make(
-        "div",
-        { className: "title-row" },
-        make("label", { className: "check" }, checkbox, make("span", {}, "Used for the map")),
-        this.#content.sensors.length > 1
-          ? make("button", { type: "button", onclick: () => this.#remove(k) }, "Remove")
-          : null,
-      ),
-    );
+      ]),
+      sensor.kind === "profiler" ? this.#head(sensor, path) : nothing,
+      html`<div class="title-row">
+        <label class="check"
+          ><input type="checkbox" .checked=${sensor.enabled} @change=${use} /><span
+            >Used for the map</span
+          ></label
+        >
+        ${
+          this.content.sensors.length > 1
+            ? html`<button type="button" @click=${() => this.#remove(k)}>Remove</button>`
+            : nothing
+        }
+      </div>`,
+    ]);
   }
 
-  /** Clock and port, and what else stands in their row. */
-  #numbers(record, path, ...others) {
-    return make(
-      "div",
-      { className: "fields" },
-      this.#number(record, "time_offset_s", {
-        label: "Clock",
-        path: `${path}.time_offset_s`,
-        ...MS,
-      }),
-      this.#number(record, "port", {
-        label: "UDP port",
-        path: `${path}.port`,
-        factor: 1,
-        digits: 0,
-        unit: "",
-        whole: true,
-      }),
-      ...others,
-    );
-  }
-
-  #text(record, key, { label, path, hint = "", required = false }) {
-    const input = make("input", {
-      name: path,
-      value: record[key],
-      placeholder: hint,
-      autocomplete: "off",
-      spellcheck: false,
-      required,
-      maxLength: 200,
-    });
-    input.addEventListener("input", () => {
-      record[key] = input.value.trim();
+  /**
+   * Name, kind and model of a sensor; its kind decides about other fields.
+   * @param {RigSensor} sensor
+   * @param {string} path
+   */
+  #kind(sensor, path) {
+    const models = sensor.kind === "lidar" ? this.#state.models : ["generic"];
+    const setKind = (/** @type {string} */ kind) => {
+      sensor.kind = /** @type {RigSensor["kind"]} */ (kind);
+      if (kind !== "lidar") sensor.model = "generic";
+      if (kind !== "profiler") Object.assign(sensor, { head_topic: "", head_rate_deg_s: 0 });
+      this.#draw();
       this.#edited();
-    });
-    return this.#labeled(label, input, path);
-  }
-
-  #choice(record, key, { label, path, options, then = () => this.#edited() }) {
-    const known = record[key] in options ? options : { ...options, [record[key]]: record[key] };
-    const select = make(
-      "select",
-      { name: `${path}.${key}` },
-      ...Object.entries(known).map(([value, text]) =>
-        make("option", { value, selected: value === record[key] }, text),
-      ),
-    );
-    select.addEventListener("change", () => {
-      record[key] = select.value;
-      then();
-    });
-    return this.#labeled(label, select, `${path}.${key}`);
-  }
-
-  #number(record, key, { label, path, unit, factor, digits, whole = false }) {
-    const set = (value) => (record[key] = value);
-    const input = this.#input(path, record[key], set, { factor, digits, whole });
-    return this.#labeled(unit ? `${label} [${unit}]` : label, input, path);
-  }
-
-  #triple(record, key, { label, of, path, unit, factor, digits }) {
-    const how = { factor, digits, whole: false };
-    const field = `${path}.${key}`;
-    const part = (name, k) => {
-      const input = this.#input(field, record[key][k], (value) => (record[key][k] = value), how);
-      return make("label", {}, make("span", {}, name), input);
     };
-    const title = `${label} [${unit}]`;
-    return make(
-      "div",
-      { className: "triple", role: "group", ariaLabel: title },
-      make("span", { className: "title" }, title),
-      ...of.map(part),
-      this.#slot(field),
-    );
-  }
-
-  #input(name, value, set, { factor, digits, whole }) {
-    const input = make("input", {
-      type: "number",
-      step: whole ? "1" : "any",
-      name,
-      value: short(value * factor, digits),
-      required: true,
-      inputMode: whole ? "numeric" : "text", // a minus is on the keyboard
-    });
-    input.addEventListener("input", () => {
-      const given = input.valueAsNumber;
-      if (Number.isFinite(given) && input.validity.valid)
-        set(Number((given / factor).toFixed(DECIMALS)));
+    const setModel = (/** @type {string} */ model) => {
+      sensor.model = /** @type {RigSensor["model"]} */ (model);
       this.#edited();
-    });
-    return input;
+    };
+    const known = Object.fromEntries([...models, sensor.model].map((name) => [name, name]));
+    return html`<div class="fields">
+      ${this.#text(sensor, "name", { label: "Name", path: `${path}.name`, required: true })}
+      ${choice({ label: "Kind", path: `${path}.kind` }, { ...KINDS }, sensor.kind, setKind)}
+      ${choice({ label: "Model", path: `${path}.model` }, known, sensor.model, setModel)}
+    </div>`;
   }
 
-  #labeled(label, input, path) {
-    return make("label", {}, make("span", {}, label), input, this.#slot(path));
+  /**
+   * The head that turns a profiler.
+   * @param {RigSensor} sensor
+   * @param {string} path
+   */
+  #head(sensor, path) {
+    const topic = { label: "Topic of the head", path: `${path}.head_topic` };
+    const rate = { label: "Turn rate of the head", path: `${path}.head_rate_deg_s` };
+    return html`<div class="fields">
+      ${this.#text(sensor, "head_topic", topic)}
+      ${this.#number(sensor, "head_rate_deg_s", { ...rate, ...DEGREES, unit: "°/s" })}
+    </div>`;
   }
 
-  #slot(path) {
-    return make("small", { className: "error", "data-problem": path });
+  /**
+   * Clock and port, and what else stands in their row.
+   * @param {RigSensor | RigImu | RigGnss} record
+   * @param {string} path
+   * @param {Content | Content[]} others
+   */
+  #numbers(record, path, others) {
+    const clock = { label: "Clock", path: `${path}.time_offset_s`, ...MS };
+    const port = { label: "UDP port", path: `${path}.port`, ...PLAIN };
+    return html`<div class="fields">
+      ${this.#number(record, "time_offset_s", clock)} ${this.#number(record, "port", port)}
+      ${others}
+    </div>`;
+  }
+
+  /**
+   * @template {string} K
+   * @param {Record<K, string>} record
+   * @param {K} key
+   * @param {Label & {hint?: string, required?: boolean}} options
+   */
+  #text(record, key, { label, path, hint = "", required = false }) {
+    const type = (/** @type {Event} */ event) => {
+      record[key] = targetOf(event).value.trim();
+      this.#edited();
+    };
+    const input = html`<input
+      name=${path}
+      placeholder=${hint}
+      autocomplete="off"
+      spellcheck="false"
+      maxlength="200"
+      ?required=${required}
+      .value=${record[key]}
+      @input=${type}
+    />`;
+    return labeled(label, path, input);
+  }
+
+  /**
+   * @template {string} K
+   * @param {Record<K, number>} record
+   * @param {K} key
+   * @param {Label & Unit} options
+   */
+  #number(record, key, { label, path, ...unit }) {
+    const set = (/** @type {number} */ value) => (record[key] = value);
+    const input = this.#input(path, unit, record[key], set);
+    return labeled(unit.unit ? `${label} [${unit.unit}]` : label, path, input);
+  }
+
+  /**
+   * @param {Triple} values is changed
+   * @param {Label} label
+   * @param {string[]} parts names of the components
+   */
+  #triple(values, { label, path }, parts) {
+    const unit = parts === RPY ? DEGREES : CM;
+    const title = `${label} [${unit.unit}]`;
+    return html`<div class="triple" role="group" aria-label=${title}>
+      <span class="title">${title}</span>
+      ${values.map(
+        (value, k) =>
+          html`<label
+            ><span>${parts[k]}</span>${this.#input(path, unit, value, (set) => (values[k] = set))}
+          </label>`,
+      )}
+      ${slot(path)}
+    </div>`;
+  }
+
+  /**
+   * @param {string} name
+   * @param {Unit} unit
+   * @param {number} value
+   * @param {(value: number) => void} set
+   */
+  #input(name, { factor, digits, whole = false }, value, set) {
+    const type = (/** @type {Event} */ event) => {
+      const { valueAsNumber: given, validity } = targetOf(event);
+      if (Number.isFinite(given) && validity.valid) set(Number((given / factor).toFixed(DECIMALS)));
+      this.#edited();
+    };
+    return html`<input
+      type="number"
+      step=${whole ? "1" : "any"}
+      inputmode=${whole ? "numeric" : "text" /* a minus is on the keyboard */}
+      name=${name}
+      required
+      .value=${short(value * factor, digits)}
+      @input=${type}
+    />`;
   }
 }
+
+/**
+ * @param {string} title
+ * @param {Content[]} children
+ */
+const group = (title, children) =>
+  html`<fieldset>
+    <legend>${title}</legend>
+    ${children}
+  </fieldset>`;
+
+/**
+ * @param {Label} label
+ * @param {Record<string, string>} options captions by value
+ * @param {string} chosen
+ * @param {(value: string) => void} set
+ */
+function choice({ label, path }, options, chosen, set) {
+  const select = html`<select
+    name=${path}
+    @change=${(/** @type {Event} */ event) => set(targetOf(event).value)}
+  >
+    ${Object.entries(options).map(
+      ([value, text]) =>
+        html`<option value=${value} .selected=${value === chosen}>${text}</option>`,
+    )}
+  </select>`;
+  return labeled(label, path, select);
+}
+
+/**
+ * @param {string} label
+ * @param {string} path
+ * @param {Content} control
+ */
+const labeled = (label, path, control) =>
+  html`<label><span>${label}</span>${control}${slot(path)}</label>`;
+
+const slot = (/** @type {string} */ path) =>
+  html`<small class="error" data-problem=${path}></small>`;
 
 customElements.define("rig-form", RigForm);

@@ -1,9 +1,20 @@
 // Rotations and differences of rigs. No DOM, no network. Matrices are lists of rows.
 
+/**
+ * @import {GnssContent, ImuContent, RigContent, SensorContent} from "../shared/http_types"
+ * @typedef {[number, number, number]} Triple
+ * @typedef {Required<SensorContent>} RigSensor
+ * @typedef {Required<ImuContent>} RigImu
+ * @typedef {Required<GnssContent>} RigGnss
+ * @typedef {Omit<RigContent, "sensors" | "imu" | "gnss"> &
+ *   {sensors: RigSensor[], imu: RigImu, gnss: RigGnss}} Rig a rig as the server sends it: whole
+ * @typedef {Pick<RigSensor, "xyz_m" | "rpy_deg" | "time_offset_s">} Mount
+ */
+
 const RAD = Math.PI / 180;
 
 /** Rz(yaw) Ry(pitch) Rx(roll) of angles in degrees: maps the sensor's axes into the body. */
-export function matrixOf([roll, pitch, yaw]) {
+export function matrixOf(/** @type {number[]} */ [roll, pitch, yaw]) {
   const [cr, sr] = [Math.cos(roll * RAD), Math.sin(roll * RAD)];
   const [cp, sp] = [Math.cos(pitch * RAD), Math.sin(pitch * RAD)];
   const [cy, sy] = [Math.cos(yaw * RAD), Math.sin(yaw * RAD)];
@@ -14,11 +25,20 @@ export function matrixOf([roll, pitch, yaw]) {
   ];
 }
 
-/** A point of the sensor in the body. */
+/**
+ * A point of the sensor in the body.
+ * @param {number[][]} R
+ * @param {number[]} origin
+ * @param {number[]} given
+ */
 export const placed = (R, origin, [x, y, z]) =>
-  R.map((row, k) => origin[k] + row[0] * x + row[1] * y + row[2] * z);
+  R.map((row, /** @type {number} */ k) => origin[k] + row[0] * x + row[1] * y + row[2] * z);
 
-/** The rotation vector, in the body and degrees, that turns one mount into another. */
+/**
+ * The rotation vector, in the body and degrees, that turns one mount into another.
+ * @param {number[]} before
+ * @param {number[]} after
+ */
 export function rotationBetween(before, after) {
   const [A, B] = [matrixOf(before), matrixOf(after)];
   const D = [0, 1, 2].map((i) =>
@@ -36,25 +56,43 @@ export function rotationBetween(before, after) {
 }
 
 const AXES = ["x", "y", "z"];
+/**
+ * @param {number} value
+ * @param {number} digits
+ */
 const signed = (value, digits) => `${value < 0 ? "−" : "+"}${Math.abs(value).toFixed(digits)}`;
 
-/** ["x +1.00", …] of the components that round to something else than zero. */
+/**
+ * ["x +1.00", …] of the components that round to something else than zero.
+ * @param {number[]} values
+ * @param {number} digits
+ */
 const components = (values, digits) =>
-  values.flatMap((value, k) =>
+  values.flatMap((value, /** @type {number} */ k) =>
     Math.abs(value) < 0.5 * 10 ** -digits ? [] : [`${AXES[k]} ${signed(value, digits)}`],
   );
 
+/**
+ * @param {Pick<Mount, "time_offset_s">} before
+ * @param {Pick<Mount, "time_offset_s">} after
+ */
 const clockChange = (before, after) => {
   const change = 1e3 * (after.time_offset_s - before.time_offset_s);
   return Math.abs(change) < 5e-4 ? [] : [`clock ${signed(change, 3)} ms`];
 };
 
+/**
+ * @param {Mount} before
+ * @param {Mount} after
+ */
 function mountChanges(before, after) {
-  const shift = after.xyz_m.map((value, k) => 100 * (value - before.xyz_m[k]));
+  const shift = after.xyz_m.map(
+    (value, /** @type {number} */ k) => 100 * (value - before.xyz_m[k]),
+  );
   const turn = rotationBetween(before.rpy_deg, after.rpy_deg);
   return [
-    ...components(shift, 2).map((text) => `position ${text} cm`),
-    ...components(turn, 3).map((text) => `rotation about ${text}°`),
+    ...components(shift, 2).map((/** @type {string} */ text) => `position ${text} cm`),
+    ...components(turn, 3).map((/** @type {string} */ text) => `rotation about ${text}°`),
     ...clockChange(before, after),
   ];
 }
@@ -69,28 +107,54 @@ const PLAIN = [
   "head_topic",
   "head_rate_deg_s",
 ];
+/**
+ * @param {Record<string, any>} before
+ * @param {Record<string, any>} after
+ * @param {string[]} keys
+ */
 const plainChanges = (before, after, keys) =>
   keys
-    .filter((key) => before[key] !== after[key])
-    .map((key) => `${key.replaceAll("_", " ")} ${before[key] || "none"} → ${after[key] || "none"}`);
+    .filter((/** @type {string} */ key) => before[key] !== after[key])
+    .map(
+      (/** @type {string} */ key) =>
+        `${key.replaceAll("_", " ")} ${before[key] || "none"} → ${after[key] || "none"}`,
+    );
 
+/**
+ * @param {RigSensor} before
+ * @param {RigSensor} after
+ */
 function sensorChanges(before, after) {
   const used = before.enabled === after.enabled ? [] : [after.enabled ? "enabled" : "disabled"];
   return [...mountChanges(before, after), ...plainChanges(before, after, PLAIN), ...used];
 }
 
+/**
+ * @param {RigGnss} before
+ * @param {RigGnss} after
+ */
 function gnssChanges(before, after) {
-  const arm = after.lever_arm_m.map((value, k) => 100 * (value - before.lever_arm_m[k]));
+  const arm = after.lever_arm_m.map(
+    (value, /** @type {number} */ k) => 100 * (value - before.lever_arm_m[k]),
+  );
   return [
-    ...components(arm, 2).map((text) => `lever arm ${text} cm`),
+    ...components(arm, 2).map((/** @type {string} */ text) => `lever arm ${text} cm`),
     ...clockChange(before, after),
     ...plainChanges(before, after, ["port", "serial"]),
   ];
 }
 
-/** What differs between two versions of a rig: lines of text; the sensors are found by name. */
+/**
+ * What differs between two versions of a rig: lines of text; the sensors are found by name.
+ * @param {Rig} before
+ * @param {Rig} after
+ */
 export function changesOf(before, after) {
-  const of = (label, texts) => texts.map((text) => `${label}: ${text}`);
+  /**
+   * @param {string} label
+   * @param {string[]} texts
+   */
+  const of = (label, texts) => texts.map((/** @type {string} */ text) => `${label}: ${text}`);
   const earlier = new Map(before.sensors.map((sensor) => [sensor.name, sensor]));
   const names = new Set(after.sensors.map((sensor) => sensor.name));
   const kept = after.sensors.flatMap((sensor) => {
@@ -108,5 +172,17 @@ export function changesOf(before, after) {
   ];
 }
 
-/** A number without trailing zeros, at most `digits` decimals. */
+/**
+ * A number without trailing zeros, at most `digits` decimals.
+ * @param {number} value
+ * @param {number} digits
+ */
 export const short = (value, digits) => String(Number(value.toFixed(digits)));
+
+/** A name for a folder, from a file name or another name. */
+export const slug = (/** @type {string} */ text) =>
+  text
+    .replace(/(-v\d+)?\.toml$/i, "")
+    .replace(/[^A-Za-z0-9._-]+/g, "-")
+    .replace(/^[^A-Za-z0-9]+/, "")
+    .slice(0, 64);

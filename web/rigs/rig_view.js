@@ -1,13 +1,20 @@
 // <rig-view>: the drawing of a rig on a canvas. Drag or arrow keys orbit; wheel, pinch, + - zoom.
 
-import { make } from "../shared/dom.js";
+import { html, render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { OrbitCamera } from "./orbit_camera.js";
 import { boundsOf, describe, shapesOf } from "./rig_scene.js";
 
+/**
+ * @import {Rig} from "./rig_math.js"
+ * @import {Shape} from "./rig_scene.js"
+ * @typedef {Shape & {depth: number}} FlatShape in pixels
+ */
+
 const STEP_PX = 20; // of an arrow key
 const ZOOM = 1.2;
 const BEHIND = 1e-3; // lines are drawn over the faces they lie in [m]
+/** @type {Record<string, (camera: OrbitCamera) => void>} */
 const KEYS = {
   ArrowLeft: (camera) => camera.orbit(-STEP_PX, 0),
   ArrowRight: (camera) => camera.orbit(STEP_PX, 0),
@@ -18,23 +25,25 @@ const KEYS = {
 };
 
 export class RigView extends HTMLElement {
-  #canvas = make("canvas", { tabIndex: 0, role: "img" });
+  #canvas = document.createElement("canvas");
   #camera = new OrbitCamera();
+  /** @type {Rig | null} */
   #content = null;
+  /** @type {Shape[]} */
   #shapes = [];
   #waiting = false;
   #shown = "";
 
   connectedCallback() {
-    this.replaceChildren(
-      this.#canvas,
-      make(
-        "div",
-        { className: "view-buttons" },
-        this.#button("+", "Zoom in", () => this.#camera.zoom(ZOOM)),
-        this.#button("−", "Zoom out", () => this.#camera.zoom(1 / ZOOM)),
-        this.#button("⟲", "Reset the view", () => this.#reset()),
-      ),
+    Object.assign(this.#canvas, { tabIndex: 0, role: "img" });
+    render(
+      html`${this.#canvas}
+        <div class="view-buttons">
+          ${this.#button("+", "Zoom in", () => this.#camera.zoom(ZOOM))}
+          ${this.#button("−", "Zoom out", () => this.#camera.zoom(1 / ZOOM))}
+          ${this.#button("⟲", "Reset the view", () => this.#reset())}
+        </div>`,
+      this,
     );
     listenToGestures(this.#canvas, {
       onDrag: (from, to) => this.#move(() => this.#camera.orbit(to[0] - from[0], to[1] - from[1])),
@@ -51,7 +60,12 @@ export class RigView extends HTMLElement {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.#later());
   }
 
-  /** Shows a rig; `elevations` are the beams of each model. The view stays for the same `key`. */
+  /**
+   * Shows a rig; `elevations` are the beams of each model. The view stays for the same `key`.
+   * @param {Rig} content
+   * @param {Record<string, number[] | null>} elevations
+   * @param {string} key
+   */
   show(content, elevations, key) {
     this.#content = content;
     this.#shapes = shapesOf(content, elevations);
@@ -63,23 +77,31 @@ export class RigView extends HTMLElement {
     this.#later();
   }
 
+  /**
+   * @param {string} text
+   * @param {string} title
+   * @param {() => void} action
+   */
   #button(text, title, action) {
     const onclick = () => this.#move(action);
-    return make("button", { type: "button", title, ariaLabel: title, onclick }, text);
+    return html`<button type="button" title=${title} aria-label=${title} @click=${onclick}>
+      ${text}
+    </button>`;
   }
 
-  #press(event) {
+  #press(/** @type {KeyboardEvent} */ event) {
     const action = event.key === "0" ? () => this.#reset() : KEYS[event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;
     event.preventDefault();
     this.#move(() => action(this.#camera));
   }
 
-  #move(action) {
+  #move(/** @type {() => void} */ action) {
     action();
     this.#later();
   }
 
+  /** @returns {[number, number]} */
   get #size() {
     return [this.#canvas.clientWidth, this.#canvas.clientHeight];
   }
@@ -108,9 +130,10 @@ export class RigView extends HTMLElement {
     const ratio = devicePixelRatio || 1;
     [this.#canvas.width, this.#canvas.height] = [width * ratio, height * ratio];
     const pen = this.#canvas.getContext("2d");
+    if (!pen) return;
     pen.setTransform(ratio, 0, 0, ratio, (width * ratio) / 2, (height * ratio) / 2);
     const style = getComputedStyle(this);
-    const colorOf = (role) => style.getPropertyValue(`--${role}`).trim();
+    const colorOf = (/** @type {string} */ role) => style.getPropertyValue(`--${role}`).trim();
     const flat = this.#shapes.map((shape) => this.#flatten(shape));
     flat.sort((a, b) => a.depth - b.depth);
     for (const shape of flat) drawShape(pen, shape, colorOf(shape.role));
@@ -124,17 +147,22 @@ export class RigView extends HTMLElement {
   }
 
   /** A shape in pixels, with the depth by which it is sorted. */
-  #flatten(shape) {
+  #flatten(/** @type {Shape} */ shape) {
     const points = shape.points.map((point) => this.#camera.project(point));
     const depth = points.reduce((sum, point) => sum + point[2], 0) / points.length;
     return { ...shape, points, depth: shape.kind === "line" ? depth + BEHIND : depth };
   }
 }
 
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {FlatShape} given
+ * @param {string} color
+ */
 function drawShape(pen, { kind, points, alpha = 1, dashed, width = 1 }, color) {
   if (kind === "text") return;
   pen.beginPath();
-  points.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
+  points.forEach(([x, y], /** @type {number} */ k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
   if (kind === "face") {
     pen.closePath();
     pen.globalAlpha = alpha;
@@ -150,7 +178,13 @@ function drawShape(pen, { kind, points, alpha = 1, dashed, width = 1 }, color) {
   pen.globalAlpha = 1;
 }
 
-function drawText(pen, { points, text }, color, ground) {
+/**
+ * @param {CanvasRenderingContext2D} pen
+ * @param {FlatShape} given
+ * @param {string} color
+ * @param {string} ground
+ */
+function drawText(pen, { points, text = "" }, color, ground) {
   const [[x, y]] = points;
   pen.font = "600 13px system-ui, sans-serif";
   pen.textAlign = "center";

@@ -11,7 +11,7 @@ import {
   rigFileUrl,
   rigUrl,
 } from "../shared/api.js";
-import { attempt, byId, make } from "../shared/dom.js";
+import { asError, attempt, byId, detailOf, html, nothing, only, render } from "../shared/dom.js";
 import { when } from "../shared/format.js";
 import "../shared/page_head.js";
 import { askDuplicate, askImport } from "./rig_dialogs.js";
@@ -20,166 +20,193 @@ import { changesOf } from "./rig_math.js";
 import { angleHint, numbersTable, useList, versionList } from "./rig_table.js";
 import "./rig_view.js";
 
+/**
+ * @import {Content} from "../shared/dom.js"
+ * @import {RigCard, RigView, SensorModel} from "../shared/http_types"
+ * @import {Rig} from "./rig_math.js"
+ * @typedef {RigView & {content: Rig}} ShownRig
+ */
+
 const CHECK_AFTER_MS = 250;
-const drawing = document.querySelector("rig-view");
-const form = document.querySelector("rig-form");
-const dialog = byId("dialog", HTMLDialogElement);
+const drawing = only("rig-view");
+const form = only("rig-form");
 const message = byId("message");
 const file = byId("file", HTMLInputElement);
-let elevations = {};
-let models = [];
-let rigs = [];
-let rig = null; // the shown version
-let before = null; // content of the version before it
-let mayChange = false;
-let checking = 0;
-let asked = 0; // number of the newest check
+
+/** What the page shows. */
+const state = {
+  /** @type {SensorModel[]} */
+  models: [],
+  /** @type {RigCard[]} */
+  rigs: [],
+  /** @type {ShownRig | null} */
+  rig: null, // the shown version
+  /** @type {Rig | null} */
+  before: null, // content of the version before it
+  mayChange: false,
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  check: undefined, // that waits
+  checks: 0, // number of the newest check
+};
+
+const elevations = () =>
+  Object.fromEntries(state.models.map((one) => [one.model, one.elevation_deg]));
 
 function drawList() {
-  const entry = (one) =>
-    make(
-      "li",
-      {},
-      make(
-        "a",
-        { href: rigUrl(one.id), ...(one.id === rig?.id ? { ariaCurrent: "page" } : {}) },
-        make("b", {}, one.id),
-        make("small", {}, one.shipped ? "comes with recon4" : `version ${one.version}`),
-        make("small", {}, one.problem || one.sensors.join(", ")),
-      ),
-    );
-  byId("list").replaceChildren(...rigs.map(entry));
+  const entry = (/** @type {RigCard} */ { id, shipped, version, problem, sensors }) =>
+    html`<li>
+      <a href=${rigUrl(id)} aria-current=${id === state.rig?.id ? "page" : nothing}
+        ><b>${id}</b><small>${shipped ? "comes with recon4" : `version ${version}`}</small
+        ><small>${problem || sensors.join(", ")}</small></a
+      >
+    </li>`;
+  render(state.rigs.map(entry), byId("list"));
 }
 
 function drawRig() {
+  const { rig } = state;
+  if (!rig) return;
   const { id, shipped, version, content, versions } = rig;
   document.title = `${id} · Rigs · recon4`;
   byId("title").textContent = content.name === id ? id : `${id}: ${content.name}`;
   const about = versions.find((one) => one.number === version);
   byId("facts").textContent = shipped
     ? "Comes with recon4. Duplicate it to change it."
-    : [`Version ${version} of ${versions[0].number}`, about?.who, about?.when && when(about.when)]
+    : [`Version ${version} of ${newestOf(rig)}`, about?.who, about?.when && when(about.when)]
         .filter(Boolean)
         .join(", ");
   form.hidden = true;
   byId("numbers").hidden = false;
-  drawing.show(content, elevations, id);
-  byId("numbers").replaceChildren(numbersTable(content));
+  drawing.show(content, elevations(), id);
+  render(numbersTable(content), byId("numbers"));
   byId("hint").textContent = angleHint(content);
-  drawActions();
-  drawAbout();
+  drawActions(rig);
+  drawAbout(rig);
 }
 
-function drawActions() {
-  const button = (text, onclick, more = {}) =>
-    make("button", { type: "button", onclick, ...more }, text);
-  byId("actions").replaceChildren(
-    ...(mayChange && !rig.shipped && form.hidden ? [button("Edit", edit)] : []),
-    ...(mayChange && form.hidden
-      ? [button("Duplicate…", () => askDuplicate(dialog, rig.id, leadTo))]
-      : []),
-    make(
-      "a",
-      { className: "button", href: rigFileUrl(rig.id, rig.version), download: "" },
-      "Export TOML",
-    ),
+const newestOf = (/** @type {RigView} */ { version, versions }) => versions[0]?.number ?? version;
+
+function drawActions(/** @type {ShownRig} */ rig) {
+  const { id, shipped, version } = rig;
+  const changes = state.mayChange && form.hidden;
+  render(
+    html`${
+        changes && !shipped
+          ? html`<button type="button" @click=${() => edit(rig)}>Edit</button>`
+          : nothing
+      }
+      ${
+        changes
+          ? html`<button type="button" @click=${() => askDuplicate(id, leadTo)}>Duplicate…</button>`
+          : nothing
+      } <a class="button" href=${rigFileUrl(id, version)} download>Export TOML</a>`,
+    byId("actions"),
   );
 }
 
-function drawAbout() {
-  const section = (title, ...content) => make("section", {}, make("h2", {}, title), ...content);
-  const changes = before ? changesOf(before, rig.content) : [];
+/**
+ * @param {string} title
+ * @param {Content} content
+ */
+const section = (title, content) =>
+  html`<section>
+    <h2>${title}</h2>
+    ${content}
+  </section>`;
+
+function drawAbout(/** @type {ShownRig} */ { id, shipped, version, versions, content, uses }) {
+  const { before } = state;
+  const changes = before ? changesOf(before, content) : [];
   const lines = changes.length ? changes : ["The same numbers"];
-  byId("about").replaceChildren(
-    ...(before
-      ? [
-          section(
-            `Changed since version ${rig.version - 1}`,
-            make("ul", { id: "changes" }, ...lines.map((text) => make("li", {}, text))),
-          ),
-        ]
-      : []),
-    ...(rig.shipped
-      ? []
-      : [section("Versions", versionList(rig.id, rig.versions, rig.version, show))]),
-    section("Projects that used it", useList(rig.uses)),
+  const list = html`<ul id="changes">
+    ${lines.map((text) => html`<li>${text}</li>`)}
+  </ul>`;
+  render(
+    [
+      before ? section(`Changed since version ${version - 1}`, list) : nothing,
+      shipped ? nothing : section("Versions", versionList(id, versions, version, show)),
+      section("Projects that used it", useList(uses)),
+    ],
+    byId("about"),
   );
 }
 
 /** Shows a version of the rig of this page, the newest by default. */
-async function show(version) {
+async function show(/** @type {number | undefined} */ version = undefined) {
   const id = chosen();
   const found = await attempt(message, () => readRig(id, version));
   if (!found) return;
-  rig = found;
-  const earlier = rig.version > 1 ? () => readRig(id, rig.version - 1) : () => null;
-  before = (await attempt(message, earlier))?.content ?? null;
+  const rig = /** @type {ShownRig} */ (found);
+  const earlier = () => (rig.version > 1 ? readRig(id, rig.version - 1) : null);
+  const before = /** @type {ShownRig | null | undefined} */ (await attempt(message, earlier));
+  Object.assign(state, { rig, before: before?.content ?? null });
   drawRig();
   drawList();
 }
 
 /** The rig that the address names, else the first. */
-function chosen() {
-  return idHere() || rigs[0].id;
-}
+const chosen = () => idHere() || (state.rigs[0]?.id ?? "");
 
-function edit() {
-  form.edit(rig.content, models);
+function edit(/** @type {ShownRig} */ rig) {
+  form.edit(
+    rig.content,
+    state.models.map((one) => one.model),
+  );
   form.hidden = false;
   byId("numbers").hidden = true;
-  drawActions();
+  drawActions(rig);
   check();
 }
 
 /** Asks the server what is wrong with the rig as it is in the form. */
 async function check() {
   if (!form.isComplete) return;
-  const number = ++asked;
+  const number = ++state.checks;
   const found = await attempt(message, () => checkRig(form.content));
-  if (found && number === asked) form.complain(found);
+  if (found && number === state.checks) form.complain(found);
 }
 
 function onEdited() {
-  drawing.show(form.content, elevations, rig.id);
-  clearTimeout(checking);
-  checking = setTimeout(check, CHECK_AFTER_MS);
+  drawing.show(form.content, elevations(), state.rig?.id ?? "");
+  clearTimeout(state.check);
+  state.check = setTimeout(check, CHECK_AFTER_MS);
 }
 
-async function save(note) {
+async function save(/** @type {string} */ note) {
+  const { rig } = state;
+  if (!rig) return;
   form.error = null;
   try {
-    const version = { content: form.content, note, after: rig.versions[0].number };
-    await addRigVersion(rig.id, version);
+    await addRigVersion(rig.id, { content: form.content, note, after: newestOf(rig) });
   } catch (error) {
-    if (Object.keys(error.problems ?? {}).length)
-      form.complain({ problems: error.problems, warnings: [] });
+    const { problems = {} } = asError(error);
+    if (Object.keys(problems).length) form.complain({ problems, warnings: [] });
     form.error = error;
     return;
   }
   await reload();
 }
 
-const leadTo = (saved) => location.assign(rigUrl(saved.id));
+const leadTo = (/** @type {{id: string}} */ saved) => location.assign(rigUrl(saved.id));
 
 async function reload() {
-  rigs = (await attempt(message, listRigs)) ?? [];
-  if (rigs.length) await show();
+  state.rigs = (await attempt(message, listRigs)) ?? [];
+  if (state.rigs.length) await show();
 }
 
 form.addEventListener("edited", onEdited);
-form.addEventListener("saved", (event) => save(/** @type {CustomEvent} */ (event).detail));
+form.addEventListener("saved", (event) => save(detailOf(event)));
 form.addEventListener("cancelled", drawRig);
 byId("import").addEventListener("click", () => file.click());
 file.addEventListener("change", () => {
-  const own = rigs.filter((one) => !one.shipped).map((one) => one.id);
-  if (file.files.length) askImport(dialog, { file: file.files[0], own, done: leadTo });
+  const own = state.rigs.filter((one) => !one.shipped).map((one) => one.id);
+  const [chosenFile] = file.files ?? [];
+  if (chosenFile) askImport(chosenFile, own, leadTo);
   file.value = "";
 });
 
 const me = await attempt(message, readCurrentUser);
-mayChange = me?.may.includes("process") ?? false;
-byId("import").hidden = !mayChange;
-models = (await attempt(message, listSensorModels)) ?? [];
-elevations = Object.fromEntries(models.map((one) => [one.model, one.elevation_deg]));
-models = models.map((one) => one.model);
+state.mayChange = me?.may.includes("process") ?? false;
+byId("import").hidden = !state.mayChange;
+state.models = (await attempt(message, listSensorModels)) ?? [];
 await reload();

@@ -5,7 +5,7 @@
 const BASE = new URL("../../", import.meta.url).pathname;
 
 /** The address of a path of this server: at("/api/me"). */
-export const at = (path) => BASE + path.slice(1);
+export const at = (/** @type {string} */ path) => BASE + path.slice(1);
 
 /** The path of this page as the server knows it: "/projects/office/". */
 export const pathHere = () => `/${location.pathname.slice(BASE.length)}`;
@@ -14,12 +14,12 @@ export const pathHere = () => `/${location.pathname.slice(BASE.length)}`;
 export const idHere = () => decodeURIComponent(pathHere().split("/")[2] ?? "");
 
 /** The whole address, to copy or to leave for: a path alone may name another host ("//…"). */
-export const wholeUrl = (path) => location.origin + at(path);
+export const wholeUrl = (/** @type {string} */ path) => location.origin + at(path);
 
-export const socketUrl = (path) => wholeUrl(path).replace(/^http/, "ws");
+export const socketUrl = (/** @type {string} */ path) => wholeUrl(path).replace(/^http/, "ws");
 
 /** The same path if it is one of this server, else that of the first page. */
-export function pathInside(path) {
+export function pathInside(/** @type {string} */ path) {
   const url = new URL(path, location.origin);
   return path.startsWith("/") && url.origin === location.origin ? url.pathname : "/";
 }
@@ -29,9 +29,13 @@ export const forgetFragment = () => history.replaceState(null, "", location.path
 
 // -- what this browser keeps: other servers of the host keep theirs in the same storage
 
-const keyOf = (name) => BASE.slice(1) + name;
+const keyOf = (/** @type {string} */ name) => BASE.slice(1) + name;
 
-export const kept = (name) => localStorage.getItem(keyOf(name));
+export const kept = (/** @type {string} */ name) => localStorage.getItem(keyOf(name));
+/**
+ * @param {string} name
+ * @param {string} text
+ */
 export const keep = (name, text) => localStorage.setItem(keyOf(name), text);
 
 /** Forgets all of it, for the next person at this browser. */

@@ -2,78 +2,89 @@
 
 import { wholeUrl } from "./address.js";
 import { readCurrentUser, readOpenApi } from "./api.js";
-import { attempt, byId, make } from "./dom.js";
+import { attempt, byId, html, nothing, render, targetOf, within } from "./dom.js";
 import { example, limits, typeText } from "../projects/schema.js";
 import "./page_head.js";
 
+/**
+ * @import {Content} from "./dom.js"
+ * @import {Body, OpenApi, Operation, Schema} from "../projects/schema.js"
+ */
+
+/** @type {OpenApi | undefined} */
 const api = await attempt(byId("message"), readOpenApi);
 const me = await readCurrentUser();
 const schemas = api?.components?.schemas ?? {};
+/** @type {Record<string, string>} */
 const EXAMPLES = {
   "Tus-Resumable": "1.0.0",
   "Upload-Offset": "0",
   "Upload-Length": "114359304",
 };
-const anchor = (text) => text.replace(/[^A-Za-z0-9]+/g, "-").toLowerCase();
+const anchor = (/** @type {string} */ text) => text.replace(/[^A-Za-z0-9]+/g, "-").toLowerCase();
 
+/**
+ * @param {string[]} heads
+ * @param {Content[]} rows
+ */
 function table(heads, rows) {
-  const head = make(
-    "thead",
-    {},
-    make("tr", {}, ...heads.map((text) => make("th", { scope: "col" }, text))),
-  );
-  return make(
-    "div",
-    { className: "scroll", tabIndex: 0, role: "group", ariaLabel: heads.join(", ") },
-    make("table", {}, head, make("tbody", {}, ...rows)),
-  );
+  const head = html`<thead>
+    <tr>
+      ${heads.map((/** @type {string} */ text) => html`<th scope="col">${text}</th>`)}
+    </tr>
+  </thead>`;
+  return html`<div class="scroll" tabindex="0" role="group" aria-label=${heads.join(", ")}>
+    <table>
+      ${head}
+      <tbody>
+        ${rows}
+      </tbody>
+    </table>
+  </div>`;
 }
 
+/**
+ * @param {string} name
+ * @param {...Content} cells
+ */
 const row = (name, ...cells) =>
-  make(
-    "tr",
-    {},
-    make("th", { scope: "row" }, make("code", {}, name)),
-    ...cells.map((cell) => make("td", {}, cell)),
-  );
+  html`<tr>
+    <th scope="row"><code>${name}</code></th>
+    ${cells.map((cell) => html`<td>${cell}</td>`)}
+  </tr>`;
 
 /** A type, linked to its schema. */
-function typeLink(schema) {
+function typeLink(/** @type {Schema} */ schema) {
   const text = typeText(schema);
-  const named = text.split(" ").find((word) => schemas[word]);
-  return named ? make("a", { href: `#schema-${named}` }, text) : text;
+  const named = text.split(" ").find((/** @type {string} */ word) => schemas[word]);
+  return named ? html`<a href="#schema-${named}">${text}</a>` : text;
 }
 
 /** A description as plain text. */
 const withoutBackticks = (text = "") => text.replaceAll("`", "");
 
 /** The permission an operation requires, and whether the signed-in person lacks it. */
-function permissionNote(required = []) {
+function permissionNote(/** @type {string[]} */ required = []) {
   const text = required.filter((one) => one !== "look").join(", ");
-  if (!text) return null;
-  const missing = required.some((one) => !me.may.includes(one));
+  if (!text) return nothing;
+  const missing = required.some((one) => !me.may.some((mine) => mine === one));
   const note = `Requires the permission: ${text}${missing ? ". You do not have it." : ""}`;
-  return make("span", { className: "needs" }, note);
+  return html`<span class="needs">${note}</span>`;
 }
 
-const code = (text) => make("pre", { tabIndex: 0 }, text);
+const code = (/** @type {string} */ text) => html`<pre tabindex="0">${text}</pre>`;
 
-function copyable(text) {
-  const button = make(
-    "button",
-    {
-      type: "button",
-      onclick: async () => {
-        await navigator.clipboard.writeText(text);
-        button.textContent = "Copied";
-      },
-    },
-    "Copy",
-  );
-  return make("div", { className: "copy" }, code(text), button);
+function copyable(/** @type {string} */ text) {
+  const copy = async (/** @type {Event} */ event) => {
+    await navigator.clipboard.writeText(text);
+    targetOf(event).textContent = "Copied";
+  };
+  return html`<div class="copy">
+    ${code(text)}<button type="button" @click=${copy}>Copy</button>
+  </div>`;
 }
 
-function fieldRows(schema) {
+function fieldRows(/** @type {Schema} */ schema) {
   const needed = new Set(schema.required ?? []);
   return Object.entries(schema.properties ?? {}).map(([name, one]) =>
     row(
@@ -85,18 +96,25 @@ function fieldRows(schema) {
   );
 }
 
-/** A command line that calls the operation. */
+/**
+ * A command line that calls the operation.
+ * @param {string} path
+ * @param {string} method
+ * @param {Operation} operation
+ * @param {Body | null} body
+ */
 function curl(path, method, operation, body) {
   const query = (operation.parameters ?? []).filter((one) => one.in === "query" && one.required);
-  const values = {
-    ...Object.fromEntries(
-      (operation.parameters ?? []).map((one) => [
-        one.name,
-        example(one.schema ?? {}, schemas, one.name),
-      ]),
-    ),
-  };
-  const filled = path.replace(/\{(\w+)\}/g, (_, name) => encodeURIComponent(values[name] ?? name));
+  /** @type {Record<string, any>} */
+  const values = Object.fromEntries(
+    (operation.parameters ?? []).map((one) => [
+      one.name,
+      example(one.schema ?? {}, schemas, one.name),
+    ]),
+  );
+  const filled = path.replace(/\{(\w+)\}/g, (/** @type {string} */ _, /** @type {string} */ name) =>
+    encodeURIComponent(values[name] ?? name),
+  );
   const asked = query.length
     ? `?${query.map((one) => `${one.name}=${encodeURIComponent(values[one.name])}`).join("&")}`
     : "";
@@ -112,7 +130,7 @@ function curl(path, method, operation, body) {
   return `${parts.join(" ")} '${wholeUrl(filled + asked)}'`;
 }
 
-function bodyOf({ requestBody }) {
+function bodyOf(/** @type {Operation} */ { requestBody }) {
   const content = requestBody?.content ?? {};
   const json = content["application/json"]?.schema;
   if (json) return { json: example(json, schemas), schema: json };
@@ -126,9 +144,14 @@ function responseTable({ responses = {} }) {
     const text = content?.schema ? typeLink(content.schema) : (kind ?? "nothing");
     return row(status, text, one.description ?? "");
   });
-  return [make("h3", {}, "Responses"), table(["Status", "What", ""], rows)];
+  return [html`<h3>Responses</h3>`, table(["Status", "What", ""], rows)];
 }
 
+/**
+ * @param {string} path
+ * @param {string} method
+ * @param {Operation} operation
+ */
 function operationDetails(path, method, operation) {
   const body = bodyOf(operation);
   const given = operation.parameters ?? [];
@@ -146,83 +169,83 @@ function operationDetails(path, method, operation) {
     status.startsWith("2"),
   )?.[1]?.content?.["application/json"]?.schema;
   return [
-    make("p", {}, withoutBackticks(operation.description)),
-    ...(inputs.length
-      ? [make("h3", {}, "Parameters"), table(["Name", "In", "Type", "Constraints", ""], inputs)]
-      : []),
-    ...(schema
-      ? [
-          make("h3", {}, "Body, JSON"),
-          table(["Field", "Type", "Constraints", ""], fieldRows(schema)),
-          code(JSON.stringify(body.json, null, 1)),
-        ]
-      : []),
-    ...(body?.binary ? [make("h3", {}, "Body"), make("p", {}, make("code", {}, body.binary))] : []),
-    ...responseTable(operation),
-    ...(ok && Object.keys(ok).length
-      ? [
-          make("h3", {}, "Example of a response"),
-          code(JSON.stringify(example(ok, schemas), null, 1)),
-        ]
-      : []),
-    make("h3", {}, "Try it"),
+    html`<p>${withoutBackticks(operation.description)}</p>`,
+    inputs.length
+      ? html`<h3>Parameters</h3>
+          ${table(["Name", "In", "Type", "Constraints", ""], inputs)}`
+      : nothing,
+    schema
+      ? html`<h3>Body, JSON</h3>
+          ${table(["Field", "Type", "Constraints", ""], fieldRows(schema))}
+          ${code(JSON.stringify(body?.json, null, 1))}`
+      : nothing,
+    body?.binary
+      ? html`<h3>Body</h3>
+          <p><code>${body.binary}</code></p>`
+      : nothing,
+    responseTable(operation),
+    ok && Object.keys(ok).length
+      ? html`<h3>Example of a response</h3>
+          ${code(JSON.stringify(example(ok, schemas), null, 1))}`
+      : nothing,
+    html`<h3>Try it</h3>`,
     copyable(curl(path, method, operation, body)),
   ];
 }
 
+/**
+ * An operation, whose details are drawn when it is opened.
+ * @param {string} path
+ * @param {string} method
+ * @param {Operation} operation
+ */
 function route(path, method, operation) {
-  const inside = make("div");
-  const summary = make(
-    "summary",
-    {},
-    make("span", { className: `method ${method}` }, method.toUpperCase()),
-    make("code", {}, path),
-    make("span", { className: "quiet" }, operation.summary ?? ""),
-    permissionNote(operation["x-needs"]),
-  );
-  const details = make(
-    "details",
-    { className: "route", id: anchor(`${method} ${path}`) },
-    summary,
-    inside,
-  );
-  details.addEventListener("toggle", () => {
-    if (!inside.childElementCount) inside.append(...operationDetails(path, method, operation));
-  });
-  return details;
+  const draw = (/** @type {Event} */ event) =>
+    render(operationDetails(path, method, operation), within(targetOf(event), "summary + div"));
+  return html`<details class="route" id=${anchor(`${method} ${path}`)} @toggle=${draw}>
+    <summary>
+      <span class="method ${method}">${method.toUpperCase()}</span><code>${path}</code
+      ><span class="quiet">${operation.summary ?? ""}</span>${permissionNote(operation["x-needs"])}
+    </summary>
+    <div></div>
+  </details>`;
 }
 
-const tags = new Map();
-for (const [path, methods] of Object.entries(api?.paths ?? {})) {
-  for (const [method, operation] of Object.entries(methods)) {
-    const tag = operation.tags?.[0] ?? "other";
-    tags.set(tag, [...(tags.get(tag) ?? []), route(path, method, operation)]);
-  }
+/** The operations by their first tag. */
+function byTag() {
+  /** @type {Map<string, Content[]>} */
+  const tags = new Map();
+  for (const [path, methods] of Object.entries(api?.paths ?? {}))
+    for (const [method, operation] of Object.entries(methods)) {
+      const tag = operation.tags?.[0] ?? "other";
+      tags.set(tag, [...(tags.get(tag) ?? []), route(path, method, operation)]);
+    }
+  return tags;
 }
-const title = (text) => text[0].toUpperCase() + text.slice(1);
-const schemaSections = Object.entries(schemas).map(([name, one]) =>
-  make(
-    "details",
-    { className: "route", id: `schema-${name}` },
-    make("summary", {}, make("code", {}, name)),
-    make(
-      "div",
-      {},
-      make("p", {}, withoutBackticks(one.description)),
-      table(["Field", "Type", "Constraints", ""], fieldRows(one)),
-    ),
-  ),
+
+const title = (/** @type {string} */ text) => text.charAt(0).toUpperCase() + text.slice(1);
+const schemaSections = Object.entries(schemas).map(
+  ([name, one]) =>
+    html`<details class="route" id="schema-${name}">
+      <summary><code>${name}</code></summary>
+      <div>
+        <p>${withoutBackticks(one.description)}</p>
+        ${table(["Field", "Type", "Constraints", ""], fieldRows(one))}
+      </div>
+    </details>`,
 );
-byId("groups").append(
-  ...[...tags.keys(), "schemas"].map((tag) => make("a", { href: `#tag-${tag}` }, title(tag))),
+const tags = byTag();
+render(
+  [...tags.keys(), "schemas"].map((tag) => html`<a href="#tag-${tag}">${title(tag)}</a>`),
+  byId("groups"),
 );
-byId("paths").append(
-  ...[...tags].flatMap(([tag, routes]) => [
-    make("h2", { id: `tag-${tag}` }, title(tag)),
-    ...routes,
-  ]),
-  make("h2", { id: "tag-schemas" }, "Schemas"),
-  ...schemaSections,
+render(
+  [
+    [...tags].map(([tag, routes]) => [html`<h2 id="tag-${tag}">${title(tag)}</h2>`, routes]),
+    html`<h2 id="tag-schemas">Schemas</h2>`,
+    schemaSections,
+  ],
+  byId("paths"),
 );
 
 /** Opens the section that the # of the address names. */

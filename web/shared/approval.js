@@ -1,5 +1,7 @@
 // The approval of a map in one line, the same on every page. No DOM, no network.
 
+/** @import {ApprovalState} from "./http_types" */
+
 /** @type {Record<string, [string, string]>} */
 const LEVELS = {
   draft: ["◌", "quiet"],
@@ -11,17 +13,22 @@ const LEVELS = {
 };
 
 /** Mark, line and CSS class; nothing is marked as approved while its bytes are being compared. */
-export function approvalLine({ kind, text, checking }) {
+export function approvalLine(
+  /** @type {Pick<ApprovalState, "kind" | "text" | "checking">} */ { kind, text, checking },
+) {
   const [mark, level] = LEVELS[kind];
   if (!checking) return { text: `${mark} ${text}`, level };
   return { text: `◷ ${text}; its bytes are being compared with the signature`, level: "" };
 }
 
 /** Whether the files carry an approval that does not count. */
-export const isRefused = ({ kind }) => kind === "unknown signer" || kind === "not valid";
+export const isRefused = (/** @type {Pick<ApprovalState, "kind">} */ { kind }) =>
+  kind === "unknown signer" || kind === "not valid";
 
 /** The verdict that a map was approved in spite of, with the signer's reason. */
-export const inSpiteOf = ({ verdict, why }) =>
+export const inSpiteOf = (
+  /** @type {Pick<ApprovalState, "verdict" | "why">} */ { verdict, why },
+) =>
   !verdict || verdict === "good"
     ? ""
     : `, in spite of the verdict “${verdict}”${why ? `: “${why}”` : ""}`;

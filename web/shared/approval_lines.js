@@ -1,22 +1,24 @@
 // The approval of a map as elements: one line, and why it does not count.
 
 import { approvalLine } from "./approval.js";
-import { make } from "./dom.js";
+import { html } from "./dom.js";
+
+/** @import {ApprovalState} from "./http_types" */
 
 /** The line alone. */
-export function approvalMark(approval) {
+export function approvalMark(/** @type {ApprovalState} */ approval) {
   const { text, level } = approvalLine(approval);
-  return make("p", { className: `approval ${level}` }, text);
+  return html`<p class="approval ${level}">${text}</p>`;
 }
 
 /** The line within a row of facts. */
-export function approvalFact(approval) {
+export function approvalFact(/** @type {ApprovalState} */ approval) {
   const { text, level } = approvalLine(approval);
-  return make("span", { className: level, title: approval.detail }, text);
+  return html`<span class=${level} title=${approval.detail}>${text}</span>`;
 }
 
 /** The line, and what to do. */
-export const approvalLines = (approval) => [
+export const approvalLines = (/** @type {ApprovalState} */ approval) => [
   approvalMark(approval),
-  approval.detail ? make("p", { className: "quiet approval-detail" }, approval.detail) : null,
+  approval.detail ? html`<p class="quiet approval-detail">${approval.detail}</p>` : null,
 ];

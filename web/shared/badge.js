@@ -1,14 +1,9 @@
 // The badge with the state of a project or job: mark and word, never color alone.
 
-import { make } from "./dom.js";
 import { STATES } from "./format.js";
+import { html } from "./dom.js";
 
-export function badge(state) {
+export function badge(/** @type {import("./format.js").StateName} */ state) {
   const { mark, word } = STATES[state];
-  return make(
-    "span",
-    { className: `badge ${state}` },
-    make("span", { ariaHidden: "true" }, mark),
-    ` ${word}`,
-  );
+  return html`<span class="badge ${state}"><span aria-hidden="true">${mark}</span> ${word}</span>`;
 }

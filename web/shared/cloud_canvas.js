@@ -23,12 +23,28 @@ const FRAGMENT = `#version 300 es
 precision mediump float; in vec3 color; out vec4 pixel;
 void main() { pixel = vec4(color, 1.0); }`;
 
+/**
+ * @typedef {object} CloudView
+ * @property {Float32Array | number[]} turn rotation by columns
+ * @property {number[]} target what is in the middle [m]
+ * @property {number[]} scale clip units per meter
+ * @property {number[]} shift the target in clip units
+ * @property {number} size of a point [px]
+ * @property {number} top points above it are left out [m]
+ * @property {boolean} byHeight whether height is color
+ * @property {boolean} ink whether the background is light
+ */
+
 export class CloudCanvas {
   #canvas;
-  #gl;
-  #program;
+  /** @type {WebGL2RenderingContext | null} */
+  #gl = null;
+  /** @type {WebGLProgram | null} */
+  #program = null;
+  /** @type {Record<string, WebGLUniformLocation | null>} */
   #places = {};
-  #buffers;
+  /** @type {{voxel: WebGLBuffer, value: WebGLBuffer} | null} */
+  #buffers = null;
   #room = 0;
   #voxels = new Int16Array(0);
   #values = new Uint8Array(0);
@@ -36,9 +52,11 @@ export class CloudCanvas {
   voxelM = 0.1;
   heights = [-1.5, 2.5];
 
-  constructor(canvas) {
+  constructor(/** @type {HTMLCanvasElement} */ canvas) {
     this.#canvas = canvas;
-    canvas.addEventListener("webglcontextlost", (event) => event.preventDefault());
+    canvas.addEventListener("webglcontextlost", (/** @type {Event} */ event) =>
+      event.preventDefault(),
+    );
     canvas.addEventListener("webglcontextrestored", () => this.#begin());
     this.#begin();
   }
@@ -53,7 +71,12 @@ export class CloudCanvas {
     this.count = 0;
   }
 
-  /** Adds points: x, y, z of each in voxels, then a value of each. */
+  /**
+   * Adds points: x, y, z of each in voxels, then a value of each.
+   * @param {ArrayBuffer} buffer
+   * @param {number} count
+   * @param {number} voxelM
+   */
   add(buffer, count, voxelM) {
     this.voxelM = voxelM;
     this.#makeRoom(this.count + count);
@@ -61,7 +84,7 @@ export class CloudCanvas {
     const values = new Uint8Array(buffer, 6 * count, count);
     this.#voxels.set(voxels, 3 * this.count);
     this.#values.set(values, this.count);
-    if (this.#gl) {
+    if (this.#buffers) {
       this.#write(this.#buffers.voxel, voxels, 6 * this.count);
       this.#write(this.#buffers.value, values, this.count);
     }
@@ -72,7 +95,7 @@ export class CloudCanvas {
    * Draws the points below the height `top`; `turn` is a rotation by columns, `scale` clip units
    * per meter, `shift` the target in clip units.
    */
-  draw({ turn, target, scale, shift, size, top, byHeight, ink }) {
+  draw(/** @type {CloudView} */ { turn, target, scale, shift, size, top, byHeight, ink }) {
     const gl = this.#gl;
     if (!gl || gl.isContextLost()) return;
     gl.viewport(0, 0, this.#canvas.width, this.#canvas.height);
@@ -87,8 +110,8 @@ export class CloudCanvas {
     gl.uniform1f(at.top, top);
     gl.uniform1f(at.voxelM, this.voxelM);
     gl.uniform2fv(at.heights, this.heights);
-    gl.uniform1i(at.byHeight, byHeight);
-    gl.uniform1i(at.ink, ink);
+    gl.uniform1i(at.byHeight, Number(byHeight));
+    gl.uniform1i(at.ink, Number(ink));
     gl.drawArrays(gl.POINTS, 0, this.count);
   }
 
@@ -96,11 +119,14 @@ export class CloudCanvas {
     const gl = (this.#gl = this.#canvas.getContext("webgl2", { alpha: true, antialias: false }));
     if (!gl) return;
     const program = (this.#program = gl.createProgram());
-    for (const [kind, text] of [
+    /** @type {Array<[number, string]>} */
+    const sources = [
       [gl.VERTEX_SHADER, VERTEX],
       [gl.FRAGMENT_SHADER, FRAGMENT],
-    ]) {
+    ];
+    for (const [kind, text] of sources) {
       const shader = gl.createShader(kind);
+      if (!shader) return; // the context is lost
       gl.shaderSource(shader, text);
       gl.compileShader(shader);
       gl.attachShader(program, shader);
@@ -125,7 +151,7 @@ export class CloudCanvas {
     this.#makeRoom(Math.max(this.count, 1 << 14));
   }
 
-  #makeRoom(count) {
+  #makeRoom(/** @type {number} */ count) {
     if (count <= this.#room) return;
     this.#room = Math.max(2 * this.#room, count);
     const voxels = new Int16Array(3 * this.#room);
@@ -137,25 +163,35 @@ export class CloudCanvas {
     if (!gl) return;
     if (this.#buffers) Object.values(this.#buffers).forEach((buffer) => gl.deleteBuffer(buffer));
     this.#buffers = {
-      voxel: this.#buffer("voxel", voxels, 3, gl.SHORT),
-      value: this.#buffer("value", values, 1, gl.UNSIGNED_BYTE),
+      voxel: this.#buffer(gl, "voxel", voxels, 3, gl.SHORT),
+      value: this.#buffer(gl, "value", values, 1, gl.UNSIGNED_BYTE),
     };
   }
 
-  #buffer(name, data, size, type) {
-    const gl = this.#gl;
+  /**
+   * @param {WebGL2RenderingContext} gl
+   * @param {"voxel" | "value"} name
+   * @param {BufferSource} data
+   * @param {number} size numbers of a point
+   * @param {number} type of a number
+   */
+  #buffer(gl, name, data, size, type) {
     const buffer = gl.createBuffer();
     gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
     gl.bufferData(gl.ARRAY_BUFFER, data, gl.DYNAMIC_DRAW);
-    const place = gl.getAttribLocation(this.#program, name);
+    const place = this.#program ? gl.getAttribLocation(this.#program, name) : 0;
     gl.enableVertexAttribArray(place);
     gl.vertexAttribPointer(place, size, type, false, 0, 0);
     return buffer;
   }
 
+  /**
+   * @param {WebGLBuffer} buffer
+   * @param {BufferSource} data
+   * @param {number} offset
+   */
   #write(buffer, data, offset) {
-    const gl = this.#gl;
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferSubData(gl.ARRAY_BUFFER, offset, data);
+    this.#gl?.bindBuffer(this.#gl.ARRAY_BUFFER, buffer);
+    this.#gl?.bufferSubData(this.#gl.ARRAY_BUFFER, offset, data);
   }
 }

@@ -15,7 +15,7 @@ export function drawLessAtRest(scope = window) {
   let last = 0;
   let awakeUntil = 0;
 
-  function begin(id) {
+  function begin(/** @type {number} */ id) {
     const one = waiting.get(id);
     one.timer = undefined;
     one.frame = request((time) => {
@@ -46,12 +46,17 @@ export function drawLessAtRest(scope = window) {
     if (one?.timer !== undefined) scope.clearTimeout(one.timer);
     else if (one) cancel(one.frame);
   };
-  scope.Worker = class extends scope.Worker {
+  const Waking = class extends scope.Worker {
+    /**
+     * @param {string | URL} url
+     * @param {WorkerOptions} options
+     */
     constructor(url, options) {
       super(url, options);
       this.addEventListener("message", wake);
     }
   };
+  scope.Worker = /** @type {typeof Worker} */ (Waking);
   for (const kind of INPUT) scope.addEventListener(kind, wake, { capture: true, passive: true });
   wake();
 }

@@ -2,8 +2,10 @@
 
 import { bytes, count, seconds } from "./format.js";
 
+/** @import {ProjectCard} from "./http_types" */
+
 /** Date, age and accuracy of a calibration as text. */
-function calibrated({ calibration, age_days: days, max_age_days: most }) {
+function calibrated(/** @type {any} */ { calibration, age_days: days, max_age_days: most }) {
   if (!calibration) return "not known: the rig file does not say";
   const { date, method, sd_deg: deg, sd_mm: mm, sd_ms: ms } = calibration;
   const known = [deg && `${deg}°`, mm && `${mm} mm`, ms && `${ms} ms`].filter(Boolean);
@@ -11,7 +13,7 @@ function calibrated({ calibration, age_days: days, max_age_days: most }) {
   return `${date} by ${method}${age}${known.length ? `; σ ${known.join(", ")}` : ""}`;
 }
 
-const serials = ({ sensors }) =>
+const serials = (/** @type {{sensors: Array<{name: string, serial: string}>}} */ { sensors }) =>
   sensors.map(({ name, serial }) => `${name} ${serial || "not known"}`).join(", ");
 
 /** @type {Array<[string, string, (value: any) => string]>} */
@@ -32,13 +34,13 @@ const ROWS = [
 ];
 
 /** [caption, value] rows; figures that are missing are left out. */
-export const figures = (summary) =>
+export const figures = (/** @type {Record<string, any>} */ summary) =>
   ROWS.filter(([, key]) => summary[key] !== undefined && summary[key] !== null).map(
     ([text, key, format]) => [text, format(summary[key])],
   );
 
 /** The caption below a project's name. */
-export function headline(summary) {
+export function headline(/** @type {Partial<ProjectCard>} */ summary) {
   if (summary.path_length_m == null) return [];
   const path = `${summary.path_length_m.toFixed(0)} m path`;
   return summary.points ? [path, `${count(summary.points)} points`] : [path, "2-D map"];

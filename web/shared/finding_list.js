@@ -11,20 +11,29 @@ import {
   slicesUrl,
   stretchUrl,
 } from "./api.js";
-import { attempt, make } from "./dom.js";
+import { attempt, html, messagePlace, nothing, render, targetOf, within } from "./dom.js";
 import { when } from "./format.js";
 import { LEVELS, sliceOf, stretchOf, stretchText, verdictLists } from "./verdict.js";
 
+/**
+ * @import {Acknowledgment, AcknowledgmentsView} from "./http_types"
+ * @import {Content} from "./dom.js"
+ * @import {MapFacts, MapFinding} from "./verdict.js"
+ * @typedef {"level" | "kind"} Choice
+ */
+
 const MANY = 4;
-/** @type {import("./http_types").AcknowledgmentsView} */
+/** @type {AcknowledgmentsView} */
 const NO_NOTES = { may_acknowledge: false, notes: [] };
 
 export class FindingList extends HTMLElement {
-  #shown = "";
-  /** @type {import("./verdict.js").MapFinding[]} */
-  #findings = [];
-  #notes = NO_NOTES;
-  #filter = { level: "", kind: "" };
+  #state = {
+    shown: "", // the facts as text
+    /** @type {MapFinding[]} */
+    findings: [],
+    notes: NO_NOTES,
+    filter: { level: "", kind: "" },
+  };
   /** Whether it has no field for notes: a dialog is about the state when it was opened. */
   readOnly = false;
 
@@ -33,174 +42,185 @@ export class FindingList extends HTMLElement {
   }
 
   /** What is known of the map; the same again changes nothing: focus and selection stay. */
-  set facts(/** @type {import("./verdict.js").MapFacts} */ facts) {
-    const text = JSON.stringify(facts);
-    if (text === this.#shown) return;
-    this.#shown = text;
+  set facts(/** @type {MapFacts} */ facts) {
+    const shown = JSON.stringify(facts);
+    if (shown === this.#state.shown) return;
+    Object.assign(this.#state, { shown, findings: facts.findings ?? [] });
+    render(nothing, this); // a note that is being written is not moved to another finding
     if (facts.findings) {
-      this.#findings = facts.findings;
       this.#draw();
       this.#readNotes();
-    } else this.replaceChildren(...sentences(facts));
+    } else render(sentences(facts), this);
   }
 
   async #readNotes() {
-    this.#notes = await readAcknowledgments(idHere()).catch(() => NO_NOTES);
-    if (this.#notes.may_acknowledge || this.#notes.notes.length) this.#draw();
+    this.#state.notes = await readAcknowledgments(idHere()).catch(() => NO_NOTES);
+    if (this.#state.notes.may_acknowledge || this.#state.notes.notes.length) this.#draw();
   }
 
   #draw() {
-    const { notes, may_acknowledge } = this.#notes;
-    const items = this.#findings.map((finding, at) =>
-      item(
-        finding,
-        notes.filter((note) => note.finding === at),
-        may_acknowledge && !this.readOnly && finding.level !== "good"
-          ? this.#form(finding, at)
-          : null,
-      ),
-    );
+    const { findings, filter, notes: all } = this.#state;
+    const { notes, may_acknowledge } = all;
+    const items = findings.map((finding, at) => {
+      const fits =
+        (!filter.level || finding.level === filter.level) &&
+        (!filter.kind || finding.kind === filter.kind);
+      const mayNote = may_acknowledge && !this.readOnly && finding.level !== "good";
+      const about = notes.filter((note) => note.finding === at);
+      return item(finding, about, {
+        hidden: !fits,
+        form: mayNote ? this.#form(finding, at) : null,
+      });
+    });
     const outdated = notes.filter((note) => note.finding === null);
-    this.replaceChildren(
-      ...(items.length > MANY ? [this.#filters(items)] : []),
-      make("ul", { className: "findings" }, ...items),
-      ...(outdated.length ? [outdatedNotes(outdated)] : []),
+    render(
+      html`${findings.length > MANY ? this.#filters() : nothing}
+        <ul class="findings">
+          ${items}
+        </ul>
+        ${outdated.length ? outdatedNotes(outdated) : nothing}`,
+      this,
     );
   }
 
   /** Choices of a level and a kind, with their numbers; they hide the other findings. */
-  #filters(items) {
-    const apply = () =>
-      items.forEach((one, at) => {
-        const { level, kind } = this.#findings[at];
-        const { level: onlyLevel, kind: onlyKind } = this.#filter;
-        one.hidden = (onlyLevel && level !== onlyLevel) || (onlyKind && kind !== onlyKind);
-      });
-    const choice = (name, caption, words) => {
-      const values = [...new Set(this.#findings.map((finding) => finding[name]))];
-      const count = (value) => this.#findings.filter((one) => one[name] === value).length;
-      const select = make(
-        "select",
-        { onchange: () => ((this.#filter[name] = select.value), apply()) },
-        make("option", { value: "" }, `All (${items.length})`),
-        ...values.map((value) => make("option", { value }, `${words(value)} (${count(value)})`)),
-      );
-      select.value = this.#filter[name];
-      return make("label", {}, make("span", {}, caption), select);
-    };
-    const level = choice("level", "Level of findings", (value) => LEVELS[value] ?? value);
-    const kind = choice("kind", "Kind of findings", (value) => value);
-    apply();
-    return make("div", { className: "finding-filter" }, level, kind);
+  #filters() {
+    const level = this.#choice("level", "Level of findings", levelText);
+    const kind = this.#choice("kind", "Kind of findings", (value) => value);
+    return html`<div class="finding-filter">${level}${kind}</div>`;
   }
 
-  /** A field for a note about a finding, which opens. */
-  #form({ kind, span_s }, at) {
-    const why = make("input", { name: "why", maxLength: 500, required: true, autocomplete: "off" });
-    const message = make("p", { className: "error", role: "alert" });
-    const submit = async (event) => {
-      event.preventDefault();
-      const note = { finding: at, kind, span_s, why: why.value };
-      const done = await attempt(message, () => acknowledge(idHere(), note));
-      if (!done) return;
-      this.#notes = done;
+  /**
+   * @param {Choice} name
+   * @param {string} caption
+   * @param {(value: string) => string} words
+   */
+  #choice(name, caption, words) {
+    const { findings, filter } = this.#state;
+    const values = [...new Set(findings.map((finding) => finding[name]))];
+    const count = (/** @type {string} */ value) =>
+      findings.filter((one) => one[name] === value).length;
+    const change = (/** @type {Event} */ event) => {
+      filter[name] = targetOf(event).value;
       this.#draw();
-      this.querySelectorAll("ul.findings > li")[at].querySelector("summary").focus();
     };
-    return make(
-      "details",
-      { className: "acknowledge" },
-      make("summary", {}, "Acknowledge…"),
-      make(
-        "form",
-        { onsubmit: submit },
-        make("label", {}, make("span", {}, "Note (the verdict does not change)"), why),
-        message,
-        make("button", {}, "Acknowledge"),
-      ),
-    );
+    return html`<label
+      ><span>${caption}</span
+      ><select @change=${change}>
+        <option value="">All (${findings.length})</option>
+        ${values.map(
+          (value) => html`<option value=${value}>${words(value)} (${count(value)})</option>`,
+        )}
+      </select></label
+    >`;
+  }
+
+  /**
+   * A field for a note about a finding, which opens.
+   * @param {MapFinding} finding
+   * @param {number} at
+   */
+  #form({ kind, span_s }, at) {
+    const submit = async (/** @type {SubmitEvent} */ event) => {
+      event.preventDefault();
+      const details = /** @type {HTMLElement} */ (targetOf(event).closest("details"));
+      const why = within(details, "input", HTMLInputElement);
+      const note = { finding: at, kind, span_s, why: why.value };
+      const done = await attempt(within(details, ".error"), () => acknowledge(idHere(), note));
+      if (!done) return;
+      this.#state.notes = done;
+      why.value = "";
+      details.removeAttribute("open");
+      this.#draw();
+      within(details, "summary").focus();
+    };
+    return html`<details class="acknowledge">
+      <summary>Acknowledge…</summary>
+      <form @submit=${submit}>
+        <label
+          ><span>Note (the verdict does not change)</span
+          ><input name="why" maxlength="500" required autocomplete="off"
+        /></label>
+        ${messagePlace()}
+        <button>Acknowledge</button>
+      </form>
+    </details>`;
   }
 }
 
-const noteLine = ({ who, time, why }) =>
-  make(
-    "p",
-    { className: "acknowledged" },
-    `✓ Acknowledged by ${who}, ${when(time)}: `,
-    make("q", {}, why),
-  );
+const levelText = (/** @type {string} */ level) => LEVELS[level] ?? level;
+
+const noteLine = (/** @type {Acknowledgment} */ { who, time, why }) =>
+  html`<p class="acknowledged">✓ Acknowledged by ${who}, ${when(time)}: <q>${why}</q></p>`;
 
 /** Notes about findings that the map does not have any more. */
-const outdatedNotes = (notes) =>
-  make(
-    "section",
-    { className: "outdated" },
-    make("h3", {}, "Outdated acknowledgments: this map has no such finding"),
-    make(
-      "ul",
-      {},
-      ...notes.map((note) =>
-        make(
-          "li",
-          {},
-          `${note.kind}${note.span_s ? `, ${stretchText(note)}` : ""}`,
-          noteLine(note),
-        ),
-      ),
-    ),
-  );
+const outdatedNotes = (/** @type {Acknowledgment[]} */ notes) =>
+  html`<section class="outdated">
+    <h3>Outdated acknowledgments: this map has no such finding</h3>
+    <ul>
+      ${notes.map(
+        (note) =>
+          html`<li>
+            ${note.kind}${note.span_s ? `, ${stretchText(note)}` : ""}${noteLine(note)}
+          </li>`,
+      )}
+    </ul>
+  </section>`;
 
-/** @param {import("./verdict.js").MapFinding} finding */
-const item = (finding, notes, form) =>
-  make(
-    "li",
-    { className: finding.level.replaceAll(" ", "-") },
-    make(
-      "p",
-      { className: "finding-head" },
-      make("span", { className: "level" }, LEVELS[finding.level] ?? finding.level),
-      make("strong", {}, finding.title),
-      make("a", { className: "code", href: findingHelpUrl(finding.kind), ...BESIDE }, finding.kind),
-    ),
-    make("p", {}, finding.text),
-    finding.remedy ? make("p", { className: "remedy" }, finding.remedy) : null,
-    placeLink(finding),
-    sliceLink(finding),
-    ...notes.map(noteLine),
-    form,
-  );
-
-const BESIDE = { target: "_blank", rel: "noopener" };
+/**
+ * @param {MapFinding} finding
+ * @param {Acknowledgment[]} notes
+ * @param {{hidden: boolean, form: Content}} options
+ */
+const item = (finding, notes, { hidden, form }) =>
+  html`<li class=${finding.level.replaceAll(" ", "-")} ?hidden=${hidden}>
+    <p class="finding-head">
+      <span class="level">${levelText(finding.level)}</span><strong>${finding.title}</strong
+      ><a class="code" href=${findingHelpUrl(finding.kind)} target="_blank" rel="noopener"
+        >${finding.kind}</a
+      >
+    </p>
+    <p>${finding.text}</p>
+    ${finding.remedy ? html`<p class="remedy">${finding.remedy}</p>` : nothing}
+    ${placeLink(finding)} ${sliceLink(finding)} ${notes.map(noteLine)} ${form}
+  </li>`;
 
 /**
  * A link to the stretch in the viewer of the project's page, which opens beside any other page;
- * null without a stretch.
+ * nothing without a stretch.
  */
-function placeLink(finding) {
+function placeLink(/** @type {MapFinding} */ finding) {
   const stretch = stretchOf(finding);
-  if (!stretch) return null;
+  if (!stretch) return nothing;
   const here = location.pathname === projectUrl(idHere());
-  const link = { className: "button stretch", href: stretchUrl(idHere(), stretch) };
-  const text = `Show in the map: ${stretchText(finding)}`;
-  return make("a", here ? link : { ...link, ...BESIDE }, text);
+  return html`<a
+    class="button stretch"
+    href=${stretchUrl(idHere(), stretch)}
+    target=${here ? nothing : "_blank"}
+    rel=${here ? nothing : "noopener"}
+    >Show in the map: ${stretchText(finding)}</a
+  >`;
 }
 
 /** On the page of slices a link to the slice at the place of a finding. */
-const sliceLink = (finding) =>
+const sliceLink = (/** @type {MapFinding} */ finding) =>
   finding.place_m && location.pathname === slicesUrl(idHere())
-    ? make("a", { className: "button stretch", href: `?${sliceOf(finding)}` }, "Cut here")
-    : null;
+    ? html`<a class="button stretch" href="?${sliceOf(finding)}">Cut here</a>`
+    : nothing;
 
-const sentences = (facts) =>
-  verdictLists(facts).flatMap(([title, texts]) => [
-    make("h3", {}, title),
-    make("ul", {}, ...texts.map((text) => make("li", {}, text))),
-  ]);
+const sentences = (/** @type {MapFacts} */ facts) =>
+  verdictLists(facts).map(
+    ([title, texts]) =>
+      html`<h3>${title}</h3>
+        <ul>
+          ${texts.map((text) => html`<li>${text}</li>`)}
+        </ul>`,
+  );
 
 customElements.define("finding-list", FindingList);
 
 /** The list of what is known of a map, to read only. */
-export function fixedFindingList(/** @type {import("./verdict.js").MapFacts} */ facts) {
+export function fixedFindingList(/** @type {MapFacts} */ facts) {
   const list = /** @type {FindingList} */ (document.createElement("finding-list"));
   list.readOnly = true;
   list.facts = facts;

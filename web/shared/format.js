@@ -1,20 +1,32 @@
 // Numbers and states as text. No DOM, no network.
 
+/**
+ * @import {JobView} from "./http_types"
+ * @typedef {"queued" | "running" | "succeeded" | "failed" | "cancelled" | "finished" | "check" |
+ *   "unusable" | "sound" | "unjudged" | "unfinished"} StateName of a project or job
+ * @typedef {object} ProjectState what of a project makes its state
+ * @property {boolean} finished
+ * @property {string} [usability]
+ * @property {Record<string, any>} [summary]
+ * @typedef {Pick<import("./http_types").JobStatus,
+ *   "done" | "unit" | "rate_per_s" | "eta_s">} Progress
+ */
+
 const NARROW = "\u202f";
 
-export const count = (n) =>
+export const count = (/** @type {number} */ n) =>
   Math.round(n)
     .toString()
     .replace(/\B(?=(\d{3})+$)/g, NARROW);
 
-export function bytes(n) {
+export function bytes(/** @type {number} */ n) {
   const units = ["B", "kB", "MB", "GB", "TB"];
   let k = 0;
   while (n >= 1000 && k < units.length - 1) [n, k] = [n / 1000, k + 1];
   return `${k && n < 10 ? n.toFixed(1) : Math.round(n)} ${units[k]}`;
 }
 
-export function seconds(s) {
+export function seconds(/** @type {number} */ s) {
   if (s < 9.95) return `${s.toFixed(1)} s`;
   const whole = Math.round(s);
   if (whole < 60) return `${whole} s`;
@@ -23,9 +35,10 @@ export function seconds(s) {
   return `${Math.floor(minutes / 60)} h ${minutes % 60} min`;
 }
 
-export const when = (iso) =>
+export const when = (/** @type {string} */ iso) =>
   new Date(iso).toLocaleString("en-GB", { dateStyle: "medium", timeStyle: "short" });
 
+/** @type {Record<StateName, {mark: string, word: string}>} */
 export const STATES = {
   queued: { mark: "◷", word: "Waiting" },
   running: { mark: "▶", word: "Running" },
@@ -41,9 +54,14 @@ export const STATES = {
 };
 
 /** Verdict -> state of a finished project. */
+/** @type {Record<string, StateName>} */
 const VERDICTS = { good: "sound", check: "check", "do not use": "unusable" };
 
-/** State of a project: that of its unfinished job, else the verdict on its map, else its folder. */
+/**
+ * State of a project: that of its unfinished job, else the verdict on its map, else its folder.
+ * @param {ProjectState | null | undefined} project
+ * @param {JobView | null | undefined} view
+ */
 export function stateOf(project, view) {
   const state = view?.job.state;
   if (state && state !== "succeeded") return state;
@@ -53,17 +71,26 @@ export function stateOf(project, view) {
 }
 
 /** A remaining time; near its end an estimate of parts of a second would promise too much. */
-const timeLeft = (s, about = "") => (s < 1 ? "nearly done" : `${about}${seconds(s)} left`);
+const timeLeft = (/** @type {number} */ s, about = "") =>
+  s < 1 ? "nearly done" : `${about}${seconds(s)} left`;
 
 /** Progress of the whole run and its remaining time. */
-export function runProgressText({ run_progress, run_eta_s, status }) {
+export function runProgressText(
+  /** @type {Pick<JobView, "run_progress" | "run_eta_s"> & {status: {what: string}}} */ {
+    run_progress,
+    run_eta_s,
+    status,
+  },
+) {
   if (!status.what) return "Starting";
   const left = run_eta_s === null ? [] : [timeLeft(run_eta_s, "about ")];
   return [`${Math.round(run_progress * 100)} % of the run`, ...left].join(" · ");
 }
 
 /** Progress of the current stage in one line: fraction, rate, remaining time. */
-export function progressText({ status, fraction }) {
+export function progressText(
+  /** @type {Pick<JobView, "fraction"> & {status: Progress}} */ { status, fraction },
+) {
   const parts = [
     fraction === null ? `${count(status.done)} ${status.unit}` : `${Math.round(fraction * 100)} %`,
   ];

@@ -30,7 +30,7 @@ function pairOf(/** @type {Position[]} */ [a, b]) {
 export function listenToGestures(element, { onDown, onDrag, onPinch, onUp, onHover, onWheel }) {
   /** @type {Map<number, Position>} */
   const pointers = new Map();
-  const placeOf = (event) => {
+  const placeOf = (/** @type {MouseEvent} */ event) => {
     const box = element.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
   };
@@ -51,7 +51,7 @@ export function listenToGestures(element, { onDown, onDrag, onPinch, onUp, onHov
     if (pointers.size === 1) onDrag?.(from, to, event);
     else if (pointers.size === 2) onPinch?.(pairOf(before), pairOf([...pointers.values()]));
   });
-  const up = (event) => {
+  const up = (/** @type {PointerEvent} */ event) => {
     if (!pointers.has(event.pointerId)) return;
     onUp?.(placeOf(event), event, pointers.size);
     pointers.delete(event.pointerId);

@@ -2,13 +2,15 @@
 
 import { at, pathHere } from "./address.js";
 
+/** @import {Me} from "./http_types" */
+
 export const NO_RESPONSE = "The server does not answer. Is it still running?";
 
 export class ApiError extends Error {
   /**
    * @param {number} status HTTP status, 0 if there was no response
    * @param {{error?: string, detail: string, problems?: Record<string, string>,
-   *   candidates?: string[], remedy?: {text: string, page: string}}} problem
+   *   candidates?: string[], remedy?: {text: string, page: string} | null}} problem
    */
   constructor(status, { error, detail, problems = {}, candidates = [], remedy = undefined }) {
     super(detail);
@@ -59,28 +61,36 @@ export async function request(operation, ...parts) {
   if (response.ok) return content;
   const error = new ApiError(response.status, json ? content : { detail: content });
   if (error.name === "Unknown") leaveForLogin();
-  if (error.name === "StaleToken") whoami = null;
+  if (error.name === "StaleToken") known.me = null;
   throw error;
 }
 
 export const name = encodeURIComponent;
 
-/** The URL of a path template, `{x}` filled from `path`; undefined parameters are left out. */
+/**
+ * The URL of a path template, `{x}` filled from `path`; undefined parameters are left out.
+ * @param {string} template
+ * @param {Record<string, any>} path
+ */
 export function urlOf(template, path, query = {}) {
   const given = Object.entries(query).filter(([, value]) => value !== undefined);
   const search = given.map(([key, value]) => `${key}=${name(value)}`).join("&");
-  const url = at(template.replace(/\{(\w+)\}/g, (_, key) => name(path[key])));
+  const url = at(
+    template.replace(/\{(\w+)\}/g, (/** @type {string} */ _, /** @type {string} */ key) =>
+      name(path[key]),
+    ),
+  );
   return search ? `${url}?${search}` : url;
 }
 
 // -- who is signed in
 
-/** @type {Promise<import("./http_types").Me> | null} */
-let whoami = null;
+/** What this page knows of the signed-in person; null = not requested yet. */
+const known = { me: /** @type {Promise<import("./http_types").Me> | null} */ (null) };
 
 /** Who is signed in, requested once a page, or `again`. */
 export const readCurrentUser = (again = false) =>
-  again ? request("GET /api/me") : (whoami ??= request("GET /api/me"));
+  again ? request("GET /api/me") : (known.me ??= request("GET /api/me"));
 
 /** Whether this browser is signed in already; for the login page. */
 export const isSignedIn = async () => (await fetch(at("/api/me"))).ok;
@@ -88,7 +98,10 @@ export const isSignedIn = async () => (await fetch(at("/api/me"))).ok;
 export const LIVE_URL = at("/live");
 const BEFORE_LOGIN = [at("/login"), at("/pair")];
 
-/** Headers of a request that changes something; exported for requests made elsewhere. */
+/**
+ * Headers of a request that changes something; exported for requests made elsewhere.
+ * @returns {Promise<Record<string, string>>}
+ */
 export async function changeHeaders(method = "POST") {
   if (method === "GET" || BEFORE_LOGIN.includes(location.pathname)) return {};
   const { token } = await readCurrentUser();
@@ -104,14 +117,14 @@ function leaveForLogin() {
 }
 
 /** Keeps who is signed in from a response that contains it: the token has changed. */
-export async function become(response) {
+export async function become(/** @type {Promise<Me>} */ response) {
   const me = await response;
-  whoami = Promise.resolve(me);
+  known.me = Promise.resolve(me);
   return me;
 }
 
 /** Asks for a file without reading it; an `ApiError` if the server refuses it. */
-export async function canBeRead(url) {
+export async function canBeRead(/** @type {string} */ url) {
   const response = await fetch(url).catch(() => {
     throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
   });
@@ -120,7 +133,7 @@ export async function canBeRead(url) {
 }
 
 /** The error of a response that is JSON, or the text of a proxy in between. */
-async function refusalOf(response) {
+async function refusalOf(/** @type {Response} */ response) {
   const text = await response.text();
   let problem = { detail: text || `The server returned ${response.status}` };
   try {
@@ -143,6 +156,7 @@ async function refusalOf(response) {
 export async function tus(method, path, { headers = {}, body, signal } = {}) {
   let response;
   try {
+    /** @type {Record<string, any>} */
     const all = {
       "Tus-Resumable": "1.0.0",
       ...(method === "HEAD" ? {} : await changeHeaders(method)),
@@ -150,7 +164,7 @@ export async function tus(method, path, { headers = {}, body, signal } = {}) {
     };
     response = await fetch(path, { method, headers: all, body, signal, cache: "no-store" });
   } catch (error) {
-    if (error.name === "AbortError") throw error;
+    if (error instanceof Error && error.name === "AbortError") throw error;
     throw new ApiError(0, { error: "Offline", detail: NO_RESPONSE });
   }
   if (response.ok) return response;

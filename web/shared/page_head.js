@@ -2,8 +2,18 @@
 
 import { at, pathHere } from "./address.js";
 import { liveUrl, projectUrl, readCapture, readCurrentUser, signOut } from "./api.js";
-import { make } from "./dom.js";
+import { asError, html, nothing, render } from "./dom.js";
 
+/**
+ * @import {Me} from "./http_types"
+ * @typedef {object} HeadState
+ * @property {string} name of the project; empty outside of one
+ * @property {string} problem with the link to the server
+ * @property {boolean} live whether there is a capture to look at
+ * @property {Me | null} me
+ */
+
+/** @type {Array<[string, string]>} */
 const PAGES = [
   ["", "Map"],
   ["review/", "Review"],
@@ -11,56 +21,32 @@ const PAGES = [
 ];
 
 export class PageHead extends HTMLElement {
-  #name = make("b");
-  #link = make("span", { className: "link-state", role: "status" });
-  #account = make("span", { className: "account" });
+  /** @type {HeadState} */
+  #state = { name: "", problem: "", live: false, me: null };
 
   connectedCallback() {
-    const [, first, id, page = ""] = pathHere().split("/");
-    const inProject = first === "projects" && id;
     this.className = "bar";
     this.setAttribute("role", "banner");
-    this.replaceChildren(
-      make("a", { className: "brand", href: at("/") }, "recon4"),
-      ...(inProject ? [this.#way(), this.#tabs(decodeURIComponent(id), page)] : []),
-      this.#link,
-      this.#account,
-    );
-    if (inProject) this.name = decodeURIComponent(id);
-    readCurrentUser().then(
-      (me) => this.#greet(me),
-      (error) => (this.#link.textContent = error.message),
-    );
+    const { id } = placeOf(pathHere());
+    this.#draw({ name: id });
+    this.#greet().catch((error) => this.#draw({ problem: asError(error).message }));
   }
 
-  async #greet(me) {
-    this.#show(me, me.may.includes("capture"));
-    if (!me.may.includes("capture")) this.#show(me, (await readCapture()) !== null);
+  async #greet() {
+    const me = await readCurrentUser();
+    const captures = me.may.includes("capture");
+    this.#draw({ me, live: captures });
+    if (!captures) this.#draw({ live: (await readCapture()) !== null });
   }
 
-  /** Who is signed in, and what only some may open. */
-  #show({ name, role, may, login }, live) {
-    const link = (href, text) => make("a", { href }, text);
-    this.#account.replaceChildren(
-      ...(live ? [link(liveUrl, "Live")] : []),
-      link(at("/rigs"), "Rigs"),
-      ...(may.includes("process")
-        ? [link(at("/storage"), "Storage"), link(at("/api"), "API")]
-        : []),
-      link(at("/docs/"), "Help"),
-      ...(may.includes("administer") ? [link(at("/people"), "People")] : []),
-      ...(login
-        ? [
-            make(
-              "a",
-              { className: "who", href: at("/account"), ariaLabel: `Account of ${name}, ${role}` },
-              make("b", {}, name),
-              make("span", { className: "role" }, role),
-            ),
-            make("button", { type: "button", onclick: () => this.#leave() }, "Sign out"),
-          ]
-        : []),
-    );
+  /** The project's name. */
+  set name(/** @type {string} */ name) {
+    this.#draw({ name });
+  }
+
+  /** Shows whether the server answers. */
+  set linked(/** @type {boolean} */ yes) {
+    this.#draw({ problem: yes ? "" : "Connection lost, trying again" });
   }
 
   async #leave() {
@@ -68,42 +54,73 @@ export class PageHead extends HTMLElement {
       await signOut();
       location.assign(at("/login"));
     } catch (error) {
-      this.#link.textContent = error.message;
+      this.#draw({ problem: asError(error).message });
     }
   }
 
-  /** The project's name. */
-  set name(text) {
-    this.#name.textContent = text;
-  }
-
-  /** Shows whether the server answers. */
-  set linked(yes) {
-    this.#link.textContent = yes ? "" : "Connection lost, trying again";
-  }
-
-  #way() {
-    return make(
-      "nav",
-      { ariaLabel: "Where you are", className: "way" },
-      make("a", { href: at("/") }, "Projects"),
-      make("span", { ariaHidden: "true" }, "/"),
-      this.#name,
+  #draw(/** @type {Partial<HeadState>} */ changes) {
+    const { name, problem, me, live } = Object.assign(this.#state, changes);
+    const { id, page } = placeOf(pathHere());
+    render(
+      html`<a class="brand" href=${at("/")}>recon4</a>
+        ${id ? [way(name), tabs(id, page)] : nothing}
+        <span class="link-state" role="status">${problem}</span>
+        <span class="account">${me ? [links(me, live), this.#person(me)] : nothing}</span>`,
+      this,
     );
   }
 
-  #tabs(id, here) {
-    const tab = ([path, text]) =>
-      make(
-        "a",
-        {
-          href: projectUrl(id) + path,
-          ...(path === (here && `${here}/`) ? { ariaCurrent: "page" } : {}),
-        },
-        text,
-      );
-    return make("nav", { ariaLabel: "Pages of the project", className: "tabs" }, ...PAGES.map(tab));
+  #person(/** @type {Me} */ { name, role, login }) {
+    if (!login) return nothing;
+    return html`<a class="who" href=${at("/account")} aria-label="Account of ${name}, ${role}"
+        ><b>${name}</b><span class="role">${role}</span></a
+      ><button type="button" @click=${() => this.#leave()}>Sign out</button>`;
   }
+}
+
+/** The project that a path is about and its page there; empty if it is about none. */
+function placeOf(/** @type {string} */ path) {
+  const [, first, id = "", page = ""] = path.split("/");
+  return first === "projects" ? { id: decodeURIComponent(id), page } : { id: "", page: "" };
+}
+
+const way = (/** @type {string} */ name) =>
+  html`<nav aria-label="Where you are" class="way">
+    <a href=${at("/")}>Projects</a><span aria-hidden="true">/</span><b>${name}</b>
+  </nav>`;
+
+/**
+ * @param {string} id
+ * @param {string} page
+ */
+function tabs(id, page) {
+  const here = page && `${page}/`;
+  return html`<nav aria-label="Pages of the project" class="tabs">
+    ${PAGES.map(
+      ([path, text]) =>
+        html`<a href=${projectUrl(id) + path} aria-current=${path === here ? "page" : nothing}
+          >${text}</a
+        >`,
+    )}
+  </nav>`;
+}
+
+/**
+ * Links to what a person may open.
+ * @param {Me} me
+ * @param {boolean} live
+ */
+function links({ may }, live) {
+  /** @type {Array<[boolean, string, string]>} */
+  const all = [
+    [live, liveUrl, "Live"],
+    [true, at("/rigs"), "Rigs"],
+    [may.includes("process"), at("/storage"), "Storage"],
+    [may.includes("process"), at("/api"), "API"],
+    [true, at("/docs/"), "Help"],
+    [may.includes("administer"), at("/people"), "People"],
+  ];
+  return all.map(([shown, href, text]) => (shown ? html`<a href=${href}>${text}</a>` : nothing));
 }
 
 customElements.define("page-head", PageHead);

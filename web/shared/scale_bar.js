@@ -3,13 +3,13 @@
 const HEIGHT_PX = 5;
 
 /** 1, 2 or 5 times a power of ten, at least `least`. */
-export function roundStep(least) {
+export function roundStep(/** @type {number} */ least) {
   const power = 10 ** Math.floor(Math.log10(least));
-  return power * [1, 2, 5, 10].find((s) => s * power >= least * 0.999);
+  return power * ([1, 2, 5].find((s) => s * power >= least * 0.999) ?? 10);
 }
 
 /** Scale bar of at least `leastPx`: its length in meters and in pixels, and its caption. */
-export function scaleBar(pxPerM, leastPx = 60) {
+export function scaleBar(/** @type {number} */ pxPerM, leastPx = 60) {
   const meters = roundStep(leastPx / pxPerM);
   const text = meters < 1 ? `${Number((meters * 100).toPrecision(2))} cm` : `${meters} m`;
   return { meters, px: meters * pxPerM, text };
@@ -24,7 +24,7 @@ export function scaleBar(pxPerM, leastPx = 60) {
  */
 export function drawScaleBar(context, pxPerM, { left, right, bottom, ink, halo }) {
   const { px, text } = scaleBar(pxPerM);
-  const x = left ?? right - px;
+  const x = left ?? (right ?? 0) - px;
   context.save();
   context.lineJoin = "round";
   context.beginPath();

@@ -1,14 +1,16 @@
 // The verdict on a map as text. No DOM, no network.
 
 /**
+ * @import {MapVerdict, Unobserved} from "./http_types"
  * @typedef {import("./http_types").SaidFinding} MapFinding
  * @typedef {object} MapFacts what is known of a map
- * @property {any} verdict usability, reasons, what is not observable; null = none was worked out
+ * @property {MapVerdict | null} verdict null = none was worked out
  * @property {string[]} notes what does not change the verdict
  * @property {MapFinding[] | null} findings worst first; null = an earlier version made the map
  */
 
 /** Captions of the levels of findings, the worst first. */
+/** @type {Record<string, string>} */
 export const LEVELS = {
   "do not use": "Do not use",
   check: "Check",
@@ -17,7 +19,7 @@ export const LEVELS = {
 };
 
 /** What a project's summary says of its map; null before there is one. */
-export const factsIn = (summary) =>
+export const factsIn = (/** @type {Record<string, any> | null | undefined} */ summary) =>
   summary?.points === undefined
     ? null
     : {
@@ -27,21 +29,26 @@ export const factsIn = (summary) =>
       };
 
 /** Texts of notes; before format 3 the run wrote warnings. */
-const notesIn = ({ findings, warnings }) =>
+const notesIn = (
+  /** @type {{findings?: MapFinding[], warnings?: string[]}} */ { findings, warnings },
+) =>
   findings
     ? findings.filter(({ level }) => level === "note").map(({ text }) => text)
     : (warnings ?? []);
 
 /** The badge of a verdict, by its name in STATES. */
-export function verdictState(/** @type {any} */ verdict) {
-  const states = { good: "sound", check: "check", "do not use": "unusable" };
-  return states[verdict?.usability] ?? "unjudged";
-}
+/** @type {Record<string, import("./format.js").StateName>} */
+const STATES = { good: "sound", check: "check", "do not use": "unusable" };
+export const verdictState = (/** @type {MapVerdict | null} */ verdict) =>
+  STATES[verdict?.usability ?? ""] ?? "unjudged";
 
-const place = (p) => `x ${p[0].toFixed(1)}, y ${p[1].toFixed(1)}, z ${p[2].toFixed(1)} m`;
+const place = (/** @type {number[]} */ p) =>
+  `x ${p[0].toFixed(1)}, y ${p[1].toFixed(1)}, z ${p[2].toFixed(1)} m`;
 
 /** When, where and in which direction the LiDAR hardly observes the motion. */
-export function unobservedText({ start_s, end_s, direction, degeneracy, from_m, to_m }) {
+export function unobservedText(
+  /** @type {Unobserved} */ { start_s, end_s, direction, degeneracy, from_m, to_m },
+) {
   const times = `${start_s.toFixed(0)} s to ${end_s.toFixed(0)} s`;
   const known = direction === "vertical" ? "the vertical direction" : `a ${direction} direction`;
   const what = `${direction ? known : "one direction"}, degeneracy ${degeneracy.toFixed(4)}`;
@@ -80,6 +87,7 @@ const VIEW_PX = 500;
 
 /** The query of the slices page: a horizontal slice at the place of a finding, which it marks. */
 export function sliceOf(/** @type {Partial<MapFinding>} */ { place_m }) {
+  if (!place_m) return "";
   const [[x0, y0, z0], [x1, y1, z1]] = place_m;
   const view_m = Math.max(LEAST_VIEW_M, 1.5 * Math.hypot(x1 - x0, y1 - y0));
   const numbers = { z: (z0 + z1) / 2, u: (x0 + x1) / 2, v: (y0 + y1) / 2, m: view_m / VIEW_PX };
@@ -94,6 +102,10 @@ export function stretchText(/** @type {Partial<MapFinding>} */ { span_s, place_m
   return start === end ? `${start} s` : `${start} s to ${end} s`;
 }
 
-/** Whether a text is long enough as a reason to approve a map in spite of its verdict. */
+/**
+ * Whether a text is long enough as a reason to approve a map in spite of its verdict.
+ * @param {string} text
+ * @param {{reason_needed: string, min_reason_characters: number}} given
+ */
 export const isReason = (text, { reason_needed, min_reason_characters }) =>
   !reason_needed || text.trim().length >= min_reason_characters;

@@ -3,23 +3,35 @@
 //
 // Event: "slice" with detail {a, b} [m].
 
-import { make } from "../shared/dom.js";
+import { render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar } from "../shared/scale_bar.js";
 import { normalOf } from "./state.js";
 
 const GRIP_PX = 22;
 
+/**
+ * @import {WindowSpec} from "../shared/http_types"
+ * @import {SliceState} from "./state.js"
+ * @import {ColorOf, Pen} from "./view.js"
+ * @typedef {{what: "a"} | {what: "b"} | {what: "line", from: number[], a: number[], b: number[]} |
+ *   {what: "new", from: number[], px: number[]}} Drag what a pointer moves
+ */
+
 export class SliceAbove extends HTMLElement {
-  #canvas = make("canvas", { tabIndex: -1 });
-  #image = null;
-  #window = null;
+  #canvas = document.createElement("canvas");
+  /** @type {{image: HTMLImageElement, window: WindowSpec} | null} */
+  #map = null;
+  /** @type {SliceState | null} */
   #state = null;
-  #wall = null;
+  /** @type {number[] | null} */
+  #place = null;
+  /** @type {Drag | null} */
   #drag = null;
 
   connectedCallback() {
-    this.replaceChildren(this.#canvas);
+    this.#canvas.tabIndex = -1;
+    render(this.#canvas, this);
     this.setAttribute("aria-busy", "true"); // nothing to drag before the image is there
     this.#canvas.setAttribute("role", "img");
     this.#canvas.setAttribute("aria-label", "The map from above, with the slice");
@@ -32,39 +44,45 @@ export class SliceAbove extends HTMLElement {
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.draw());
   }
 
-  /** Shows the image at a URL of a window of the map [m]. */
+  /**
+   * Shows the image at a URL of a window of the map [m].
+   * @param {string} url
+   * @param {WindowSpec} window
+   */
   show(url, window) {
-    const image = make("img", { src: url, alt: "" });
+    const image = Object.assign(document.createElement("img"), { src: url, alt: "" });
     image.addEventListener("load", () => {
       this.removeAttribute("aria-busy");
-      [this.#image, this.#window] = [image, window];
+      this.#map = { image, window };
       this.draw();
     });
   }
 
-  set state(state) {
+  set state(/** @type {SliceState} */ state) {
     this.#state = state;
     this.draw();
   }
 
   /** A place to mark [m], or null. */
-  set place(place) {
-    this.#wall = place;
+  set place(/** @type {number[] | null} */ place) {
+    this.#place = place;
     this.draw();
   }
 
   #fit() {
     const { width, height } = this.getBoundingClientRect();
-    const w = this.#window;
+    const w = this.#map?.window ?? { left: 0, right: 1, bottom: 0, top: 1 };
     const scale = Math.min(width / (w.right - w.left), height / (w.top - w.bottom));
     return { width, height, scale, u: (w.left + w.right) / 2, v: (w.bottom + w.top) / 2 };
   }
 
+  /** @returns {[number, number]} */
   #toPx(/** @type {number[]} */ [x, y]) {
     const { width, height, scale, u, v } = this.#fit();
     return [width / 2 + (x - u) * scale, height / 2 - (y - v) * scale];
   }
 
+  /** @returns {[number, number]} */
   #toMap(/** @type {number[]} */ [x, y]) {
     const { width, height, scale, u, v } = this.#fit();
     return [u + (x - width / 2) / scale, v - (y - height / 2) / scale];
@@ -76,18 +94,19 @@ export class SliceAbove extends HTMLElement {
     const canvas = this.#canvas;
     [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
     const pen = canvas.getContext("2d");
+    if (!pen) return;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
-    if (!this.#window || !this.#state) return;
+    if (!this.#map || !this.#state) return;
+    const { image, window: w } = this.#map;
     const style = getComputedStyle(this);
-    const color = (name) => style.getPropertyValue(name).trim();
-    const w = this.#window;
+    const color = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
     const [x0, y0] = this.#toPx([w.left, w.top]);
     const [x1, y1] = this.#toPx([w.right, w.bottom]);
-    pen.drawImage(this.#image, x0, y0, x1 - x0, y1 - y0);
-    const ends = this.#trace();
+    pen.drawImage(image, x0, y0, x1 - x0, y1 - y0);
+    const ends = traceOf(this.#state, w);
     if (ends) this.#line(pen, ends, color);
-    if (this.#wall) {
-      const [x, y] = this.#toPx(this.#wall);
+    if (this.#place) {
+      const [x, y] = this.#toPx(this.#place);
       pen.strokeStyle = color("--bad");
       pen.lineWidth = 3;
       pen.beginPath();
@@ -102,30 +121,20 @@ export class SliceAbove extends HTMLElement {
     });
   }
 
-  /** Ends of the slice's line in the map; null for a level plane. */
-  #trace() {
-    const s = this.#state;
-    if (s.kind === "vertical") return [s.a, s.b];
-    if (s.kind === "horizontal") return null;
-    const n = normalOf(s);
-    const flat = Math.hypot(n[0], n[1]);
-    if (flat < 0.02) return null;
-    const reach =
-      (this.#window.right - this.#window.left + this.#window.top - this.#window.bottom) / 2;
-    const along = [n[1] / flat, -n[0] / flat];
-    return [-1, 1].map((side) => [
-      s.o[0] + side * reach * along[0],
-      s.o[1] + side * reach * along[1],
-    ]);
-  }
-
+  /**
+   * @param {Pen} pen
+   * @param {[number[], number[]]} ends
+   * @param {ColorOf} color
+   */
   #line(pen, ends, color) {
-    const [a, b] = ends.map((end) => this.#toPx(end));
-    const grips = this.#state.kind === "vertical";
-    for (const [stroke, width] of [
+    const [a, b] = [this.#toPx(ends[0]), this.#toPx(ends[1])];
+    const grips = this.#state?.kind === "vertical";
+    /** @type {Array<[string, number]>} */
+    const strokes = [
       [color("--panel"), 6],
       [color("--accent"), 2.5],
-    ]) {
+    ];
+    for (const [stroke, width] of strokes) {
       pen.strokeStyle = stroke;
       pen.lineWidth = width;
       pen.beginPath();
@@ -156,11 +165,12 @@ export class SliceAbove extends HTMLElement {
     });
   }
 
-  #down(at) {
-    if (!this.#window || !this.#state) return;
+  #down(/** @type {number[]} */ at) {
+    if (!this.#map || !this.#state) return;
     const place = this.#toMap(at);
     const { kind, a, b } = this.#state;
-    const near = (end) => Math.hypot(...this.#toPx(end).map((x, k) => x - at[k])) < GRIP_PX;
+    const near = (/** @type {number[]} */ end) =>
+      Math.hypot(...this.#toPx(end).map((x, k) => x - at[k])) < GRIP_PX;
     if (kind === "vertical" && near(a)) this.#drag = { what: "a" };
     else if (kind === "vertical" && near(b)) this.#drag = { what: "b" };
     else if (kind === "vertical" && this.#offLine(at) < GRIP_PX)
@@ -168,7 +178,9 @@ export class SliceAbove extends HTMLElement {
     else this.#drag = { what: "new", from: place, px: at };
   }
 
-  #offLine(at) {
+  /** How far a position lies from the line of the slice [px]. */
+  #offLine(/** @type {number[]} */ at) {
+    if (!this.#state) return Infinity;
     const [a, b] = [this.#toPx(this.#state.a), this.#toPx(this.#state.b)];
     const [dx, dy] = [b[0] - a[0], b[1] - a[1]];
     const s = Math.max(
@@ -178,26 +190,50 @@ export class SliceAbove extends HTMLElement {
     return Math.hypot(at[0] - a[0] - s * dx, at[1] - a[1] - s * dy);
   }
 
-  #dragged(at) {
+  #dragged(/** @type {number[]} */ at) {
     const drag = this.#drag;
-    if (!drag) return;
+    if (!drag || !this.#state) return;
     const place = this.#toMap(at);
-    const shift = drag.from ? place.map((x, k) => x - drag.from[k]) : null;
     const { a, b } = this.#state;
     if (drag.what === "a") this.#emit(place, b);
     else if (drag.what === "b") this.#emit(a, place);
-    else if (drag.what === "line")
-      this.#emit(
-        drag.a.map((x, k) => x + shift[k]),
-        drag.b.map((x, k) => x + shift[k]),
-      );
-    else if (Math.hypot(at[0] - drag.px[0], at[1] - drag.px[1]) > 12) this.#emit(drag.from, place);
+    else if (drag.what === "line") {
+      const shifted = (/** @type {number[]} */ end) =>
+        end.map((x, k) => x + place[k] - drag.from[k]);
+      this.#emit(shifted(drag.a), shifted(drag.b));
+    } else if (Math.hypot(at[0] - drag.px[0], at[1] - drag.px[1]) > 12)
+      this.#emit(drag.from, place);
   }
 
+  /**
+   * @param {number[]} a
+   * @param {number[]} b
+   */
   #emit(a, b) {
     if (Math.hypot(b[0] - a[0], b[1] - a[1]) > 0.05)
       this.dispatchEvent(new CustomEvent("slice", { detail: { a, b } }));
   }
+}
+
+/**
+ * Ends of the slice's line in the map; null for a level plane.
+ * @param {SliceState} state
+ * @param {WindowSpec} window
+ * @returns {[number[], number[]] | null}
+ */
+function traceOf(state, { left, right, bottom, top }) {
+  if (state.kind === "vertical") return [state.a, state.b];
+  if (state.kind === "horizontal") return null;
+  const n = normalOf(state);
+  const flat = Math.hypot(n[0], n[1]);
+  if (flat < 0.02) return null;
+  const reach = (right - left + top - bottom) / 2;
+  const [x, y] = [(reach * n[1]) / flat, (-reach * n[0]) / flat];
+  const { o } = state;
+  return [
+    [o[0] - x, o[1] - y],
+    [o[0] + x, o[1] + y],
+  ];
 }
 
 customElements.define("slice-above", SliceAbove);

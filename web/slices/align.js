@@ -1,29 +1,67 @@
 // Lays a reference on the map: by three pairs of points, or moved by hand; then ICP.
 
 import { alignReference, readAlignPoints } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
-import "../review/view.js";
+import { openDialog } from "../shared/dialog.js";
+import { attempt, html, messagePlace, within } from "../shared/dom.js";
+import { PairView } from "../review/view.js";
 import { inFrames, poseInMap, unpacked } from "./align_math.js";
+
+/** @import {AlignPoints, AlignRequest, ListedReference} from "../shared/http_types" */
 
 const UPRIGHT = [0, 0, 0, 1];
 
-const check = (text, checked = true) => {
-  const input = make("input", { type: "checkbox", checked });
-  return { input, label: make("label", { className: "check" }, input, make("span", {}, text)) };
-};
-
-/** Opens the dialog for a reference; `changed()` after every new alignment. */
-export async function openAlignment(id, one, changed) {
-  const view = make("pair-view", {});
-  [view.dataset.first, view.dataset.second] = ["map", "reference"];
-  const message = make("p", { className: "error", role: "alert" });
-  const result = make("p", { role: "status" }, `Alignment: ${one.alignment}`);
-  const level = check("Both are level: heights come from the floors, not from the pairs");
-  const refine = check("Then refine by ICP");
-  let points = null;
+/**
+ * Opens the dialog for a reference; `changed()` after every new alignment.
+ * @param {string} id of the project
+ * @param {ListedReference} reference
+ * @param {() => Promise<void>} changed
+ */
+export async function openAlignment(id, reference, changed) {
+  /** @type {{points: AlignPoints | null}} */
+  const state = { points: null };
+  const dialog = openDialog(
+    `Align ${reference.name} with the map`,
+    html`<p class="quiet">
+        Pick the same three points in the map (blue) and the reference (orange) by turns, as corners
+        of walls far from each other. Or move the reference by its handle and ring (Above), then
+        refine.
+      </p>
+      <pair-view data-first="map" data-second="reference"></pair-view>
+      <div class="buttons">
+        <button type="button" class="primary" @click=${() => pick()}>Pick three pairs</button
+        ><button type="button" @click=${(/** @type {Event} */ event) => byHand(event)}>
+          Refine by ICP from here</button
+        ><button
+          type="button"
+          class="undo"
+          ?disabled=${!reference.can_undo}
+          @click=${(/** @type {Event} */ event) => act(event, () => align({ how: "undo" }))}
+        >
+          Undo alignment
+        </button>
+      </div>
+      <div class="buttons">
+        <label class="check"
+          ><input type="checkbox" name="level" checked /><span
+            >Both are level: heights come from the floors, not from the pairs</span
+          ></label
+        ><label class="check"
+          ><input type="checkbox" name="refine" checked /><span>Then refine by ICP</span></label
+        >
+      </div>
+      ${messagePlace()}
+      <p class="result" role="status">Alignment: ${reference.alignment}</p>
+      <form method="dialog"><button>Close</button></form>`,
+  );
+  dialog.classList.add("aligning");
+  const view = within(dialog, "pair-view", PairView);
+  const message = within(dialog, ".error");
+  const isChecked = (/** @type {string} */ name) =>
+    within(dialog, `[name=${name}]`, HTMLInputElement).checked;
 
   async function show() {
-    points = await readAlignPoints(id, one.id);
+    const points = await readAlignPoints(id, reference.id);
+    state.points = points;
     const poses = { odometry: points.pose, predicted: points.pose, after: points.pose };
     const clouds = { i: unpacked(points.p_map), j: unpacked(points.p_reference) };
     const drawn = view.set(clouds, poses, UPRIGHT);
@@ -31,69 +69,45 @@ export async function openAlignment(id, one, changed) {
     await drawn;
   }
 
-  async function align(how) {
-    const found = await alignReference(id, one.id, how);
+  async function align(/** @type {AlignRequest} */ how) {
+    const found = await alignReference(id, reference.id, how);
     await show();
+    const result = within(dialog, ".result");
     result.textContent = `Alignment: ${found.alignment}. ${found.fit}`;
-    result.className = found.fit.startsWith("✕") ? "bad" : "";
-    undo.disabled = !found.can_undo;
+    result.classList.toggle("bad", found.fit.startsWith("✕"));
+    within(dialog, ".undo", HTMLButtonElement).disabled = !found.can_undo;
     await changed();
   }
 
-  const button = (text, action, more = {}) => {
-    const made = make("button", { type: "button", ...more }, text);
-    made.addEventListener("click", async () => {
-      made.disabled = true;
-      await attempt(message, action);
-      made.disabled = false;
+  /**
+   * Runs the action of a button, which can be used again afterwards.
+   * @param {Event} event
+   * @param {() => Promise<void>} action
+   */
+  async function act(event, action) {
+    const button = /** @type {HTMLButtonElement} */ (event.currentTarget);
+    button.disabled = true;
+    const done = await attempt(message, async () => (await action(), true));
+    if (!done || !button.matches(".undo")) button.disabled = false;
+  }
+
+  const pick = () =>
+    view.pick((picked) =>
+      attempt(message, async () => {
+        const { points } = state;
+        if (!points) return;
+        const [level, refine] = [isChecked("level"), isChecked("refine")];
+        await align({ how: "pairs", ...inFrames(picked, points), level, refine });
+      }),
+    );
+  const byHand = (/** @type {Event} */ event) =>
+    act(event, async () => {
+      if (state.points) await align({ how: "icp", pose: poseInMap(view.pose, state.points) });
     });
-    return made;
-  };
-  const pick = button(
-    "Pick three pairs",
-    () =>
-      view.pick((picked) =>
-        attempt(message, () =>
-          align({
-            how: "pairs",
-            ...inFrames(picked, points),
-            level: level.input.checked,
-            refine: refine.input.checked,
-          }),
-        ),
-      ),
-    { className: "primary" },
-  );
-  const byHand = button("Refine by ICP from here", () =>
-    align({ how: "icp", pose: poseInMap(view.pose, points) }),
-  );
-  const undo = button("Undo alignment", () => align({ how: "undo" }));
-  undo.disabled = !one.can_undo;
-  const dialog = make(
-    "dialog",
-    { className: "aligning", ariaLabel: `Align ${one.name} with the map` },
-    make("h2", {}, `Align ${one.name} with the map`),
-    make(
-      "p",
-      { className: "quiet" },
-      "Pick the same three points in the map (blue) and the reference (orange) by turns, as ",
-      "corners of walls far from each other. Or move the reference by its handle and ring ",
-      "(Above), then refine.",
-    ),
-    view,
-    make("div", { className: "buttons" }, pick, byHand, undo),
-    make("div", { className: "buttons" }, level.label, refine.label),
-    message,
-    result,
-    make("form", { method: "dialog" }, make("button", {}, "Close")),
-  );
   dialog.addEventListener("keydown", (event) => {
     if (event.key !== "Escape" || !view.isPicking) return;
     event.preventDefault(); // the first ends picking, the second closes
     view.stopPicking();
   });
-  dialog.addEventListener("close", () => dialog.remove());
-  document.body.append(dialog);
-  dialog.showModal();
   await attempt(message, show);
 }

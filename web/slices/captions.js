@@ -2,19 +2,34 @@
 
 import { COLORS, SURFACES } from "./state.js";
 
-const KINDS = { horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" };
-const fixed = (xs) => xs.map((x) => x.toFixed(3)).join("  ");
+/** @import {OtherMap, PickView, SliceFacts} from "../shared/http_types" */
 
-/** The kind of the slice and its name. */
+const KINDS = { horizontal: "Horizontal", vertical: "Vertical", free: "Free plane" };
+const fixed = (/** @type {number[]} */ xs) => xs.map((x) => x.toFixed(3)).join("  ");
+
+/**
+ * The kind of the slice and its name.
+ * @param {import("./state.js").Kind} kind
+ * @param {string} name
+ */
 export const cutText = (kind, name) => `${KINDS[kind]} ${name}`;
 
-/** What a slice image shows. */
+/**
+ * What a slice image shows.
+ * @param {Pick<import("./state.js").SliceState, "source" | "color" | "surface"> &
+ *   {points: string}} image
+ * @param {OtherMap[]} sources
+ */
 export function imageText({ source, color, points, surface }, sources) {
   const name = source ? (sources.find((one) => one.id === source)?.label ?? source) : "This map";
   return `${name} · ${COLORS[color]} · ${points} points ${SURFACES[surface]}`;
 }
 
-/** Coordinates and attributes of a picked point. */
+/**
+ * Coordinates and attributes of a picked point.
+ * @param {Pick<PickView, "p_map" | "p_crs" | "about">} given
+ * @param {Pick<SliceFacts, "crs" | "sensors">} given1
+ */
 export function pointText({ p_map, p_crs, about }, { crs, sensors }) {
   const parts = [`x y z  ${fixed(p_map)} m`];
   if (p_crs) parts.push(`${crs}  E N H  ${fixed(p_crs)} m`);
@@ -25,15 +40,27 @@ export function pointText({ p_map, p_crs, about }, { crs, sensors }) {
   return parts.join(" · ");
 }
 
+/**
+ * @param {Pick<PickView, "p_map">} a
+ * @param {Pick<PickView, "p_map">} b
+ */
 function lengths(a, b) {
   const d = b.p_map.map((x, k) => x - a.p_map[k]);
   return { all: Math.hypot(...d), flat: Math.hypot(d[0], d[1]), up: d[2] };
 }
 
-/** The distance of two picked points, to stand beside the line between them. */
+/**
+ * The distance of two picked points, to stand beside the line between them.
+ * @param {Pick<PickView, "p_map">} a
+ * @param {Pick<PickView, "p_map">} b
+ */
 export const lengthText = (a, b) => `${lengths(a, b).all.toFixed(3)} m`;
 
-/** The distance of two picked points in full. */
+/**
+ * The distance of two picked points in full.
+ * @param {Pick<PickView, "p_map">} a
+ * @param {Pick<PickView, "p_map">} b
+ */
 export function distanceText(a, b) {
   const { all, flat, up } = lengths(a, b);
   return [

@@ -1,6 +1,12 @@
 // The first rows of a table of coordinates, what each column is taken for, and the question.
 
-import { make } from "../shared/dom.js";
+import { html, targetOf } from "../shared/dom.js";
+
+/**
+ * @import {TablePreview} from "../shared/http_types"
+ * @typedef {TablePreview["columns"]} Columns
+ * @typedef {TablePreview["unit"]} Unit
+ */
 
 /** @type {Array<[string, string]>} */
 export const MEANINGS = [
@@ -29,24 +35,30 @@ export const UNITS = [
   ["in", "inches"],
 ];
 
-/** A list to choose from; `onValue(value)` is called when a person chooses. */
-export function choice(ariaLabel, options, value, onValue) {
-  const element = make(
-    "select",
-    { ariaLabel },
-    ...options.map(([key, text]) => make("option", { value: key }, text)),
-  );
-  element.value = value;
-  element.addEventListener("change", () => onValue(element.value));
-  return element;
-}
+/**
+ * A list to choose from; `onValue(value)` is called when a person chooses.
+ * @param {string} label
+ * @param {Array<[string, string]>} options value and caption of each
+ * @param {string | undefined} value
+ * @param {(value: string) => void} onValue
+ */
+export const choice = (label, options, value, onValue) =>
+  html`<select
+    aria-label=${label}
+    @change=${(/** @type {Event} */ event) => onValue(targetOf(event).value)}
+  >
+    ${options.map(
+      ([key, text]) => html`<option value=${key} .selected=${key === value}>${text}</option>`,
+    )}
+  </select>`;
 
 /** What is missing before the columns can be used; empty = nothing. */
-export function missing(columns) {
+export function missing(/** @type {string[]} */ columns) {
   const bare = columns.map((one) => (one.length > 1 ? one.replace("-", "") : one));
-  const count = (meaning) => bare.filter((one) => one === meaning).length;
+  const count = (/** @type {string} */ meaning) => bare.filter((one) => one === meaning).length;
   const degrees = count("lat") + count("lon") > 0;
   const axes = degrees ? ["lat", "lon", "z"] : ["x", "y", "z"];
+  /** @type {Record<string, string>} */
   const label = Object.fromEntries(MEANINGS);
   const open = axes.filter((axis) => count(axis) !== 1);
   if (open.length) return `Choose one column each as ${open.map((one) => label[one]).join("; ")}`;
@@ -57,15 +69,15 @@ export function missing(columns) {
  * The rows with a list above each column; `changed(columns, unit)` is called for each change;
  * `unit` is null unless it was chosen.
  *
- * @param {import("../shared/http_types").TablePreview} table
- * @param {(columns: string[], unit: string | null) => void} changed
+ * @param {TablePreview} table
+ * @param {(columns: Columns, unit: Unit | null) => void} changed
  */
 export function columnTable(table, changed) {
   const columns = [...table.columns];
   const width = Math.max(columns.length, ...table.rows.map((row) => row.length));
   while (columns.length < width) columns.push("-");
-  const name = (k) => table.header[k] || `column ${k + 1}`;
-  const pick = (k) =>
+  const name = (/** @type {number} */ k) => table.header[k] || `column ${k + 1}`;
+  const pick = (/** @type {number} */ k) =>
     choice(`Meaning of ${name(k)}`, MEANINGS, columns[k], (meaning) => {
       // A coordinate has one column: the one that had this meaning before is free again.
       const next = columns.map((old, j) => (j !== k && old === meaning ? "-" : old));
@@ -73,43 +85,40 @@ export function columnTable(table, changed) {
       changed(next, null);
     });
   const all = Array.from({ length: width }, (_, k) => k);
-  return make(
-    "div",
-    { className: "table-columns" },
-    table.question
-      ? make("p", { className: "bad", role: "alert" }, `Not certain: ${table.question}`)
-      : make("p", { className: "quiet" }, table.description),
-    make(
-      "div",
-      { className: "scroll" },
-      make(
-        "table",
-        {},
-        make(
-          "thead",
-          {},
-          make("tr", {}, ...all.map((k) => make("th", { scope: "col" }, name(k)))),
-          make("tr", {}, ...all.map((k) => make("td", {}, pick(k)))),
-        ),
-        make(
-          "tbody",
-          {},
-          ...table.rows.map((row) =>
-            make("tr", {}, ...all.map((k) => make("td", { className: "number" }, row[k] ?? ""))),
-          ),
-        ),
-      ),
-    ),
-    make(
-      "p",
-      { className: "row" },
-      choice("Unit of the coordinates", UNITS, table.unit, (unit) => changed(columns, unit)),
-      make(
-        "span",
-        { className: "quiet" },
-        `The first ${table.rows.length} rows; separated by "${table.delimiter}", ` +
-          `decimal "${table.decimal}"`,
-      ),
-    ),
-  );
+  const question = table.question
+    ? html`<p class="bad" role="alert">Not certain: ${table.question}</p>`
+    : html`<p class="quiet">${table.description}</p>`;
+  return html`<div class="table-columns">
+    ${question}
+    <div class="scroll">
+      <table>
+        <thead>
+          <tr>
+            ${all.map((k) => html`<th scope="col">${name(k)}</th>`)}
+          </tr>
+          <tr>
+            ${all.map((k) => html`<td>${pick(k)}</td>`)}
+          </tr>
+        </thead>
+        <tbody>
+          ${table.rows.map(
+            (row) =>
+              html`<tr>
+                ${all.map((k) => html`<td class="number">${row[k] ?? ""}</td>`)}
+              </tr>`,
+          )}
+        </tbody>
+      </table>
+    </div>
+    <p class="row">
+      ${choice("Unit of the coordinates", UNITS, table.unit, (unit) =>
+        changed(columns, /** @type {Unit} */ (unit)),
+      )}<span class="quiet"
+        >${
+          `The first ${table.rows.length} rows; separated by "${table.delimiter}", ` +
+          `decimal "${table.decimal}"`
+        }</span
+      >
+    </p>
+  </div>`;
 }

@@ -9,126 +9,196 @@ import {
   readSurface,
 } from "../shared/api.js";
 import { isRefused } from "../shared/approval.js";
-import { attempt, make } from "../shared/dom.js";
-import { checked } from "../shared/download.js";
+import {
+  asError,
+  attempt,
+  html,
+  nothing,
+  render,
+  repeat,
+  say,
+  targetOf,
+  within,
+} from "../shared/dom.js";
+import { askFirst } from "../shared/download.js";
 import { columnTable, missing } from "./columns.js";
 import { limitsForm } from "./limits.js";
 import { combined } from "./measured.js";
 import { figures, residualCells } from "./residual_table.js";
 
+/**
+ * @import {
+ *   ControlPoint, ControlPreview, ControlReport, ControlSpec, ControlState, LimitsSpec,
+ *   Residual, SliceFacts
+ * } from "../shared/http_types"
+ * @import {Columns, Unit} from "./columns.js"
+ * @import {Panel, SlicesPage} from "./findings.js"
+ * @import {Measurement} from "./measured.js"
+ * @typedef {Required<Omit<ControlState, "limits" | "version">> &
+ *   Pick<ControlState, "version"> & {limits: LimitsSpec}} KeptControl as the server sends it
+ * @typedef {{file: File, found: ControlPreview, unit: Unit | null}} Preview of a survey file
+ */
+
 const MAX_ROWS = 300;
 const MAX_NAMED = 10;
+const MOST_BYTES = 600_000;
+/** @type {Record<string, Columns[number]>} */
+const SWAPPED = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
+const HEADS = [
+  ...["Point", "Role", "dE", "dN", "dU", "2D", "3D", "Across"],
+  ...["1 σ stated [cm]", "Residual / σ", ""],
+];
+
+/**
+ * A record without one of its fields.
+ * @template {object} T
+ * @param {T} record
+ * @param {string} key
+ */
 const without = (record, key) =>
-  Object.fromEntries(Object.entries(record).filter(([name]) => name !== key));
-const named = (ids) =>
+  /** @type {T} */ (Object.fromEntries(Object.entries(record).filter(([name]) => name !== key)));
+
+const named = (/** @type {string[]} */ ids) =>
   ids.slice(0, MAX_NAMED).join(", ") +
   (ids.length > MAX_NAMED ? ` and ${ids.length - MAX_NAMED} more` : "");
 
 /** How many points were read, and where the first of them lies. */
-function firstPoint(points) {
-  if (!points.length) return "";
+function firstPoint(/** @type {ControlPoint[]} */ points) {
   const [one] = points;
+  if (!one) return "";
   const [x, y, z] = one.xyz_m.map((value) => value.toFixed(3));
   return `${points.length} points; the first, ${one.id}: east ${x}, north ${y}, height ${z} m`;
 }
 
-export function controlPanel({ id, change, point: pointAt, measured }) {
-  const message = make("p", { className: "error", role: "alert" });
-  const status = make("p", { className: "quiet", role: "status" });
-  const preview = make("div", {});
-  const table = make("div", {});
-  const file = make("input", { type: "file", accept: ".csv,.txt", ariaLabel: "Survey file" });
-  /** @type {import("../shared/http_types").ControlState} */
-  let kept = { points: [], frame: "map", picks: {}, along: {}, version: 0 };
-  let mapKey = "";
-  let refused = false;
-  let last = Promise.resolve();
-  let georeferenced = false;
+async function base64Of(/** @type {File} */ file) {
+  const data = new Uint8Array(await file.arrayBuffer());
+  if (data.length > MOST_BYTES)
+    throw new Error("The file has more than 600 kB; a list of points is smaller");
+  return btoa(Array.from(data, (one) => String.fromCharCode(one)).join(""));
+}
 
-  file.addEventListener(
-    "change",
-    () => file.files[0] && attempt(message, () => look(file.files[0])),
-  );
+/**
+ * Fills the panel of control and check points.
+ * @param {HTMLElement} host
+ * @param {SlicesPage} page
+ * @returns {Panel}
+ */
+export function controlPanel(host, { id, change, point: pointAt, measured }) {
+  const state = {
+    kept: /** @type {KeptControl | null} */ (null),
+    report: /** @type {ControlReport | null} */ (null),
+    preview: /** @type {Preview | null} */ (null),
+    mapKey: "",
+    refused: false, // the approval of the map does not count
+    georeferenced: false,
+    searching: "", // id of the point whose surface is searched
+  };
+  /** Changes, one after the other. */
+  const turns = { last: /** @type {Promise<unknown>} */ (Promise.resolve()) };
+  const message = () => within(host, ".problem");
+  const set = (/** @type {Partial<typeof state>} */ changes) => {
+    Object.assign(state, changes);
+    draw();
+  };
+  const button = (
+    /** @type {string} */ text,
+    /** @type {() => unknown} */ action,
+    { label = "", className = "", disabled = false } = {},
+  ) =>
+    html`<button
+      type="button"
+      class=${className}
+      aria-label=${label || nothing}
+      ?disabled=${disabled}
+      @click=${() => attempt(message(), action)}
+    >
+      ${text}
+    </button>`;
 
-  async function look(chosen, columns = [], unit = null) {
-    const data = new Uint8Array(await chosen.arrayBuffer());
-    if (data.length > 600_000)
-      throw new Error("The file has more than 600 kB; a list of points is smaller");
-    let binary = "";
-    for (const one of data) binary += String.fromCharCode(one);
-    const asked = { name: chosen.name, base64: btoa(binary), columns, unit };
-    show(chosen, await previewControl(id, asked), unit);
+  /**
+   * Reads the points of a survey file, to be confirmed.
+   * @param {File} file
+   * @param {Columns} [columns]
+   * @param {Unit | null} [unit]
+   */
+  async function look(file, columns = [], unit = null) {
+    const asked = { name: file.name, base64: await base64Of(file), columns, unit };
+    set({ preview: { file, found: await previewControl(id, asked), unit } });
   }
 
-  /** The first rows of a survey file, its columns and its points, to be confirmed. */
-  function show(chosen, found, unit) {
-    const button = (text, action) =>
-      make("button", { type: "button", onclick: () => attempt(message, action) }, text);
-    const use = (frame) => () =>
+  /** The first rows of a survey file, its columns and its points. */
+  function previewed(/** @type {Preview} */ { file, found, unit }) {
+    const use = (/** @type {ControlState["frame"]} */ frame) => () =>
       keep((now) => ({ points: found.points, frame, picks: {}, along: {}, limits: now.limits }));
-    const again = (columns, other) => {
+    const again = (/** @type {Columns} */ columns, /** @type {Unit | null} */ other) => {
       const open = missing(columns);
-      const table = { ...found.table, columns, question: `${open}.` };
-      if (open) return show(chosen, { ...found, points: [], table }, other ?? unit);
-      return attempt(message, () => look(chosen, columns, other ?? unit));
+      const asked = { ...found.table, columns, question: `${open}.` };
+      if (open)
+        return set({
+          preview: { file, found: { ...found, points: [], table: asked }, unit: other ?? unit },
+        });
+      return attempt(message(), () => look(file, columns, other ?? unit));
     };
-    const swapped = { x: "y", y: "x", "-x": "-y", "-y": "-x" };
-    const swap = () =>
-      look(
-        chosen,
-        found.table.columns.map((one) => swapped[one] ?? one),
-        unit,
-      );
-    preview.replaceChildren(
-      columnTable(found.table, again),
-      make("p", {}, firstPoint(found.points)),
-      ...found.skipped.slice(0, 5).map((text) => make("p", { className: "error" }, text)),
-      make(
-        "div",
-        { className: "buttons" },
-        button("Swap east and north", swap),
-        ...(found.points.length ? [button("Use, in the map's frame", use("map"))] : []),
-        ...(found.points.length && georeferenced
-          ? [button("Use, in the map's CRS", use("crs"))]
-          : []),
-      ),
-    );
+    const columns = found.table.columns.map((one) => SWAPPED[one] ?? one);
+    const some = found.points.length > 0;
+    return html`${columnTable(found.table, again)}
+      <p>${firstPoint(found.points)}</p>
+      ${found.skipped.slice(0, 5).map((text) => html`<p class="error">${text}</p>`)}
+      <div class="buttons">
+        ${button("Swap east and north", () => look(file, columns, unit))}
+        ${some ? button("Use, in the map's frame", use("map")) : nothing}
+        ${some && state.georeferenced ? button("Use, in the map's CRS", use("crs")) : nothing}
+      </div>`;
   }
 
-  /** Applies changes one after the other to the stored state, which others may change too. */
+  /**
+   * Applies changes one after the other to the stored state, which others may change too.
+   * @param {(now: KeptControl) => ControlState} edit
+   */
   function keep(edit) {
-    const done = last.then(() => write(edit));
-    last = done.catch(() => {});
+    const done = turns.last.then(() => write(edit));
+    turns.last = done.catch(() => {});
     return done;
   }
 
+  /**
+   * @param {(now: KeptControl) => ControlState} edit
+   * @returns {Promise<void>}
+   */
   async function write(edit, tries = 5) {
+    const now = state.kept ?? (await readKept());
     try {
-      kept = await keepControl(id, { ...edit(kept), version: kept.version });
+      state.kept = kept(await keepControl(id, { ...edit(now), version: now.version }));
     } catch (error) {
-      if (error.status !== 409) throw error;
-      kept = await readControl(id);
+      if (asError(error).status !== 409) throw error;
+      await readKept();
       if (tries) return write(edit, tries - 1);
       await report();
       throw new Error("Others change these points too: they are read again, do it once more");
     }
-    preview.replaceChildren();
+    state.preview = null;
     return report();
   }
 
-  /** Stores measurements {id: {p, along}}, each joined with what was measured there before. */
-  const put = (measurements) =>
+  const kept = (/** @type {ControlState} */ found) => /** @type {KeptControl} */ (found);
+  const readKept = async () => (state.kept = kept(await readControl(id)));
+
+  /** Stores measurements by point, each joined with what was measured there before. */
+  const put = (/** @type {Record<string, Measurement>} */ measurements) =>
     keep((now) => {
-      const [picks, along] = [{ ...now.picks }, { ...now.along }];
+      /** @type {Record<string, any>} */
+      const picks = { ...now.picks };
+      /** @type {Record<string, any>} */
+      const along = { ...now.along };
       for (const [name, one] of Object.entries(measurements)) {
-        const here = now.found_in?.[name] === mapKey && along[name];
+        const here = now.found_in?.[name] === state.mapKey && along[name];
         const joined = combined(here ? { p: picks[name], along: along[name] } : null, one);
         [picks[name], along[name]] = [joined.p, joined.along];
       }
       return { ...now, picks, along };
     });
 
-  const drop = (name) =>
+  const drop = (/** @type {string} */ name) =>
     keep((now) => ({
       ...now,
       picks: without(now.picks, name),
@@ -136,183 +206,186 @@ export function controlPanel({ id, change, point: pointAt, measured }) {
     }));
 
   async function report() {
-    if (!kept.points.length) {
-      table.replaceChildren(
-        make(
-          "p",
-          { className: "quiet" },
-          "No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma too.",
-        ),
-      );
-      return;
-    }
-    const found = /** @type {any} */ (await readControlReport(id));
-    const residuals = new Map(found.rows.map((one) => [one.id, one]));
-    const earlier = new Set(found.outdated);
-    const head = [
-      ...["Point", "Role", "dE", "dN", "dU", "2D", "3D", "Across"],
-      ...["1 σ stated [cm]", "Residual / σ", ""],
-    ].map((text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text));
-    const all = make(
-      "button",
-      { type: "button", onclick: () => attempt(message, () => everySurface(all)) },
-      "All on the nearest surface",
-    );
-    const file = (ending, text, more) =>
-      make(
-        "a",
-        { className: "button", href: controlFileUrl(id, ending, refused), ...more },
-        refused ? `${text}, as a draft` : text,
-      );
-    table.replaceChildren(
-      make("p", { className: `verdict ${found.verdict.level}` }, found.verdict.text),
-      earlier.size
-        ? make(
-            "p",
-            {},
-            `Measured in an earlier map or version only, not counted: ${named(found.outdated)}. `,
-            "Measure them again.",
-          )
-        : "",
-      limitsForm(kept.limits, found.limits, setLimits),
-      found.hint ? make("p", { className: "bad" }, `✕ ${found.hint}`) : "",
-      ...found.figures.map(figures),
-      make(
-        "div",
-        { className: "scroll" },
-        make(
-          "table",
-          {},
-          make("thead", {}, make("tr", {}, ...head)),
-          make(
-            "tbody",
-            {},
-            ...kept.points
-              .slice(0, MAX_ROWS)
-              .map((one) => row(one, residuals.get(one.id), earlier.has(one.id))),
-          ),
-        ),
-      ),
-      make(
-        "p",
-        { className: "quiet" },
-        "Map minus survey [cm]. – = not measured, counts nowhere: a point on a surface is ",
-        "measured across it only (Across); a point picked in a slice, in the plane of the slice. ",
-        "Pick it in a second slice for the third component.",
-      ),
-      kept.points.length > MAX_ROWS
-        ? make(
-            "p",
-            { className: "quiet" },
-            `The first ${MAX_ROWS} of ${kept.points.length} points; the files have all.`,
-          )
-        : "",
-      make(
-        "div",
-        { className: "buttons" },
-        all,
-        checked(file("csv", "Residuals as CSV", { download: "" }), { message, status }),
-        file("html", "Sheet to print and sign", { target: "_blank", rel: "noopener" }),
-      ),
-    );
+    const points = state.kept?.points.length;
+    set({ report: points ? await readControlReport(id) : null });
   }
 
   /** null = the usual limits. */
-  const setLimits = (limits) =>
-    attempt(message, () => keep((now) => (limits ? { ...now, limits } : without(now, "limits"))));
+  const setLimits = (/** @type {LimitsSpec | null} */ limits) =>
+    attempt(message(), () => keep((now) => (limits ? { ...now, limits } : without(now, "limits"))));
 
-  async function everySurface(button) {
-    button.disabled = true;
+  async function everySurface() {
+    /** @type {Record<string, Measurement>} */
     const places = {};
-    const without = [];
-    for (const one of kept.points) {
-      button.textContent = `${one.id}…`;
-      const { surface, normal } = await readSurface(id, one.id);
-      if (surface) places[one.id] = { p: surface, along: [normal] };
-      else without.push(one.id);
+    const none = [];
+    try {
+      for (const one of state.kept?.points ?? []) {
+        set({ searching: one.id });
+        const { surface, normal } = await readSurface(id, one.id);
+        if (surface && normal) places[one.id] = { p: surface, along: [normal] };
+        else none.push(one.id);
+      }
+    } finally {
+      set({ searching: "" });
     }
     await put(places);
-    if (without.length) message.textContent = `No flat surface within 30 cm of ${named(without)}`;
+    if (none.length) say(message(), `No flat surface within 30 cm of ${named(none)}`);
   }
 
+  /**
+   * @param {ControlSpec} one
+   * @param {Residual | undefined} residual
+   * @param {boolean} earlier measured in an earlier map only
+   */
   function row(one, residual, earlier) {
-    const role = make(
-      "select",
-      { ariaLabel: `Role of ${one.id}` },
-      make("option", { value: "check" }, "check"),
-      make("option", { value: "control" }, "control"),
-    );
-    role.value = one.role;
-    role.addEventListener("change", () =>
-      attempt(message, () =>
-        keep((now) => ({
-          ...now,
-          points: now.points.map((p) => (p.id === one.id ? { ...p, role: role.value } : p)),
-        })),
-      ),
-    );
-    const button = (text, action, label) =>
-      make(
-        "button",
-        {
-          type: "button",
-          className: "go",
-          ariaLabel: label,
-          onclick: () => attempt(message, action),
-        },
-        text,
-      );
-    return make(
-      "tr",
-      {},
-      make("th", { scope: "row" }, one.id),
-      make("td", {}, role),
-      ...residualCells(residual, earlier),
-      make(
-        "td",
-        {},
-        make(
-          "span",
-          { className: "buttons" },
-          button("Go", () => go(one), `Go to ${one.id}`),
-          button("Here", () => pick(one), `${one.id} is the picked point`),
-          button("Surface", () => surface(one), `${one.id} on the nearest surface`),
-          residual || earlier ? button("Clear", () => drop(one.id), `Clear ${one.id}`) : "",
-        ),
-      ),
-    );
+    const setRole = (/** @type {Event} */ event) => {
+      const role = /** @type {ControlSpec["role"]} */ (targetOf(event).value);
+      const points = (/** @type {KeptControl} */ now) =>
+        now.points.map((p) => (p.id === one.id ? { ...p, role } : p));
+      attempt(message(), () => keep((now) => ({ ...now, points: points(now) })));
+    };
+    const act = (
+      /** @type {string} */ text,
+      /** @type {string} */ label,
+      /** @type {() => unknown} */ action,
+    ) => button(text, action, { label, className: "go" });
+    return html`<tr>
+      <th scope="row">${one.id}</th>
+      <td>
+        <select aria-label="Role of ${one.id}" @change=${setRole}>
+          ${["check", "control"].map(
+            (role) => html`<option .selected=${role === one.role}>${role}</option>`,
+          )}
+        </select>
+      </td>
+      ${residualCells(residual, earlier)}
+      <td>
+        <span class="buttons"
+          >${act("Go", `Go to ${one.id}`, () => go(one))}${act(
+            "Here",
+            `${one.id} is the picked point`,
+            () => pick(one),
+          )}${act("Surface", `${one.id} on the nearest surface`, () => surface(one))}${
+            residual || earlier ? act("Clear", `Clear ${one.id}`, () => drop(one.id)) : nothing
+          }</span
+        >
+      </td>
+    </tr>`;
   }
 
-  async function go(one) {
+  async function go(/** @type {ControlSpec} */ one) {
     const { p_map } = await readSurface(id, one.id);
     pointAt(p_map.slice(0, 2));
     change({ kind: "horizontal", z: p_map[2], u: p_map[0], v: p_map[1], m: 0.005 });
   }
 
-  async function pick(one) {
+  async function pick(/** @type {ControlSpec} */ one) {
     const picked = measured();
     if (!picked) throw new Error(`Pick ${one.id} in the slice first`);
     await put({ [one.id]: { p: picked.p_map, along: picked.along } });
   }
 
-  async function surface(one) {
+  async function surface(/** @type {ControlSpec} */ one) {
     const { surface: at, normal } = await readSurface(id, one.id);
-    if (!at)
+    if (!at || !normal)
       throw new Error(`No flat surface within 30 cm of ${one.id}: pick it in the slice, then Here`);
     await put({ [one.id]: { p: at, along: [normal] } });
   }
 
-  attempt(message, async () => {
-    kept = await readControl(id);
+  function draw() {
+    const { kept: now, report: found, preview } = state;
+    const pickFile = (/** @type {Event} */ event) => {
+      const [file] = targetOf(event).files ?? [];
+      if (file) attempt(message(), () => look(file));
+    };
+    const none = html`<p class="quiet">
+      No points yet. ID,X,Y,Z[,Radius]; with ; and decimal comma too.
+    </p>`;
+    render(
+      html`<input type="file" accept=".csv,.txt" aria-label="Survey file" @change=${pickFile} />
+        <div>${preview ? previewed(preview) : nothing}</div>
+        <p class="quiet status" role="status"></p>
+        <p class="error problem" role="alert"></p>
+        <div>${now && found ? reported(now, found) : now ? none : nothing}</div>`,
+      host,
+    );
+  }
+
+  const places = () => ({ message: message(), status: within(host, ".status") });
+
+  /**
+   * The residuals, with the verdict on them.
+   * @param {KeptControl} now
+   * @param {ControlReport} found
+   */
+  function reported({ points, limits }, found) {
+    const { searching, refused } = state;
+    const residuals = new Map(found.rows.map((one) => [one.id, one]));
+    const earlier = new Set(found.outdated);
+    const file = (/** @type {string} */ ending) => controlFileUrl(id, ending, refused);
+    const draft = refused ? ", as a draft" : "";
+    return html`<p class="verdict ${found.verdict.level}">${found.verdict.text}</p>
+      ${
+        earlier.size
+          ? html`<p>
+              Measured in an earlier map or version only, not counted: ${named(found.outdated)}.
+              Measure them again.
+            </p>`
+          : nothing
+      }
+      ${limitsForm(limits, found.limits, setLimits)}
+      ${found.hint ? html`<p class="bad">✕ ${found.hint}</p>` : nothing}
+      ${found.figures.map(figures)}
+      <div class="scroll">
+        <table>
+          <thead>
+            <tr>
+              ${HEADS.map(
+                (text, k) => html`<th scope="col" class=${k > 1 ? "number" : ""}>${text}</th>`,
+              )}
+            </tr>
+          </thead>
+          <tbody>
+            ${repeat(
+              points.slice(0, MAX_ROWS),
+              (one) => one.id,
+              (one) => row(one, residuals.get(one.id), earlier.has(one.id)),
+            )}
+          </tbody>
+        </table>
+      </div>
+      <p class="quiet">
+        Map minus survey [cm]. – = not measured, counts nowhere: a point on a surface is measured
+        across it only (Across); a point picked in a slice, in the plane of the slice. Pick it in a
+        second slice for the third component.
+      </p>
+      ${
+        points.length > MAX_ROWS
+          ? html`<p class="quiet">
+              The first ${MAX_ROWS} of ${points.length} points; the files have all.
+            </p>`
+          : nothing
+      }
+      <div class="buttons">
+        ${button(searching ? `${searching}…` : "All on the nearest surface", everySurface, {
+          disabled: searching !== "",
+        })}
+        <a class="button" download href=${file("csv")} @click=${askFirst(places)}
+          >Residuals as CSV${draft}</a
+        >
+        <a class="button" target="_blank" rel="noopener" href=${file("html")}
+          >Sheet to print and sign${draft}</a
+        >
+      </div>`;
+  }
+
+  draw();
+  attempt(message(), async () => {
+    await readKept();
     await report();
   });
   return {
-    element: make("div", {}, file, preview, status, message, table),
-    facts: (facts) => {
-      [georeferenced, mapKey] = [Boolean(facts.crs), facts.key];
-      if (refused === isRefused(facts.approval)) return;
-      refused = !refused;
-      attempt(message, report);
-    },
+    facts: (/** @type {SliceFacts} */ { crs, key, approval }) =>
+      set({ georeferenced: Boolean(crs), mapKey: key, refused: isRefused(approval) }),
   };
 }

@@ -1,226 +1,219 @@
 // Where to cut and what to show: the fields beside the slice. No network.
 
-import { fill, make } from "../shared/dom.js";
+import { html, nothing, targetOf } from "../shared/dom.js";
+import { choice } from "./columns.js";
 import { anglesOf, COLORS, normalFrom, SURFACES } from "./state.js";
 
-/** @type {Array<[string, string, string]>} */
+/**
+ * @import {Content} from "../shared/dom.js"
+ * @import {SliceFacts} from "../shared/http_types"
+ * @import {Color, Kind, SliceState, Surface} from "./state.js"
+ * @typedef {object} Act
+ * @property {(next: Partial<SliceState>, how?: {keep?: boolean}) => void} change
+ * @property {(kind: Kind) => void} toKind
+ */
+
+/** @type {Array<[Kind, string, string]>} */
 const KINDS = [
   ["horizontal", "Horizontal", "H"],
   ["vertical", "Vertical", "V"],
   ["free", "Free", "F"],
 ];
+const ALL_COLORS = /** @type {Array<[Color, string]>} */ (Object.entries(COLORS));
+const ALL_SURFACES = /** @type {Array<[Surface, string]>} */ (Object.entries(SURFACES));
 
-const field = (text, control) => make("label", {}, make("span", {}, text), control);
+/**
+ * @param {string} text
+ * @param {Content} control
+ */
+const field = (text, control) => html`<label><span>${text}</span>${control}</label>`;
 
-function number(text, value, step, onValue) {
-  const input = make("input", {
-    type: "number",
-    step: String(step),
-    value: String(Number(value.toFixed(4))),
-    inputMode: "decimal",
-  });
-  input.addEventListener(
-    "change",
-    () => Number.isFinite(input.valueAsNumber) && onValue(input.valueAsNumber),
-  );
-  return field(text, input);
-}
-
-function select(options, value, onValue) {
-  const element = make(
-    "select",
-    {},
-    ...options.map(([key, text]) => make("option", { value: key }, text)),
-  );
-  element.value = value;
-  element.addEventListener("change", () => onValue(element.value));
-  return element;
-}
-
-/** Fills the panel; `show(state)` and `facts(facts)` update it. */
-export function controls(root, { change, toKind }) {
-  const kinds = make("div", { className: "segmented", role: "group", ariaLabel: "Kind of slice" });
-  const where = make("div", { className: "where" });
-  const how = make("div", { className: "how" });
-  const besideMap = make("select", { ariaLabel: "Map beside" });
-  const besideColor = make("select", { ariaLabel: "Color beside" });
-  let facts = null;
-  root.append(kinds, where, how);
-  besideMap.addEventListener("change", () => change({ beside: besideMap.value }, { keep: true }));
-  besideColor.addEventListener("change", () =>
-    change({ besideColor: besideColor.value }, { keep: true }),
-  );
-
-  function places(state) {
-    if (state.kind === "horizontal") {
-      const [low, high] = facts ? facts.bounds_m.map((p) => p[2]) : [-5, 5];
-      const slider = make("input", {
-        type: "range",
-        min: low,
-        max: high,
-        step: 0.01,
-        value: state.z,
-        ariaLabel: "Height",
-      });
-      slider.addEventListener("input", () => change({ z: Number(slider.value) }));
-      return [number("Height z [m]", state.z, 0.01, (z) => change({ z })), slider];
-    }
-    if (state.kind === "vertical") {
-      const end = (key, axis) =>
-        number(`${key.toUpperCase()} ${"xy"[axis]} [m]`, state[key][axis], 0.01, (x) =>
-          change({ [key]: state[key].map((old, k) => (k === axis ? x : old)) }),
-        );
-      return [
-        make("div", { className: "pair" }, end("a", 0), end("a", 1), end("b", 0), end("b", 1)),
-      ];
-    }
-    const angles = anglesOf(state.n);
-    const turn = (key) => (degrees) => change({ n: normalFrom({ ...angles, [key]: degrees }) });
-    const through = (axis) =>
-      number(`${"xyz"[axis]} [m]`, state.o[axis], 0.01, (x) =>
-        change({ o: state.o.map((old, k) => (k === axis ? x : old)) }),
-      );
-    return [
-      make(
-        "div",
-        { className: "pair" },
-        number("Azimuth of the normal [°]", angles.azimuth, 1, turn("azimuth")),
-        number("Tilt from level [°]", angles.tilt, 1, turn("tilt")),
-        through(0),
-        through(1),
-        through(2),
-      ),
-    ];
-  }
-
-  function kindButton([kind, text, key], state) {
-    return make(
-      "button",
-      {
-        type: "button",
-        ariaPressed: String(state.kind === kind),
-        title: `${text}  ${key}`,
-        onclick: () => toKind(kind),
-      },
-      text,
-    );
-  }
-
-  const thick = (state, text, t) =>
-    make(
-      "button",
-      {
-        type: "button",
-        ariaPressed: String(state.t === t),
-        onclick: () => change({ t }, { keep: true }),
-      },
-      text,
-    );
-
-  const points = (state) =>
-    make(
-      "div",
-      { className: "segmented", role: "group", ariaLabel: "Where points are drawn" },
-      ...Object.entries(SURFACES).map(([surface, text]) =>
-        make(
-          "button",
-          {
-            type: "button",
-            ariaPressed: String(state.surface === surface),
-            title: `Points ${text}  R`,
-            onclick: () => change({ surface }, { keep: true }),
-          },
-          `Points ${text}`,
-        ),
-      ),
-    );
-
-  function looks(state) {
-    const colors = Object.entries(COLORS).filter(
-      ([key]) => key !== "normalized" || !facts || facts.fields.includes("intensity_normalized"),
-    );
-    const able = colors.filter(([key]) => key !== "distance" || state.ref);
-    const references = [
-      ["", "None"],
-      ...(facts?.references ?? []).map((one) => [one.id, one.name]),
-    ];
-    return [
-      make(
-        "div",
-        { className: "pair" },
-        number(
-          "Thickness [cm]",
-          state.t * 100,
-          1,
-          (cm) => cm > 0 && change({ t: cm / 100 }, { keep: true }),
-        ),
-        number("Step [m]", state.step, 0.01, (m) => m > 0 && change({ step: m }, { keep: true })),
-      ),
-      make(
-        "div",
-        { className: "segmented", role: "group", ariaLabel: "Usual thickness" },
-        thick(state, "Thin, 2 cm", 0.02),
-        thick(state, "Thick, 10 cm", 0.1),
-      ),
-      facts?.surface === "fitted" ? points(state) : null,
-      field(
-        "Color by",
-        select(able, state.color, (color) => change({ color, lo: null, hi: null }, { keep: true })),
-      ),
-      references.length > 1
-        ? field(
-            "Reference",
-            select(references, state.ref, (ref) =>
-              change(
-                {
-                  ref,
-                  color: ref ? "distance" : state.color === "distance" ? "height" : state.color,
-                  lo: null,
-                  hi: null,
-                },
-                { keep: true },
-              ),
-            ),
-          )
-        : null,
-    ];
-  }
-
-  function options(element, pairs, value) {
-    fill(element, ...pairs.map(([key, text]) => make("option", { value: key }, text)));
-    element.value = value;
-  }
-
-  let last = null;
-
-  function show(state) {
-    last = state;
-    fill(kinds, ...KINDS.map(() => null));
-    kinds.replaceChildren(...KINDS.map((kind) => kindButton(kind, state)));
-    if (!where.contains(document.activeElement) || where.dataset.kind !== state.kind)
-      where.replaceChildren(...places(state));
-    where.dataset.kind = state.kind;
-    if (!how.contains(document.activeElement) || !document.activeElement.matches("input, select"))
-      how.replaceChildren(...looks(state).filter(Boolean));
-    const sources = [["", "This map"], ...(facts?.sources ?? []).map((one) => [one.id, one.label])];
-    options(besideMap, sources, state.beside);
-    const colors = Object.entries(COLORS).filter(([key]) => key !== "distance" || state.ref);
-    options(
-      besideColor,
-      [
-        ["", state.beside ? "Same color" : "One slice"],
-        ...colors.map(([key, text]) => [key, `Beside: ${text.toLowerCase()}`]),
-      ],
-      state.besideColor,
-    );
-  }
-
-  return {
-    show,
-    facts(fresh) {
-      facts = fresh;
-      if (last) show(last);
-    },
-    beside: [besideMap, besideColor],
+/**
+ * A field of a number; `onValue` is called when a person has changed it.
+ * @param {string} text
+ * @param {number | undefined} value
+ * @param {number} step
+ * @param {(value: number) => unknown} onValue
+ */
+function number(text, value = 0, step, onValue) {
+  const change = (/** @type {Event} */ event) => {
+    const given = targetOf(event).valueAsNumber;
+    if (Number.isFinite(given)) onValue(given);
   };
+  return field(
+    text,
+    html`<input
+      type="number"
+      step=${step}
+      inputmode="decimal"
+      .value=${String(Number(value.toFixed(4)))}
+      @change=${change}
+    />`,
+  );
+}
+
+/**
+ * Buttons of which one is pressed.
+ * @template T
+ * @param {string} label
+ * @param {Array<{value: T, text: string, title?: string}>} options
+ * @param {T} chosen
+ * @param {(value: T) => void} choose
+ */
+const segmented = (label, options, chosen, choose) =>
+  html`<div class="segmented" role="group" aria-label=${label}>
+    ${options.map(
+      ({ value, text, title }) =>
+        html`<button
+          type="button"
+          aria-pressed=${value === chosen}
+          title=${title ?? nothing}
+          @click=${() => choose(value)}
+        >
+          ${text}
+        </button>`,
+    )}
+  </div>`;
+
+/**
+ * The fields beside the slice.
+ * @param {SliceState} state
+ * @param {SliceFacts | null} facts
+ * @param {Act} act
+ */
+export const controls = (state, facts, act) =>
+  html`${segmented(
+      "Kind of slice",
+      KINDS.map(([value, text, key]) => ({ value, text, title: `${text}  ${key}` })),
+      state.kind,
+      act.toKind,
+    )}
+    <div class="where">${PLACES[state.kind](state, facts, act)}</div>
+    <div class="how">${looks(state, facts, act)}</div>`;
+
+/**
+ * The fields of the plane, by kind.
+ * @type {Record<Kind, (state: SliceState, facts: SliceFacts | null, act: Act) => Content>}
+ */
+const PLACES = {
+  horizontal({ z }, facts, { change }) {
+    const [low, high] = facts ? facts.bounds_m.map((p) => p[2]) : [-5, 5];
+    const slide = (/** @type {Event} */ event) => change({ z: Number(targetOf(event).value) });
+    return html`${number("Height z [m]", z, 0.01, (value) => change({ z: value }))}
+      <input
+        type="range"
+        min=${low ?? nothing}
+        max=${high ?? nothing}
+        step="0.01"
+        aria-label="Height"
+        .value=${String(z)}
+        @input=${slide}
+      />`;
+  },
+  vertical(state, _, { change }) {
+    const end = (/** @type {"a" | "b"} */ key, /** @type {number} */ axis) =>
+      number(`${key.toUpperCase()} ${"xy"[axis]} [m]`, state[key][axis], 0.01, (x) =>
+        change({ [key]: state[key].map((old, k) => (k === axis ? x : old)) }),
+      );
+    return html`<div class="pair">${end("a", 0)}${end("a", 1)}${end("b", 0)}${end("b", 1)}</div>`;
+  },
+  free({ n, o }, _, { change }) {
+    const angles = anglesOf(n);
+    const turn = (/** @type {"azimuth" | "tilt"} */ key) => (/** @type {number} */ degrees) =>
+      change({ n: normalFrom({ ...angles, [key]: degrees }) });
+    const through = (/** @type {number} */ axis) =>
+      number(`${"xyz"[axis]} [m]`, o[axis], 0.01, (x) =>
+        change({ o: o.map((old, k) => (k === axis ? x : old)) }),
+      );
+    return html`<div class="pair">
+      ${number("Azimuth of the normal [°]", angles.azimuth, 1, turn("azimuth"))}
+      ${number("Tilt from level [°]", angles.tilt, 1, turn("tilt"))}
+      ${through(0)}${through(1)}${through(2)}
+    </div>`;
+  },
+};
+
+/**
+ * @param {SliceState} state
+ * @param {SliceFacts | null} facts
+ * @param {Act} act
+ */
+function looks(state, facts, { change }) {
+  const keep = { keep: true };
+  const setColor = (/** @type {string} */ color) =>
+    change({ color: /** @type {Color} */ (color), lo: null, hi: null }, keep);
+  const colors = ALL_COLORS.filter(
+    ([key]) =>
+      (key !== "normalized" || !facts || facts.fields.includes("intensity_normalized")) &&
+      (key !== "distance" || state.ref),
+  );
+  const setThickness = (/** @type {number} */ cm) => cm > 0 && change({ t: cm / 100 }, keep);
+  const setStep = (/** @type {number} */ step) => step > 0 && change({ step }, keep);
+  return html`<div class="pair">
+      ${number("Thickness [cm]", state.t * 100, 1, setThickness)}
+      ${number("Step [m]", state.step, 0.01, setStep)}
+    </div>
+    ${segmented(
+      "Usual thickness",
+      [
+        { value: 0.02, text: "Thin, 2 cm" },
+        { value: 0.1, text: "Thick, 10 cm" },
+      ],
+      state.t,
+      (t) => change({ t }, keep),
+    )}
+    ${
+      facts?.surface === "fitted"
+        ? segmented(
+            "Where points are drawn",
+            ALL_SURFACES.map(([value, text]) => ({
+              value,
+              text: `Points ${text}`,
+              title: `Points ${text}  R`,
+            })),
+            state.surface,
+            (surface) => change({ surface }, keep),
+          )
+        : nothing
+    }
+    ${field("Color by", choice("Color by", colors, state.color, setColor))}
+    ${facts?.references.length ? referenceField(state, facts, change) : nothing}`;
+}
+
+/**
+ * @param {SliceState} state
+ * @param {SliceFacts} facts
+ * @param {Act["change"]} change
+ */
+function referenceField({ ref: chosen, color: before }, { references }, change) {
+  const set = (/** @type {string} */ ref) => {
+    const color = ref ? "distance" : before === "distance" ? "height" : before;
+    change({ ref, color, lo: null, hi: null }, { keep: true });
+  };
+  /** @type {Array<[string, string]>} */
+  const options = [["", "None"]];
+  for (const one of references) options.push([one.id, one.name]);
+  return field("Reference", choice("Reference", options, chosen, set));
+}
+
+/**
+ * The choices of map and color of the second slice.
+ * @param {SliceState} state
+ * @param {SliceFacts | null} facts
+ * @param {Act} act
+ */
+export function besideFields(state, facts, { change }) {
+  /** @type {Array<[string, string]>} */
+  const sources = [["", "This map"]];
+  for (const one of facts?.sources ?? []) sources.push([one.id, one.label]);
+  /** @type {Array<[string, string]>} */
+  const colors = [["", state.beside ? "Same color" : "One slice"]];
+  for (const [key, text] of ALL_COLORS)
+    if (key !== "distance" || state.ref) colors.push([key, `Beside: ${text.toLowerCase()}`]);
+  return [
+    choice("Map beside", sources, state.beside, (beside) => change({ beside }, { keep: true })),
+    choice("Color beside", colors, state.besideColor, (color) =>
+      change({ besideColor: /** @type {Color | ""} */ (color) }, { keep: true }),
+    ),
+  ];
 }

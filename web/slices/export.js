@@ -2,9 +2,16 @@
 
 import { sliceFileUrl } from "../shared/api.js";
 import { approvalLines } from "../shared/approval_lines.js";
-import { fill, make } from "../shared/dom.js";
-import { checked } from "../shared/download.js";
+import { html, messagePlace, nothing, render, targetOf, within } from "../shared/dom.js";
+import { askFirst } from "../shared/download.js";
+import { choice } from "./columns.js";
 
+/**
+ * @import {SliceFacts} from "../shared/http_types"
+ * @import {SlicesPage} from "./findings.js"
+ */
+
+/** @type {Array<[string, string, string]>} */
 const KINDS = [
   ["png", "PNG", "sheet, 300 dpi"],
   ["svg", "SVG", "sheet"],
@@ -14,118 +21,140 @@ const KINDS = [
   ["laz", "LAZ", "points, all fields"],
   ["csv", "CSV", "points"],
 ];
-const SCALES = [10, 20, 25, 50, 100, 200, 250, 500, 1000];
+/** @type {Array<[string, string]>} */
+const PARTS = [
+  ["all", "Whole slice"],
+  ["seen", "What is seen"],
+];
+/** @type {Array<[string, string]>} */
+const SIZES = [
+  ["a4", "A4"],
+  ["a3", "A3"],
+  ["a2", "A2"],
+  ["a1", "A1"],
+];
+/** @type {Array<[string, string]>} */
+const SCALES = [
+  ["0", "Largest scale that fits"],
+  .../** @type {Array<[string, string]>} */ (
+    [10, 20, 25, 50, 100, 200, 250, 500, 1000].map((one) => [String(one), `1 : ${one}`])
+  ),
+];
 
-export function exportPanel({ id, change, state, ask }) {
-  const part = make(
-    "select",
-    { ariaLabel: "What is exported" },
-    make("option", { value: "all" }, "Whole slice"),
-    make("option", { value: "seen" }, "What is seen"),
-  );
-  const size = make(
-    "select",
-    { ariaLabel: "Paper" },
-    ...["a4", "a3", "a2", "a1"].map((one) => make("option", { value: one }, one.toUpperCase())),
-  );
-  const scale = make(
-    "select",
-    { ariaLabel: "Scale" },
-    make("option", { value: "0" }, "Largest scale that fits"),
-    ...SCALES.map((one) => make("option", { value: String(one) }, `1 : ${one}`)),
-  );
-  const flat = make("input", { type: "checkbox", id: "flat" });
-  const draft = make("input", { type: "checkbox", id: "draft" });
-  const approval = make("div", {});
-  const message = make("p", { className: "error", role: "alert" });
-  const status = make("p", { className: "quiet", role: "status" });
-  const count = make("input", {
-    type: "number",
-    min: 1,
-    max: 200,
-    value: "1",
-    ariaLabel: "Number of slices",
-  });
-  const spacing = make("input", {
-    type: "number",
-    step: "0.05",
-    value: "0.5",
-    ariaLabel: "Spacing of slices",
-  });
-  const links = KINDS.map(([ending, name]) => [
-    ending,
-    checked(make("a", { download: "" }, name), { message, status }),
-  ]);
+/**
+ * Fills the panel of exported files.
+ * @param {HTMLElement} host
+ * @param {SlicesPage} page
+ */
+export function exportPanel(host, { id, change, state, ask }) {
+  const chosen = { part: "all", size: "a4", scale: "0", flat: false, draft: false };
+  /** @type {{facts: SliceFacts | null}} */
+  const map = { facts: null };
+  const choose = (/** @type {Partial<typeof chosen>} */ changes) => {
+    Object.assign(chosen, changes);
+    draw();
+  };
 
   function wanted() {
     const { window, ...look } = ask();
-    for (const key of ["width", "height", "ground"]) delete look[key]; // of the screen
+    const ofTheScreen = { width: undefined, height: undefined, ground: undefined };
+    const { count, spacing } = state();
+    const { part, size, scale, flat, draft } = chosen;
     return {
       ...look,
-      window: part.value === "seen" ? (window ?? null) : null,
-      count: state().count,
-      spacing_m: state().spacing,
-      size: size.value,
-      scale: Number(scale.value),
-      flat: flat.checked,
-      draft: draft.checked,
+      ...ofTheScreen,
+      window: part === "seen" ? (window ?? null) : null,
+      count,
+      spacing_m: spacing,
+      size,
+      scale: Number(scale),
+      flat,
+      draft,
     };
   }
 
-  /** The links stay: one that is replaced under the finger is not followed. */
+  const setCount = (/** @type {Event} */ event) => {
+    const count = targetOf(event).valueAsNumber;
+    if (count >= 1) change({ count: Math.round(count) }, { keep: true });
+  };
+  const setSpacing = (/** @type {Event} */ event) => {
+    const spacing = targetOf(event).valueAsNumber;
+    if (Number.isFinite(spacing)) change({ spacing }, { keep: true });
+  };
+  const places = () => ({ message: within(host, ".error"), status: within(host, ".status") });
+  const check = (/** @type {"flat" | "draft"} */ name, /** @type {string} */ text) => {
+    const set = (/** @type {Event} */ event) => choose({ [name]: targetOf(event).checked });
+    return html`<label class="check"
+      ><input type="checkbox" id=${name} .checked=${chosen[name]} @change=${set} /><span
+        >${text}</span
+      ></label
+    >`;
+  };
+
   function draw() {
-    for (const [ending, link] of links) link.href = sliceFileUrl(id, ending, wanted());
+    const { part, size, scale } = chosen;
+    const file = wanted();
+    render(
+      html`<div class="row">
+          <label
+            ><span>Part</span>${choice("What is exported", PARTS, part, (one) =>
+              choose({ part: one }),
+            )}</label
+          >
+          <label
+            ><span>Paper</span>${choice("Paper", SIZES, size, (one) =>
+              choose({ size: one }),
+            )}</label
+          >
+          <label
+            ><span>Scale</span>${choice("Scale", SCALES, scale, (one) =>
+              choose({ scale: one }),
+            )}</label
+          >
+          <label
+            ><span>Slices</span
+            ><input
+              type="number"
+              min="1"
+              max="200"
+              aria-label="Number of slices"
+              .value=${String(state().count)}
+              @change=${setCount}
+          /></label>
+          <label
+            ><span>Spacing [m]</span
+            ><input
+              type="number"
+              step="0.05"
+              aria-label="Spacing of slices"
+              .value=${String(state().spacing)}
+              @change=${setSpacing}
+          /></label>
+        </div>
+        ${check("flat", "DXF laid flat: u, v instead of coordinates")}
+        <div>${map.facts ? approvalLines(map.facts.approval) : nothing}</div>
+        ${check("draft", "As a draft, without the approval of the map")}
+        <ul class="files">
+          ${KINDS.map(
+            ([ending, name, about]) =>
+              html`<li>
+                <a download href=${sliceFileUrl(id, ending, file)} @click=${askFirst(places)}
+                  >${name}</a
+                ><small>${about}</small>
+              </li>`,
+          )}
+        </ul>
+        <p class="quiet status" role="status"></p>
+        ${messagePlace()}`,
+      host,
+    );
   }
 
-  for (const control of [part, size, scale, flat, draft]) control.addEventListener("change", draw);
-  count.addEventListener(
-    "change",
-    () =>
-      count.valueAsNumber >= 1 &&
-      change({ count: Math.round(count.valueAsNumber) }, { keep: true }),
-  );
-  spacing.addEventListener(
-    "change",
-    () =>
-      Number.isFinite(spacing.valueAsNumber) &&
-      change({ spacing: spacing.valueAsNumber }, { keep: true }),
-  );
-  const field = (text, control) => make("label", {}, make("span", {}, text), control);
   return {
-    element: make(
-      "div",
-      {},
-      make(
-        "div",
-        { className: "row" },
-        field("Part", part),
-        field("Paper", size),
-        field("Scale", scale),
-        field("Slices", count),
-        field("Spacing [m]", spacing),
-      ),
-      make(
-        "label",
-        { className: "check" },
-        flat,
-        make("span", {}, "DXF laid flat: u, v instead of coordinates"),
-      ),
-      approval,
-      make(
-        "label",
-        { className: "check" },
-        draft,
-        make("span", {}, "As a draft, without the approval of the map"),
-      ),
-      make(
-        "ul",
-        { className: "files" },
-        ...links.map(([, link], k) => make("li", {}, link, make("small", {}, KINDS[k][2]))),
-      ),
-      status,
-      message,
-    ),
     show: draw,
-    facts: (found) => fill(approval, ...approvalLines(found.approval)),
+    facts: (/** @type {SliceFacts} */ facts) => {
+      map.facts = facts;
+      draw();
+    },
   };
 }

@@ -1,25 +1,56 @@
 // Findings in slices: double walls, distances to a reference, control points; and exported files.
 
-import { make } from "../shared/dom.js";
 import { controlPanel } from "./control.js";
 import { doublesPanel } from "./doubles.js";
 import { exportPanel } from "./export.js";
 import { referencePanel } from "./reference.js";
+import { html, render } from "../shared/dom.js";
 
-/** Fills the section; returns callbacks for changes of the slice, the map and the picked point. */
+/**
+ * @import {PickView, SliceFacts, SliceImageRequest} from "../shared/http_types"
+ * @import {SliceState} from "./state.js"
+ * @typedef {object} SlicesPage what the panels need of the page
+ * @property {string} id of the project
+ * @property {(next: Partial<SliceState>, how?: {keep?: boolean}) => void} change
+ * @property {() => SliceState} state
+ * @property {() => SliceImageRequest} ask the request of the slice on the screen
+ * @property {(place: number[] | null) => void} point marks a place on the map from above
+ * @property {() => Promise<void>} reload
+ * @property {() => PickView | null} measured the picked point
+ * @typedef {object} Panel
+ * @property {() => void} [show] the slice has changed
+ * @property {(facts: SliceFacts) => void} [facts] what is known of the map has changed
+ */
+
+/** @type {Array<[string, (host: HTMLElement, page: SlicesPage) => Panel]>} */
+const PANELS = [
+  ["Double walls", doublesPanel],
+  ["Compare with a reference", referencePanel],
+  ["Control and check points", controlPanel],
+  ["Export", exportPanel],
+];
+
+/**
+ * Fills the section; returns callbacks for changes of the slice and of the map.
+ * @param {HTMLElement} root
+ * @param {SlicesPage} page
+ * @returns {Required<Panel>}
+ */
 export function findings(root, page) {
-  /** @type {Array<[string, any]>} */
-  const panels = [
-    ["Double walls", doublesPanel(page)],
-    ["Compare with a reference", referencePanel(page)],
-    ["Control and check points", controlPanel(page)],
-    ["Export", exportPanel(page)],
-  ];
-  root.replaceChildren(
-    ...panels.map(([text, { element }]) =>
-      make("details", { className: "panel" }, make("summary", {}, text), element),
+  render(
+    PANELS.map(
+      ([text]) =>
+        html`<details class="panel">
+          <summary>${text}</summary>
+          <div></div>
+        </details>`,
     ),
+    root,
   );
-  const forward = (what) => (value) => panels.forEach(([, panel]) => panel[what]?.(value));
-  return { show: forward("show"), facts: forward("facts"), picked: forward("picked") };
+  const hosts = [...root.querySelectorAll("div")];
+  const panels = PANELS.map(([, fill], k) => fill(/** @type {HTMLElement} */ (hosts[k]), page));
+  return {
+    show: () => panels.forEach((panel) => panel.show?.()),
+    facts: (facts) => panels.forEach((panel) => panel.facts?.(facts)),
+  };
 }

@@ -1,7 +1,8 @@
 // The keys of the page of slices.
 
-import { make } from "../shared/dom.js";
+import { html, render } from "../shared/dom.js";
 
+/** @type {Array<[string, string]>} */
 const KEYS = [
   ["[ or Page down", "One step back"],
   ["] or Page up", "One step forward"],
@@ -16,20 +17,25 @@ const KEYS = [
   ["Esc", "End measuring"],
 ];
 
-export function help(dialog) {
-  dialog.replaceChildren(
-    make("h2", { id: "help-title" }, "Keys"),
-    make(
-      "dl",
-      { className: "keys" },
-      ...KEYS.map(([key, text]) => make("div", {}, make("dt", {}, key), make("dd", {}, text))),
-    ),
-    make(
-      "p",
-      {},
-      "On the map from above: drag for a vertical slice, drag its line or its ends A and B. " +
-        "The arrow shows the viewing direction.",
-    ),
-    make("form", { method: "dialog" }, make("button", { className: "primary" }, "Close")),
+export function help(/** @type {HTMLElement} */ dialog) {
+  render(
+    html`<h2 id="help-title">Keys</h2>
+      <dl class="keys">
+        ${KEYS.map(
+          ([key, text]) =>
+            html`<div>
+              <dt>${key}</dt>
+              <dd>${text}</dd>
+            </div>`,
+        )}
+      </dl>
+      <p>
+        ${
+          "On the map from above: drag for a vertical slice, drag its line or its ends A and B. " +
+          "The arrow shows the viewing direction."
+        }
+      </p>
+      <form method="dialog"><button class="primary">Close</button></form>`,
+    dialog,
   );
 }

@@ -1,63 +1,83 @@
 // The legend of a slice: colors with their range, which may be changed. No network.
 
-import { make } from "../shared/dom.js";
+import { html, nothing, targetOf } from "../shared/dom.js";
 import { COLORS } from "./state.js";
 
+/**
+ * @import {SliceFacts, SliceImageView} from "../shared/http_types"
+ * @import {SliceState} from "./state.js"
+ * @typedef {(low: number | null, high: number | null) => void} OnRange
+ */
+
+/** @type {Record<string, string>} */
 const UNITS = { height: "m", time: "s", distance: "cm" };
 
-/** Fills the legend; `onRange(low, high)` when a person changes its ends, nulls = automatic. */
-export function legend(root, { state, shown, facts, onRange }) {
-  if (root.contains(document.activeElement)) return;
-  const scale = state.color === "distance" ? 100 : 1;
+/**
+ * The legend; `onRange(low, high)` when a person changes its ends, nulls = automatic.
+ * @param {SliceState} state
+ * @param {SliceImageView} shown
+ * @param {SliceFacts} facts
+ * @param {OnRange} onRange
+ */
+export function legend(state, shown, facts, onRange) {
   const unit = UNITS[state.color] ? ` [${UNITS[state.color]}]` : "";
-  const head = make("span", { className: "what" }, `${COLORS[state.color]}${unit}`);
-  const green = state.ref
-    ? make(
-        "span",
-        { className: "reference" },
-        make("i", {}),
-        facts.references.find((one) => one.id === state.ref)?.name ?? "Reference",
-      )
-    : null;
-  if (state.color === "sensor") {
-    const names = facts.sensors.length ? facts.sensors : ["1", "2"];
-    const swatch = (name, k) => {
-      const mark = make("i", {});
-      mark.style.background = shown.colors[k % shown.colors.length];
-      return make("span", { className: "swatch" }, mark, name);
-    };
-    root.replaceChildren(...[head, ...names.map(swatch), green].filter(Boolean));
-    return;
-  }
-  const end = (value, text, which) => {
-    const input = make("input", {
-      type: "number",
-      step: "any",
-      value: String(Number((value * scale).toPrecision(4))),
-      ariaLabel: text,
-    });
-    input.addEventListener("change", () => {
-      const x = input.valueAsNumber / scale;
-      const range = which ? [state.lo ?? shown.low, x] : [x, state.hi ?? shown.high];
-      input.blur();
-      if (Number.isFinite(x) && range[1] > range[0]) onRange(...range);
-    });
-    return input;
-  };
-  const bar = make("span", { className: "ramp" });
-  bar.style.background = `linear-gradient(90deg, ${shown.colors.join(", ")})`;
-  const usual =
-    state.lo !== null || state.hi !== null
-      ? make("button", { type: "button", onclick: () => onRange(null, null) }, "Usual range")
-      : null;
-  root.replaceChildren(
-    ...[
-      head,
-      end(shown.low, "Low end of the colors", 0),
-      bar,
-      end(shown.high, "High end of the colors", 1),
-      usual,
-      green,
-    ].filter(Boolean),
+  const reference = facts.references.find((one) => one.id === state.ref)?.name ?? "Reference";
+  return html`<span class="what">${COLORS[state.color]}${unit}</span>
+    ${state.color === "sensor" ? swatches(shown, facts) : ramp(state, shown, onRange)}
+    ${state.ref ? html`<span class="reference"><i></i>${reference}</span>` : nothing}`;
+}
+
+/**
+ * A color for each sensor.
+ * @param {SliceImageView} shown
+ * @param {SliceFacts} facts
+ */
+function swatches({ colors }, { sensors }) {
+  const names = sensors.length ? sensors : ["1", "2"];
+  return names.map(
+    (name, k) =>
+      html`<span class="swatch"
+        ><i .style=${`background: ${colors[k % colors.length]}`}></i>${name}</span
+      >`,
   );
+}
+
+/**
+ * The range of the colors, with its ends as fields.
+ * @param {SliceState} state
+ * @param {SliceImageView} shown
+ * @param {OnRange} onRange
+ */
+function ramp({ color, lo, hi }, { colors, low, high }, onRange) {
+  const scale = color === "distance" ? 100 : 1;
+  const end = (
+    /** @type {string} */ label,
+    /** @type {number} */ value,
+    /** @type {(x: number) => [number, number]} */ rangeOf,
+  ) => {
+    const change = (/** @type {Event} */ event) => {
+      const x = targetOf(event).valueAsNumber / scale;
+      const range = rangeOf(x);
+      targetOf(event).blur();
+      if (Number.isFinite(x) && range[1] > range[0]) onRange(...range);
+    };
+    const text = String(Number((value * scale).toPrecision(4)));
+    return html`<input
+      type="number"
+      step="any"
+      aria-label=${label}
+      .value=${text}
+      @change=${change}
+    />`;
+  };
+  return html`${end("Low end of the colors", low, (x) => [x, hi ?? high])}<span
+      class="ramp"
+      .style=${`background: linear-gradient(90deg, ${colors.join(", ")})`}
+    ></span
+    >${end("High end of the colors", high, (x) => [lo ?? low, x])}
+    ${
+      lo !== null || hi !== null
+        ? html`<button type="button" @click=${() => onRange(null, null)}>Usual range</button>`
+        : nothing
+    }`;
 }

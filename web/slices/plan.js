@@ -1,40 +1,38 @@
 // What the slices page shows of a 2-D map, which is itself one slice.
 
 import { fileUrl, projectUrl } from "../shared/api.js";
-import { byId, fill, make } from "../shared/dom.js";
+import { byId, html, render, within } from "../shared/dom.js";
+
+/** @import {ProjectView} from "../shared/http_types" */
 
 /** Whether the map of a project is a 2-D one. */
-export const isPlan = (project) => project.summary.map === "2d";
+export const isPlan = (/** @type {ProjectView} */ project) => project.summary.map === "2d";
 
-const inCm = (m) => Math.round(m * 1000) / 10;
+const inCm = (/** @type {number} */ m) => Math.round(m * 1000) / 10;
 
-/** Shows the plan in place of cuts and findings. */
-export function showPlan(id, project) {
-  const main = document.querySelector("main");
-  main.className = "plan";
-  const { cell_m, overview_cell_m } = project.summary.grid;
+/**
+ * Shows the plan in place of cuts and findings.
+ * @param {string} id
+ * @param {ProjectView} project
+ */
+export function showPlan(id, { summary }) {
+  const { cell_m, overview_cell_m } = summary.grid;
   // Of an earlier version: there is no overview.
   const shown_m = overview_cell_m || cell_m;
   const name = overview_cell_m ? "overview.png" : "map.png";
-  const words = make("p", {
-    textContent:
-      "This is a 2-D map: one slice at the height of the laser, so no other can be cut. " +
-      `A pixel is ${inCm(shown_m)} cm. ` +
-      (shown_m > cell_m ? `The file map.png has pixels of ${inCm(cell_m)} cm. ` : ""),
-  });
-  words.append(
-    make("a", {
-      href: projectUrl(id),
-      textContent: "The page Map shows places and distances.",
-    }),
-  );
-  fill(
+  const finer = shown_m > cell_m ? `The file map.png has pixels of ${inCm(cell_m)} cm. ` : "";
+  const main = document.createElement("main");
+  main.className = "plan";
+  render(
+    html`<p>
+        This is a 2-D map: one slice at the height of the laser, so no other can be cut. A pixel is
+        ${inCm(shown_m)} cm. ${finer}<a href=${projectUrl(id)}
+          >The page Map shows places and distances.</a
+        >
+      </p>
+      <img src=${fileUrl(id, name)} alt="Floor plan: walls black, free white, not seen gray" />`,
     main,
-    words,
-    make("img", {
-      src: fileUrl(id, name),
-      alt: "Floor plan: walls black, free white, not seen gray",
-    }),
   );
+  within(document, "main").replaceWith(main);
   byId("help").remove();
 }

@@ -1,8 +1,15 @@
 // How a reference file is read: its frame and unit, and for a table its columns, before it is used.
 
 import { addReference, previewReference } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { attempt, html, nothing } from "../shared/dom.js";
 import { choice, columnTable, missing, UNITS } from "./columns.js";
+
+/**
+ * @import {ListedReference, ReferenceFile, TablePreview} from "../shared/http_types"
+ * @import {Columns, Unit} from "./columns.js"
+ * @typedef {NonNullable<ReferenceFile["frame"]>} Frame
+ * @typedef {{file: ReferenceFile, table: TablePreview}} Reading a table that is to be confirmed
+ */
 
 /** @type {Array<[string, string]>} */
 const FRAMES = [
@@ -11,74 +18,93 @@ const FRAMES = [
   ["crs", "In the map's CRS"],
 ];
 
-/** Reads files as references; `added(reference)` is called with each new one. */
-export function referenceReader({ id, message, added }) {
-  const asked = { frame: "auto", unit: "" };
-  const frame = choice("Coordinates of the reference", FRAMES, "auto", (value) => {
-    asked.frame = value;
-  });
-  const unit = choice(
-    "Unit of the reference",
-    [["", "Unit: as the file says"], ...UNITS],
-    "",
-    (value) => {
-      asked.unit = value;
-    },
-  );
-  const table = make("div", { hidden: true });
+/** Reads files as references. */
+export class ReferenceReader {
+  #state = {
+    frame: /** @type {Frame} */ ("auto"),
+    unit: /** @type {Unit | ""} */ (""),
+    reading: /** @type {Reading | null} */ (null),
+    busy: false, // until the server has read the rows with a choice
+  };
+  #id;
+  #on;
 
-  function close() {
-    table.hidden = true;
-    table.replaceChildren();
+  /**
+   * @param {string} id of the project
+   * @param {{draw: () => void, message: () => HTMLElement,
+   *   added: (reference: ListedReference) => Promise<void>}} on `draw` is called after changes
+   */
+  constructor(id, on) {
+    this.#id = id;
+    this.#on = on;
+  }
+
+  /** The choices of frame and unit. */
+  get fields() {
+    const { frame, unit } = this.#state;
+    const setFrame = (/** @type {string} */ value) =>
+      this.#change({ frame: /** @type {Frame} */ (value) });
+    const setUnit = (/** @type {string} */ value) =>
+      this.#change({ unit: /** @type {Unit | ""} */ (value) });
+    return [
+      choice("Coordinates of the reference", FRAMES, frame, setFrame),
+      choice("Unit of the reference", [["", "Unit: as the file says"], ...UNITS], unit, setUnit),
+    ];
   }
 
   /** Shows the rows of a table first; other files state what they hold. */
-  async function read(path) {
-    close();
-    const file = { path, frame: asked.frame, columns: [], unit: asked.unit || null };
-    const { table: found } = await previewReference(id, file);
-    if (found) show(file, found);
-    else await use(file);
+  async read(/** @type {string} */ path) {
+    const { frame, unit } = this.#state;
+    this.#change({ reading: null });
+    const file = { path, frame, columns: [], unit: unit || null };
+    const { table } = await previewReference(this.#id, file);
+    if (table) this.#change({ reading: { file, table } });
+    else await this.#use(file);
   }
 
-  function show(file, found) {
-    const button = (text, action) => {
-      const made = make("button", { type: "button" }, text);
-      made.addEventListener("click", async () => {
-        made.disabled = true;
-        await attempt(message, action);
-        made.disabled = false;
-      });
-      return made;
-    };
-    const again = async (columns, chosen) => {
-      start.disabled = true; // until the server has read the rows with this choice
-      const open = missing(columns);
-      const next = { ...file, columns, unit: chosen ?? file.unit };
-      if (open) return show(next, { ...found, columns, question: `${open}.` });
-      const fresh = await attempt(message, () => previewReference(id, next));
-      return fresh ? show(next, fresh.table) : show(file, found);
-    };
-    const start = button("Use these columns", () => use({ ...file, columns: found.columns }));
-    start.disabled = Boolean(found.question && missing(found.columns));
-    table.hidden = false;
-    table.replaceChildren(
-      make("p", {}, make("strong", {}, file.path.split("/").at(-1))),
-      columnTable(found, again),
-      make(
-        "div",
-        { className: "buttons" },
-        start,
-        button("Cancel", async () => close()),
-      ),
-    );
+  /** The rows of a table, with a question if its columns are not certain. */
+  get element() {
+    const { reading, busy } = this.#state;
+    if (!reading) return nothing;
+    const { file, table } = reading;
+    const use = () =>
+      attempt(this.#on.message(), () => this.#use({ ...file, columns: table.columns }));
+    const blocked = busy || Boolean(table.question && missing(table.columns));
+    return html`<p><strong>${file.path.split("/").at(-1)}</strong></p>
+      ${columnTable(table, (columns, unit) => this.#again(reading, columns, unit))}
+      <div class="buttons">
+        <button type="button" ?disabled=${blocked} @click=${use}>Use these columns</button
+        ><button type="button" @click=${() => this.#change({ reading: null })}>Cancel</button>
+      </div>`;
   }
 
-  async function use(file) {
-    const reference = await addReference(id, file);
-    close();
-    await added(reference);
+  /**
+   * Reads the rows with other columns or another unit, once the columns are complete.
+   * @param {Reading} reading
+   * @param {Columns} columns
+   * @param {Unit | null} unit
+   */
+  async #again({ file, table }, columns, unit) {
+    const next = { ...file, columns, unit: unit ?? file.unit };
+    const open = missing(columns);
+    if (open) {
+      const asked = { ...table, columns, question: `${open}.` };
+      return this.#change({ reading: { file: next, table: asked } });
+    }
+    this.#change({ busy: true });
+    const fresh = await attempt(this.#on.message(), () => previewReference(this.#id, next));
+    const reading = fresh?.table ? { file: next, table: fresh.table } : { file, table };
+    this.#change({ busy: false, reading });
   }
 
-  return { read, fields: [frame, unit], element: table };
+  async #use(/** @type {ReferenceFile} */ file) {
+    const reference = await addReference(this.#id, file);
+    this.#change({ reading: null });
+    await this.#on.added(reference);
+  }
+
+  #change(/** @type {object} */ changes) {
+    Object.assign(this.#state, changes);
+    this.#on.draw();
+  }
 }

@@ -7,231 +7,265 @@ import {
   compareSlices,
   removeReference,
 } from "../shared/api.js";
-import { attempt, make } from "../shared/dom.js";
+import { attempt, html, nothing, render, repeat, targetOf, within } from "../shared/dom.js";
 import { bytes, count } from "../shared/format.js";
 import { Sending, sorted } from "../projects/resumable_upload.js";
 import { openAlignment } from "./align.js";
+import { choice } from "./columns.js";
 import { comparison, METHODS } from "./comparison.js";
 import { ofInput } from "./picking.js";
-import { referenceReader } from "./reading.js";
+import { ReferenceReader } from "./reading.js";
 import { planeOf, moved } from "./state.js";
 
+/**
+ * @import {Comparison, FolderEntry, ListedReference, SliceFacts} from "../shared/http_types"
+ * @import {Panel, SlicesPage} from "./findings.js"
+ * @import {SliceState} from "./state.js"
+ * @typedef {object} ReferenceState
+ * @property {ListedReference[]} references
+ * @property {string} path of the file to add
+ * @property {FolderEntry[] | null} entries of the open folder; null = none is open
+ * @property {string} folder
+ * @property {Sending | null} sending
+ * @property {string} which slices are compared
+ * @property {SliceState["method"]} method
+ * @property {{found: Comparison, url: string} | null} compared
+ */
+
 const KINDS = ".ply,.pcd,.las,.laz,.e57,.xyz,.txt,.csv,.obj,.stl";
+/** @type {Array<[string, string]>} */
+const WHICH = [
+  ["usual", "8 slices over the map, 2 cm"],
+  ["this", "This slice"],
+  ["repeated", "This slice, repeated"],
+];
+const METHOD_CHOICES = /** @type {Array<[string, string]>} */ (
+  Object.entries(METHODS).map(([key, text]) => [key, `Distances ${text}`])
+);
 
-export function referencePanel({ id, change, state, reload }) {
-  const message = make("p", { className: "error", role: "alert" });
-  const list = make("div", {});
-  const path = make("input", {
-    placeholder: "Path on this computer",
-    ariaLabel: "Path of the reference",
-    autocomplete: "off",
-    spellcheck: false,
-  });
-  const folder = make("div", { className: "folder", hidden: true });
-  const reader = referenceReader({ id, message, added });
-  const which = make(
-    "select",
-    { ariaLabel: "Slices to compare" },
-    make("option", { value: "usual" }, "8 slices over the map, 2 cm"),
-    make("option", { value: "this" }, "This slice"),
-    make("option", { value: "repeated" }, "This slice, repeated"),
-  );
-  const method = make(
-    "select",
-    { ariaLabel: "Method of the distances" },
-    ...Object.entries(METHODS).map(([key, text]) =>
-      make("option", { value: key }, `Distances ${text}`),
-    ),
-  );
-  const table = make("div", {});
-  const busy = (button, action) => async () => {
-    button.disabled = true;
-    await attempt(message, action);
-    button.disabled = false;
+/**
+ * Fills the panel of references.
+ * @param {HTMLElement} host
+ * @param {SlicesPage} page
+ * @returns {Panel}
+ */
+export function referencePanel(host, { id, change, state: slice, reload }) {
+  /** @type {ReferenceState} */
+  const state = {
+    references: [],
+    path: "",
+    entries: null,
+    folder: "",
+    sending: null,
+    which: "usual",
+    method: "plane",
+    compared: null,
   };
-  const make_ = (text, action) => {
-    const button = make("button", { type: "button" }, text);
-    button.addEventListener("click", busy(button, action));
-    return button;
+  const message = () => within(host, ".problem");
+  const set = (/** @type {Partial<ReferenceState>} */ changes) => {
+    Object.assign(state, changes);
+    draw();
   };
+  const reader = new ReferenceReader(id, { draw: () => draw(), message, added });
 
-  const file = make("input", {
-    type: "file",
-    hidden: true,
-    accept: KINDS,
-    ariaLabel: "Reference file",
-    onchange: () => attempt(message, upload),
-  });
-  const text = make("span", { role: "status" });
-  const bar = make("progress", { max: 1, ariaLabel: "Upload of the reference" });
-  const stop = make("button", { type: "button" }, "Stop");
-  const sendingNow = make("div", { className: "row", hidden: true }, text, bar, stop);
-  const choose = make("button", { type: "button", onclick: () => file.click() }, "Upload file…");
+  /**
+   * A button that cannot be used again before its action is done.
+   * @param {string} text
+   * @param {() => unknown} action
+   */
+  const button = (text, action) => {
+    const act = async (/** @type {Event} */ event) => {
+      const pressed = /** @type {HTMLButtonElement} */ (event.currentTarget);
+      pressed.disabled = true;
+      await attempt(message(), action);
+      pressed.disabled = false;
+    };
+    return html`<button type="button" @click=${act}>${text}</button>`;
+  };
 
   /** Sends the file like a recording (it goes on after a break), then uses it. */
-  async function upload() {
-    const sending = new Sending(sorted(ofInput(file)));
-    file.value = ""; // the same file may be chosen again
-    stop.onclick = () => attempt(message, () => sending.remove());
-    sending.addEventListener("change", () => {
-      text.textContent =
-        sending.text || `${sending.name}: ${bytes(sending.sent)} of ${bytes(sending.total)}`;
-      bar.value = sending.total ? sending.sent / sending.total : 1;
-    });
-    choose.disabled = true;
-    sendingNow.hidden = false;
+  async function upload(/** @type {HTMLInputElement} */ input) {
+    const sending = new Sending(sorted(ofInput(input)));
+    input.value = ""; // the same file may be chosen again
+    sending.addEventListener("change", draw);
+    set({ sending });
     try {
       await sending.start();
       if (sending.state === "failed") {
-        sending.error.message += "; choose the same file again to go on";
-        throw sending.error;
+        const reason = sending.error instanceof Error ? sending.error.message : "It failed";
+        throw new Error(`${reason}; choose the same file again to go on`);
       }
       if (sending.state !== "done") return;
-      text.textContent = `${sending.name} is being read`;
-      path.value = sending.recording;
-      await add();
+      set({ path: sending.recording });
+      await reader.read(sending.recording);
     } finally {
-      choose.disabled = false;
-      sendingNow.hidden = true;
+      set({ sending: null });
     }
   }
 
-  const add = () => reader.read(path.value);
-
-  async function added(reference) {
-    path.value = "";
+  async function added(/** @type {ListedReference} */ reference) {
+    set({ path: "" });
     await reload();
     change({ ref: reference.id, color: "distance", lo: null, hi: null }, { keep: true });
   }
 
-  async function openFolder(at) {
-    const entries = await browse(at);
-    folder.hidden = false;
-    const up = at
-      ? [
-          make(
-            "button",
-            {
-              type: "button",
-              onclick: () =>
-                attempt(message, () => openFolder(at.split("/").slice(0, -1).join("/"))),
-            },
-            "‥ Up",
-          ),
-        ]
-      : [];
-    folder.replaceChildren(
-      ...up,
-      ...entries.map((entry) => {
-        const open = () => {
-          if (entry.folder) return attempt(message, () => openFolder(entry.path));
-          path.value = entry.path;
-          folder.hidden = true;
-        };
-        return make(
-          "button",
-          { type: "button", onclick: open },
-          make("span", {}, entry.folder ? `${entry.name}/` : entry.name),
-          entry.folder ? null : make("small", {}, bytes(entry.bytes)),
-        );
-      }),
-    );
-  }
+  const openFolder = async (/** @type {string} */ folder) =>
+    set({ folder, entries: await browse(folder) });
 
-  async function align(one, how) {
+  async function align(
+    /** @type {ListedReference} */ one,
+    /** @type {"icp" | "undo" | "none"} */ how,
+  ) {
     await alignReference(id, one.id, { how });
     await realigned();
   }
 
   async function realigned() {
-    table.replaceChildren(); // of the alignment before
+    set({ compared: null }); // of the alignment before
     await reload();
     change({}, { keep: true });
   }
 
-  async function remove(one) {
+  async function remove(/** @type {ListedReference} */ one) {
     await removeReference(id, one.id);
-    if (state().ref === one.id) change({ ref: "", color: "height" }, { keep: true });
+    if (slice().ref === one.id) change({ ref: "", color: "height" }, { keep: true });
     await reload();
   }
 
   function planes() {
-    const now = state();
-    if (which.value === "usual") return [];
-    if (which.value === "this") return [planeOf(now)];
+    const now = slice();
+    if (state.which === "usual") return [];
+    if (state.which === "this") return [planeOf(now)];
     return Array.from({ length: now.count }, (_, k) => planeOf(moved(now, k * now.spacing)));
   }
 
   async function compare() {
-    const ask = {
-      reference: state().ref,
-      method: method.value,
-      planes: planes(),
-      source: state().source,
-    };
-    if (!ask.reference) throw new Error("Choose a reference first");
-    change({ method: method.value }, { keep: true });
+    const { method } = state;
+    const { ref: reference, source } = slice();
+    if (!reference) throw new Error("Choose a reference first");
+    const ask = { reference, method, planes: planes(), source };
+    change({ method }, { keep: true });
     const found = await compareSlices(id, ask);
-    table.replaceChildren(...comparison(found, compareCsvUrl(id, ask)));
+    set({ compared: { found, url: compareCsvUrl(id, ask) } });
   }
 
-  function rows(facts) {
-    list.replaceChildren(
-      ...facts.references.map((one) => {
-        const size = one.points
-          ? `${count(one.points)} points`
-          : `${count(one.triangles)} triangles`;
-        return make(
-          "div",
-          { className: "reference-row" },
-          make("strong", {}, one.name),
-          make("span", { className: "quiet" }, `${size}, alignment: ${one.alignment}`),
-          one.notes?.length ? make("small", { className: "quiet" }, one.notes.join(" ")) : null,
-          one.fit
-            ? make("span", { className: one.fit.startsWith("✕") ? "bad" : "quiet" }, one.fit)
-            : null,
-          make(
-            "span",
-            { className: "buttons" },
-            make_("Show", async () =>
-              change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true }),
-            ),
-            make_("Align by ICP", () => align(one, "icp")),
-            make_("Align by pairs", () => openAlignment(id, one, realigned)),
-            one.can_undo ? make_("Undo alignment", () => align(one, "undo")) : null,
-            make_("No alignment", () => align(one, "none")),
-            make_("Remove", () => remove(one)),
-          ),
-        );
-      }),
+  function row(/** @type {ListedReference} */ one) {
+    const size = one.points ? `${count(one.points)} points` : `${count(one.triangles)} triangles`;
+    const show = () =>
+      change({ ref: one.id, color: "distance", lo: null, hi: null }, { keep: true });
+    return html`<div class="reference-row">
+      <strong>${one.name}</strong><span class="quiet">${size}, alignment: ${one.alignment}</span>
+      ${one.notes.length ? html`<small class="quiet">${one.notes.join(" ")}</small>` : nothing}
+      ${
+        one.fit
+          ? html`<span class=${one.fit.startsWith("✕") ? "bad" : "quiet"}>${one.fit}</span>`
+          : nothing
+      }
+      <span class="buttons"
+        >${button("Show", show)}${button("Align by ICP", () => align(one, "icp"))}${button(
+          "Align by pairs",
+          () => openAlignment(id, one, realigned),
+        )}${one.can_undo ? button("Undo alignment", () => align(one, "undo")) : nothing}${button(
+          "No alignment",
+          () => align(one, "none"),
+        )}${button("Remove", () => remove(one))}</span
+      >
+    </div>`;
+  }
+
+  function draw() {
+    const { references, path, sending, which, method, compared } = state;
+    const busy = sending !== null;
+    const pick = (/** @type {Event} */ event) => {
+      const input = targetOf(event);
+      attempt(message(), () => upload(input));
+    };
+    const choose = () => within(host, "[type=file]").click();
+    const type = (/** @type {Event} */ event) => (state.path = targetOf(event).value);
+    const setMethod = (/** @type {string} */ one) =>
+      set({ method: /** @type {SliceState["method"]} */ (one) });
+    render(
+      html`<div>
+          ${repeat(
+            references,
+            (one) => one.id,
+            (one) => row(one),
+          )}
+        </div>
+        <div class="row">
+          <button type="button" ?disabled=${busy} @click=${choose}>Upload file…</button
+          ><input
+            type="file"
+            hidden
+            accept=${KINDS}
+            aria-label="Reference file"
+            @change=${pick}
+          /><input
+            placeholder="Path on this computer"
+            aria-label="Path of the reference"
+            autocomplete="off"
+            spellcheck="false"
+            .value=${path}
+            @input=${type}
+          />${button("Browse…", () => openFolder(""))}${reader.fields}${button(
+            "Add reference",
+            () => reader.read(state.path),
+          )}
+        </div>
+        ${sending ? progress(sending) : nothing} ${folderList()}
+        <div>${reader.element}</div>
+        <p class="quiet">
+          PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it.
+        </p>
+        <div class="row">
+          ${choice("Slices to compare", WHICH, which, (one) => set({ which: one }))}
+          ${choice("Method of the distances", METHOD_CHOICES, method, setMethod)}
+          ${button("Compare", compare)}
+        </div>
+        <p class="error problem" role="alert"></p>
+        <div>${compared ? comparison(compared.found, compared.url) : nothing}</div>`,
+      host,
     );
   }
 
-  const element = make(
-    "div",
-    {},
-    list,
-    make(
-      "div",
-      { className: "row" },
-      choose,
-      file,
-      path,
-      make_("Browse…", () => openFolder("")),
-      ...reader.fields,
-      make_("Add reference", add),
-    ),
-    sendingNow,
-    folder,
-    reader.element,
-    make(
-      "p",
-      { className: "quiet" },
-      "PLY, LAZ, LAS, E57, PCD, XYZ, CSV, OBJ or STL. Nothing is aligned unless you ask for it.",
-    ),
-    make("div", { className: "row" }, which, method, make_("Compare", compare)),
-    message,
-    table,
-  );
-  return { element, facts: rows };
+  function progress(/** @type {Sending} */ sending) {
+    const { name, sent, total, text, state: at } = sending;
+    const stop = () => attempt(message(), () => sending.remove());
+    const words =
+      at === "done"
+        ? `${name} is being read`
+        : text || `${name}: ${bytes(sent)} of ${bytes(total)}`;
+    return html`<div class="row">
+      <span role="status">${words}</span
+      ><progress
+        max="1"
+        aria-label="Upload of the reference"
+        .value=${total ? sent / total : 1}
+      ></progress
+      ><button type="button" @click=${stop}>Stop</button>
+    </div>`;
+  }
+
+  /** The entries of the open folder: folders open, a file is chosen. */
+  function folderList() {
+    const { entries, folder } = state;
+    if (!entries) return nothing;
+    const open = (/** @type {string} */ to) => () => attempt(message(), () => openFolder(to));
+    const up = folder.split("/").slice(0, -1).join("/");
+    return html`<div class="folder">
+      ${folder ? html`<button type="button" @click=${open(up)}>‥ Up</button>` : nothing}
+      ${entries.map((entry) =>
+        entry.folder
+          ? html`<button type="button" @click=${open(entry.path)}>
+              <span>${entry.name}/</span>
+            </button>`
+          : html`<button type="button" @click=${() => set({ path: entry.path, entries: null })}>
+              <span>${entry.name}</span><small>${bytes(entry.bytes)}</small>
+            </button>`,
+      )}
+    </div>`;
+  }
+
+  draw();
+  return { facts: (/** @type {SliceFacts} */ { references }) => set({ references }) };
 }

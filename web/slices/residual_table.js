@@ -1,28 +1,34 @@
 // Rows of the residuals and of the limits at control and check points. No network.
 
-import { make } from "../shared/dom.js";
+import { html } from "../shared/dom.js";
+
+/** @import {ErrorEllipse, Requirement, Residual, ResidualStatistics} from "../shared/http_types" */
 
 const UNKNOWN = "–"; // not measured
 const COLUMNS = 8;
 
-const cm = (m) => (m === null ? UNKNOWN : (m * 100).toFixed(1));
-const cell = (text, className = "") => make("td", { className: `number ${className}` }, text);
+const cm = (/** @type {number | null} */ m) => (m === null ? UNKNOWN : (m * 100).toFixed(1));
+const cell = (/** @type {string} */ text, className = "") =>
+  html`<td class="number ${className}">${text}</td>`;
 
 /** Error ellipse and height: long axis x short axis at the azimuth of the long one, height. */
-const stated = (one) =>
+const stated = (/** @type {ErrorEllipse | null} */ one) =>
   one
     ? `${cm(one.major_m)} × ${cm(one.minor_m)} at ${one.azimuth_deg.toFixed(0)}°, ${cm(one.up_m)}`
     : UNKNOWN;
 
-function sigmas({ sigmas: found, outlier }) {
+function sigmas(/** @type {Pick<Residual, "sigmas" | "outlier">} */ { sigmas: found, outlier }) {
   if (found === null) return cell(UNKNOWN);
   return outlier ? cell(`⚠ ${found.toFixed(1)}`, "bad") : cell(found.toFixed(1));
 }
 
-/** The cells of one point; empty if it was not measured in this map. */
+/**
+ * The cells of one point; empty if it was not measured in this map.
+ * @param {Residual | undefined} residual
+ * @param {boolean} earlier
+ */
 export function residualCells(residual, earlier) {
-  if (earlier)
-    return [make("td", { colSpan: COLUMNS, className: "quiet" }, "found in an earlier map")];
+  if (earlier) return [html`<td colspan=${COLUMNS} class="quiet">found in an earlier map</td>`];
   if (!residual) return Array.from({ length: COLUMNS }, () => cell(""));
   const { east_m, north_m, up_m, d2_m, d3_m } = residual;
   return [
@@ -33,49 +39,45 @@ export function residualCells(residual, earlier) {
   ];
 }
 
-function limitRow(limit) {
+function limitRow(/** @type {Requirement} */ limit) {
   const tone = limit.holds === null ? "" : limit.holds ? "good" : "bad";
-  return make(
-    "tr",
-    {},
-    make("th", { scope: "row" }, limit.label),
-    make("td", { className: tone }, limit.text),
-    cell(String(limit.points)),
-    cell(cm(limit.value_m)),
-    cell(`≤ ${cm(limit.limit_m)}`),
-  );
+  return html`<tr>
+    <th scope="row">${limit.label}</th>
+    <td class=${tone}>${limit.text}</td>
+    ${cell(String(limit.points))}${cell(cm(limit.value_m))}${cell(`≤ ${cm(limit.limit_m)}`)}
+  </tr>`;
 }
 
+/**
+ * @param {ResidualStatistics} figures
+ * @param {"rmse_m" | "mean_m"} key
+ */
 const axes = (figures, key) =>
   figures.axes.map((one) => `${one.axis} ${cm(one[key])} (${one.points})`).join("  ");
 
 /** The limits of one role, with what was measured. */
-export function figures(one) {
+export function figures(/** @type {ResidualStatistics} */ one) {
   const head = [
     `${one.points} ${one.role} point${one.points === 1 ? "" : "s"}`,
     "Result",
     "Points",
     "Measured [cm]",
     "Limit",
-  ].map((text, k) => make("th", { scope: "col", className: k > 1 ? "number" : "" }, text));
-  return make(
-    "div",
-    { className: "figures" },
-    make(
-      "div",
-      { className: "scroll" },
-      make(
-        "table",
-        {},
-        make("thead", {}, make("tr", {}, ...head)),
-        make("tbody", {}, ...one.requirements.map(limitRow)),
-      ),
-    ),
-    make(
-      "p",
-      { className: "quiet" },
-      `RMSE (points) ${axes(one, "rmse_m")}  3D ${cm(one.rmse_3d_m)} cm`,
-    ),
-    make("p", { className: "quiet" }, `Mean ${axes(one, "mean_m")} cm`),
-  );
+  ].map((text, k) => html`<th scope="col" class=${k > 1 ? "number" : ""}>${text}</th>`);
+  return html`<div class="figures">
+    <div class="scroll">
+      <table>
+        <thead>
+          <tr>
+            ${head}
+          </tr>
+        </thead>
+        <tbody>
+          ${one.requirements.map(limitRow)}
+        </tbody>
+      </table>
+    </div>
+    <p class="quiet">RMSE (points) ${axes(one, "rmse_m")} 3D ${cm(one.rmse_3d_m)} cm</p>
+    <p class="quiet">Mean ${axes(one, "mean_m")} cm</p>
+  </div>`;
 }

@@ -10,170 +10,142 @@ import {
   readSlice,
   readSliceFacts,
 } from "../shared/api.js";
-import { approvalFact } from "../shared/approval_lines.js";
-import { byId, fill, make, showError, targetOf } from "../shared/dom.js";
+import { attempt, byId, detailOf, only, say, showError, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
-import { cutText, distanceText, imageText, lengthText, pointText } from "./captions.js";
-import { controls } from "./controls.js";
+import { distanceText, imageText, lengthText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
-import { legend } from "./legend.js";
 import { help } from "./help.js";
 import { isPlan, showPlan } from "./plan.js";
 import { stretchMark } from "./stretch_mark.js";
-import { COLORS, SURFACES, planeOf, format, moved, normalFrom, parse, unframed } from "./state.js";
+import { COLORS, SURFACES, format, moved, planeOf, startOf, parse, unframed } from "./state.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
 import "../shared/page_head.js";
-import "./above.js";
-import "./view.js";
+import { SliceAbove } from "./above.js";
+import { drawPage, first, page, second } from "./drawing.js";
+
+/**
+ * @import {SliceImageRequest} from "../shared/http_types"
+ * @import {Color, Kind, SliceState, Surface} from "./state.js"
+ * @import {Place, SliceView} from "./view.js"
+ */
 
 const id = idHere();
+const tab = Math.random().toString(36).slice(2, 12);
 const dark = matchMedia("(prefers-color-scheme: dark)");
-const above = make("slice-above");
-const first = make("slice-view");
-const second = make("slice-view", { className: "second" });
-const swipe = make("input", {
-  type: "range",
-  min: 0,
-  max: 100,
-  value: 50,
-  ariaLabel: "Swipe between the two slices",
-  className: "swipe",
-  hidden: true,
-});
-const captions = [make("p", { className: "caption" }), make("p", { className: "caption second" })];
-const reading = make("p", { className: "readout", role: "status" });
-const facing = make("div", { className: "facing" });
-let facts = null;
-let state = parse(location.search);
-let measuring = false;
-let measured = [];
-let picked = null;
-let shown = null;
-let turn = 0;
+const above = new SliceAbove();
 
-/** Changes the state, the address, and what depends on them. */
+/**
+ * Changes the state, the address, and what depends on them.
+ * @param {Partial<SliceState>} next
+ */
 function change(next, { keep = false } = {}) {
-  const before = state;
-  state = { ...state, ...next };
-  const elsewhere =
-    format({ ...before, color: "", t: 0 }) !== format({ ...state, color: "", t: 0 });
-  if (!keep && elsewhere) clearMeasure();
-  if (state.u === null) first.frame = second.frame = null;
-  else if (next.m) first.frame = second.frame = { u: state.u, v: state.v, m: state.m };
+  const before = page.state;
+  const state = { ...before, ...next };
+  page.state = state;
+  const place = (/** @type {SliceState} */ one) => format({ ...one, color: "height", t: 0 });
+  if (!keep && place(before) !== place(state)) clearMeasure();
+  const { u, v, m } = state;
+  if (u === null || v === null) first.frame = second.frame = null;
+  else if (next.m && m !== null) first.frame = second.frame = { u, v, m };
   history.replaceState(null, "", `?${format(state)}`);
   above.state = state;
-  panel.show(state);
-  found.show(state);
-  layOut();
+  draw();
+  found.show();
   load();
 }
 
-const step = (times) => change(moved(state, times * state.step));
-const toKind = (kind) => kind !== state.kind && change(unframed({ ...state, ...start(kind) }));
+const step = (/** @type {number} */ times) => change(moved(page.state, times * page.state.step));
 
 /** A plane of another kind at the present one, or near the middle of the map. */
-function start(kind) {
-  const [low, high] = facts.bounds_m;
-  const middle = low.map((x, k) => (x + high[k]) / 2);
-  const at =
-    shown && state.kind === "horizontal" && first.frame ? [first.frame.u, first.frame.v] : middle;
-  if (kind === "horizontal")
-    return { kind, z: state.given ? state.z : low[2] + Math.min(1.2, (high[2] - low[2]) / 2) };
-  if (kind === "vertical") {
-    const wide = high[0] - low[0] >= high[1] - low[1];
-    return wide
-      ? { kind, a: [low[0], at[1]], b: [high[0], at[1]] }
-      : { kind, a: [at[0], low[1]], b: [at[0], high[1]] };
-  }
-  return { kind, o: [...at.slice(0, 2), middle[2]], n: normalFrom({ azimuth: 0, tilt: 45 }) };
+function toKind(/** @type {Kind} */ kind) {
+  const { state, facts, shown } = page;
+  if (kind === state.kind || !facts) return;
+  const seen = shown && state.kind === "horizontal" ? first.frame : null;
+  change(unframed({ ...state, ...startOf(kind, state, facts.bounds_m, seen) }));
 }
 
 // -- slice images
 
-const ask = (view, more) => ({
-  plane: planeOf(state),
-  color: state.color,
-  low: state.lo,
-  high: state.hi,
-  reference: state.ref,
-  method: state.method,
-  source: state.source,
-  surface: state.surface,
-  ground: dark.matches ? "dark" : "light",
-  ...view.wanted,
-  ...more,
-});
+/**
+ * @param {SliceView} view
+ * @param {Partial<SliceImageRequest>} [more]
+ * @returns {SliceImageRequest}
+ */
+function ask(view, more) {
+  const { state } = page;
+  return {
+    plane: planeOf(state),
+    color: state.color,
+    low: state.lo,
+    high: state.hi,
+    reference: state.ref,
+    method: state.method,
+    source: state.source,
+    surface: state.surface,
+    ground: dark.matches ? "dark" : "light",
+    ...view.wanted,
+    ...more,
+  };
+}
 
 async function load() {
-  const mine = ++turn;
-  const page = `${tab}1`;
+  const mine = ++page.turn;
   document.body.classList.add("drawing");
   try {
-    const image = await readSlice(id, ask(first, { page, turn: mine }));
-    if (mine !== turn) return;
+    const image = await readSlice(id, ask(first, { page: `${tab}1`, turn: mine }));
+    if (mine !== page.turn) return;
     await first.show(image);
-    shown = image;
-    if (state.beside || state.besideColor) await loadSecond(mine);
-    byId("message").textContent = "";
+    page.shown = image;
+    if (page.state.beside || page.state.besideColor) await loadSecond(mine);
+    say(byId("message"), "");
     describe();
   } catch (error) {
-    if (mine !== turn || error.name === "Superseded") return;
+    if (mine !== page.turn || (error instanceof Error && error.name === "Superseded")) return;
     showError(byId("message"), error);
     if (error instanceof ApiError && error.status === 422) first.clear();
   } finally {
-    if (mine === turn) document.body.classList.remove("drawing");
+    if (mine === page.turn) document.body.classList.remove("drawing");
   }
 }
 
-async function loadSecond(mine) {
+async function loadSecond(/** @type {number} */ mine) {
   second.frame = first.frame;
-  const color = state.besideColor || state.color;
-  const range = color === state.color ? {} : { low: null, high: null };
+  const { beside: source, besideColor, color: firstColor } = page.state;
+  const color = besideColor || firstColor;
+  const range = color === firstColor ? {} : { low: null, high: null };
   const image = await readSlice(
     id,
-    ask(second, { page: `${tab}2`, turn: mine, color, source: state.beside, ...range }),
+    ask(second, { page: `${tab}2`, turn: mine, color, source, ...range }),
   );
-  if (mine !== turn) return;
+  if (mine !== page.turn) return;
   await second.show(image);
-  captions[1].textContent = imageText(
-    { source: state.beside, color, points: count(image.points), surface: image.surface },
-    facts.sources,
+  const points = count(image.points);
+  page.secondCaption = imageText(
+    { source, color, points, surface: image.surface },
+    page.facts?.sources ?? [],
   );
 }
 
+/** Says in words what the slices show. */
 function describe() {
-  const [name, points] = [shown.name, count(shown.points)];
-  captions[0].textContent = imageText(
-    { source: state.source, color: state.color, points, surface: shown.surface },
-    facts.sources,
-  );
-  const where = `${points} points ${SURFACES[shown.surface]}`;
-  first.label = `Slice ${name}, ${where}, colored by ${COLORS[state.color]}`;
-  second.label = captions[1].textContent;
-  fill(
-    facing,
-    make("strong", {}, cutText(state.kind, name)),
-    make("span", {}, `${Number((state.t * 100).toFixed(1))} cm thick`),
-    make("span", {}, where),
-    ...(facts.strays && shown.surface !== "strays"
-      ? [make("span", {}, `${count(facts.strays)} stray returns left out`)]
-      : []),
-    make("span", { className: "frame" }, facts.frame),
-    approvalFact(facts.approval),
-  );
-  legend(byId("legend"), {
-    state,
-    shown,
-    facts,
-    onRange: (lo, hi) => change({ lo, hi }, { keep: true }),
-  });
+  const { shown, state, facts } = page;
+  if (!shown || !facts) return;
+  const { source, color } = state;
+  const { name, surface } = shown;
+  const points = count(shown.points);
+  page.caption = imageText({ source, color, points, surface }, facts.sources);
+  const where = `${points} points ${SURFACES[surface]}`;
+  first.label = `Slice ${name}, ${where}, colored by ${COLORS[color]}`;
+  second.label = page.secondCaption;
+  draw();
   mark();
 }
 
 // -- reading points
 
-async function place({ u, v, reach }) {
+async function place(/** @type {Place} */ { u, v, reach }) {
+  const { state, facts, measuring, measured } = page;
   const answer = await pickOnSlice(id, {
     plane: planeOf(state),
     uv: [u, v],
@@ -181,66 +153,63 @@ async function place({ u, v, reach }) {
     source: state.source,
     surface: state.surface,
   });
-  if (!answer.found) {
-    reading.textContent = "No point of the map here";
-    return;
-  }
-  picked = answer;
-  if (measuring) measured = measured.length >= 2 ? [answer] : [...measured, answer];
-  found.picked(answer);
+  if (!answer.found || !facts) return read("No point of the map here");
+  page.picked = answer;
+  if (measuring) page.measured = measured.length >= 2 ? [answer] : [...measured, answer];
   mark();
-  reading.textContent =
-    measured.length === 2 ? distanceText(measured[0], measured[1]) : pointText(answer, facts);
+  const [from, to] = page.measured;
+  read(from && to ? distanceText(from, to) : pointText(answer, facts));
+}
+
+function read(/** @type {string} */ text) {
+  page.reading = text;
+  draw();
 }
 
 function mark() {
-  const line = measured.length === 2 ? lengthText(measured[0], measured[1]) : "";
-  const points = measuring || measured.length ? measured : [picked].filter(Boolean);
-  const marks = [stretchMark(state), { points: points.map((one) => one.uv), text: line }];
+  const { measured, measuring, picked, state } = page;
+  const [from, to] = measured;
+  const text = from && to ? lengthText(from, to) : "";
+  const points = measuring || measured.length ? measured : picked ? [picked] : [];
+  const marks = [stretchMark(state), { points: points.map((one) => one.uv), text }];
   first.marks = marks;
   second.marks = marks;
 }
 
 function clearMeasure() {
-  measured = [];
-  picked = null;
-  reading.textContent = measuring ? "Click two points" : "";
+  Object.assign(page, { measured: [], picked: null });
+  page.reading = page.measuring ? "Click two points" : "";
 }
 
-function measure(on = !measuring) {
-  measuring = on;
+function measure(on = !page.measuring) {
+  page.measuring = on;
   clearMeasure();
-  byId("measure").setAttribute("aria-pressed", String(measuring));
+  draw();
   mark();
 }
 
 // -- two slices
 
-function layOut() {
-  const two = Boolean(state.beside || state.besideColor);
-  const views = byId("views");
-  views.classList.toggle("two", two);
-  views.classList.toggle("swiping", two && views.dataset.mode === "swipe");
-  second.hidden = captions[1].hidden = !two;
-  swipe.hidden = !(two && views.dataset.mode === "swipe");
-  second.style.clipPath = swipe.hidden ? "" : `inset(0 0 0 ${swipe.value}%)`;
-}
-
+/**
+ * @param {SliceView} from
+ * @param {SliceView} to
+ */
 function follow(from, to) {
   from.addEventListener("moving", () => {
     to.frame = from.frame;
   });
   from.addEventListener("frame", () => {
     to.frame = from.frame;
-    change(from.frame, { keep: true });
+    if (from.frame) change(from.frame, { keep: true });
   });
   from.addEventListener("place", (event) =>
-    place(event.detail).catch((error) => showError(byId("message"), error)),
+    place(detailOf(event)).catch((error) => showError(byId("message"), error)),
   );
 }
 
 // -- keys
 
+/** @type {Record<string, () => void>} */
 const KEYS = {
   "[": () => step(-1),
   PageDown: () => step(-1),
@@ -255,142 +224,105 @@ const KEYS = {
   c: () => nextColor(),
   m: () => measure(),
   r: () => otherSurface(),
-  0: () => change(unframed(state), { keep: true }),
+  0: () => showAll(),
   Escape: () => measure(false),
-  "?": () => byId("help", HTMLDialogElement).showModal(),
+  "?": () => showHelp(),
 };
 
-const thicker = (times) =>
+const showAll = () => change(unframed(page.state), { keep: true });
+const showHelp = () => byId("help", HTMLDialogElement).showModal();
+
+const thicker = (/** @type {number} */ times) =>
   change(
-    { t: Number(Math.min(100, Math.max(0.001, state.t * times)).toPrecision(6)) },
+    { t: Number(Math.min(100, Math.max(0.001, page.state.t * times)).toPrecision(6)) },
     { keep: true },
   );
 
+/**
+ * The choice after the present one.
+ * @template T
+ * @param {T[]} choices
+ * @param {T} now
+ */
+const nextOf = (choices, now) => choices[(choices.indexOf(now) + 1) % choices.length] ?? now;
+
 function otherSurface() {
-  const every = Object.keys(SURFACES);
-  const next = every[(every.indexOf(state.surface) + 1) % every.length];
-  if (facts.surface === "fitted") change({ surface: next }, { keep: true });
+  const every = /** @type {Surface[]} */ (Object.keys(SURFACES));
+  if (page.facts?.surface === "fitted")
+    change({ surface: nextOf(every, page.state.surface) }, { keep: true });
 }
 
 function nextColor() {
-  const able = Object.keys(COLORS).filter(
+  const able = /** @type {Color[]} */ (Object.keys(COLORS)).filter(
     (color) =>
-      (color !== "distance" || state.ref) &&
-      (color !== "normalized" || facts.fields.includes("intensity_normalized")),
+      (color !== "distance" || page.state.ref) &&
+      (color !== "normalized" || page.facts?.fields.includes("intensity_normalized")),
   );
-  change(
-    { color: able[(able.indexOf(state.color) + 1) % able.length], lo: null, hi: null },
-    { keep: true },
-  );
+  change({ color: nextOf(able, page.state.color), lo: null, hi: null }, { keep: true });
 }
 
 addEventListener("keydown", (event) => {
   const typing = targetOf(event).closest?.("input:not([type=range]), select, textarea, dialog");
-  if (typing || event.ctrlKey || event.metaKey || event.altKey || !facts) return;
+  if (typing || event.ctrlKey || event.metaKey || event.altKey || !page.facts) return;
   const action = KEYS[event.key.length === 1 ? event.key.toLowerCase() : event.key];
   if (!action) return;
   event.preventDefault();
   action();
 });
 
+// -- what is drawn
+
+/** @type {import("./drawing.js").Act} */
+const act = { change, toKind, step, showAll, measure: () => measure(), showHelp };
+const draw = () => drawPage(act);
+
 // -- begin
 
-const tab = Math.random().toString(36).slice(2, 12);
-const panel = controls(byId("controls"), { change, toKind });
 const found = findings(byId("findings"), {
   id,
   change,
-  state: () => state,
+  state: () => page.state,
   ask: () => ask(first),
   point: (p) => (above.place = p),
   reload,
-  measured: () => picked,
+  measured: () => page.picked,
 });
 
-function tools() {
-  const button = (text, action, more = {}) =>
-    make("button", { type: "button", onclick: action, ...more }, text);
-  const mode = (text, value) =>
-    button(
-      text,
-      () => {
-        byId("views").dataset.mode = value;
-        layOut();
-      },
-      { id: `mode-${value}` },
-    );
-  byId("tools").replaceChildren(
-    make(
-      "span",
-      { className: "moves" },
-      button("◂ Step", () => step(-1), { title: "One step back  [", ariaLabel: "Step back" }),
-      button("Step ▸", () => step(1), { title: "One step forward  ]", ariaLabel: "Step forward" }),
-      button("−", () => first.zoom(1.5), { title: "Zoom out", ariaLabel: "Zoom out" }),
-      button("+", () => first.zoom(1 / 1.5), { title: "Zoom in", ariaLabel: "Zoom in" }),
-      button("All", () => change(unframed(state), { keep: true }), {
-        title: "Whole slice  0",
-      }),
-      button("Measure", () => measure(), {
-        id: "measure",
-        ariaPressed: "false",
-        title: "Distance between two points  M",
-      }),
-    ),
-    make(
-      "span",
-      { className: "beside" },
-      ...panel.beside,
-      mode("Split", "split"),
-      mode("Swipe", "swipe"),
-    ),
-    button("?", () => byId("help", HTMLDialogElement).showModal(), {
-      ariaLabel: "Help",
-      title: "Keys  ?",
-    }),
-  );
-  byId("views").dataset.mode = "split";
-  byId("views").replaceChildren(
-    make("div", { className: "one" }, first, captions[0]),
-    make("div", { className: "one other" }, second, captions[1]),
-    swipe,
-  );
-  byId("under").replaceChildren(make("div", { id: "legend" }), facing, reading);
-  swipe.addEventListener("input", layOut);
-}
-
 async function reload() {
-  facts = await readSliceFacts(id, state.source);
-  panel.facts(facts);
-  found.facts(facts);
+  page.facts = await readSliceFacts(id, page.state.source);
+  draw();
+  found.facts(page.facts);
 }
 
 async function begin() {
+  second.className = "second";
   byId("above").append(above);
-  tools();
+  draw();
   help(byId("help"));
   follow(first, second);
   follow(second, first);
-  above.addEventListener("slice", ({ detail }) =>
-    change(
-      state.kind === "vertical" ? detail : unframed({ ...state, kind: "vertical", ...detail }),
-    ),
-  );
+  above.addEventListener("slice", (event) => {
+    const ends = detailOf(event);
+    const { state } = page;
+    change(state.kind === "vertical" ? ends : unframed({ ...state, kind: "vertical", ...ends }));
+  });
   dark.addEventListener("change", load);
-  try {
+  await attempt(byId("message"), async () => {
     const project = await readProject(id);
-    document.querySelector("page-head").name = project.name;
-    document.querySelector("map-verdict").facts = factsIn(project.summary);
+    only("page-head").name = project.name;
+    only("map-verdict").facts = factsIn(project.summary);
     document.title = `Slices · ${project.name} · recon4`;
     if (isPlan(project)) return showPlan(id, project);
     await reload();
-    if (!state.given) state = { ...state, ...start("horizontal"), given: true };
-    if (state.u !== null && state.v !== null && state.m !== null)
-      first.frame = { u: state.u, v: state.v, m: state.m };
+    const { facts, state } = page;
+    if (!facts) return;
+    if (!state.given)
+      page.state = { ...state, ...startOf("horizontal", state, facts.bounds_m, null), given: true };
+    const { u, v, m } = page.state;
+    if (u !== null && v !== null && m !== null) first.frame = { u, v, m };
     change({});
     above.show(aboveUrl(id, facts.key), await readAboveWindow(id));
-  } catch (error) {
-    showError(byId("message"), error);
-  }
+  });
 }
 
 addEventListener("popstate", () => change(parse(location.search)));

@@ -3,7 +3,7 @@
 // Events: "frame" (panned or zoomed), "moving" (while it moves), "place" (a click; its detail is
 // {u, v, reach}).
 
-import { make } from "../shared/dom.js";
+import { render } from "../shared/dom.js";
 import { listenToGestures } from "../shared/gestures.js";
 import { drawScaleBar, roundStep } from "../shared/scale_bar.js";
 import { imageSize } from "./state.js";
@@ -13,22 +13,36 @@ const FINEST_M = 0.0002;
 const COARSEST_M = 50;
 const CLICK_PX = 5; // a pointer that moves farther drags
 
+/**
+ * @import {SliceImageView, WindowSpec} from "../shared/http_types"
+ * @typedef {{points: number[][], text?: string, tone?: string}} Mark points of the plane to mark
+ * @typedef {{u: number, v: number, m: number}} Frame middle [m] and meters per pixel
+ * @typedef {{u: number, v: number, reach: number}} Place of a click, and how far around it [m]
+ * @typedef {CanvasRenderingContext2D} Pen
+ * @typedef {(name: string) => string} ColorOf
+ */
+
 export class SliceView extends HTMLElement {
-  #canvas = make("canvas", { tabIndex: 0, ariaLabel: "Slice" }); // until `label` says of what
-  #center = null;
+  #canvas = document.createElement("canvas");
+  #hover = document.createElement("output");
+  /** @type {number[] | null} */
+  #center = null; // null before the first image
   #metersPerPx = 0.01;
-  #image = null;
-  #window = null;
+  /** @type {{image: ImageBitmap, window: WindowSpec} | null} */
+  #shown = null;
   #axes = ["", ""];
+  /** @type {Mark[]} */
   #marks = [];
   #moved = 0; // by the pointer since it went down [px]
-  #rest = 0;
-  #shown = 0;
-  #hover = make("output", { className: "cursor", ariaLive: "off" });
+  /** @type {ReturnType<typeof setTimeout> | undefined} */
+  #rest = undefined;
+  #newest = 0; // number of the newest image
 
   connectedCallback() {
-    this.replaceChildren(this.#canvas, this.#hover);
-    this.#canvas.setAttribute("role", "img");
+    Object.assign(this.#hover, { className: "cursor", ariaLive: "off" });
+    Object.assign(this.#canvas, { tabIndex: 0, role: "img" });
+    this.label = ""; // until somebody says of what
+    render([this.#canvas, this.#hover], this);
     const canvas = this.#canvas;
     listenToGestures(canvas, {
       onDown: (_at, _event, count) => {
@@ -48,7 +62,7 @@ export class SliceView extends HTMLElement {
   }
 
   /** The label for screen readers. */
-  set label(text) {
+  set label(/** @type {string} */ text) {
     this.#canvas.setAttribute("aria-label", text || "Slice");
   }
 
@@ -74,19 +88,19 @@ export class SliceView extends HTMLElement {
   }
 
   /** Shows a slice image of the server. */
-  async show({ png, window, axes }) {
+  async show(/** @type {Pick<SliceImageView, "png" | "window" | "axes">} */ { png, window, axes }) {
     const bytes = Uint8Array.from(atob(png), (one) => one.charCodeAt(0));
-    const mine = (this.#shown += 1);
+    const mine = (this.#newest += 1);
     const image = await createImageBitmap(new Blob([bytes], { type: "image/png" }));
-    if (mine !== this.#shown) return image.close(); // a newer one is shown already
-    this.#image?.close();
-    [this.#image, this.#window, this.#axes] = [image, window, axes];
+    if (mine !== this.#newest) return image.close(); // a newer one is shown already
+    this.#shown?.image.close();
+    [this.#shown, this.#axes] = [{ image, window }, axes];
     if (!this.#center) this.#fit(window);
     else this.draw();
   }
 
   /** All of a window between the edges with the coordinates. */
-  #fit(window) {
+  #fit(/** @type {WindowSpec} */ window) {
     const { width, height } = this.#size();
     const m = Math.max(
       (window.right - window.left) / (width - EDGE.left),
@@ -99,14 +113,19 @@ export class SliceView extends HTMLElement {
   }
 
   clear() {
-    this.#image = this.#window = null;
+    this.#shown = null;
     this.draw();
   }
 
   /** Points and lines to mark: [{points: [[u, v], …], text}]. */
-  set marks(marks) {
+  set marks(/** @type {Mark[]} */ marks) {
     this.#marks = marks;
     this.draw();
+  }
+
+  /** The middle of the view; [0, 0] before the first image. */
+  get #middle() {
+    return this.#center ?? [0, 0];
   }
 
   #size() {
@@ -114,19 +133,21 @@ export class SliceView extends HTMLElement {
     return { width: Math.max(16, width), height: Math.max(16, height) };
   }
 
+  /** @returns {[number, number]} */
   #toPx(/** @type {number[]} */ [u, v]) {
     const { width, height } = this.#size();
     return [
-      width / 2 + (u - this.#center[0]) / this.#metersPerPx,
-      height / 2 - (v - this.#center[1]) / this.#metersPerPx,
+      width / 2 + (u - this.#middle[0]) / this.#metersPerPx,
+      height / 2 - (v - this.#middle[1]) / this.#metersPerPx,
     ];
   }
 
+  /** @returns {[number, number]} */
   #toPlane(/** @type {number[]} */ [x, y]) {
     const { width, height } = this.#size();
     return [
-      this.#center[0] + (x - width / 2) * this.#metersPerPx,
-      this.#center[1] - (y - height / 2) * this.#metersPerPx,
+      this.#middle[0] + (x - width / 2) * this.#metersPerPx,
+      this.#middle[1] - (y - height / 2) * this.#metersPerPx,
     ];
   }
 
@@ -136,19 +157,21 @@ export class SliceView extends HTMLElement {
     const canvas = this.#canvas;
     [canvas.width, canvas.height] = [Math.round(width * ratio), Math.round(height * ratio)];
     const pen = canvas.getContext("2d");
+    if (!pen) return;
     pen.setTransform(ratio, 0, 0, ratio, 0, 0);
     const style = getComputedStyle(this);
-    const color = (name) => style.getPropertyValue(name).trim();
+    const color = (/** @type {string} */ name) => style.getPropertyValue(name).trim();
     pen.fillStyle = color("--paper");
     pen.fillRect(0, 0, width, height);
     if (!this.#center) return;
     const step = roundStep(this.#metersPerPx * 84);
     this.#grid(pen, step, color("--grid"));
-    if (this.#image) {
-      const [x0, y0] = this.#toPx([this.#window.left, this.#window.top]);
-      const [x1, y1] = this.#toPx([this.#window.right, this.#window.bottom]);
-      pen.imageSmoothingEnabled = x1 - x0 < this.#image.width * 1.2;
-      pen.drawImage(this.#image, x0, y0, x1 - x0, y1 - y0);
+    if (this.#shown) {
+      const { image, window } = this.#shown;
+      const [x0, y0] = this.#toPx([window.left, window.top]);
+      const [x1, y1] = this.#toPx([window.right, window.bottom]);
+      pen.imageSmoothingEnabled = x1 - x0 < image.width * 1.2;
+      pen.drawImage(image, x0, y0, x1 - x0, y1 - y0);
     }
     this.#labels(pen, step, color);
     drawScaleBar(pen, 1 / this.#metersPerPx, {
@@ -160,14 +183,23 @@ export class SliceView extends HTMLElement {
     for (const mark of this.#marks) this.#mark(pen, mark, color);
   }
 
+  /**
+   * @param {number} step
+   * @param {0 | 1} axis
+   */
   #lines(step, axis) {
     const { width, height } = this.#size();
     const reach = ((axis ? height : width) * this.#metersPerPx) / 2;
-    const first = Math.ceil((this.#center[axis] - reach) / step);
-    const last = Math.floor((this.#center[axis] + reach) / step);
+    const first = Math.ceil((this.#middle[axis] - reach) / step);
+    const last = Math.floor((this.#middle[axis] + reach) / step);
     return Array.from({ length: Math.max(0, last - first + 1) }, (_, k) => (first + k) * step);
   }
 
+  /**
+   * @param {Pen} pen
+   * @param {number} step
+   * @param {string} color
+   */
   #grid(pen, step, color) {
     const { width, height } = this.#size();
     pen.strokeStyle = color;
@@ -186,10 +218,16 @@ export class SliceView extends HTMLElement {
     pen.stroke();
   }
 
+  /**
+   * @param {Pen} pen
+   * @param {number} step
+   * @param {ColorOf} color
+   */
   #labels(pen, step, color) {
     const { width, height } = this.#size();
     const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-    const text = (x) => (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−");
+    const text = (/** @type {number} */ x) =>
+      (Math.abs(x) < step / 2 ? 0 : x).toFixed(digits).replace("-", "−");
     pen.fillStyle = color("--paper-edge");
     pen.fillRect(0, height - EDGE.bottom, width, EDGE.bottom);
     pen.fillRect(0, 0, EDGE.left, height);
@@ -216,13 +254,20 @@ export class SliceView extends HTMLElement {
     pen.strokeRect(EDGE.left + 0.5, -1, width, height - EDGE.bottom + 0.5);
   }
 
+  /**
+   * @param {Pen} pen
+   * @param {Mark} given
+   * @param {ColorOf} color
+   */
   #mark(pen, { points, text, tone }, color) {
     if (!points.length) return;
     const places = points.map((point) => this.#toPx(point));
-    for (const [stroke, width] of [
+    /** @type {Array<[string, number]>} */
+    const strokes = [
       [color("--paper"), 5],
       [color(tone ?? "--mark"), 2],
-    ]) {
+    ];
+    for (const [stroke, width] of strokes) {
       pen.strokeStyle = stroke;
       pen.lineWidth = width;
       pen.beginPath();
@@ -234,7 +279,7 @@ export class SliceView extends HTMLElement {
       pen.stroke();
     }
     if (!text) return;
-    const [x, y] = places.at(-1);
+    const [x, y] = places.at(-1) ?? [0, 0];
     pen.font = "600 13px system-ui, sans-serif";
     pen.textAlign = "left";
     const wide = pen.measureText(text).width;
@@ -247,6 +292,10 @@ export class SliceView extends HTMLElement {
 
   // -- pointers
 
+  /**
+   * @param {number[]} at
+   * @param {PointerEvent} event
+   */
   #hovered(at, event) {
     if (!this.#center || event.pointerType !== "mouse") return;
     const digits = this.#metersPerPx < 0.005 ? 3 : 2;
@@ -255,6 +304,10 @@ export class SliceView extends HTMLElement {
       .join("  ");
   }
 
+  /**
+   * @param {number[]} from
+   * @param {number[]} to
+   */
   #dragged(from, to) {
     if (!this.#center) return;
     const [dx, dy] = [to[0] - from[0], to[1] - from[1]];
@@ -262,6 +315,10 @@ export class SliceView extends HTMLElement {
     if (this.#moved > CLICK_PX) this.#shift(dx, dy);
   }
 
+  /**
+   * @param {import("../shared/gestures.js").Pair} before
+   * @param {import("../shared/gestures.js").Pair} after
+   */
   #pinched(before, after) {
     if (!this.#center) return;
     this.#shift(after.middle[0] - before.middle[0], after.middle[1] - before.middle[1]);
@@ -269,6 +326,11 @@ export class SliceView extends HTMLElement {
     this.#moved = Infinity;
   }
 
+  /**
+   * @param {number[]} at
+   * @param {PointerEvent} event
+   * @param {number} count
+   */
   #released(at, event, count) {
     const click = count === 1 && this.#moved <= CLICK_PX && event.type === "pointerup";
     if (!click || !this.#center) return;
@@ -277,14 +339,16 @@ export class SliceView extends HTMLElement {
     this.dispatchEvent(new CustomEvent("place", { detail: { u, v, reach } }));
   }
 
-  #key(event) {
+  #key(/** @type {KeyboardEvent} */ event) {
+    /** @type {Record<string, [number, number]>} */
     const shifts = {
       ArrowLeft: [80, 0],
       ArrowRight: [-80, 0],
       ArrowUp: [0, 80],
       ArrowDown: [0, -80],
     };
-    if (event.key in shifts) this.#shift(...shifts[event.key]);
+    const shift = shifts[event.key];
+    if (shift) this.#shift(...shift);
     else if (event.key === "Enter" && this.#center) {
       const [u, v] = this.#center;
       this.dispatchEvent(
@@ -294,15 +358,23 @@ export class SliceView extends HTMLElement {
     event.preventDefault();
   }
 
+  /**
+   * @param {number} dx
+   * @param {number} dy
+   */
   #shift(dx, dy) {
     this.#center = [
-      this.#center[0] - dx * this.#metersPerPx,
-      this.#center[1] + dy * this.#metersPerPx,
+      this.#middle[0] - dx * this.#metersPerPx,
+      this.#middle[1] + dy * this.#metersPerPx,
     ];
     this.#changed();
   }
 
-  /** Closer by a factor below 1, about a place of the view or its middle. */
+  /**
+   * Closer by a factor below 1, about a place of the view or its middle.
+   * @param {number} factor
+   * @param {number[]} [at]
+   */
   zoom(factor, at) {
     if (!this.#center) return;
     const { width, height } = this.#size();
@@ -310,7 +382,7 @@ export class SliceView extends HTMLElement {
     const [u, v] = this.#toPlane(place);
     const next = Math.min(COARSEST_M, Math.max(FINEST_M, this.#metersPerPx * factor));
     const scale = next / this.#metersPerPx;
-    this.#center = [u + (this.#center[0] - u) * scale, v + (this.#center[1] - v) * scale];
+    this.#center = [u + (this.#middle[0] - u) * scale, v + (this.#middle[1] - v) * scale];
     this.#metersPerPx = next;
     this.#changed();
   }

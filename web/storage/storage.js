@@ -8,10 +8,13 @@ import {
   removeUpload,
   restoreProject,
 } from "../shared/api.js";
-import { attempt, byId, make, succeeds } from "../shared/dom.js";
+import { attempt, byId, html, nothing, render, repeat, succeeds } from "../shared/dom.js";
 import { bytes, when } from "../shared/format.js";
 import "../shared/page_head.js";
 
+/** @import {StoredItem} from "../shared/http_types" */
+
+/** @type {Record<string, string>} */
 const KINDS = {
   project: "Project",
   recording: "Recording, uploaded",
@@ -19,7 +22,12 @@ const KINDS = {
   deleted: "Deleted",
 };
 
-/** Asks once; resolves to whether it is to be done. */
+/**
+ * Asks once; resolves to whether it is to be done.
+ * @returns {Promise<boolean>}
+ * @param {string} title
+ * @param {string} text
+ */
 function confirmed(title, text) {
   const dialog = byId("confirm", HTMLDialogElement);
   byId("confirm-title").textContent = title;
@@ -33,47 +41,51 @@ function confirmed(title, text) {
   );
 }
 
-async function deleteAfterwards({ kind, name, id, used_by }) {
+async function deleteAfterwards(/** @type {StoredItem} */ { kind, name, id, used_by }) {
   const consequence = used_by.length
     ? `${used_by.join(", ")} keep their maps, but cannot be processed from it again. `
     : "";
+  /** @type {Record<string, string>} */
   const texts = {
     recording: `${consequence}It can be restored for a week.`,
     upload: "What was received is removed at once.",
     deleted: "It cannot be restored afterwards.",
   };
+  /** @type {Record<string, (id: string) => Promise<unknown>>} */
   const requests = { recording: deleteRecording, upload: removeUpload, deleted: removeProject };
-  if (!(await confirmed(`Delete ${name}?`, texts[kind]))) return;
-  if (await succeeds(byId("message"), () => requests[kind](id))) await reload();
+  if (!(await confirmed(`Delete ${name}?`, texts[kind] ?? ""))) return;
+  if (await succeeds(byId("message"), () => requests[kind]?.(id))) await reload();
 }
 
-function actions(item) {
+function actions(/** @type {StoredItem} */ item) {
   const { kind, id, name } = item;
-  if (kind === "project") return [make("a", { className: "button", href: projectUrl(id) }, "Open")];
+  if (kind === "project") return html`<a class="button" href=${projectUrl(id)}>Open</a>`;
   const label = kind === "deleted" ? "Delete now" : "Delete…";
+  /**
+   * @param {string} text
+   * @param {() => unknown} onclick
+   */
   const button = (text, onclick) =>
-    make("button", { type: "button", ariaLabel: `${text} ${name}`, onclick }, text);
+    html`<button type="button" aria-label="${text} ${name}" @click=${onclick}>${text}</button>`;
   const restore = async () => {
     if (await succeeds(byId("message"), () => restoreProject(id))) await reload();
   };
   return [
-    ...(kind === "deleted" ? [button("Restore", restore)] : []),
+    kind === "deleted" ? button("Restore", restore) : nothing,
     button(label, () => deleteAfterwards(item)),
   ];
 }
 
-function row(item) {
+function row(/** @type {StoredItem} */ item) {
   const { kind, name, bytes: size, used_by, expires } = item;
   const uses = expires ? `until ${when(expires)}` : used_by.join(", ");
-  return make(
-    "tr",
-    {},
-    make("th", { scope: "row" }, name),
-    make("td", { "data-label": "Kind" }, KINDS[kind]),
-    make("td", { "data-label": "Size" }, bytes(size)),
-    make("td", { "data-label": "Used by" }, uses || "–"),
-    make("td", {}, make("div", { className: "actions" }, ...actions(item))),
-  );
+  return html`<tr>
+    <th scope="row">${name}</th>
+    <td data-label="Kind">${KINDS[kind]}</td>
+    <td data-label="Size">${bytes(size)}</td>
+    <td data-label="Used by">${uses || "–"}</td>
+    <td><div class="actions">${actions(item)}</div></td>
+  </tr>`;
 }
 
 async function reload() {
@@ -84,7 +96,10 @@ async function reload() {
   byId("disk").textContent =
     `${bytes(free_bytes)} of ${bytes(disk_bytes)} are free. Listed here: ${bytes(listed)}; ` +
     `queue, logs and caches of the server: ${bytes(server_bytes)}.`;
-  byId("items").replaceChildren(...items.map(row));
+  render(
+    repeat(items, ({ kind, id }) => `${kind} ${id}`, row),
+    byId("items"),
+  );
   byId("nothing").hidden = items.length > 0;
 }
 

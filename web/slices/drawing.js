@@ -1,0 +1,163 @@
+// What the page of slices shows, and how it is drawn; each part from the state of the page.
+
+import { approvalFact } from "../shared/approval_lines.js";
+import { byId, html, nothing, render, targetOf } from "../shared/dom.js";
+import { count } from "../shared/format.js";
+import { cutText } from "./captions.js";
+import { besideFields, controls } from "./controls.js";
+import { legend } from "./legend.js";
+import { SURFACES, parse } from "./state.js";
+import { SliceView } from "./view.js";
+
+/**
+ * @import {PickView, SliceFacts, SliceImageView} from "../shared/http_types"
+ * @typedef {import("./controls.js").Act & {step: (times: number) => void, showAll: () => void,
+ *   measure: () => void, showHelp: () => void}} Act
+ */
+
+export const first = new SliceView();
+export const second = new SliceView();
+
+/** What the page shows. */
+export const page = {
+  state: parse(location.search),
+  facts: /** @type {SliceFacts | null} */ (null),
+  shown: /** @type {SliceImageView | null} */ (null),
+  caption: "", // of the first slice
+  secondCaption: "",
+  turn: 0, // number of the newest request of an image
+  measuring: false,
+  measured: /** @type {PickView[]} */ ([]), // at most two points
+  picked: /** @type {PickView | null} */ (null),
+  reading: "", // what is known of the picked points
+  mode: /** @type {"split" | "swipe"} */ ("split"),
+  swipe: 50, // where the second slice begins [%]
+};
+
+/** Draws all but the images of the slices. */
+export function drawPage(/** @type {Act} */ act) {
+  const { state, facts } = page;
+  render(controls(state, facts, act), byId("controls"));
+  drawTools(act);
+  drawViews();
+  drawUnder(act);
+}
+
+function drawTools(/** @type {Act} */ act) {
+  const { step, showAll, measure, showHelp } = act;
+  const button = (
+    /** @type {string} */ text,
+    /** @type {() => void} */ action,
+    /** @type {string} */ title,
+    label = title.split("  ")[0],
+  ) =>
+    html`<button type="button" title=${title} aria-label=${label} @click=${action}>
+      ${text}
+    </button>`;
+  const mode = (/** @type {string} */ text, /** @type {"split" | "swipe"} */ value) =>
+    html`<button
+      type="button"
+      id="mode-${value}"
+      @click=${() => {
+        page.mode = value;
+        drawPage(act);
+      }}
+    >
+      ${text}
+    </button>`;
+  render(
+    html`<span class="moves"
+        >${button("◂ Step", () => step(-1), "One step back  [", "Step back")}${button(
+          "Step ▸",
+          () => step(1),
+          "One step forward  ]",
+          "Step forward",
+        )}${button("−", () => first.zoom(1.5), "Zoom out")}${button(
+          "+",
+          () => first.zoom(1 / 1.5),
+          "Zoom in",
+        )}<button type="button" title="Whole slice  0" @click=${showAll}>All</button
+        ><button
+          type="button"
+          id="measure"
+          aria-pressed=${page.measuring}
+          title="Distance between two points  M"
+          @click=${measure}
+        >
+          Measure
+        </button></span
+      ><span class="beside"
+        >${besideFields(page.state, page.facts, act)}${mode("Split", "split")}${mode(
+          "Swipe",
+          "swipe",
+        )}</span
+      >${button("?", showHelp, "Keys  ?", "Help")}`,
+    byId("tools"),
+  );
+}
+
+function drawViews() {
+  const { state, mode, swipe, caption, secondCaption } = page;
+  const two = Boolean(state.beside || state.besideColor);
+  const swiping = two && mode === "swipe";
+  const views = byId("views");
+  views.classList.toggle("two", two);
+  views.classList.toggle("swiping", swiping);
+  second.hidden = !two;
+  second.style.clipPath = swiping ? `inset(0 0 0 ${swipe}%)` : "";
+  const slide = (/** @type {Event} */ event) => {
+    page.swipe = Number(targetOf(event).value);
+    drawViews();
+  };
+  render(
+    html`<div class="one">
+        ${first}
+        <p class="caption">${caption}</p>
+      </div>
+      <div class="one other">
+        ${second}
+        <p class="caption second" ?hidden=${!two}>${secondCaption}</p>
+      </div>
+      <input
+        class="swipe"
+        type="range"
+        min="0"
+        max="100"
+        aria-label="Swipe between the two slices"
+        ?hidden=${!swiping}
+        .value=${String(swipe)}
+        @input=${slide}
+      />`,
+    views,
+  );
+}
+
+function drawUnder(/** @type {Act} */ { change }) {
+  const { state, facts, shown, reading } = page;
+  const setRange = (/** @type {number | null} */ lo, /** @type {number | null} */ hi) =>
+    change({ lo, hi }, { keep: true });
+  render(
+    html`<div id="legend">${shown && facts ? legend(state, shown, facts, setRange) : nothing}</div>
+      <div class="facing">${shown && facts ? facing(shown, facts) : nothing}</div>
+      <p class="readout" role="status">${reading}</p>`,
+    byId("under"),
+  );
+}
+
+/**
+ * What is cut, in a row of facts.
+ * @param {SliceImageView} shown
+ * @param {SliceFacts} facts
+ */
+function facing({ name, points, surface }, { strays, frame, approval }) {
+  const { kind, t } = page.state;
+  return html`<strong>${cutText(kind, name)}</strong
+    ><span>${Number((t * 100).toFixed(1))} cm thick</span
+    ><span>${count(points)} points ${SURFACES[surface]}</span>
+    ${
+      strays && surface !== "strays"
+        ? html`<span>${count(strays)} stray returns left out</span>`
+        : nothing
+    }
+    <span class="frame">${frame}</span>${approvalFact(approval)}`;
+}
