@@ -49,3 +49,10 @@ test("what the browser keeps is kept apart from that of other servers of the hos
 
   assert.deepEqual(Object.keys(stored), ["of another server"]);
 });
+
+test("what the viewer kept is forgotten too, whatever the path of the server", () => {
+  stored["viser-user:recon4.stretch.office"] = "span=1,2";
+  forgetKept();
+  assert.equal(stored["viser-user:recon4.stretch.office"], undefined);
+  assert.equal(stored["of another server"], "2");
+});

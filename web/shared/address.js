@@ -38,8 +38,12 @@ export const kept = (/** @type {string} */ name) => localStorage.getItem(keyOf(n
  */
 export const keep = (name, text) => localStorage.setItem(keyOf(name), text);
 
+const BY_VIEWER = "viser-user:"; // viser keeps what the viewer chose by names without our path
+
 /** Forgets all of it, for the next person at this browser. */
 export function forgetKept() {
-  const ours = Object.keys(localStorage).filter((key) => key.startsWith(keyOf("")));
+  const ours = Object.keys(localStorage).filter(
+    (key) => key.startsWith(keyOf("")) || key.startsWith(BY_VIEWER),
+  );
   for (const key of ours) localStorage.removeItem(key);
 }
