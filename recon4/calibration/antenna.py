@@ -64,7 +64,11 @@ def with_antenna(
 def _estimate(walk: RecordedWalk, settings: Settings) -> AntennaCalibration | None:
     frames = walk.frames
     return calibrate_antenna(
-        walk.trajectory, frames.gnss, frames.rig, imu=frames.imu, settings=settings.gnss
+        walk.trajectory,
+        frames.gnss,
+        frames.rig,
+        imu=frames.imu,
+        settings=settings.gnss,
     )
 
 

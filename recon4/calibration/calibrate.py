@@ -31,6 +31,7 @@ from recon4.calibration.joint import (
 from recon4.calibration.judgment import judge
 from recon4.calibration.mount_search import search_mounts, without_others
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.tuning import CalibrationTuning
 from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
@@ -39,6 +40,7 @@ from recon4.model.calibration_figures import GNSS, IMU, CalibrationOutcome, Para
 from recon4.model.rig import Rig
 from recon4.progress import Progress, track
 from recon4.settings import CalibrationSettings, Settings
+from recon4.settings.tuning import tuned
 
 _MIN_WINDOWS = 3
 _FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
@@ -132,7 +134,7 @@ def audit(
         settings: Number and length of the windows, noise of the IMU.
         progress: Counts rounds.
     """
-    s = settings.calibration
+    s = tuned(CalibrationTuning, settings.calibration)
     windows = walk.windows(s.audit_windows, s.audit_window_s)
     found = _Estimator(settings, progress).estimate(windows, start, parameters)
     if found is not None and _is_near(found, walk.frames.rig):
@@ -168,7 +170,7 @@ def calibrate(
     Returns:
         None if there are no windows with planes.
     """
-    recorded, s = walk.frames.rig, settings.calibration
+    recorded, s = walk.frames.rig, tuned(CalibrationTuning, settings.calibration)
     rows = walk.rows(2 * s.windows, s.window_s, with_lost=True)
     moved, few = walk.with_rig(start), few_points(len(rows))
     revolutions = max(1, sum(map(len, rows)) * len(_enabled(recorded)))

@@ -15,11 +15,11 @@ from scipy.optimize import OptimizeResult, minimize
 from scipy.spatial import cKDTree
 
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.tuning import EntropyTuning
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import Array
 from recon4.model.calibration_figures import IMU
 from recon4.model.rig import Rig
-from recon4.settings.calibration import EntropySettings
 
 _UNIT = {"rad": np.deg2rad(0.1), "m": 0.01, "s": 0.001}
 """What Powell's method counts as one, for each kind of parameter."""
@@ -43,7 +43,7 @@ def calibrate_by_entropy(
     rig: Rig,
     parameters: Parameters,
     *,
-    settings: EntropySettings,
+    settings: EntropyTuning,
     progress: Callable[[], None] = lambda: None,
 ) -> EntropyEstimate:
     """Minimize the entropy of the map over mounts and clocks of LiDARs.
@@ -83,7 +83,7 @@ def calibrate_by_entropy(
     )
 
 
-def entropy_cost(windows: Sequence[Window], rig: Rig, settings: EntropySettings) -> float:
+def entropy_cost(windows: Sequence[Window], rig: Rig, settings: EntropyTuning) -> float:
     """Mean over the windows of ``-sum_i G(p_i - p_j) / N``, -1..0; smaller is sharper."""
     costs = []
     for window in windows:

@@ -22,7 +22,7 @@ from recon4.kernels.calibration import (
 )
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
-from recon4.settings import OdometrySettings
+from recon4.registration.tuning import OdometryTuning
 
 _POINT_SD_M = 0.015
 _GRAZING = 0.15
@@ -125,7 +125,7 @@ def reduce_window(
     rig: Rig,
     parameters: Parameters,
     *,
-    settings: OdometrySettings,
+    settings: OdometryTuning,
     bounds: RoundBounds,
 ) -> Reduced | None:
     """Normal equations of the rig from one window; None if nothing lies on planes.
@@ -233,7 +233,7 @@ def _offset_m(surfaces: SharedSurfaces, sensor: NDArray[np.uint8], r: Array) -> 
 
 
 def _add_motion(
-    equations: _NormalEquations, state: WindowState, rig: Rig, *, settings: OdometrySettings
+    equations: _NormalEquations, state: WindowState, rig: Rig, *, settings: OdometryTuning
 ) -> float:
     """Add IMU and priors of the motion; returns the root mean square residual of the IMU."""
     H, g, parameters = equations.H, equations.g, equations.parameters

@@ -17,7 +17,7 @@ from recon4.geometry.se3 import Array, skew, so3_exp, so3_log
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
-from recon4.settings import OdometrySettings
+from recon4.registration.tuning import OdometryTuning
 
 _FINE = 10
 """Samples are integrated this many times between two knots."""
@@ -52,7 +52,7 @@ BIASES = 9
 """Number of parameters in `WindowBiases`."""
 
 
-def measured_noise(samples: Sequence[ImuSamples], settings: OdometrySettings) -> OdometrySettings:
+def measured_noise(samples: Sequence[ImuSamples], settings: OdometryTuning) -> OdometryTuning:
     """The settings with the noise densities that the samples themselves show.
 
     Differences of the fourth order remove the motion and leave the noise. Odometry assumes much
@@ -93,7 +93,7 @@ class ImuRows:
 
 
 def imu_rows(
-    window: Window, rig: Rig, biases: WindowBiases, *, settings: OdometrySettings
+    window: Window, rig: Rig, biases: WindowBiases, *, settings: OdometryTuning
 ) -> ImuRows | None:
     """Residuals of gyroscope and accelerometer in a window; None without an IMU.
 

@@ -22,8 +22,10 @@ from recon4.calibration.window import Window, with_trajectory
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
+from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import apply_knots
-from recon4.settings import OdometrySettings, Settings
+from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _TIGHT = RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.08, kernel_m=0.04)
 _PURE = replace(_TIGHT, pure=True)
@@ -125,7 +127,7 @@ def calibrate_jointly(
     """
     first, states = rig, [_first_state(window) for window in windows]
     samples = [window.imu for window in windows if window.imu is not None]
-    noise = measured_noise(samples, settings.odometry)
+    noise = measured_noise(samples, tuned(OdometryTuning, settings.odometry))
     prior = parameters.prior
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
@@ -174,7 +176,12 @@ def explain(
     found: list[Reduced | None] = []
     with ThreadPoolExecutor(settings.graph.workers) as pool:
         for bounds in thinned_rounds(EXPLAIN, every):
-            found = list(pool.map(_reducer(rig, nothing, settings.odometry, bounds=bounds), states))
+            found = list(
+                pool.map(
+                    _reducer(rig, nothing, tuned(OdometryTuning, settings.odometry), bounds=bounds),
+                    states,
+                )
+            )
             states = [
                 _moved(state, part, np.empty(0)) for state, part in zip(states, found, strict=True)
             ]
@@ -198,7 +205,7 @@ def _step(H: Array, g: Array, parameters: Parameters) -> Array:
 
 
 def _reducer(
-    rig: Rig, parameters: Parameters, noise: OdometrySettings, *, bounds: RoundBounds
+    rig: Rig, parameters: Parameters, noise: OdometryTuning, *, bounds: RoundBounds
 ) -> Callable[[WindowState], Reduced | None]:
     return lambda state: reduce_window(state, rig, parameters, settings=noise, bounds=bounds)
 

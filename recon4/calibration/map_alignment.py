@@ -82,10 +82,9 @@ def _aligned(
 ) -> SE3 | None:
     """Both maps begin at the same body pose, so what is between them is the mount's error."""
     target, source = (
-        make_scan(_map_of(window, rig, row), settings.scans)
-        for window, row in zip(both, rows, strict=True)
+        make_scan(_map_of(window, rig, row)) for window, row in zip(both, rows, strict=True)
     )
-    found = register_scans(target, source, initial=SE3.identity(), settings=settings.scans)
+    found = register_scans(target, source, initial=SE3.identity())
     if not found.converged:
         return None
     return found.T_target_source @ rig.sensors[rows[1]].T_body_sensor

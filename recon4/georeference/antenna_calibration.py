@@ -13,12 +13,14 @@ from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.gnss import align_heading
 from recon4.georeference.gnss_priors import GnssPriors, positioned
 from recon4.georeference.level import level
+from recon4.georeference.tuning import GnssTuning
 from recon4.model.calibration_figures import GNSS, GnssOutcome, ParameterFigures, ParameterStatus
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.settings import GnssSettings
+from recon4.settings.tuning import tuned
 
 _BLOCK_NS = 8_000_000_000
 """Every second stretch of this length is not used by the first estimate, but checks it [ns]."""
@@ -95,7 +97,11 @@ def calibrate_antenna(
     Returns:
         None if there are too few fixes, or the walk cannot be placed on the earth.
     """
-    placed = _place(trajectory, gnss, rig, imu=imu, settings=settings) if gnss else None
+    placed = (
+        _place(trajectory, gnss, rig, imu=imu, settings=tuned(GnssTuning, settings))
+        if gnss
+        else None
+    )
     found = placed and gnss and placed.audit(gnss, rig)
     if not placed or not gnss or not found:
         return None
@@ -188,7 +194,7 @@ def _place(
     rig: Rig,
     *,
     imu: ImuSamples | None,
-    settings: GnssSettings,
+    settings: GnssTuning,
 ) -> _Placed | None:
     """Level a walk and turn it to the fixes; None if that is not possible."""
     good = (gnss.quality == GnssQuality.RTK_FIXED) & positioned(gnss)

@@ -15,6 +15,7 @@ from recon4.georeference.gnss_priors import (
     one_prior_per_node,
     usable_gnss_priors,
 )
+from recon4.georeference.tuning import GnssTuning
 from recon4.model.pose_graph import AUTOMATIC, Judge, Judgment, PoseGraph
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
@@ -22,7 +23,6 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.pose_graph.robust import LOOP_NODES, optimize_gnc
 from recon4.pose_graph.solve import PosePriors, PositionPriors, Priors, optimize
 from recon4.pose_graph.verification import outlier_judgments, with_judgments
-from recon4.settings import GnssSettings
 
 _DRAWS = 400
 _MIN_PRIORS = 5
@@ -128,7 +128,7 @@ def georeference(
     gnss: GnssSamples | None,
     *,
     rig: Rig,
-    settings: GnssSettings,
+    settings: GnssTuning,
 ) -> GeoreferenceResult:
     """Georeference a leveled graph by its GNSS positions.
 
@@ -169,7 +169,7 @@ def _place_by_priors(
     origin: GeodeticOrigin,
     *,
     samples: int,
-    settings: GnssSettings,
+    settings: GnssTuning,
 ) -> GeoreferenceResult:
     """Align by consensus, exclude edges and fixes that contradict, solve."""
     p_map = graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
@@ -197,7 +197,7 @@ def _place_by_priors(
     )
 
 
-def _contradiction(p_map: Array, gnss_priors: GnssPriors, *, settings: GnssSettings) -> str:
+def _contradiction(p_map: Array, gnss_priors: GnssPriors, *, settings: GnssTuning) -> str:
     """By how much fixes contradict a trajectory that they do not place; empty if one stood."""
     tracks = (gnss_priors.p_enu[:, :2], p_map[:, :2])
     if min(np.linalg.norm(np.ptp(track, axis=0)) for track in tracks) < settings.min_extent_m:
@@ -211,7 +211,7 @@ def _contradiction(p_map: Array, gnss_priors: GnssPriors, *, settings: GnssSetti
 
 
 def align_heading(
-    p_map: Array, gnss_priors: GnssPriors, *, settings: GnssSettings
+    p_map: Array, gnss_priors: GnssPriors, *, settings: GnssTuning
 ) -> tuple[SE3, NDArray[np.bool_]]:
     """Heading and shift with the largest consensus of fixes (RANSAC).
 
@@ -267,7 +267,7 @@ def _near(
 
 
 def _solve(
-    graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
+    graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssTuning
 ) -> tuple[PoseGraph, NDArray[np.bool_]]:
     """Solve with the fixes inside the gate, then again without the outliers."""
     used, tilt = near, _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)
@@ -282,7 +282,7 @@ def _solve(
 
 
 def _contradicting(
-    graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssSettings
+    graph: PoseGraph, gnss_priors: GnssPriors, near: NDArray[np.bool_], *, settings: GnssTuning
 ) -> dict[int, Judgment]:
     """Judgments on the edges that the robust solve with GNSS priors rejects, by row.
 
@@ -303,7 +303,7 @@ def _contradicting(
     return outlier_judgments(robust, outliers, by=Judge.GNSS)
 
 
-def _positions(gnss_priors: GnssPriors, settings: GnssSettings) -> PositionPriors:
+def _positions(gnss_priors: GnssPriors, settings: GnssTuning) -> PositionPriors:
     chosen = one_prior_per_node(gnss_priors)
     sd_m = correlated_sd(chosen, correlation_s=settings.correlation_s)
     return PositionPriors(chosen.node, chosen.p_enu, chosen.p_node_antenna, sd_m)

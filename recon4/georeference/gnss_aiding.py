@@ -14,7 +14,9 @@ from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.aiding import GnssAiding
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
+from recon4.settings.tuning import tuned
 
 _AROUND = 11
 """Fixes whose median shows that the one in their middle jumps."""
@@ -48,7 +50,8 @@ def make_gnss_aiding(
     p_enu = to_enu(
         origin, gnss.lat_rad[good], gnss.lon_rad[good], ellipsoidal_height_m=gnss.height_m[good]
     )
-    sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), settings.gnss_sd_m)
+    tuning = tuned(OdometryTuning, settings)
+    sd_m = np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=0.0), tuning.gnss_sd_m)
     R_ins_body = ins_mount(gnss, rig, imu=imu, usual=np.eye(3)).T
     t_ns, R_enu_body = gnss.t_ns[good], attitudes(gnss.rpy_ned_rad[good]) @ R_ins_body
     clock_s = receiver_clock_s(t_ns, R_enu_body, imu=imu, rig=rig) if imu is not None else 0.0
@@ -58,7 +61,7 @@ def make_gnss_aiding(
         p_enu=p_enu[steady],
         sd_m=sd_m[steady],
         R_enu_body=R_enu_body[steady],
-        attitude_sd_rad=settings.heading_sd_rad,
+        attitude_sd_rad=tuning.heading_sd_rad,
         p_body_antenna=rig.p_body_antenna,
     )
 

@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import GeodeticOrigin, to_enu
+from recon4.georeference.tuning import GnssTuning
 from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.settings import GnssSettings
 
 _RANKS: dict[int, int] = {
     GnssQuality.SINGLE: 1,
@@ -57,7 +57,7 @@ class GnssPriors:
 
 
 def usable_gnss_priors(
-    graph: PoseGraph, trajectory: Trajectory, gnss: GnssSamples, *, rig: Rig, settings: GnssSettings
+    graph: PoseGraph, trajectory: Trajectory, gnss: GnssSamples, *, rig: Rig, settings: GnssTuning
 ) -> tuple[GnssPriors, GeodeticOrigin | None]:
     """Select fixes with a position, of sufficient quality, during the walk and not frozen.
 

@@ -17,6 +17,7 @@ from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
+from recon4.georeference.tuning import GnssTuning
 from recon4.mapping.mirrors import Sight, find_mirrors
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
@@ -36,6 +37,7 @@ from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_fi
 from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
 from recon4.settings import GnssSettings, Settings
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore
@@ -143,7 +145,9 @@ def level_and_georeference(
     nodes = nodes.with_poses(leveling.T_level_odom @ nodes.T_map_body)
     progress.advance()
     fixes = _above_ellipsoid(frames.gnss, settings.gnss)
-    placed = georeference(nodes, dense, fixes, rig=frames.rig, settings=settings.gnss)
+    placed = georeference(
+        nodes, dense, fixes, rig=frames.rig, settings=tuned(GnssTuning, settings.gnss)
+    )
     antenna = _audit_antenna(fixes, dense, placed, rig=frames.rig)
     dense = apply_corrections(
         dense, nodes.t_ns, T_before=nodes.T_map_body, T_after=placed.graph.T_map_body

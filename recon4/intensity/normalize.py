@@ -13,6 +13,7 @@ from recon4.geometry.se3 import Array
 from recon4.intensity.diagnostics import Diagnostics, diagnose
 from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces
 from recon4.intensity.table import table_of_sums, table_of_surfaces
+from recon4.intensity.tuning import IntensityTuning
 from recon4.kernels.intensity import accumulate, bins_of
 from recon4.kernels.voxels import face_sensor
 from recon4.mapping.normals import local_normals
@@ -21,7 +22,6 @@ from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
-from recon4.settings import IntensitySettings
 from recon4.store.arrays import save_intensity_table
 
 SAMPLES = 10
@@ -50,7 +50,7 @@ def learn_intensity(
     frames: Frames,
     trajectory: Trajectory,
     *,
-    settings: IntensitySettings,
+    settings: IntensityTuning,
     progress: Progress | None = None,
 ) -> tuple[IntensityTable, Diagnostics]:
     """Learn the table of a walk and compute its diagnostics.
@@ -94,7 +94,7 @@ def write_intensity(
     trajectory: Trajectory,
     out: Path,
     *,
-    settings: IntensitySettings,
+    settings: IntensityTuning,
     progress: Progress | None = None,
 ) -> None:
     """Run the stage ``intensity``: write ``table.npz`` and ``diagnostics.npz``."""
@@ -103,7 +103,7 @@ def write_intensity(
     diagnostics.save(out / "diagnostics.npz")
 
 
-def add_sample(sums: Array, sample: IntensitySample, settings: IntensitySettings) -> None:
+def add_sample(sums: Array, sample: IntensitySample, settings: IntensityTuning) -> None:
     """Add points to the sums of their bins, ``(S, B, I, R, 3)``, in place."""
     channel = sample.sensor.astype(np.int64) * sums.shape[1] + sample.ring
     accumulate(
@@ -127,7 +127,7 @@ def sample_windows(frames: int, windows: int) -> list[list[int]]:
 
 
 def _shape(
-    frames: Frames, windows: list[list[int]], settings: IntensitySettings
+    frames: Frames, windows: list[list[int]], settings: IntensityTuning
 ) -> tuple[int, int, int, int]:
     """Sensors, beams, bins of incidence (last: no normal), bins of range."""
     beams = (int(frames[k].ring.max(initial=0)) for window in windows for k in window)
@@ -140,7 +140,7 @@ class _SampleAccumulator:
     """Sums over samples, and about ``few`` points of each sample."""
 
     def __init__(
-        self, shape: tuple[int, int, int, int], few: float, settings: IntensitySettings
+        self, shape: tuple[int, int, int, int], few: float, settings: IntensityTuning
     ) -> None:
         self._few, self._settings = few, settings
         self._rng = np.random.default_rng(0)
@@ -176,7 +176,7 @@ class _SampleAccumulator:
 
 
 def _sample(
-    frames: Frames, trajectory: Trajectory, rows: list[int], *, settings: IntensitySettings
+    frames: Frames, trajectory: Trajectory, rows: list[int], *, settings: IntensityTuning
 ) -> Iterator[IntensitySample]:
     """The samples of one window, with normals from all of its points."""
     enabled = np.array([sensor.enabled for sensor in frames.rig.sensors])

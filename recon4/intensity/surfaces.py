@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.intensity.tuning import IntensityTuning
 from recon4.kernels.intensity import surface_equations
-from recon4.settings import IntensitySettings
 
 ROUNDS = 12
 """Limit of iterations of Newton's method; five are usual."""
@@ -80,7 +80,7 @@ def cells_of(xyz_m: Array, cell_m: float) -> NDArray[np.int64]:
 
 
 def learn_surfaces(
-    seen: Observations, shape: tuple[int, int, int, int], *, settings: IntensitySettings
+    seen: Observations, shape: tuple[int, int, int, int], *, settings: IntensityTuning
 ) -> Surfaces:
     """Estimate the factors of bins and the brightness of cubes.
 

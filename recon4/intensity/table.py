@@ -7,14 +7,14 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.intensity.surfaces import Surfaces
+from recon4.intensity.tuning import IntensityTuning
 from recon4.model.intensity_table import SHIFT_ONLY, IntensityTable
-from recon4.settings import IntensitySettings
 
 COARSER: tuple[tuple[int, int], ...] = ((1, 1), (5, 1), (5, 5), (15, 10), (0, 5), (0, 0))
 """Numbers of bins of incidence and of range that are merged, from fine to coarse; 0 = all."""
 
 
-def table_of_sums(sums: Array, *, settings: IntensitySettings, largest: float) -> IntensityTable:
+def table_of_sums(sums: Array, *, settings: IntensityTuning, largest: float) -> IntensityTable:
     """Make the table of means and deviations of bins (V Eq. 2.17).
 
     Args:
@@ -52,7 +52,7 @@ def table_of_sums(sums: Array, *, settings: IntensitySettings, largest: float) -
 
 
 def table_of_surfaces(
-    surfaces: Surfaces, total: Array, *, settings: IntensitySettings, largest: float
+    surfaces: Surfaces, total: Array, *, settings: IntensityTuning, largest: float
 ) -> IntensityTable:
     """Make the table as if each bin had seen all surfaces of the walk.
 

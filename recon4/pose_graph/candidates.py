@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.pose_graph.pairs import Pair
-from recon4.settings import GraphSettings
+from recon4.pose_graph.tuning import GraphTuning
 
 _RUN_GAP = 2
 """Nodes before and after a chosen one that are skipped, because they see the same."""
@@ -22,7 +22,7 @@ Ends = tuple[int, int]
 Selection = Callable[[PoseGraph], list[Pair]]
 
 
-def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
+def rounds(nodes: int, settings: GraphTuning) -> list[Selection]:
     """Selections of pairs, one per round; each is applied to the graph so far."""
     if settings.exhaustive and settings.mode != "10":
         farthest = nodes // 2 if settings.closed_trajectory else nodes - 1
@@ -35,7 +35,7 @@ def rounds(nodes: int, settings: GraphSettings) -> list[Selection]:
     return selections
 
 
-def neighbor_pairs(graph: PoseGraph, settings: GraphSettings) -> list[Pair]:
+def neighbor_pairs(graph: PoseGraph, settings: GraphTuning) -> list[Pair]:
     """Pairs of each node with the next few; in mode ``10`` with those within one second."""
     within_second = max(10 // settings.node_stride, 1)
     farthest = within_second if settings.mode == "10" else settings.neighbors
@@ -44,7 +44,7 @@ def neighbor_pairs(graph: PoseGraph, settings: GraphSettings) -> list[Pair]:
 
 
 def pairs_at_distances(
-    graph: PoseGraph, *, distances: Iterable[int], settings: GraphSettings
+    graph: PoseGraph, *, distances: Iterable[int], settings: GraphTuning
 ) -> list[Pair]:
     """All pairs ``d`` nodes apart (Algorithm 2.1 with 0-based nodes, A0 no. 5)."""
     count = len(graph)
@@ -74,7 +74,7 @@ def distance_schedule(farthest: int) -> list[range]:
     return batches
 
 
-def revisit_pairs(graph: PoseGraph, *, settings: GraphSettings, limit: int) -> list[Pair]:
+def revisit_pairs(graph: PoseGraph, *, settings: GraphTuning, limit: int) -> list[Pair]:
     """Pairs of each node with at most ``limit`` earlier nodes of the place, spread over visits.
 
     Only nodes close by are considered, so the work is linear in the path length, not quadratic.
@@ -136,6 +136,6 @@ def retry_pairs(graph: PoseGraph, expected: Mapping[Ends, SE3], *, move_m: float
     return pairs
 
 
-def _pair(graph: PoseGraph, i: int, j: int, *, settings: GraphSettings) -> Pair:
+def _pair(graph: PoseGraph, i: int, j: int, *, settings: GraphTuning) -> Pair:
     kind = EdgeKind.NEIGHBOR if j - i <= settings.neighbors else EdgeKind.LOOP
     return Pair(i, j, kind, graph.T_map_body[i].inverse() @ graph.T_map_body[j])

@@ -59,7 +59,7 @@ class ChainFollower:
 
     def __init__(self, places: Places, registrar: PairRegistrar, progress: Progress) -> None:
         self._places, self._registrar, self._progress = places, registrar, progress
-        self._sd = registrar.settings.recognition.bound_sd
+        self._sd = registrar.recognition.bound_sd
         self._taken = taken_pairs(places.graph)
 
     def follow(self, chains: Sequence[RecognizedChain]) -> None:

@@ -13,7 +13,7 @@ from scipy.sparse.csgraph import connected_components
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, PoseGraph, Reason, Verdict
 from recon4.pose_graph.places import Places
-from recon4.settings import RecognitionSettings
+from recon4.pose_graph.tuning import RecognitionTuning
 
 _LINK_M = 15.0
 """Corrections with more path in between neither confirm nor exclude each other [m]."""
@@ -76,7 +76,7 @@ def contradicts(edge: Edge) -> bool:
 
 
 def judge_chains(
-    places: Places, chains: Sequence[RecognizedChain], *, settings: RecognitionSettings
+    places: Places, chains: Sequence[RecognizedChain], *, settings: RecognitionTuning
 ) -> list[Edge]:
     """Decide which recognized places become loop closures.
 
@@ -101,7 +101,7 @@ def _judged(edge: Edge, judgment: Judgment | None) -> Edge:
 
 
 def _judgment(
-    group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionSettings
+    group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionTuning
 ) -> Judgment:
     """Whether a group is accepted."""
     support, by, rejected = len(group.nodes), Judge.PLACES, Verdict.REJECTED
@@ -118,7 +118,7 @@ def _judgment(
 
 
 def _has_rival(
-    group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionSettings
+    group: _ChainGroup, groups: Sequence[_ChainGroup], settings: RecognitionTuning
 ) -> bool:
     """Whether another correction of the same nodes is nearly as well confirmed."""
     least = settings.rival_ratio * len(group.nodes)
@@ -135,7 +135,7 @@ def _compete(a: _ChainGroup, b: _ChainGroup) -> bool:
 
 
 def _groups(
-    places: Places, chains: Sequence[RecognizedChain], settings: RecognitionSettings
+    places: Places, chains: Sequence[RecognizedChain], settings: RecognitionTuning
 ) -> list[_ChainGroup]:
     """Chains that agree with each other directly or through others."""
     agree = [
@@ -194,7 +194,7 @@ def _corrected(graph: PoseGraph, edge: Edge) -> SE3:
 
 
 def _is_within(
-    places: Places, chains: Sequence[RecognizedChain], settings: RecognitionSettings
+    places: Places, chains: Sequence[RecognizedChain], settings: RecognitionTuning
 ) -> bool:
     """Whether most edges move their nodes by no more than the graph's uncertainty."""
     moves = [within for chain in chains for within in _moves_within(places, chain, settings)]
@@ -202,7 +202,7 @@ def _is_within(
 
 
 def _moves_within(
-    places: Places, chain: RecognizedChain, settings: RecognitionSettings
+    places: Places, chain: RecognizedChain, settings: RecognitionTuning
 ) -> Iterator[bool]:
     """For each confirmed edge, whether it moves its node within the bounds."""
     graph = places.graph

@@ -13,6 +13,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import EdgeTried
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Measure, Reason, Verdict
+from recon4.pose_graph.tuning import RecognitionTuning, graph_tuning
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
 from recon4.registration.overlap import RangeImage, overlap, seen_through
@@ -20,7 +21,9 @@ from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
 from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_range_m
+from recon4.registration.tuning import OVERLAP, OdometryTuning, OverlapTuning
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _CHUNK = 8
 """Nodes per task of a thread."""
@@ -35,21 +38,31 @@ class Pair:
     kind: EdgeKind
     T_i_j: SE3
     recognized: bool = False
-    """Nothing predicted it: the free space is compared by `RecognitionSettings`."""
+    """Nothing predicted it: the free space is compared by `RecognitionTuning`."""
 
 
 class PairRegistrar:
     """Registers pairs on several threads; the result does not depend on their number."""
 
-    def __init__(self, submaps: Submaps, views: NodeRangeImages, settings: Settings) -> None:
+    def __init__(
+        self,
+        submaps: Submaps,
+        views: NodeRangeImages,
+        settings: Settings,
+        *,
+        overlap: OverlapTuning = OVERLAP,
+    ) -> None:
         self._submaps = submaps
         self.views, self.settings = views, settings
+        self._overlaps = overlap
+        self.graph = graph_tuning(settings.graph)
+        self.recognition = tuned(RecognitionTuning, settings.recognition)
 
     def prepare(self, nodes: int, progress: Progress) -> None:
         """Compute segments and range images of all nodes."""
         progress.start("view volumes", nodes, "node")
         chunks = [range(k, min(k + _CHUNK, nodes)) for k in range(0, nodes, _CHUNK)]
-        with ThreadPoolExecutor(self.settings.graph.workers) as pool:
+        with ThreadPoolExecutor(self.graph.workers) as pool:
             fills = pool.map(lambda chunk: self.views.fill(self._submaps, chunk), chunks)
             for chunk, _ in zip(chunks, fills, strict=True):
                 progress.advance(len(chunk))
@@ -61,7 +74,7 @@ class PairRegistrar:
         chunks = [groups[k : k + _CHUNK] for k in range(0, len(groups), _CHUNK)]
         edges: dict[int, Edge] = {}
         progress.start("pairs", len(pairs), "pair")
-        with ThreadPoolExecutor(self.settings.graph.workers) as pool:
+        with ThreadPoolExecutor(self.graph.workers) as pool:
             for done in pool.map(lambda chunk: self._try_chunk(chunk, pairs), chunks):
                 edges.update(done)
                 for edge in done.values():
@@ -76,10 +89,10 @@ class PairRegistrar:
     def seen_through(self, edge: Edge) -> float:
         """Fraction of the points of one node that lie in the free space of the other, 0..1."""
         i, j = self._view(edge.i), self._view(edge.j)
-        return seen_through(i, j, edge.T_i_j, settings=self.settings.overlap)
+        return seen_through(i, j, edge.T_i_j, settings=self._overlaps)
 
     def _try_chunk(self, groups: list[list[int]], pairs: Sequence[Pair]) -> dict[int, Edge]:
-        planes = PlaneMap(self.settings.planes)
+        planes = PlaneMap()
         edges = [self._try_group(planes, group, pairs=pairs) for group in groups]
         return {k: edge for tried in edges for k, edge in tried}
 
@@ -89,12 +102,12 @@ class PairRegistrar:
         """Register all pairs of one target node; its map is built once, if a pair needs it."""
         target: PlaneMap | LineTarget | None = None
         out = []
-        reach = self.settings.graph.target_reach
+        reach = self.graph.target_reach
         for k in group:
             pair = pairs[k]
             ends = self.views.ends(pair.j)
             overlap_ratio = self._overlap(pair)
-            if overlap_ratio < self.settings.overlap.threshold:
+            if overlap_ratio < self._overlaps.threshold:
                 out.append((k, self._apart(pair, overlap_ratio)))
                 continue
             if target is None:
@@ -113,7 +126,7 @@ class PairRegistrar:
 
     def _overlap(self, pair: Pair) -> float:
         source, target = (self._view(node) for node in (pair.i, pair.j))
-        return overlap(source, target, pair.T_i_j, settings=self.settings.overlap)
+        return overlap(source, target, pair.T_i_j, settings=self._overlaps)
 
     def _view(self, node: int) -> RangeImage:
         return RangeImage(self.views.ends(node).reshape(-1, 3), self.views.nearest_m(node))
@@ -136,12 +149,12 @@ class PairRegistrar:
             )
         return register_to_planes(
             target, ends.reshape(-1, 3), initial=pair.T_i_j,
-            settings=settings, normal_noise_rad=self.settings.graph.normal_noise_rad,
+            settings=settings, normal_noise_rad=self.graph.normal_noise_rad,
         )  # fmt: skip
 
     def _judge(self, pair: Pair, overlap_ratio: float, found: Registration) -> Edge:
         """Accept or reject (V Algorithm 2.1 line 8; A0 no. 12)."""
-        g = self.settings.graph
+        g = self.graph
         range_m = median_range_m(self.views.ends(pair.i))
         limit_m = range_m * g.error_relative + g.error_absolute_m
         limits = RegistrationLimits(limit_m, g.min_match_ratio, g.min_degeneracy)
@@ -159,7 +172,7 @@ class PairRegistrar:
             iterations=found.iterations,
             information=_information(found, self.settings),
         )
-        of = self.settings.recognition if pair.recognized else g
+        of = self.recognition if pair.recognized else g
         is_loop = edge.in_graph and edge.kind is EdgeKind.LOOP
         return self._in_free_space(edge, limit=of.max_seen_through) if is_loop else edge
 
@@ -174,7 +187,7 @@ class PairRegistrar:
 
     def _apart(self, pair: Pair, overlap_ratio: float) -> Edge:
         """A pair that overlaps too little to be registered."""
-        limit = self.settings.overlap.threshold
+        limit = self._overlaps.threshold
         return Edge(
             i=pair.i, j=pair.j, T_i_j=pair.T_i_j, kind=pair.kind, overlap=overlap_ratio,
             judgments=(too_little_overlap(overlap_ratio, limit),),
@@ -234,12 +247,12 @@ def _information(found: Registration, settings: Settings) -> Array:
     A correction (omega, v) on the left about the source's origin is (R^T omega, R^T v) on the
     right, so the normal equations are rotated into the source's axes.
     """
-    g = settings.graph
+    g = graph_tuning(settings.graph)
     floor = np.diag(np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) ** 2)
     if settings.registration.solver != "planes" or not found.converged:
         return np.linalg.inv(floor)
     A = np.kron(np.eye(2), found.T_target_source.R)
-    H = A.T @ found.information @ A * settings.odometry.information_scale
+    H = A.T @ found.information @ A * tuned(OdometryTuning, settings.odometry).information_scale
     covariance = np.linalg.inv(H + 1e-3 * np.eye(6)) + floor
     information = np.linalg.inv(covariance)
     return 0.5 * (information + information.T)

@@ -12,8 +12,8 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
 from recon4.pose_graph.density import DensityImage, make_density_image
+from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.registration.submap import NodeRangeImages
-from recon4.settings import RecognitionSettings
 
 _POINTS = 1500
 """Points of a node that are drawn."""
@@ -81,7 +81,7 @@ class Places:
 
 
 def make_places(
-    graph: PoseGraph, views: NodeRangeImages, settings: RecognitionSettings, *, leveled: bool
+    graph: PoseGraph, views: NodeRangeImages, settings: RecognitionTuning, *, leveled: bool
 ) -> Places:
     """Draw the places of a walk with the current poses of its graph.
 

@@ -28,8 +28,8 @@ from recon4.pose_graph.follow import ChainFollower, loop_pairs, register_recogni
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.places import Places, make_places
+from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.progress import Progress
-from recon4.settings import RecognitionSettings
 
 _NEAR_M, _NEAR_RAD = 1.5, 0.26
 """Hypotheses of one place that are closer than this are the same."""
@@ -86,7 +86,7 @@ def recognize(
     Returns:
         An edge for every registered pair, accepted or rejected with its reason.
     """
-    settings = registrar.settings.recognition
+    settings = registrar.recognition
     places = make_places(graph, registrar.views, settings, leveled=leveled)
     hypotheses = [
         one for place in _open_places(places) for one in _hypotheses(places, place, settings)
@@ -136,9 +136,7 @@ def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
     return closed
 
 
-def _hypotheses(
-    places: Places, place: int, settings: RecognitionSettings
-) -> list[_PlaceHypothesis]:
+def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list[_PlaceHypothesis]:
     """The best distinct corrections of a place, by laying it onto similar earlier places."""
     T_map_place = places.graph.T_map_body[places.node]
     found = []
@@ -168,7 +166,7 @@ def _distinct(ranked: Sequence[_PlaceHypothesis], most: int) -> list[_PlaceHypot
     return chosen
 
 
-def _candidates(places: Places, place: int, settings: RecognitionSettings) -> list[int]:
+def _candidates(places: Places, place: int, settings: RecognitionTuning) -> list[int]:
     """The earlier places within reach with the most similar descriptors."""
     path_m, t_m = places.path_m[places.node], places.graph.T_map_body.t[places.node]
     walked_m = path_m[place] - path_m[:place]

@@ -25,9 +25,10 @@ from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.recognition import recognize, without_settled
 from recon4.pose_graph.solve import Kernel, Solution, optimize
+from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.progress import Progress
 from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames, node_rows
-from recon4.settings import GraphSettings, Settings
+from recon4.settings import Settings
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
@@ -103,7 +104,7 @@ def search(
         progress: Counts pairs and receives an event for each registration.
         scratch: Folder for unnamed temporary files of 0.2 MB per node.
     """
-    start = start_graph(frames, odometry, settings=settings.graph)
+    start = start_graph(frames, odometry, settings=graph_tuning(settings.graph))
     rows = start.frame_ids.astype(np.intp)
     return close_loops(
         start,
@@ -114,9 +115,7 @@ def search(
     )
 
 
-def start_graph(
-    frames: FrameStore, odometry: OdometryTrack, *, settings: GraphSettings
-) -> PoseGraph:
+def start_graph(frames: FrameStore, odometry: OdometryTrack, *, settings: GraphTuning) -> PoseGraph:
     """Nodes with their poses by odometry, and the odometry edges between them."""
     lost = odometry.lost
     rows = node_rows(frames.t_mid_ns, settings.node_stride, lost)
@@ -139,8 +138,9 @@ def make_registrar(
 ) -> PairRegistrar:
     """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""
     tracked = TrackedFrames(frames, odometry.trajectory, odometry.lost)
-    submaps = Submaps(tracked, rows, settings=settings, scratch=scratch)
-    return PairRegistrar(submaps, NodeRangeImages(len(rows), settings, scratch), settings)
+    submaps = Submaps(tracked, rows, scratch=scratch)
+    views = NodeRangeImages(len(rows), graph_tuning(settings.graph), scratch=scratch)
+    return PairRegistrar(submaps, views, settings)
 
 
 def close_loops(
@@ -160,7 +160,7 @@ def close_loops(
         leveled: The vertical is known by an IMU.
         progress: Counts pairs and receives an event for each registration.
     """
-    g, recognition = registrar.settings.graph, registrar.settings.recognition
+    g, recognition = registrar.graph, registrar.recognition
     progress.event(
         NodesPlaced(t_ns=tuple(graph.t_ns.tolist()), t_m=positions_of(graph.T_map_body.t))
     )
@@ -188,7 +188,7 @@ def odometry_edges(
     lost: NDArray[np.bool_],
     *,
     motion_cov: Array,
-    settings: GraphSettings,
+    settings: GraphTuning,
 ) -> tuple[Edge, ...]:
     """Edges between consecutive nodes with the covariance of the odometry in between.
 

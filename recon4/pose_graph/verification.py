@@ -27,8 +27,10 @@ from recon4.pose_graph.paths import PathIndex, reject_worst_first
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import optimize_gnc, outlier_limit
 from recon4.pose_graph.solve import Solution, optimize
+from recon4.pose_graph.tuning import VerificationTuning
 from recon4.progress import Progress, Silent
 from recon4.settings import VerificationSettings
+from recon4.settings.tuning import tuned
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -166,7 +168,9 @@ def confirmed_again(graph: PoseGraph, *, settings: VerificationSettings) -> Pose
 def _index(of: Relations, *, nodes: int, settings: VerificationSettings) -> PathIndex:
     if settings.variant == "cycle":
         return PathIndex.build(of, nodes=nodes, max_edges=2, with_itself=True)
-    return PathIndex.build(of, nodes=nodes, max_edges=settings.max_path_edges)
+    return PathIndex.build(
+        of, nodes=nodes, max_edges=tuned(VerificationTuning, settings).max_path_edges
+    )
 
 
 def with_judgments(graph: PoseGraph, judgments: Mapping[int, Judgment]) -> PoseGraph:
@@ -211,18 +215,19 @@ def _solve(
     graph: PoseGraph, settings: VerificationSettings
 ) -> tuple[PoseGraph, Solution, list[int]]:
     """The graph with its final poses and without its outliers, the solution, their rows."""
+    probability = tuned(VerificationTuning, settings).inlier_probability
     if settings.robust == "none":
         solution = optimize(graph, kernel="none")
         return graph.with_poses(solution.T_map_body), solution, []
     of = graph.relations
     free = of.in_graph & ~of.protected
     if settings.robust == "gnc":
-        solution = optimize_gnc(graph, probability=settings.inlier_probability)
+        solution = optimize_gnc(graph, probability=probability)
         outliers = np.flatnonzero(free & (solution.weights == 0.0)).tolist()
         judgments = outlier_judgments(solution, outliers, by=Judge.ROBUST)
         return with_judgments(graph.with_poses(solution.T_map_body), judgments), solution, outliers
     start = optimize(graph, kernel="cauchy")
-    limit = outlier_limit(start.edge_chi2[free], probability=settings.inlier_probability)
+    limit = outlier_limit(start.edge_chi2[free], probability=probability)
     outliers = np.flatnonzero(free & (start.edge_chi2 > limit)).tolist()
     judgments = outlier_judgments(replace(start, outlier_limit=limit), outliers, by=Judge.ROBUST)
     kept = with_judgments(graph.with_poses(start.T_map_body), judgments)

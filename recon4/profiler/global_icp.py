@@ -7,7 +7,7 @@ from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points, proper, so3_exp
 from recon4.profiler.sweeps import Sweeps, relative
-from recon4.settings import LineSettings
+from recon4.profiler.tuning import LineTuning
 
 _POINTS = 8000
 """Points of a sweep that are paired."""
@@ -37,7 +37,7 @@ class PairedSweeps:
         return self.points[i][nearest[found]], self.points[j][found]
 
 
-def preregister(sweeps: Sweeps, T: SE3, settings: LineSettings) -> SE3:
+def preregister(sweeps: Sweeps, T: SE3, settings: LineTuning) -> SE3:
     """ICP of every sweep to the one before; later sweeps move along (L Eq. 1, §5.2; A12 L-5).
 
     The correction of a sweep applies in its middle; between the middles of two sweeps it is
@@ -68,7 +68,7 @@ def preregister(sweeps: Sweeps, T: SE3, settings: LineSettings) -> SE3:
     return SE3(proper(R), t)
 
 
-def register_all(sweeps: Sweeps, T: SE3, links: Links, *, settings: LineSettings) -> SE3:
+def register_all(sweeps: Sweeps, T: SE3, links: Links, *, settings: LineTuning) -> SE3:
     """Poses of all sweeps from the closest pairs of all links, solved at once (L Eq. 2).
 
     The rotation is linearized and pairs are searched again in every round, as in ICP. The first

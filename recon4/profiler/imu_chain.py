@@ -19,7 +19,9 @@ from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.motion import imu_at, imu_in_body, level_rotation
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
+from recon4.settings.tuning import tuned
 
 ROTATION, POSITION, VELOCITY = slice(0, 3), slice(3, 6), slice(6, 9)
 GYRO_BIAS, ACCEL_BIAS = slice(9, 12), slice(12, 15)
@@ -107,13 +109,14 @@ def make_drive(
     knot_ns = span_ns[0] + step_ns * np.arange(count, dtype=np.int64)
     if imu is None or not covers(imu, span_ns):
         silent = np.zeros((count, 3))
-        noise = np.array([1e-3, settings.free_accel, settings.free_turn_walk, 1e-9])
+        free = tuned(OdometryTuning, settings)
+        noise = np.array([1e-3, free.free_accel, free.free_turn_walk, 1e-9])
         return Drive(knot_ns, silent, silent, noise, np.zeros(3), np.repeat([1.0, 1e-6], 3))
     gyro, accel = imu_in_body(imu, rig)
     usual_ns = float(np.median(np.diff(imu.t_ns)))
     steps = int(np.clip(round(step_ns / usual_ns), 1, 50))
     t_ns = span_ns[0] + (step_ns * np.arange((count - 1) * steps + 1, dtype=np.int64)) // steps
-    s = settings
+    s = tuned(OdometryTuning, settings)
     return Drive(
         knot_ns,
         imu_at(t_ns, imu.t_ns, gyro),

@@ -35,10 +35,13 @@ from recon4.profiler.published_refine import PublishedRefiner
 from recon4.profiler.samples import joined, laser_points, line_points
 from recon4.profiler.stage_odometry import span_of
 from recon4.profiler.surface_support import surface_support
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
 from recon4.registration.plane_map import Match, PlaneMap
+from recon4.registration.tuning import PLANES, OdometryTuning, PlaneTuning
 from recon4.semi_rigid.refine import Refinement, corrected_by_graph
-from recon4.settings import LineSettings, PlaneSettings, Settings
+from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
@@ -72,8 +75,8 @@ class LineRefiner:
 
     frames: FrameStore
     scans: LaserScans | None
-    settings: LineSettings
-    planes: PlaneSettings
+    settings: LineTuning
+    planes: PlaneTuning
     hold: PlanarHold
     progress: Progress
 
@@ -263,14 +266,14 @@ def refine_lines(
     start = corrected_by_graph(load_trajectory(odometry / "trajectory.npz"), graph)
     if settings.lines.method == "published":
         lines = load_lines(frames.folder)
-        published = PublishedRefiner(frames, lines, settings.lines, progress)
+        published = PublishedRefiner(frames, lines, tuned(LineTuning, settings.lines), progress)
         trajectory, found = published.refine(start)
         return Refinement(trajectory, tuple(found))
     drive = make_drive(
         frames.imu,
         frames.rig,
         span_of(frames),
-        knot_s=settings.lines.knot_s,
+        knot_s=tuned(LineTuning, settings.lines).knot_s,
         settings=settings.odometry,
     )
     chain = initial_chain(drive).following(start)
@@ -278,7 +281,7 @@ def refine_lines(
     steps = load_arrays(odometry / "steps.npz", ["weak_sd_m", "lost"])
     known = observed_motion(frames.t_mid_ns, drive.knot_ns, **steps)
     hold = PlanarHold.of(start, drive.knot_ns, known)
-    refiner = LineRefiner(frames, scans, settings.lines, settings.planes, hold, progress)
+    refiner = LineRefiner(frames, scans, tuned(LineTuning, settings.lines), PLANES, hold, progress)
     chain, rounds, matched = refiner.refine(chain)
     support = None
     if matched is not None:
@@ -287,7 +290,7 @@ def refine_lines(
             drive.knot_ns,
             H=matched.information.H,
             counts=matched.counts,
-            normal_noise_rad=settings.odometry.normal_noise_rad,
+            normal_noise_rad=tuned(OdometryTuning, settings.odometry).normal_noise_rad,
         )
     return Refinement(linearize(chain).trajectory(), tuple(rounds), support)
 

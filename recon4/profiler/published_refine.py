@@ -19,10 +19,10 @@ from recon4.model.figures import RefineRound
 from recon4.model.line_scans import LineScans
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import TimedPoints, joined, line_points
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
 from recon4.registration.scans import thinned
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
-from recon4.settings import LineSettings
 from recon4.store.frames import FrameStore
 
 _NEIGHBOR_SD = np.repeat([0.01, 0.03], 3)
@@ -39,7 +39,7 @@ class PublishedRefiner:
 
     frames: FrameStore
     lines: LineScans
-    settings: LineSettings
+    settings: LineTuning
     progress: Progress
 
     def refine(self, start: Trajectory) -> tuple[Trajectory, list[RefineRound]]:

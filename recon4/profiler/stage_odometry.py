@@ -20,8 +20,10 @@ from recon4.profiler.imu_chain import Drive, linearize, make_drive
 from recon4.profiler.mount_audit import mount_change
 from recon4.profiler.planar import PlanarMap, map_in_plane
 from recon4.profiler.samples import TimedPoints
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans
@@ -67,7 +69,7 @@ def run_line_odometry(
     lost = _lost(frames.t_mid_ns, planar, drive)
     _save_steps(out / "steps.npz", frames, trajectory, planar=planar, lost=lost)
     ahead_s, change = _profiler_error(
-        frames, planar, trajectory, min_range_m=settings.lines.min_range_m
+        frames, planar, trajectory, min_range_m=tuned(LineTuning, settings.lines).min_range_m
     )
     lines = replace(
         line_figures(scans, span_ns, is_used=planar is not None),

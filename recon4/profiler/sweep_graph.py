@@ -26,13 +26,17 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import RegistrationLimits, registration_judgment, tried_event
 from recon4.pose_graph.solve import optimize
+from recon4.pose_graph.tuning import graph_tuning
 from recon4.profiler.global_icp import preregister, register_all
 from recon4.profiler.sweeps import Sweeps, relative, unwind_sweeps
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
-from recon4.settings import PlaneSettings, Settings
+from recon4.registration.tuning import PLANES, OdometryTuning
+from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_lines
@@ -42,8 +46,8 @@ Points = NDArray[np.float32]
 _COUNTED = 4000
 """Points of a sweep whose closest pairs are counted."""
 _LOST_FACTOR = 200.0
-_WIDE_SD_M = 0.05
-"""Planes of a sweep that is bent by the errors of its poses [m]."""
+_PLANES = replace(PLANES, max_sd_m=0.05)
+"""A sweep is bent by the errors of its poses."""
 
 
 def build_sweep_graph(
@@ -55,13 +59,15 @@ def build_sweep_graph(
         frames: The points, with ``lines.npz`` beside them.
         odometry: Folder of the stage ``odometry``.
         out: Receives ``graph.npz`` and ``edges.json``.
-        settings: Uses lines, graph, planes, registration and odometry.
+        settings: Uses lines, graph, registration and odometry.
         progress: Counts multiframes and pairs.
     """
     trajectory = load_trajectory(odometry / "trajectory.npz")
     lost = load_arrays(odometry / "steps.npz", ["lost"])["lost"]
     lines = load_lines(frames.folder)
-    sweeps = unwind_sweeps(frames, lines, trajectory, settings=settings.lines, progress=progress)
+    sweeps = unwind_sweeps(
+        frames, lines, trajectory, settings=tuned(LineTuning, settings.lines), progress=progress
+    )
     make = published_graph if settings.lines.method == "published" else sweep_graph
     graph = make(sweeps, trajectory, lost, settings=settings, progress=progress)
     save_graph(out, graph)
@@ -88,7 +94,7 @@ def sweep_graph(
     links = linked(sweeps, T, settings)
     progress.start("pairs", len(links), "pair")
     found = list(edges)
-    target, target_of = PlaneMap(_planes_of(settings)), -1
+    target, target_of = PlaneMap(_PLANES), -1
     for i, j, overlap in links:
         if i != target_of:
             target.clear()
@@ -124,7 +130,7 @@ def published_graph(
     The edges are the relations of the solution; those of links have the counts of pairs.
     """
     first = trajectory.at(sweeps.t_ns)
-    s = settings.lines
+    s = tuned(LineTuning, settings.lines)
     T = preregister(sweeps, first, s) if s.preregister else first
     progress.event(NodesPlaced(t_ns=tuple(sweeps.t_ns.tolist()), t_m=positions_of(T.t)))
     links = linked(sweeps, T, settings)
@@ -133,7 +139,9 @@ def published_graph(
     edges = list(_chain(sweeps, T, lost, settings=settings))
     information = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** -2.0)
     for i, j, overlap in links:
-        kind = EdgeKind.NEIGHBOR if j - i <= settings.graph.neighbors else EdgeKind.LOOP
+        kind = (
+            EdgeKind.NEIGHBOR if j - i <= graph_tuning(settings.graph).neighbors else EdgeKind.LOOP
+        )
         linked_as = Judgment(Judge.SEARCH, Verdict.ACCEPTED, measure=Measure.OVERLAP, value=overlap)
         edge = Edge(
             i=i,
@@ -154,7 +162,7 @@ def linked(sweeps: Sweeps, T: SE3, settings: Settings) -> list[tuple[int, int, f
 
     Neighbors first; of earlier visits those with the most pairs (requirements A12 L-3).
     """
-    g, s = settings.graph, settings.lines
+    g, s = graph_tuning(settings.graph), tuned(LineTuning, settings.lines)
     some = [_spread(sweep.points, _COUNTED) for sweep in sweeps.sweeps]
     trees = [cKDTree(points, balanced_tree=False, compact_nodes=False) for points in some]
     out = []
@@ -191,18 +199,20 @@ def register_pair(
     Args:
         points: Of both sweeps, in the body at their nodes [m], (N, 3) each.
         link: Its overlap is not used.
-        settings: Uses lines, graph, planes and registration.
+        settings: Uses lines, graph and registration.
 
     Returns:
         The edge, with the overlap at the registered pose; and how many points that is, as counted
         for a link.
     """
-    target = PlaneMap(_planes_of(settings))
+    target = PlaneMap(_PLANES)
     target.add(points[0].astype(np.float64))
     edge = _register(target, points, replace(link, overlap=0.0), settings=settings)
     some = [_spread(one, _COUNTED) for one in points]
     tree = cKDTree(some[0], balanced_tree=False, compact_nodes=False)
-    overlap = _close_ratio(tree, some[1], edge.T_i_j, reach_m=settings.lines.link_distance_m)
+    overlap = _close_ratio(
+        tree, some[1], edge.T_i_j, reach_m=tuned(LineTuning, settings.lines).link_distance_m
+    )
     return replace(edge, overlap=overlap), overlap * len(some[1])
 
 
@@ -210,7 +220,7 @@ def _register(
     target: PlaneMap, points: tuple[Points, Points], link: Link, *, settings: Settings
 ) -> Edge:
     """Register sweep ``j`` to the planes of sweep ``i`` and judge the result."""
-    g = settings.graph
+    g = graph_tuning(settings.graph)
     found = register_to_planes(
         target,
         _spread(points[1], g.source_segments).astype(np.float64),
@@ -246,12 +256,12 @@ def _close_ratio(tree: cKDTree, points: Points, T_i_j: SE3, *, reach_m: float) -
 
 def _information(found: Registration, settings: Settings) -> Array:
     """Inverse covariance of the tangent of ``T_i_j``; a sweep is bent by the error of its poses."""
-    s = settings.lines
+    s = tuned(LineTuning, settings.lines)
     floor = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** 2)
     if not found.converged:
         return np.linalg.inv(floor)
     A = np.kron(np.eye(2), found.T_target_source.R)
-    H = A.T @ found.information @ A * settings.odometry.information_scale
+    H = A.T @ found.information @ A * tuned(OdometryTuning, settings.odometry).information_scale
     information = np.linalg.inv(np.linalg.inv(H + 1e-3 * np.eye(6)) + floor)
     return 0.5 * (information + information.T)
 
@@ -260,7 +270,7 @@ def _chain(
     sweeps: Sweeps, T: SE3, lost: NDArray[np.bool_], *, settings: Settings
 ) -> tuple[Edge, ...]:
     """Edges between consecutive sweeps by the first trajectory."""
-    s = settings.lines
+    s = tuned(LineTuning, settings.lines)
     edges = []
     for k in range(len(sweeps) - 1):
         sd = np.repeat([s.chain_sd_rad, s.chain_sd_m], 3)
@@ -277,10 +287,6 @@ def _chain(
             )
         )
     return tuple(edges)
-
-
-def _planes_of(settings: Settings) -> PlaneSettings:
-    return replace(settings.planes, max_sd_m=_WIDE_SD_M)
 
 
 def _spread(points: Points, limit: int) -> Points:

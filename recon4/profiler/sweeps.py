@@ -11,9 +11,9 @@ from recon4.geometry.se3 import SE3
 from recon4.model.line_scans import LineScans
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import line_points
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
 from recon4.registration.scans import thinned
-from recon4.settings import LineSettings
 from recon4.store.frames import FrameStore
 
 
@@ -85,7 +85,7 @@ def unwind_sweeps(
     lines: LineScans,
     trajectory: Trajectory,
     *,
-    settings: LineSettings,
+    settings: LineTuning,
     progress: Progress,
 ) -> Sweeps:
     """Place every point by the pose of its own time, sweep by sweep (L §4.2, A12 L-2).
@@ -114,7 +114,7 @@ def unwind_sweep(
     sweep: int,
     *,
     trajectory: Trajectory,
-    settings: LineSettings,
+    settings: LineTuning,
 ) -> NDArray[np.float32]:
     """Points of one sweep in the body at its node [m], thinned, (N, 3)."""
     start_ns, end_ns = nodes.start_ns[sweep : sweep + 2]

@@ -19,7 +19,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.registration.overlap import RangeImage, make_range_image, seen_through
 from recon4.registration.result import Registration
 from recon4.registration.scans import Scan, lay_onto, make_scan
-from recon4.settings import OverlapSettings, ScanSettings
+from recon4.registration.tuning import SCANS, ScanTuning
 
 TRIED_EVERY_NS = 500_000_000
 """While tracking is lost a bridge is searched this often [ns]; it takes half a second of work."""
@@ -41,7 +41,6 @@ _LEAST_DEGENERACY = 0.05
 _SD_RAD, _SD_M = 0.035, 0.15
 """Standard deviations of a bridge; steps of NCLT were wrong by 5 cm in the median, at most by 30 cm
 and 2°."""
-_VIEW = OverlapSettings()
 
 
 def bridge_cov() -> Array:
@@ -61,7 +60,7 @@ class SeenScan:
 class RecentScans:
     """The last scans of a walk, some steps apart: together they have fewer holes than one."""
 
-    def __init__(self, settings: ScanSettings) -> None:
+    def __init__(self, settings: ScanTuning = SCANS) -> None:
         self._settings = settings
         self._kept: deque[tuple[int, SE3, Scan]] = deque(maxlen=_SCANS)
 
@@ -90,7 +89,7 @@ def sure_pose(
     last: SeenScan,
     *,
     initial: Sequence[SE3],
-    settings: ScanSettings,
+    settings: ScanTuning = SCANS,
 ) -> SE3 | None:
     """``T_target_source`` if only one pose fits, else None.
 
@@ -101,7 +100,7 @@ def sure_pose(
         initial: Poses to try beside the overlays of the ground plans.
         settings: Of the registration of two scans.
     """
-    views = [make_range_image(one.points, _VIEW) for one in (last, source)]
+    views = [make_range_image(one.points) for one in (last, source)]
     found = [
         one
         for one in lay_onto(target, source.scan, initial=initial, settings=settings)
@@ -118,7 +117,11 @@ def sure_pose(
 def _passed(views: Sequence[RangeImage], one: Registration) -> float:
     """Ratio of the points of one view in the free space of the other, 0..1."""
     before, now = views
-    return seen_through(before, now, one.T_target_source, settings=_VIEW)
+    return seen_through(
+        before,
+        now,
+        one.T_target_source,
+    )
 
 
 def _is_rival(one: Registration, best: Registration) -> bool:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from recon4.geometry.lines import Lines, closest_points
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points
 from recon4.registration.result import Registration, StopReason
+from recon4.registration.tuning import RegistrationTuning, registration_tuning
 from recon4.settings import RegistrationSettings
 
 if TYPE_CHECKING:
@@ -58,19 +59,20 @@ def register_lines(
     """
     if len(target.lines) < _MIN_MATCHES or len(source) < _MIN_MATCHES:
         return _refused(initial)
-    solve = _svd_step if settings.solver == "svd" else _common_normal_step
+    rules = registration_tuning(settings)
+    solve = _svd_step if rules.solver == "svd" else _common_normal_step
     T_target_source = initial
     errors: list[float] = []
-    for iteration in range(1, settings.max_iterations + 1):
+    for iteration in range(1, rules.max_iterations + 1):
         moved = source.moved(T_target_source)
-        rows_target, rows_source = _match(target.tree, moved, portion, settings=settings)
+        rows_target, rows_source = _match(target.tree, moved, portion, settings=rules)
         if len(rows_source) < _MIN_MATCHES:
             return _refused(T_target_source)
-        step = solve(target.lines[rows_target], moved[rows_source], settings)
+        step = solve(target.lines[rows_target], moved[rows_source], rules)
         T_target_source = step.T @ T_target_source
         errors.append(step.error_m)
-        stop = _stop(errors, step, settings)
-        if stop is not None or iteration == settings.max_iterations:
+        stop = _stop(errors, step, rules)
+        if stop is not None or iteration == rules.max_iterations:
             match_ratio = len(rows_source) / len(source)
             return Registration(
                 T_target_source, stop or StopReason.LIMIT, iteration, step.error_m, match_ratio,
@@ -88,7 +90,7 @@ class _Step:
 
 
 def _match(
-    tree: cKDTree, moved: Lines, portion: float, *, settings: RegistrationSettings
+    tree: cKDTree, moved: Lines, portion: float, *, settings: RegistrationTuning
 ) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
     """Rows of matched lines in target and source: nearest midpoints, the best portion of them."""
     bound_m = settings.max_distance_m if settings.solver == "common_normal" else np.inf
@@ -101,7 +103,7 @@ def _match(
     return nearest[found], found
 
 
-def _svd_step(target: Lines, moved: Lines, settings: RegistrationSettings) -> _Step:
+def _svd_step(target: Lines, moved: Lines, settings: RegistrationTuning) -> _Step:
     """Closed-form fit of the closest points (V Eq. 2.3-2.5)."""
     p_target, p_source = closest_points(target, moved)
     kept = np.isfinite(p_target).all(axis=1)
@@ -116,7 +118,7 @@ def _svd_step(target: Lines, moved: Lines, settings: RegistrationSettings) -> _S
     return _Step(T, error_m, H / max(error_m, 1e-3) ** 2, degeneracy)
 
 
-def _common_normal_step(target: Lines, moved: Lines, settings: RegistrationSettings) -> _Step:
+def _common_normal_step(target: Lines, moved: Lines, settings: RegistrationTuning) -> _Step:
     """Gauss-Newton on the distance along the common normal, robustly weighted."""
     n, sine = _normals(target, moved)
     r = np.sum(n * (moved.mid - target.mid), axis=1)
@@ -145,7 +147,7 @@ def _normal_equations(p: Array, n: Array, r: Array, *, w: Array) -> tuple[Array,
     return H, J.T @ (w * r), float(np.linalg.eigvalsh(spread)[0])
 
 
-def _stop(errors: list[float], step: _Step, settings: RegistrationSettings) -> StopReason | None:
+def _stop(errors: list[float], step: _Step, settings: RegistrationTuning) -> StopReason | None:
     """Stop reason, or None: rules of requirements A3.2 for ``svd``, else a small step."""
     if settings.solver == "common_normal":
         move_m = step.T.size_m()

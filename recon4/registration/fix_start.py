@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.motion import MotionState
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
+from recon4.settings.tuning import tuned
 
 
 def start_at_fixes(
@@ -17,5 +19,7 @@ def start_at_fixes(
     T_enu_body = aiding.pose(state.t_ns)
     if T_enu_body is None:
         return state, None
-    placed = state.at_pose(T_enu_body, sd_rad=aiding.attitude_sd_rad, sd_m=settings.gnss_sd_m)
+    placed = state.at_pose(
+        T_enu_body, sd_rad=aiding.attitude_sd_rad, sd_m=tuned(OdometryTuning, settings).gnss_sd_m
+    )
     return placed, aiding

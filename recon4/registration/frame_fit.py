@@ -15,7 +15,9 @@ from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
 from recon4.registration.state import END, END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
+from recon4.settings.tuning import tuned
 
 _GATES_M = (1.0, 0.5, 0.3, 0.2)
 """Largest distance of a point from its plane in each round [m]; the last one is for all further."""
@@ -173,8 +175,9 @@ class FrameFitter:
         return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]
 
     def _weighted(self, match: Match) -> tuple[Array, Array]:
-        H, g = observable_directions(match, self.settings.normal_noise_rad, with_imu=self.with_imu)
-        return self.settings.information_scale * H, self.settings.information_scale * g
+        tuning = tuned(OdometryTuning, self.settings)
+        H, g = observable_directions(match, tuning.normal_noise_rad, with_imu=self.with_imu)
+        return tuning.information_scale * H, tuning.information_scale * g
 
 
 def motion_cov(P: Array) -> Array:

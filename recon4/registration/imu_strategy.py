@@ -20,9 +20,11 @@ from recon4.registration.moving_start import set_moving, starting_velocity
 from recon4.registration.state import STATE, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
+from recon4.registration.tuning import OdometryTuning, registration_tuning
 from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _AS_PREDICTED_M = 0.03
 """While it is not known how much usually matches, a frame is sure of its pose if the LiDARs move
@@ -44,12 +46,12 @@ class ImuStrategy:
         """During a gap in the samples: the last state before it, with the IMU biases."""
         self._begun: tuple[Multiframe, MotionState] | None = None
         """The first frame until the second one comes, and the state at its start."""
-        self.longest_map = settings.odometry.history
+        self.longest_map = tuned(OdometryTuning, settings.odometry).history
         self.fitter = FrameFitter(
             settings.odometry,
-            settings.registration.converged_step_m,
+            registration_tuning(settings.registration).converged_step_m,
             coarse=0,
-            rounds=settings.odometry.rounds,
+            rounds=tuned(OdometryTuning, settings.odometry).rounds,
             with_imu=True,
             aiding=aiding,
         )
@@ -68,7 +70,12 @@ class ImuStrategy:
         if begun is None or self._aiding:
             return None
         first, state = begun
-        velocity = starting_velocity(first, frame, rig=self._rig, settings=self._settings.scans)
+        velocity = starting_velocity(
+            first,
+            frame,
+            rig=self._rig,
+            settings=tuned(OdometryTuning, self._settings.odometry).scans,
+        )
         if velocity is None:
             return None
         # Not a new initial state: live there are more samples by now, and they tilt it otherwise.
@@ -135,7 +142,9 @@ class ImuStrategy:
 
     def after_loss(self, view: FrameView, tracking: TrackingState) -> Seen | None:
         """See `MotionStrategy.after_loss`: for so long the IMU leads to what is new."""
-        lost_for_long = tracking.lost_frames >= self._settings.odometry.restart_after
+        lost_for_long = (
+            tracking.lost_frames >= tuned(OdometryTuning, self._settings.odometry).restart_after
+        )
         return Seen.LOST_FOR_LONG if lost_for_long else None
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:

@@ -20,7 +20,9 @@ from recon4.registration.result import Registration
 from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.step import OdometryStep
+from recon4.registration.tuning import OdometryTuning, registration_tuning
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _PREDICTOR = 3
 """Number of past motions the linear predictor uses (requirements A3.2)."""
@@ -59,8 +61,8 @@ class LineOdometry:
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
-        segments = sample_segments(frame, self._rig, self._settings.segments)
-        view = make_range_image(body_points(frame, self._rig), self._settings.overlap)
+        segments = sample_segments(frame, self._rig)
+        view = make_range_image(body_points(frame, self._rig))
         steps = (frame.t_mid_ns - self._t_mid_ns) / frame.duration_ns if self._history else 1.0
         predicted = motion = self._predicted_motion(frame)
         T_predicted = T_odom_body = self._T_odom_body @ _times(motion, steps)
@@ -117,7 +119,6 @@ class LineOdometry:
                 observed.view,
                 view,
                 observed.T_odom_body.inverse() @ T_odom_body,
-                settings=self._settings.overlap,
             )
             for observed in self._history
         ]
@@ -136,7 +137,7 @@ class LineOdometry:
         return self._register_to(LineTarget(joined), lines, max(overlaps))
 
     def _register_to(self, target: LineTarget, lines: Lines, overlap_ratio: float) -> Registration:
-        settings = self._settings.registration
+        settings = registration_tuning(self._settings.registration)
         # A scan too sparse to fill the bins of a view volume has an overlap of 0.
         overlap_ratio = max(overlap_ratio, settings.portion)
         return register_lines(
@@ -144,7 +145,10 @@ class LineOdometry:
         )
 
     def _is_lost(self, found: Registration) -> bool:
-        return not (found.converged and found.error_m < self._settings.odometry.lost_error_m)
+        return not (
+            found.converged
+            and found.error_m < tuned(OdometryTuning, self._settings.odometry).lost_error_m
+        )
 
     def _step(
         self,
@@ -155,7 +159,7 @@ class LineOdometry:
         prediction_offset_m: float,
         lost: bool,
     ) -> OdometryStep:
-        o = self._settings.odometry
+        o = tuned(OdometryTuning, self._settings.odometry)
         dense_ns = [frame.t_ns, frame.t_mid_ns, frame.t_ns + frame.duration_ns]
         return OdometryStep(
             frame.frame_id,

@@ -10,8 +10,10 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.point_map import PointMap
+from recon4.registration.tuning import OdometryTuning
 from recon4.registration.view import FrameView
-from recon4.settings import OdometrySettings, Settings
+from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 
 class LocalMap:
@@ -24,10 +26,10 @@ class LocalMap:
             settings: Uses planes, and odometry: how far keyframes are apart.
             longest: Number of keyframes of which there are planes.
         """
-        self._settings: OdometrySettings = settings.odometry
+        self._settings = tuned(OdometryTuning, settings.odometry)
         self._longest = longest
-        self.planes = PlaneMap(settings.planes)
-        self.points = PointMap(settings.planes)
+        self.planes = PlaneMap()
+        self.points = PointMap()
         self._keyframes: deque[tuple[Array, Array]] = deque()
         """Ends of the segments of the last keyframes (N, 3), and from where they were seen (3,)."""
         self._last_keyframe = SE3.identity()

@@ -9,7 +9,9 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.registration.plane_map import Match
 from recon4.registration.scan_chain import ScanChain
-from recon4.settings import OdometrySettings, ScanSettings
+from recon4.registration.tuning import SCANS, OdometryTuning, ScanTuning
+from recon4.settings import OdometrySettings
+from recon4.settings.tuning import tuned
 
 _USUAL_FRAMES = 50
 """Number of frames from which the usual match ratio is learned."""
@@ -23,7 +25,7 @@ class LostLimits:
     """
 
     def __init__(self, settings: OdometrySettings) -> None:
-        self._settings = settings
+        self._settings = tuned(OdometryTuning, settings)
         self._ratios: deque[float] = deque(maxlen=_USUAL_FRAMES)
 
     def learn(self, match_ratio: float) -> None:
@@ -59,7 +61,7 @@ class LostLimits:
 class FreshChain:
     """Follows the scans after tracking was lost, until enough in a row fit each other."""
 
-    def __init__(self, settings: ScanSettings) -> None:
+    def __init__(self, settings: ScanTuning = SCANS) -> None:
         self._settings = settings
         self._chain = ScanChain(settings)
         self._T_begin_now = SE3.identity()

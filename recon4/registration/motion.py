@@ -15,7 +15,9 @@ from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.state import STATE, VECTOR
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
+from recon4.settings.tuning import tuned
 
 _FREE_SD = (0.01, 0.05, 0.3, 0.3)
 """Standard deviation of a state between two scans: turn [rad], place [m], velocity [m/s], turn
@@ -124,7 +126,7 @@ class ImuMotion:
         self._gyro, self._accel = imu_in_body(imu, rig)
         self._saturated = saturated_samples(imu)
         self._has_accel = bool(np.isfinite(self._accel).all())
-        s = settings
+        s = tuned(OdometryTuning, settings)
         walks = (_GAIN_WALK if s.gyro_gain_sd else 0.0, _CLOCK_WALK_S if s.imu_clock_sd_s else 0.0)
         self._noise = np.array(
             [s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk, *walks]
@@ -246,7 +248,8 @@ class FreeMotion:
     """
 
     def __init__(self, settings: OdometrySettings) -> None:
-        self._noise = np.array([1e-3, settings.free_accel, settings.free_turn_walk, 1e-9, 0, 0])
+        free = tuned(OdometryTuning, settings)
+        self._noise = np.array([1e-3, free.free_accel, free.free_turn_walk, 1e-9, 0, 0])
 
     def covers(self, start_ns: int, end_ns: int) -> bool:
         """Whether the span is not empty: this model needs no samples."""

@@ -17,7 +17,7 @@ from recon4.model.rig import Rig
 from recon4.registration.motion import MotionState
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.state import STATE, VECTOR
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import SCANS, ScanTuning
 
 MOVING_M_S = 0.3
 """A slower body is taken for one that stands [m/s]."""
@@ -28,7 +28,7 @@ LONGEST_NS = 300_000_000
 
 
 def starting_velocity(
-    first: Multiframe, second: Multiframe, *, rig: Rig, settings: ScanSettings
+    first: Multiframe, second: Multiframe, *, rig: Rig, settings: ScanTuning = SCANS
 ) -> Array | None:
     """Velocity between two frames in axes of the body [m/s], (3,).
 

@@ -19,8 +19,10 @@ from recon4.registration.scan_strategy import ScanStrategy
 from recon4.registration.state import END
 from recon4.registration.step import OdometryStep, make_step
 from recon4.registration.tracking import Seen, TrackingState
+from recon4.registration.tuning import OdometryTuning
 from recon4.registration.view import FrameView
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _INTERRUPTED_NS = 2_000_000_000
 """Longest gap between two frames that is predicted across without an IMU [ns]."""
@@ -72,7 +74,7 @@ class Odometry:
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; frames come in the order of their time."""
-        view = FrameView(frame, self._rig, self._settings.segments)
+        view = FrameView(frame, self._rig)
         self._begin_moving(frame)
         tried = self._registered(view)
         self._tracking.next(tried.seen)
@@ -139,7 +141,7 @@ class Odometry:
             self._map.points,
             view.points,
             prediction,
-            max_eigenvalue=self._settings.odometry.weak_eigenvalue,
+            max_eigenvalue=tuned(OdometryTuning, self._settings.odometry).weak_eigenvalue,
         )
         rest = self._motion.rest(prediction.end, weak=self._is_weak)
         fit = self._motion.fitter.fit(
@@ -165,7 +167,7 @@ class Odometry:
         if again is None:
             return
         first, state = again
-        view = FrameView(first, self._rig, self._settings.segments)
+        view = FrameView(first, self._rig)
         prediction = self._motion.predict(state, view, self._tracking)
         self._state = self._good = prediction.end
         self._map.clear()

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.overlap import inside_ratio, nearest_ranges, seen_through_ratio
-from recon4.settings import OverlapSettings
+from recon4.registration.tuning import OVERLAP, OverlapTuning
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -22,7 +22,7 @@ class RangeImage:
     """Smallest range in each bin of azimuth and elevation [m]; 0 = empty."""
 
 
-def make_range_image(points: Array, settings: OverlapSettings) -> RangeImage:
+def make_range_image(points: Array, settings: OverlapTuning = OVERLAP) -> RangeImage:
     """The spherical z-buffer of points [m], (N, 3), around the origin of their frame."""
     nearest_m = nearest_ranges(
         points, settings.azimuth_bins, settings.elevation_bins, settings.min_points
@@ -31,7 +31,11 @@ def make_range_image(points: Array, settings: OverlapSettings) -> RangeImage:
 
 
 def overlap(
-    source: RangeImage, target: RangeImage, T_source_target: SE3, *, settings: OverlapSettings
+    source: RangeImage,
+    target: RangeImage,
+    T_source_target: SE3,
+    *,
+    settings: OverlapTuning = OVERLAP,
 ) -> float:
     """Fraction of points in the other's view volume, 0..1 (V Eq. 2.6, read as A0 no. 2).
 
@@ -53,7 +57,11 @@ def overlap(
 
 
 def seen_through(
-    source: RangeImage, target: RangeImage, T_source_target: SE3, *, settings: OverlapSettings
+    source: RangeImage,
+    target: RangeImage,
+    T_source_target: SE3,
+    *,
+    settings: OverlapTuning = OVERLAP,
 ) -> float:
     """Fraction of points in the free space of the other view, 0..1: the larger of both directions.
 
@@ -77,7 +85,7 @@ def seen_through(
 
 
 def _inside(
-    view: RangeImage, other: RangeImage, T_view_other: SE3, *, settings: OverlapSettings
+    view: RangeImage, other: RangeImage, T_view_other: SE3, *, settings: OverlapTuning = OVERLAP
 ) -> float:
     return inside_ratio(
         view.nearest_m,

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels import planes
-from recon4.settings import PlaneSettings
+from recon4.registration.tuning import PLANES, PlaneTuning
 
 _FIRST_CAPACITY = 1 << 16
 
@@ -60,7 +60,7 @@ class PlaneMap:
 
     def __init__(
         self,
-        settings: PlaneSettings,
+        settings: PlaneTuning = PLANES,
         *,
         min_extent_m: float = 0.0,
         max_variance_ratio: float = 0.1,

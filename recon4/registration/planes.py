@@ -9,6 +9,7 @@ from recon4.registration.degeneracy import observable_pose
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.state import START
+from recon4.registration.tuning import registration_tuning
 from recon4.settings import RegistrationSettings
 
 _GATES_M = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
@@ -36,9 +37,10 @@ def register_to_planes(
             such errors create keep the initial pose, and the result has no information there.
     """
     T_target_source = initial
+    rules = registration_tuning(settings)
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
-    for rounds in range(1, settings.max_iterations + 1):
+    for rounds in range(1, rules.max_iterations + 1):
         last_gate = rounds >= len(_GATES_M)
         match = _match_round(target, T_target_source, source, rounds=rounds)
         if match.matches < _MIN_MATCHES:
@@ -48,11 +50,11 @@ def register_to_planes(
         T_target_source = T_target_source.stepped(step)
         if (
             not np.isfinite(step).all()
-            or (initial.inverse() @ T_target_source).size_m() > settings.max_move_m
+            or (initial.inverse() @ T_target_source).size_m() > rules.max_move_m
         ):
             stop = StopReason.UNSTABLE
             break
-        if last_gate and tangent_size_m(step) < settings.converged_step_m:
+        if last_gate and tangent_size_m(step) < rules.converged_step_m:
             stop = StopReason.SMALL_STEP
             break
     H = match.H[START, START]

@@ -23,7 +23,7 @@ from recon4.model.rig import Rig
 from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.state import END_POSE, START
-from recon4.settings import PlaneSettings
+from recon4.registration.tuning import PLANES, PlaneTuning
 
 _NEAR_M, _NEAR_STRIDE = 2.5, 4
 """Of points nearer than this [m] every fourth is used: near surfaces have more than enough."""
@@ -86,7 +86,7 @@ def frame_points(frame: Multiframe, rig: Rig) -> FramePoints:
 class PointMap:
     """Planes of the points of all keyframes within `_RADIUS_M`."""
 
-    def __init__(self, settings: PlaneSettings) -> None:
+    def __init__(self, settings: PlaneTuning = PLANES) -> None:
         self._planes = PlaneMap(
             settings,
             min_extent_m=_MIN_EXTENT_M,

@@ -18,7 +18,7 @@ from recon4.registration.bridge import (
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, search_scans
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import SCANS, ScanTuning
 
 _SOURCE_POINTS = 3000
 """Number of points of a new scan; the registration to the plane map uses all segments."""
@@ -31,7 +31,7 @@ class ScanChain:
     last good scan stays the target, so that returning to it ends the loss.
     """
 
-    def __init__(self, settings: ScanSettings) -> None:
+    def __init__(self, settings: ScanTuning = SCANS) -> None:
         self._settings = replace(settings, source_points=_SOURCE_POINTS)
         self._last: SeenScan | None = None
         self._now: SeenScan | None = None

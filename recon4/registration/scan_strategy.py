@@ -16,10 +16,12 @@ from recon4.registration.motion_strategy import is_numeric
 from recon4.registration.scan_chain import ScanChain
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
+from recon4.registration.tuning import PLANES, OdometryTuning, registration_tuning
 from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _UNSEEN_NS = 200_000_000
 """Least time without a frame in which the body moved unseen [ns]. Without such a gap a scan that is
@@ -31,17 +33,20 @@ class ScanStrategy:
 
     def __init__(self, settings: Settings, aiding: GnssAiding | None) -> None:
         self._settings, self._aiding = settings, aiding
-        self._free, self._chain = FreeMotion(settings.odometry), ScanChain(settings.scans)
+        self._free, self._chain = (
+            FreeMotion(settings.odometry),
+            ScanChain(tuned(OdometryTuning, settings.odometry).scans),
+        )
         self._fresh: FreshChain | None = None
         """The scans since tracking was lost."""
         self._fixes: GnssAiding | None = None
         """The aiding, if the odometry began in its frame."""
-        self.longest_map = settings.odometry.longest_map(with_imu=False)
+        self.longest_map = tuned(OdometryTuning, settings.odometry).longest_map(with_imu=False)
         self.fitter = FrameFitter(
             settings.odometry,
-            settings.registration.converged_step_m,
-            coarse=settings.planes.levels - 1,
-            rounds=settings.odometry.rounds_without_imu,
+            registration_tuning(settings.registration).converged_step_m,
+            coarse=PLANES.levels - 1,
+            rounds=tuned(OdometryTuning, settings.odometry).rounds_without_imu,
             with_imu=False,
             aiding=aiding,
         )
@@ -123,7 +128,7 @@ class ScanStrategy:
     def unknown_cov(self, frame: Multiframe, fit: FrameFit) -> Array:
         """See `MotionStrategy.unknown_cov`: fixes bound what no velocity excludes."""
         aided = self._aiding and self._aiding.pose(frame.t_ns + frame.duration_ns)
-        most_m = self._settings.odometry.gnss_sd_m if aided else float("inf")
+        most_m = tuned(OdometryTuning, self._settings.odometry).gnss_sd_m if aided else float("inf")
         return unknown_motion_cov(fit, seconds=1e-9 * frame.duration_ns, most_m=most_m)
 
     def keep(self, step: OdometryStep) -> None:
@@ -134,13 +139,16 @@ class ScanStrategy:
     def after_loss(self, view: FrameView, tracking: TrackingState) -> Seen | None:
         """See `MotionStrategy.after_loss`."""
         if self._fresh is None:
-            self._fresh = FreshChain(self._settings.scans)
+            self._fresh = FreshChain(tuned(OdometryTuning, self._settings.odometry).scans)
         sure = self._fresh.push(view.scan(), view.frame.t_mid_ns)
         return Seen.SURE_AGAIN if sure else None
 
     def at_rest(self, state: MotionState, t_ns: int) -> MotionState:
         """See `MotionStrategy.at_rest`."""
-        self._chain, self._fresh = ScanChain(self._settings.scans), None
+        self._chain, self._fresh = (
+            ScanChain(tuned(OdometryTuning, self._settings.odometry).scans),
+            None,
+        )
         return self._free.at_rest(state, t_ns)
 
     def imu_state(self, good: MotionState | None) -> MotionState | None:

@@ -23,7 +23,7 @@ from recon4.kernels.scans import accumulate_symmetric, count_from_above, neighbo
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.degeneracy import observable_pose
 from recon4.registration.result import Registration, StopReason
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import SCANS, ScanTuning
 
 _MIN_MATCHES = 50
 _COARSE_POINTS = 1500
@@ -66,7 +66,7 @@ class Scan:
         return np.ascontiguousarray(self.points[steep, :2])
 
 
-def make_scan(points: Array, settings: ScanSettings) -> Scan:
+def make_scan(points: Array, settings: ScanTuning = SCANS) -> Scan:
     """Thin points [m], (N, 3), to one per voxel (the mean) and fit a plane around each."""
     p = thinned(points[np.isfinite(points).all(axis=1)], settings.voxel_m)
     tree = cKDTree(p, balanced_tree=False, compact_nodes=False)
@@ -81,7 +81,7 @@ def register_scans(
     source: Scan,
     *,
     initial: SE3,
-    settings: ScanSettings,
+    settings: ScanTuning = SCANS,
     prior: CarrierPrior | None = None,
 ) -> Registration:
     """Estimate ``T_target_source`` from an initial pose within a meter and some ten degrees.
@@ -105,7 +105,7 @@ def search_scans(
     source: Scan,
     *,
     initial: SE3,
-    settings: ScanSettings,
+    settings: ScanTuning = SCANS,
     prior: CarrierPrior | None = None,
 ) -> Registration:
     """Estimate ``T_target_source`` although the initial pose may be completely wrong.
@@ -147,7 +147,7 @@ def search_scans(
 
 
 def lay_onto(
-    target: Scan, source: Scan, *, initial: Sequence[SE3], settings: ScanSettings
+    target: Scan, source: Scan, *, initial: Sequence[SE3], settings: ScanTuning = SCANS
 ) -> list[Registration]:
     """Every pose that fits, best first: from the initial poses and the overlays of ground plans.
 
@@ -208,7 +208,7 @@ def _descend(
     source: tuple[Array, Array],
     *,
     initial: SE3,
-    settings: ScanSettings,
+    settings: ScanTuning = SCANS,
     prior: CarrierPrior | None,
 ) -> Registration:
     """Match and solve until the steps are small; ``source`` are points and normals, (N, 3)."""

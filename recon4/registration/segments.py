@@ -10,7 +10,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.segments import draw_pairs, segment_ends
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
-from recon4.settings import SegmentSettings
+from recon4.registration.tuning import SEGMENTS, SegmentTuning
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -32,7 +32,7 @@ class Segments:
         return len(self.a_s)
 
 
-def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentSettings) -> Segments:
+def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentTuning = SEGMENTS) -> Segments:
     """Draw the collar line segments of all enabled sensors (requirements A3.1, 1-3).
 
     The same frame and settings give the same segments.
@@ -46,7 +46,7 @@ def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentSettings) -> S
 
 
 def _of_sensor(
-    frame: Multiframe, row: int, rig: Rig, *, settings: SegmentSettings
+    frame: Multiframe, row: int, rig: Rig, *, settings: SegmentTuning = SEGMENTS
 ) -> tuple[Array, Array, Array, Array, Array] | None:
     sensor = rig.sensors[row]
     rows = np.flatnonzero(frame.sensor == row)

@@ -15,9 +15,11 @@ from recon4.registration.felt_motion import carried, felt_motion, is_carried
 from recon4.registration.hypotheses import Choice, choose_walk
 from recon4.registration.pulled import less_sure
 from recon4.registration.step import OdometryStep
+from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
 from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs
 from recon4.registration.weak_turns import weak_turns
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
 from recon4.store.tried import read_tried, write_tried
 
@@ -26,8 +28,8 @@ def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:
     """Register all multiframes in order; again only if that shows what must be assumed.
 
     Args:
-        recording: The multiframes with their rig, IMU and fixes, and the settings: segments,
-            planes, registration, scans and odometry. Its progress counts multiframes; tracking
+        recording: The multiframes with their rig, IMU and fixes, and the settings:
+            registration and odometry. Its progress counts multiframes; tracking
             that is lost is an event.
         out: Receives ``trajectory.npz`` (``T_odom_body``, dense), ``steps.npz`` (a row a
             multiframe), ``hypotheses.json`` (what was tried, and why one was chosen), and
@@ -50,7 +52,8 @@ def _carried(recording: WalkInputs, tracked: TrackedWalk, imu: ImuSamples) -> li
     steps = tracked.steps
     if not any(is_carried(step) for step in steps[1:]):
         return steps
-    noise, rig = recording.settings.odometry.accel_noise, recording.frames.rig
+    noise = tuned(OdometryTuning, recording.settings.odometry).accel_noise
+    rig = recording.frames.rig
     felt = felt_motion(steps, tracked.trajectory, imu, rig=rig, accel_noise=noise)
     return steps if felt is None else carried(steps, felt)
 

@@ -9,6 +9,7 @@ import weakref
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +21,7 @@ from recon4.model.frames import RecordedFrames
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.overlap import make_range_image
 from recon4.registration.segments import Segments, sample_segments
-from recon4.settings import Settings
+from recon4.registration.tuning import OVERLAP, OverlapTuning
 
 Ends = NDArray[np.float64]
 """Both ends of M segments [m], (M, 2, 3)."""
@@ -37,6 +38,22 @@ class TrackedFrames:
     """Multiframes without a pose, which have no segments here, (F,)."""
 
 
+class SubmapReach(Protocol):
+    """Multiframes around a node, and how many of their segments it keeps."""
+
+    @property
+    def source_reach(self) -> int:
+        """Before and after the node, whose segments are registered."""
+
+    @property
+    def source_segments(self) -> int:
+        """Largest number of these segments."""
+
+    @property
+    def target_reach(self) -> int:
+        """Before and after the node, that form the target map."""
+
+
 class Submaps:
     """Computes the segments around nodes on demand.
 
@@ -44,20 +61,16 @@ class Submaps:
     all threads.
     """
 
-    def __init__(
-        self, tracked: TrackedFrames, rows: NDArray[np.intp], *, settings: Settings, scratch: Path
-    ) -> None:
+    def __init__(self, tracked: TrackedFrames, rows: NDArray[np.intp], *, scratch: Path) -> None:
         """Nothing is drawn yet.
 
         Args:
             tracked: The multiframes.
             rows: Multiframe of each node, (N,).
-            settings: Uses segments.
             scratch: Folder for the unnamed file; a full disk raises OSError.
         """
         self._frames, self._odometry = tracked.frames, tracked.trajectory
         self._lost = tracked.lost
-        self._settings = settings
         self._rows = rows
         self._T_odom_frame = tracked.trajectory.at(tracked.frames.t_mid_ns)
         self._drawn = _DrawnEnds(scratch)
@@ -98,7 +111,7 @@ class Submaps:
         if kept is not None:
             return kept
         frame = self._frames[row]
-        segments = sample_segments(frame, self._frames.rig, self._settings.segments)
+        segments = sample_segments(frame, self._frames.rig)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._odometry)
         in_frame = self._T_odom_frame[row].inverse() @ ends.reshape(-1, 3)
         return self._drawn.write(row, in_frame.reshape(-1, 2, 3).astype(np.float32))
@@ -160,20 +173,23 @@ class NodeRangeImages:
 
     Args:
         count: Number of nodes.
-        settings: Uses graph and overlap.
+        reach: Which multiframes belong to a node.
+        overlap: Bins of the range images.
         scratch: Folder for the unnamed temporary files; a full disk raises OSError.
     """
 
-    def __init__(self, count: int, settings: Settings, scratch: Path) -> None:
-        g, o = settings.graph, settings.overlap
+    def __init__(
+        self, count: int, reach: SubmapReach, *, scratch: Path, overlap: OverlapTuning = OVERLAP
+    ) -> None:
+        g, o = reach, overlap
         self._size = np.zeros(count, np.int64)
         self._ends = _scratch((count, g.source_segments, 2, 3), scratch)
         self._nearest = _scratch((count, o.azimuth_bins, o.elevation_bins), scratch)
-        self._settings = settings
+        self._reach, self._overlap = reach, overlap
 
     def fill(self, submaps: Submaps, nodes: Sequence[int]) -> None:
         """Compute segments and range images of some nodes."""
-        g = self._settings.graph
+        g = self._reach
         for node in nodes:
             # The segments of one multiframe are too few points to fill the bins of a view volume.
             wide = (
@@ -184,7 +200,7 @@ class NodeRangeImages:
             near = _thin(submaps.around(node, g.source_reach), g.source_segments)
             self._size[node] = len(near)
             self._ends[node, : len(near)] = near
-            view = make_range_image(wide, self._settings.overlap)
+            view = make_range_image(wide, self._overlap)
             self._nearest[node] = view.nearest_m
 
     def ends(self, node: int) -> Ends:

@@ -8,13 +8,13 @@ from recon4.model.rig import Rig
 from recon4.registration.point_map import FramePoints, frame_points
 from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
-from recon4.settings import SegmentSettings
+from recon4.registration.tuning import SEGMENTS, SegmentTuning
 
 
 class FrameView:
     """A frame with its segments; its points are worked out when they are needed."""
 
-    def __init__(self, frame: Multiframe, rig: Rig, settings: SegmentSettings) -> None:
+    def __init__(self, frame: Multiframe, rig: Rig, settings: SegmentTuning = SEGMENTS) -> None:
         self.frame = frame
         self.segments: Segments = sample_segments(frame, rig, settings)
         self._rig = rig

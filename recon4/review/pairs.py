@@ -19,9 +19,11 @@ from recon4.mapping.place import place
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.pose_graph.pairs import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar, too_little_overlap
+from recon4.pose_graph.tuning import graph_tuning
 from recon4.progress import Silent
 from recon4.registration.overlap import RangeImage, overlap
 from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames
+from recon4.registration.tuning import OVERLAP
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
 from recon4.review.planar_pairs import align_keyframes, keyframe_points
@@ -163,19 +165,19 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
 
 def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     # An operator's pair is registered at any overlap.
-    settings = replace(source.settings, overlap=replace(source.settings.overlap, threshold=0.0))
+    settings = source.settings
     rows = np.array(pair, dtype=np.intp)
     scratch = Path(gettempdir())
-    views = NodeRangeImages(2, settings, scratch)
+    views = NodeRangeImages(2, graph_tuning(settings.graph), scratch=scratch)
     tracked = TrackedFrames(source.frames, source.odometry, _lost(source))
-    submaps = Submaps(tracked, rows, settings=settings, scratch=scratch)
-    registrar = PairRegistrar(submaps, views, settings)
+    submaps = Submaps(tracked, rows, scratch=scratch)
+    registrar = PairRegistrar(submaps, views, settings, overlap=replace(OVERLAP, threshold=0.0))
     registrar.prepare(2, Silent())
     tried = registrar.register([TriedPair(0, 1, EdgeKind.MANUAL, T_predicted)], Silent())[0]
     ends = [RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1)]
-    ratio = overlap(ends[0], ends[1], tried.T_i_j, settings=settings.overlap)
-    if not tried.reason and ratio < source.settings.overlap.threshold:
-        tried = tried.judged(too_little_overlap(ratio, source.settings.overlap.threshold))
+    ratio = overlap(ends[0], ends[1], tried.T_i_j)
+    if not tried.reason and ratio < OVERLAP.threshold:
+        tried = tried.judged(too_little_overlap(ratio, OVERLAP.threshold))
     return tried.evolve(overlap=ratio)
 
 

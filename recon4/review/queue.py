@@ -14,11 +14,13 @@ from recon4.kernels.paths import path_medians
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.pose_graph.paths import PathIndex
+from recon4.pose_graph.tuning import VerificationTuning
 from recon4.review.apply import is_measured
 from recon4.review.influence import influence_m
 from recon4.review.solve import pair_of
 from recon4.review.source import Source
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 MAX_PATHS = 60
 """Largest number of alternative paths listed for a pair, the worst first."""
@@ -180,7 +182,7 @@ def _path_record(graph: PoseGraph, nodes: tuple[int, ...], apart: SE3) -> Altern
 
 
 def _index(graph: PoseGraph, settings: Settings) -> PathIndex:
-    v = settings.verification
+    v = tuned(VerificationTuning, settings.verification)
     cycle = v.variant == "cycle"
     return PathIndex.build(
         graph.relations,

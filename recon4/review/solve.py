@@ -21,11 +21,13 @@ from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import outlier_limit
 from recon4.pose_graph.solve import optimize
+from recon4.pose_graph.tuning import VerificationTuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent
 from recon4.review.apply import apply_decisions
 from recon4.review.decisions import Pair, Standing
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.store.atomic import write_json
 
 MAX_MOVES = 10
@@ -185,7 +187,9 @@ def review(
         graph = verify(
             applied.graph, settings=settings.verification, progress=progress or Silent()
         ).graph
-    found = conflicts(graph, probability=settings.verification.inlier_probability)
+    found = conflicts(
+        graph, probability=tuned(VerificationTuning, settings.verification).inlier_probability
+    )
     return Reviewed(graph, found, applied.missing, applied.changed)
 
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge
 from recon4.pose_graph.pairs import too_little_overlap
+from recon4.profiler.tuning import LineTuning
 from recon4.review.source import Source
+from recon4.settings.tuning import tuned
 
 
 def has_sweeps(source: Source) -> bool:
@@ -35,12 +37,16 @@ def align_sweeps(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge
     settings, sweeps = source.settings, source.sweeps
     first, second = (
         unwind_sweep(
-            source.frames, sweeps, node, trajectory=source.odometry, settings=settings.lines
+            source.frames,
+            sweeps,
+            node,
+            trajectory=source.odometry,
+            settings=tuned(LineTuning, settings.lines),
         )
         for node in nodes
     )
     link = Link(*nodes, initial=predicted, overlap=0.0)
     edge, close_points = register_pair((first, second), link, settings=settings)
-    if not edge.reason and close_points < settings.lines.link_pairs:
+    if not edge.reason and close_points < tuned(LineTuning, settings.lines).link_pairs:
         return edge.judged(too_little_overlap(edge.overlap))
     return edge

@@ -30,8 +30,11 @@ from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
+from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
+from recon4.semi_rigid.tuning import RefineTuning
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory, save_record, save_trajectory
 from recon4.store.frames import FrameStore
 
@@ -107,7 +110,7 @@ def refine_trajectory(
         settings: Uses segments, planes and refine.
         progress: Counts multiframes, twice a round.
     """
-    r = settings.refine
+    r = tuned(RefineTuning, settings.refine)
     knot_ns = _knots(frames)
     correction = np.zeros((len(knot_ns), 6))
     trajectory, rounds = start, []
@@ -146,11 +149,12 @@ class _Sweep:
     ) -> None:
         self._frames, self._trajectory, self._lost = frames, trajectory, lost
         self._settings, self._progress = settings, progress
+        self._tuning = tuned(RefineTuning, settings.refine)
 
     def build(self) -> PlaneMap:
         """Plane map of all segments of the walk; added in order, so that it is reproducible."""
-        planes = PlaneMap(self._settings.planes)
-        for placed in self._in_order(self._ends, self._settings.refine.map_stride):
+        planes = PlaneMap()
+        for placed in self._in_order(self._ends, self._tuning.map_stride):
             if placed is not None:
                 planes.add(*placed)
         planes.fit()
@@ -159,14 +163,14 @@ class _Sweep:
     def match(self, planes: PlaneMap) -> tuple[IntervalEquations, float, float]:
         """Normal equations of every multiframe, mean distance [m] and match ratio.
 
-        With ``refine.min_gap_s`` multiframes nearer in time than that to those being matched are
+        With a ``min_gap_s`` multiframes nearer in time than that to those being matched are
         removed from the map meanwhile. The match ratio is 0 if nothing matches.
         """
         count = len(self._frames)
         H, g = np.zeros((count, 12, 12)), np.zeros((count, 12))
         distances: list[float] = []
         ratios: list[float] = []
-        absent = _Absent(planes, self._gap_rows(), self._settings.refine.map_stride)
+        absent = _Absent(planes, self._gap_rows(), self._tuning.map_stride)
 
         def forget(chunk: range) -> None:
             absent.move_to(chunk, self._ends, count)
@@ -186,7 +190,7 @@ class _Sweep:
         if self._lost[row]:
             return None
         frame = self._frames[row]
-        segments = sample_segments(frame, self._frames.rig, self._settings.segments)
+        segments = sample_segments(frame, self._frames.rig)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
         return np.ascontiguousarray(ends.reshape(-1, 3)), self._place(frame)
 
@@ -198,7 +202,7 @@ class _Sweep:
         if self._lost[row]:
             return None
         frame = self._frames[row]
-        segments = sample_segments(frame, self._frames.rig, self._settings.segments)
+        segments = sample_segments(frame, self._frames.rig)
         ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=self._trajectory)
         times_s = np.stack([segments.a_s, segments.b_s], axis=1)
         found = planes.match(
@@ -206,17 +210,17 @@ class _Sweep:
             times_s.reshape(-1) / (frame.duration_ns * 1e-9),
             center=self._place(frame),
             finest=0,
-            gate_m=self._settings.refine.gate_m,
+            gate_m=self._tuning.gate_m,
         )
         if found.matches == 0:
             return None
-        scale = self._settings.odometry.information_scale
+        scale = tuned(OdometryTuning, self._settings.odometry).information_scale
         return scale * found.H, scale * found.g, found.mean_m, found.match_ratio
 
     def _gap_rows(self) -> int:
         """Number of multiframes within the gap; 0 = a multiframe may match its own points."""
         durations = self._frames.index["duration_ns"]
-        rows = int(np.ceil(self._settings.refine.min_gap_s * 1e9 / max(1, int(durations.min()))))
+        rows = int(np.ceil(self._tuning.min_gap_s * 1e9 / max(1, int(durations.min()))))
         return rows if len(self._frames) >= _SHORT * rows else 0
 
     def _in_order(

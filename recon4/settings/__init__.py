@@ -5,21 +5,18 @@ own groups, so that a changed setting reruns only the stages that depend on it.
 """
 
 from recon4.settings.assign import canonical, override, to_json, values_by_group
-from recon4.settings.calibration import CalibrationSettings, EntropySettings, RigSettings
+from recon4.settings.calibration import CalibrationSettings, RigSettings
 from recon4.settings.georeference import GnssSettings, LevelSettings
 from recon4.settings.graph import GraphSettings, RecognitionSettings, VerificationSettings
 from recon4.settings.ingest import IngestSettings
 from recon4.settings.intensity import IntensitySettings
 from recon4.settings.lines import LineSettings
 from recon4.settings.mapping import MapSettings
-from recon4.settings.odometry import OdometrySettings, ScanSettings
+from recon4.settings.odometry import OdometrySettings
 from recon4.settings.presets import PRESET_TEXTS, PRESETS, Settings, preset
 from recon4.settings.refine import RefineSettings
 from recon4.settings.registration import (
-    OverlapSettings,
-    PlaneSettings,
     RegistrationSettings,
-    SegmentSettings,
 )
 from recon4.settings.renamed import changed_retired, current_name
 from recon4.settings.slam2d import (
@@ -32,7 +29,6 @@ __all__ = [
     "PRESETS",
     "PRESET_TEXTS",
     "CalibrationSettings",
-    "EntropySettings",
     "GnssSettings",
     "GraphSettings",
     "Grid2dSettings",
@@ -43,14 +39,10 @@ __all__ = [
     "Loop2dSettings",
     "MapSettings",
     "OdometrySettings",
-    "OverlapSettings",
-    "PlaneSettings",
     "RecognitionSettings",
     "RefineSettings",
     "RegistrationSettings",
     "RigSettings",
-    "ScanSettings",
-    "SegmentSettings",
     "Settings",
     "Slam2dSettings",
     "VerificationSettings",

@@ -12,13 +12,10 @@ from recon4.settings.ingest import IngestSettings
 from recon4.settings.intensity import IntensitySettings
 from recon4.settings.lines import LineSettings
 from recon4.settings.mapping import MapSettings
-from recon4.settings.odometry import OdometrySettings, ScanSettings
+from recon4.settings.odometry import OdometrySettings
 from recon4.settings.refine import RefineSettings
 from recon4.settings.registration import (
-    OverlapSettings,
-    PlaneSettings,
     RegistrationSettings,
-    SegmentSettings,
 )
 from recon4.settings.renamed import EARLIER_PRESETS
 from recon4.settings.slam2d import (
@@ -33,11 +30,7 @@ class Settings:
     """All groups of settings. ``--set group.field=value`` changes one field of a preset."""
 
     ingest: IngestSettings = field(default_factory=IngestSettings)
-    segments: SegmentSettings = field(default_factory=SegmentSettings)
-    overlap: OverlapSettings = field(default_factory=OverlapSettings)
     registration: RegistrationSettings = field(default_factory=RegistrationSettings)
-    planes: PlaneSettings = field(default_factory=PlaneSettings)
-    scans: ScanSettings = field(default_factory=ScanSettings)
     odometry: OdometrySettings = field(default_factory=OdometrySettings)
     calibration: CalibrationSettings = field(default_factory=CalibrationSettings)
     rig: RigSettings = field(default_factory=RigSettings)
@@ -82,7 +75,7 @@ PRESETS: dict[str, Settings] = {
     ),
     "thesis": Settings(
         calibration=CalibrationSettings(mode="off"),
-        registration=RegistrationSettings(solver="svd", max_iterations=500),
+        registration=RegistrationSettings(solver="svd"),
         odometry=OdometrySettings(
             use_imu=False,
             use_gnss=False,
@@ -93,15 +86,8 @@ PRESETS: dict[str, Settings] = {
         ),
         graph=GraphSettings(
             mode="verification",
+            pairs="published",
             exhaustive=True,
-            retry_rounds=0,
-            source_reach=0,
-            target_reach=0,
-            min_match_ratio=0.0,
-            min_degeneracy=0.0,
-            max_seen_through=1.0,
-            loop_sd_m=0.1,
-            loop_sd_rad=0.01,
         ),
         recognition=RecognitionSettings(enabled=False),
         verification=VerificationSettings(robust="none"),

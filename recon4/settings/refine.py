@@ -3,34 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Annotated
 
-from recon4.settings.require import require
+from recon4.settings.require import Checked, ValueRange
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class RefineSettings:
+class RefineSettings(Checked):
     """Semi-rigid refinement of every multiframe (requirements A12 L-4; mode ``beyond`` only)."""
 
-    rounds: int = 3
+    rounds: Annotated[int, ValueRange(1, 20)] = 3
     """Largest number of rounds; each builds the map and corrects all multiframes."""
-    map_stride: int = 2
-    """Every n-th multiframe is built into the map; all of them are corrected."""
-    gate_m: float = 0.1
-    """Segments farther from their plane do not match [m]."""
-    min_gap_s: float = 6.0
-    """A multiframe is matched only to points that are earlier or later by at least this [s]
-    (requirements A12 L-4). 0, or a recording shorter than three gaps: to all points, its own
-    included."""
-    step_sd_m: float = 0.001
-    """Standard deviation of the change of the correction between multiframes [m] …"""
-    step_sd_rad: float = 2e-4
-    """… and of its rotation [rad]: the accuracy of odometry."""
-    total_sd_m: float = 0.02
-    """Standard deviation of the whole correction [m]: the accuracy of the pose graph."""
-    total_sd_rad: float = 0.005
-    """The same for its rotation [rad]."""
-    converged_step_m: float = 4e-3
-    """Stop if no multiframe moves farther than this [m]."""
-
-    def __post_init__(self) -> None:
-        require(self.min_gap_s >= 0.0, "min_gap_s must be 0 or more", self.min_gap_s)

@@ -36,7 +36,7 @@ from recon4.store.project import read_artifacts
 from recon4.system.runtime_folder import runtime_folder
 
 _LIDAR_S, _PROFILER_S = 5.0, 8.0
-_FEW = ["map.voxel_m=0.1", "graph.node_stride=10", "segments.preserved=2"]
+_FEW = ["map.voxel_m=0.1", "graph.node_stride=10"]
 _FRAMES = 20
 _PIXEL_M = 0.05
 

@@ -26,6 +26,7 @@ from recon4.calibration.pose_pairs import (
     read_pose_pairs,
 )
 from recon4.calibration.slices import slice_points
+from recon4.calibration.tuning import CalibrationTuning, EntropyTuning
 from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
 from recon4.findings.witnesses.rig import agreement, rig_findings
@@ -38,7 +39,8 @@ from recon4.progress import Progress
 from recon4.recording.sources import Sources
 from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, CloudSlice
 from recon4.report.rig import DISPLAY_UNITS
-from recon4.settings import EntropySettings, Settings, override, preset
+from recon4.settings import Settings, override, preset
+from recon4.settings.tuning import tuned
 from recon4.store.frames import FrameStore
 from recon4.store.project import is_project, read_artifacts
 
@@ -221,11 +223,12 @@ def _entropy(task: _Task) -> MethodResult:
     walk, chosen = _walk(task)
     if walk.frames.rig.row_of("profiler") is not None:
         return _profiler_entropy(task, walk)
-    rig, settings = walk.frames.rig, EntropySettings()
+    rig, settings = walk.frames.rig, EntropyTuning()
     parameters = calibrated_parameters(
         rig, reference=_reference(rig, chosen), with_imu=False, settings=chosen.calibration
     )
-    windows = walk.windows(chosen.calibration.audit_windows, chosen.calibration.audit_window_s)
+    few = tuned(CalibrationTuning, chosen.calibration)
+    windows = walk.windows(few.audit_windows, few.audit_window_s)
     if not windows or not len(parameters):
         raise CalibrationError("entropy: expected two LiDARs and some seconds of walk")
     task.progress.start("calibration", settings.evaluations, "evaluations")

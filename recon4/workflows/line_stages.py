@@ -53,8 +53,8 @@ LINE_ODOMETRY = Stage(
 TURN_GRAPH = Stage(
     "graph",
     3,
-    ("odometry", "lines", "graph", "planes", "registration"),
+    ("odometry", "lines", "graph", "registration"),
     _sweep_graph,
     GraphFigures,
 )
-LINE_REFINE = Stage("refine", 4, ("odometry", "lines", "planes"), _refine_lines, RefineFigures)
+LINE_REFINE = Stage("refine", 4, ("odometry", "lines"), _refine_lines, RefineFigures)

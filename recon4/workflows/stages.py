@@ -26,9 +26,7 @@ from recon4.model.rig import Rig
 from recon4.review.decisions import Standing
 from recon4.store.stage import Stage, StageContext
 
-_MATCHING = (
-    "segments", "overlap", "registration", "planes", "odometry", "graph", "recognition",
-)  # fmt: skip
+_MATCHING = ("registration", "odometry", "graph", "recognition")
 
 
 def _frames(
@@ -198,6 +196,8 @@ def _intensity(
     calibration: Path | None = None,
 ) -> None:
     from recon4.intensity.normalize import write_intensity
+    from recon4.intensity.tuning import IntensityTuning
+    from recon4.settings.tuning import tuned
     from recon4.store.arrays import load_trajectory
     from recon4.store.frames import open_frames
 
@@ -205,7 +205,7 @@ def _intensity(
         open_frames(frames, calibration, odometry),
         load_trajectory(level / "trajectory.npz"),
         context.out,
-        settings=context.settings.intensity,
+        settings=tuned(IntensityTuning, context.settings.intensity),
         progress=context.progress,
     )
 
@@ -270,14 +270,14 @@ FRAMES = Stage("frames", 29, ("ingest",), _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     39,
-    ("segments", "registration", "planes", "scans", "odometry"),
+    ("registration", "odometry"),
     _odometry,
     OdometryFigures,
 )
 CALIBRATION = Stage(
     "calibration",
     14,
-    ("calibration", "segments", "registration", "planes", "scans", "odometry", "graph", "gnss"),
+    ("calibration", "registration", "odometry", "graph", "gnss"),
     _calibration,
     CalibrationFigures,
 )
@@ -286,9 +286,7 @@ VERIFICATION = Stage(
     "verification", 3, ("verification", "graph"), _verification, VerificationFigures
 )
 REVIEW = Stage("review", 4, ("verification", "graph"), _review, ReviewFigures)
-REFINE = Stage(
-    "refine", 4, ("segments", "planes", "odometry", "graph", "refine"), _refine, RefineFigures
-)
+REFINE = Stage("refine", 4, ("odometry", "graph", "refine"), _refine, RefineFigures)
 LEVEL = Stage("level", 24, ("level", "gnss", "verification"), _level, LevelFigures)
 AUDIT = Stage("audit", AUDIT_VERSION, ("gnss", "rig"), _audit, AuditFigures)
 INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)

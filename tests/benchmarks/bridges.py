@@ -19,13 +19,13 @@ from recon4.geometry.se3 import SE3
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.scan_chain import body_points
 from recon4.registration.scans import make_scan
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import ScanTuning
 from tests.benchmarks.loaders import nclt, nclt_truth, one_sensor
 from tests.benchmarks.real_sequences import DATA
 
 _WRONG_M, _WRONG_RAD = 1.0, 0.2
 _STEP_M, _BEFORE = 1.0, 12
-SCANS = ScanSettings(source_points=3000)
+SCANS = ScanTuning(source_points=3000)
 
 
 @dataclass(frozen=True)

@@ -23,12 +23,12 @@ from recon4.calibration.map_alignment import align_maps
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.pose_pairs import MarkerPosePairs, average_pairs
 from recon4.calibration.stage import run_calibration
+from recon4.calibration.tuning import EntropyTuning
 from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
-from recon4.settings import EntropySettings
 from recon4.store.frames import FrameStore
 from tests.benchmarks.calibration import SETTINGS, true_rig
 from tests.said import outcome_text
@@ -91,7 +91,7 @@ def entropy(walk: RecordedWalk, folder: Path) -> str:
     parameters = Parameters.of(walk.frames.rig, reference=0, lidars=(1,), imu=False)
     windows = walk.windows(s.audit_windows, s.audit_window_s)
     found = calibrate_by_entropy(
-        windows, walk.frames.rig, parameters, settings=EntropySettings(), progress=lambda: None
+        windows, walk.frames.rig, parameters, settings=EntropyTuning(), progress=lambda: None
     )
     return error(found.rig.sensors[-1].T_body_sensor, folder)
 

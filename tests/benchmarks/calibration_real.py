@@ -26,7 +26,7 @@ from recon4.geometry.se3 import SE3, Array, proper, so3_log
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.registration.result import Registration
 from recon4.registration.scans import Scan, make_scan, register_scans
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import ScanTuning
 
 ROOT = Path(__file__).parents[2]
 DATA = Path(os.environ.get("RECON4_DATA", ROOT.parent / "shared" / "data")) / "calibration"
@@ -43,7 +43,7 @@ LAG = 50
 FLOOR_M = (2.0, 12.0)
 REACH_M = 60.0
 GRID_DEG = np.arange(-60.0, 61.0, 15.0)
-SETTINGS = ScanSettings()
+SETTINGS = ScanTuning()
 
 
 def main() -> None:

@@ -25,6 +25,7 @@ from recon4.geometry.se3 import SE3, Array, align_points, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
 from recon4.model.rig import load_rig
 from recon4.pose_graph.search import OdometryTrack, close_loops, make_registrar, start_graph
+from recon4.pose_graph.tuning import graph_tuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -118,7 +119,7 @@ def without_neighbors(*, recognition: bool) -> Settings:
     settings = preset("indoor")
     return replace(
         settings,
-        graph=replace(settings.graph, neighbors=0, workers=1),
+        graph=replace(graph_tuning(settings.graph), neighbors=0, workers=1),
         recognition=replace(settings.recognition, enabled=recognition),
     )
 

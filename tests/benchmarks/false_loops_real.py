@@ -18,12 +18,13 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.georeference.gnss import georeference
 from recon4.georeference.stage import find_level
+from recon4.georeference.tuning import GnssTuning
 from recon4.model.corrections import apply_corrections
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph
 from recon4.pose_graph.verification import verify
-from recon4.settings import GnssSettings, VerificationSettings
+from recon4.settings import VerificationSettings
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
@@ -78,7 +79,7 @@ class Walk:
         placed = georeference(
             verified.with_poses(leveling.T_level_odom @ verified.T_map_body),
             Trajectory(dense.t_ns, dense.T_a_b), self.frames.gnss,
-            rig=self.frames.rig, settings=GnssSettings(),
+            rig=self.frames.rig, settings=GnssTuning(),
         )  # fmt: skip
         assert placed.origin is not None, placed.reason
         return [*out, np.array([e.in_graph for e in placed.graph.edges])]

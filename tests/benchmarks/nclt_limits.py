@@ -13,7 +13,7 @@ import numpy as np
 
 from recon4.evaluation.table import number, text_table
 from recon4.geometry.se3 import SE3, Array, so3_log
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import ScanTuning
 from tests.benchmarks.loaders import nclt, nclt_truth
 from tests.benchmarks.real_sequences import DATA, Align, ours, small_gicp_pairs
 
@@ -44,7 +44,7 @@ def main() -> None:
     scans = [frame.xyz.astype(np.float64) for frame in nclt(folder)]
     poses = nclt_truth(folder).T_a_b
     truth = poses[:-1].inverse() @ poses[1:]
-    us = chain(ours(ScanSettings()), scans, None)
+    us = chain(ours(ScanTuning()), scans, None)
     peer = chain(small_gicp_pairs(), scans, truth)
     ab, ac, bc = variances(truth, us), variances(truth, peer), variances(us, peer)
     witnesses = (("truth and shared", ab + ac - bc), ("ours", ab + bc - ac),

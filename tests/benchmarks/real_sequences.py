@@ -26,7 +26,8 @@ from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.registration.odometry import Odometry
 from recon4.registration.scans import make_scan, search_scans
-from recon4.settings import ScanSettings, Settings
+from recon4.registration.tuning import ScanTuning
+from recon4.settings import Settings
 from tests.benchmarks.loaders import FRAME_NS, muehlburg, nclt, nclt_truth, one_sensor
 from tests.benchmarks.peers import PeerRun, kiss_icp, run
 
@@ -65,7 +66,7 @@ def corridor(folder: Path) -> list[Multiframe]:
     return frames
 
 
-def ours(settings: ScanSettings) -> Align:
+def ours(settings: ScanTuning) -> Align:
     """`search_scans`: independent of the initial pose."""
 
     def align(target: Array, source: Array, initial: SE3) -> tuple[SE3, bool, float]:
@@ -115,7 +116,7 @@ def nclt_table(every: int) -> str:
     scans = [frame.xyz.astype(np.float64) for frame in nclt(folder)]
     truth = nclt_truth(folder).T_a_b
     rows = []
-    ways = (("ours", ours(ScanSettings()), ("before",)),
+    ways = (("ours", ours(ScanTuning()), ("before",)),
             ("small_gicp", small_gicp_pairs(), ("before", "truth")))  # fmt: skip
     for name, align, hypotheses in ways:
         for initial in hypotheses:

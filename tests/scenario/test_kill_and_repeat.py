@@ -15,7 +15,6 @@ from recon4.workflows.publish import RESULTS as ALL_RESULTS
 
 FEW = [
     *("--set", "map.voxel_m=0.1", "--set", "graph.node_stride=4"),
-    *("--set", "segments.preserved=2"),
 ]
 UNFINISHED = (".tmp-", "buckets-")
 """Beginnings of the names of unfinished files and folders."""

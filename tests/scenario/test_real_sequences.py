@@ -14,12 +14,13 @@ from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, register_scans, search_scans
-from recon4.settings import ScanSettings, Settings
+from recon4.registration.tuning import ScanTuning
+from recon4.settings import Settings
 from recon4.store.frames import FrameStore
 from tests.benchmarks.loaders import muehlburg, nclt, nclt_truth, one_sensor
 from tests.benchmarks.real_sequences import corridor
 
-SCANS = ScanSettings()
+SCANS = ScanTuning()
 AT_REST = "packets/veloview/vlp-16-test-90deg-1-50-frames.pcap"
 """A VLP-16 that is stationary for 1.5 s (multiframes 1 to 28) and then moved."""
 FAR_AND_TURNED = 318

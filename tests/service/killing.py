@@ -33,7 +33,7 @@ STAGES = tuple(stage for stage in STAGE_PERCENT if stage not in (BEFORE, AFTER))
 IN_A_STAGE = ("worker", "server", "viewer", "pool")
 RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o")
 VICTIMS = ("worker", "server", "both")
-QUICK = ["map.voxel_m=0.1", "graph.node_stride=4", "segments.preserved=2"]
+QUICK = ["map.voxel_m=0.1", "graph.node_stride=4"]
 """Settings that make a short run short."""
 WITHIN_S = 1800.0
 """For a step of a run on a computer that is busy otherwise."""

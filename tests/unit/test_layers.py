@@ -46,7 +46,7 @@ MAY_IMPORT = {
     | {"recon4.recording.formats.pcap"}
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured")}
     | {"recon4.recording.velodyne.models"}
-    | {"recon4.slam2d"}
+    | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
     | {f"recon4.findings.{name}" for name in ("finding", "kinds", "verdict", "wording")},
     "recon4/live/project_files.py": STAGE
     | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar_stages"},
@@ -68,7 +68,8 @@ MAY_IMPORT = {
     | {f"recon4.{room}" for room in ("registration", "pose_graph", "slam2d", "semi_rigid")}
     | {"recon4.profiler"},
     "recon4/georeference": STAGE
-    | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference", "recon4.registration.aiding"},
+    | {"recon4.mapping", "recon4.pose_graph", "recon4.georeference"}
+    | {f"recon4.registration.{name}" for name in ("aiding", "tuning")},
     "recon4/review": STAGE
     | {
         "recon4.registration",

@@ -3,6 +3,7 @@
 import ast
 import inspect
 import pickle
+import re
 import typing
 from dataclasses import FrozenInstanceError, fields, is_dataclass
 from pathlib import Path
@@ -11,11 +12,29 @@ import pytest
 
 from recon4 import settings as declared
 from recon4.errors import ConfigError, WrongSettings
+from recon4.pose_graph.tuning import graph_tuning
+from recon4.registration.tuning import (
+    OverlapTuning,
+    PlaneTuning,
+    ScanTuning,
+    SegmentTuning,
+    registration_tuning,
+)
 from recon4.settings import PRESETS, Settings, canonical, override, preset, to_json, values_by_group
 from recon4.settings.help import describe_settings, differences, markdown
 from recon4.settings.renamed import RENAMED, retired
+from recon4.slam2d.tuning import HectorTuning
+from tests.tuned import COMPLETE_RECORDS
 
-RANGED = {"ingest", "slam2d", "loops2d", "grid2d"}
+RECORDS = {
+    **COMPLETE_RECORDS,
+    "segments": SegmentTuning,
+    "overlap": OverlapTuning,
+    "planes": PlaneTuning,
+    "scans": ScanTuning,
+    "hector": HectorTuning,
+}
+"""Group of earlier versions -> the record that has its values now."""
 ROOT = Path(__file__).parents[2]
 
 
@@ -94,7 +113,7 @@ def test_all_wrong_settings_are_reported_together():
         "segments.preserved",
         "ingest.min_range_m",
     }
-    assert "must be 4 to 3600, got 3" in str(refused.value)
+    assert "segments.preserved is no setting anymore: fixed at 5, not 0" in str(refused.value)
     assert "min_range_m must be below max_range_m" in str(refused.value)
     assert str(pickle.loads(pickle.dumps(refused.value))) == str(refused.value)
 
@@ -114,7 +133,8 @@ def test_the_thesis_preset_is_the_documents_algorithm():
     thesis = preset("thesis")
 
     assert thesis.registration.solver == "svd"
-    assert thesis.registration.max_iterations == 500
+    assert registration_tuning(thesis.registration).max_iterations == 500
+    assert graph_tuning(thesis.graph).source_reach == 0
     assert thesis.graph.mode == "verification"
     assert not thesis.odometry.use_imu
 
@@ -143,12 +163,31 @@ def test_every_retired_setting_has_a_text_and_is_no_setting():
     assert all((group, new) in {*now, *retired()} for (group, _), new in RENAMED.items())
 
 
+def test_there_are_at_most_sixty_settings_and_each_is_varied_by_a_preset_or_a_test():
+    paths = [s.path for group in describe_settings() for s in group.settings]
+    tests = "\n".join(
+        path.read_text("utf-8")
+        for path in (ROOT / "tests").rglob("*.py")
+        if path.name != "test_settings.py"
+    )
+    varied = {path for settings in PRESETS.values() for path in differences(settings)}
+    varied |= {path for path in paths if re.search(rf"\b{path.split('.')[1]}=", tests)}
+
+    assert len(paths) <= 60
+    assert set(paths) - varied == set()
+
+
+def test_the_value_of_each_retired_setting_is_that_of_its_tuning():
+    for (group, name), fixed in retired().items():
+        assert getattr(RECORDS[group](), name) == fixed.value, f"{group}.{name}"
+
+
 def test_every_number_has_a_range_that_its_default_and_the_presets_are_in():
     for settings in PRESETS.values():
         values = values_by_group(settings)
         for group in describe_settings():
             for one in group.settings:
-                if one.kind in {"int", "float"} and group.name in RANGED:
+                if one.kind in {"int", "float"}:
                     value = values[group.name][one.name]
                     assert one.limits is not None, one.path
                     assert one.limits.low <= value <= one.limits.high, one.path

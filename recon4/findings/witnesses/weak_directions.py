@@ -25,7 +25,7 @@ from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
 
 _WEAK_DEGENERACY = 0.005
 """Files of earlier versions do not state the standard deviation: there a direction counts as
-unobservable below this, as for pairs (`GraphSettings.min_degeneracy`)."""
+unobservable below this, as for pairs (`GraphTuning.min_degeneracy`)."""
 _UNSURE_SD_M = 0.03
 """As `WEAK_SD_M`, of a registration that did not converge: what it states is too small [m]."""
 _HELD_RATIO = 0.7

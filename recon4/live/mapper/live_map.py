@@ -167,7 +167,7 @@ class LiveMap:
         return step, False
 
     def _midpoints(self, frame: Multiframe) -> Array:
-        segments = sample_segments(frame, self._rig, self._settings.segments)
+        segments = sample_segments(frame, self._rig)
         return (segments.a_body + segments.b_body) / 2
 
     def _pose(self, frame: Multiframe, step: OdometryStep, T_map_body: SE3, *, lost: bool) -> Pose:
@@ -217,7 +217,7 @@ class LiveMap:
     def _summary(
         self, frame: Multiframe, T_map_body: SE3, step: OdometryStep
     ) -> list[MapperMessage]:
-        segments = sample_segments(frame, self._rig, self._settings.segments)
+        segments = sample_segments(frame, self._rig)
         ends = np.concatenate([segments.a_body, segments.b_body])
         self._close_loop(self._midpoints(frame), T_map_body, step)
         self._places.keep(self.tracker.T_map_odom @ step.T_odom_body, ends)

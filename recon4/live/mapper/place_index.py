@@ -10,9 +10,11 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.live.mapper.plan_match import plan_hypotheses
 from recon4.live.mapper.spill_file import SpillFile
+from recon4.pose_graph.tuning import graph_tuning
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
+from recon4.registration.tuning import PLANES
 from recon4.settings import Settings
 
 KEEP_EVERY_M = 1.0
@@ -48,7 +50,7 @@ class PlaceIndex:
             scratch: Folder of the spill file; None = the system's temporary folder.
         """
         self._settings = settings
-        self._planes = replace(settings.planes, levels=_LEVELS)
+        self._planes = replace(PLANES, levels=_LEVELS)
         self._spill = SpillFile(scratch)
         self._places: list[_StoredPlace] = []
         self._at = np.zeros((64, 4))
@@ -115,7 +117,7 @@ class PlaceIndex:
             initial=initial,
             settings=self._settings.registration,
         )
-        g = self._settings.graph
+        g = graph_tuning(self._settings.graph)
         range_m = float(np.median(np.linalg.norm(source, axis=1))) if len(source) else 0.0
         fits = (
             found.converged

@@ -28,6 +28,7 @@ from recon4.model.plain import finite_or_none
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.usability import WEAK_SD_M
+from recon4.profiler.tuning import LineTuning
 from recon4.settings import Settings
 from recon4.settings.tuning import tuned
 from recon4.slam2d.tuning import Slam2dTuning
@@ -67,7 +68,7 @@ class ScanMap:
         self._places, self._gate = ScanPlaces(settings), LoopGate()
         self._lines: SweptLines | None = None
         if rig.row_of("profiler") is not None:
-            self._lines = SweptLines(rig, min_range_m=settings.lines.min_range_m)
+            self._lines = SweptLines(rig, min_range_m=tuned(LineTuning, settings.lines).min_range_m)
         self._T_map_odom = np.zeros(3)
         self._path, self._recent = ShownPath(), RecentCounts()
         self._scans = self._lost = self._relocated = 0

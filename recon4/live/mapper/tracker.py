@@ -18,7 +18,9 @@ from recon4.registration.hypothesis import ImuAssumption
 from recon4.registration.imu_choice import AS_RECORDED, choose_imu
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import Settings
+from recon4.settings.tuning import tuned
 
 _TRIED_FRAMES = 20
 """Number of recent multiframes of an IMU check, and between two checks."""
@@ -38,7 +40,10 @@ class Tracker:
 
     def __init__(self, rig: Rig, settings: Settings) -> None:
         # After a pause the walk goes on where a short map shows it; loops correct the drift.
-        shorter = replace(settings.odometry, history=settings.odometry.longest_map(with_imu=False))
+        shorter = replace(
+            settings.odometry,
+            history=tuned(OdometryTuning, settings.odometry).longest_map(with_imu=False),
+        )
         self._rig, self._settings = rig, replace(settings, odometry=shorter)
         self._offset_ns = round(rig.imu_time_offset_s * 1e9)
         self._waiting: list[ImuSamples] = []

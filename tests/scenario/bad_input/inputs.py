@@ -11,7 +11,6 @@ from tests.builders import (
 
 FEW = [
     *("--set", "map.voxel_m=0.1", "--set", "graph.node_stride=10"),
-    *("--set", "segments.preserved=2"),
 ]
 SOURCE = "192.168.1.201"
 HOUR_NS = 3_600_000_000_000

@@ -6,20 +6,21 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from recon4.calibration.tuning import CalibrationTuning
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
 from recon4.registration.walk import WalkInputs
-from recon4.settings import CalibrationSettings, OdometrySettings, Settings
+from recon4.settings import OdometrySettings, Settings
 from recon4.store.frames import FrameStore, FrameWriter
 from tests import scanned_room
 
 SECONDS = 12.0
 COLUMNS = 300
 """Half as dense as a VLP-16 at 10 Hz; nothing here needs more."""
-CALIBRATION = CalibrationSettings(
+CALIBRATION = CalibrationTuning(
     audit_windows=3, audit_window_s=2.0, windows=3, window_s=2.0, points=300_000, mode="audit"
 )
 SETTINGS = Settings(calibration=CALIBRATION, odometry=OdometrySettings(leave_out_moving=False))

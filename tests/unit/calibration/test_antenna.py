@@ -11,6 +11,7 @@ from recon4.calibration.stage import run_calibration
 from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.crs import GeodeticOrigin, to_geodetic
 from recon4.georeference.stage import RefinedWalk, level_and_georeference
+from recon4.georeference.tuning import GnssTuning
 from recon4.model.calibration_figures import (
     CalibrationFigures,
     CalibrationOutcome,
@@ -21,7 +22,7 @@ from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_hi
 from recon4.model.rig import load_rig, parse_rig
 from recon4.model.samples import GnssSamples
 from recon4.progress import Silent
-from recon4.settings import GnssSettings, Settings
+from recon4.settings import Settings
 from tests.said import rig_texts
 from tests.unit.calibration.conftest import CALIBRATION
 
@@ -29,7 +30,7 @@ ARM = np.array([-0.2, 0.1, 0.6])
 ERROR = np.array([0.1, -0.07, 0.0])
 LATE_S = 0.04
 PLACE = GeodeticOrigin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
-NEAR = GnssSettings(min_extent_m=0.5)
+NEAR = GnssTuning(min_extent_m=0.5)
 
 
 def settings(mode, sensors="gnss"):

@@ -17,13 +17,13 @@ from recon4.calibration.pose_pairs import (
     hand_eye,
     read_pose_pairs,
 )
+from recon4.calibration.tuning import EntropyTuning
 from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import cut_window
 from recon4.cli.main import main
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import format_rig, load_rig
-from recon4.settings import EntropySettings
 from tests import scanned_room
 from tests.unit.calibration.conftest import SETTINGS, mounted
 
@@ -169,7 +169,7 @@ def test_picked_inclinations_are_read(tmp_path):
 
 
 def test_entropy_is_lowest_where_the_mounts_are_true(dance):
-    settings = EntropySettings(points=6000)
+    settings = EntropyTuning(points=6000)
     costs = [
         entropy_cost([window_of(dance, rig)], rig, settings)
         for rig in (dance.rig, mounted(dance.rig, 1, turn_deg=(0.0, 1.0, 0.0)))
@@ -185,7 +185,7 @@ def test_entropy_finds_a_rotation_back(dance):
         [window_of(dance, wrong, range(10, 70))],
         wrong,
         only_turns,
-        settings=EntropySettings(points=4000, evaluations=120),
+        settings=EntropyTuning(points=4000, evaluations=120),
     )
 
     before = np.linalg.norm(np.deg2rad([0.6, -0.5, 0.4]))

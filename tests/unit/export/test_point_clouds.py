@@ -15,12 +15,13 @@ from recon4.export.laz import export_laz
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
 from recon4.intensity.normalize import learn_intensity
+from recon4.intensity.tuning import IntensityTuning
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.notes import MapCrs
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import adjusted_gps_s
 from recon4.model.trajectory import Trajectory
-from recon4.settings import IntensitySettings, MapSettings
+from recon4.settings import MapSettings
 from tests.room_walks import T0_NS, Walk, room_walk
 
 UTM = MapCrs(pyproj.CRS("EPSG:32633+5773").to_wkt(), (500_000.25, 5_400_000.5, 300.0))
@@ -31,7 +32,7 @@ def make(folder, *, crs=UTM, walk=None, normalize=True):
     walk = walk or room_walk(frames=10)
     table = None
     if normalize:
-        table, _ = learn_intensity(walk, walk.trajectory, settings=IntensitySettings(min_count=10))
+        table, _ = learn_intensity(walk, walk.trajectory, settings=IntensityTuning(min_count=10))
     return build_map(
         MapInputs(walk, walk.trajectory, table, crs), folder, settings=MapSettings(voxel_m=0.02)
     )

@@ -7,7 +7,7 @@ import pytest
 
 from recon4.georeference.antenna_audit import audit_antenna
 from recon4.georeference.antenna_calibration import calibrate_antenna
-from recon4.settings import GnssSettings
+from recon4.georeference.tuning import GnssTuning
 from tests.unit.georeference.test_antenna_audit import PLACE, RIG, drifting, fixes, walk
 
 ARM = np.array([0.09, -0.08, 0.07])
@@ -23,7 +23,7 @@ def with_attitudes(gnss, true, *, late_s):
 
 
 def calibrate(true, gnss, rig=RIG):
-    found = calibrate_antenna(drifting(true), gnss, rig, imu=None, settings=GnssSettings())
+    found = calibrate_antenna(drifting(true), gnss, rig, imu=None, settings=GnssTuning())
     assert found is not None
     return found
 
@@ -107,8 +107,8 @@ def test_fixes_without_a_walk_around_them_say_nothing():
     true = walk(20.0)
     gnss = fixes(true)
 
-    none = calibrate_antenna(drifting(true), None, RIG, imu=None, settings=GnssSettings())
+    none = calibrate_antenna(drifting(true), None, RIG, imu=None, settings=GnssTuning())
     coarse = replace(gnss, quality=np.ones(len(gnss), np.uint8))
 
     assert none is None
-    assert calibrate_antenna(drifting(true), coarse, RIG, imu=None, settings=GnssSettings()) is None
+    assert calibrate_antenna(drifting(true), coarse, RIG, imu=None, settings=GnssTuning()) is None

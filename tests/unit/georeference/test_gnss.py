@@ -6,6 +6,8 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
 from recon4.georeference.gnss import GeoreferenceResult, georeference
+from recon4.georeference.gnss_priors import usable_gnss_priors
+from recon4.georeference.tuning import GnssTuning
 from recon4.model.pose_graph import (
     AUTOMATIC,
     Edge,
@@ -19,9 +21,8 @@ from recon4.model.pose_graph import (
     known_judgment,
 )
 from recon4.model.rig import load_rig
-from recon4.model.samples import GnssSamples
+from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Trajectory
-from recon4.settings import GnssSettings
 
 LOOPS = 25
 PLACE = GeodeticOrigin(np.deg2rad(49.2), np.deg2rad(16.6), 250.0)
@@ -106,7 +107,7 @@ def worst_m(result: GeoreferenceResult, true: Trajectory) -> float:
 
 def run(true: Trajectory, gnss: GnssSamples | None, **changes: object) -> GeoreferenceResult:
     graph, dense = slam(true, np.random.default_rng(1))
-    settings = GnssSettings(**changes)  # type: ignore[arg-type]
+    settings = GnssTuning(**changes)  # type: ignore[arg-type]
     return georeference(graph, dense, gnss, rig=RIG, settings=settings)
 
 
@@ -143,7 +144,7 @@ def test_the_lever_arm_matters(true: Trajectory, gnss: GnssSamples) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
     bare = replace(RIG, p_body_antenna=np.zeros(3))
 
-    result = georeference(graph, dense, gnss, rig=bare, settings=GnssSettings())
+    result = georeference(graph, dense, gnss, rig=bare, settings=GnssTuning())
 
     assert worst_m(result, true) > 0.5
 
@@ -191,6 +192,21 @@ def test_float_and_single_fixes_weigh_less_than_fixed_ones(true: Trajectory) -> 
     result = run(true, mixed)
 
     assert worst_m(result, true) < 0.1
+
+
+def test_fixes_below_the_smallest_quality_are_not_used(true: Trajectory) -> None:
+    gnss = receiver(true, np.random.default_rng(5), sd_m=0.02)
+    gnss.quality[::2] = GnssQuality.SINGLE
+    graph, dense = slam(true, np.random.default_rng(1))
+
+    every, fixed = (
+        usable_gnss_priors(graph, dense, gnss, rig=RIG, settings=settings)[0]
+        for settings in (GnssTuning(), GnssTuning(min_quality="fixed"))
+    )
+
+    assert (gnss.quality[every.row] == GnssQuality.SINGLE).any()
+    assert (gnss.quality[fixed.row] == GnssQuality.RTK_FIXED).all()
+    assert len(fixed.row) > 10
 
 
 def test_a_straight_line_does_not_roll() -> None:
@@ -247,7 +263,7 @@ def test_the_positions_decide_which_loops_are_rejected(
     )
     graph = graph.with_edges((unregistered, *graph.edges))
 
-    result = georeference(graph, dense, gnss, rig=RIG, settings=GnssSettings())
+    result = georeference(graph, dense, gnss, rig=RIG, settings=GnssTuning())
 
     assert result.graph.edges[0].reason is Reason.OVERLAP
     loops = result.graph.edges[-LOOPS:]
@@ -273,7 +289,7 @@ def test_positions_reject_no_decision_of_a_person_and_nothing_when_off(
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
     graph = with_loops(graph, true, shift_m=1.0, decided_by=person)
-    settings = GnssSettings(judge_edges=judge_edges)
+    settings = GnssTuning(judge_edges=judge_edges)
 
     result = georeference(graph, dense, gnss, rig=RIG, settings=settings)
 
@@ -287,9 +303,7 @@ def test_with_too_few_fixes_the_map_is_not_georeferenced(
 ) -> None:
     graph, dense = slam(true, np.random.default_rng(1))
 
-    result = georeference(
-        graph, dense, gnss.take(np.arange(kept)), rig=RIG, settings=GnssSettings()
-    )
+    result = georeference(graph, dense, gnss.take(np.arange(kept)), rig=RIG, settings=GnssTuning())
 
     assert result.origin is None
     assert f"{kept} usable fixes" in result.reason

@@ -16,14 +16,15 @@ from recon4.intensity.normalize import (
     write_intensity,
 )
 from recon4.intensity.table import COARSER, table_of_sums
+from recon4.intensity.tuning import IntensityTuning
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.intensity import normalized_intensity
-from recon4.settings import IntensitySettings, MapSettings
+from recon4.settings import MapSettings
 from recon4.store.arrays import load_intensity_table, save_intensity_table
 from tests.room_walks import Walk, room_walk
 
-SETTINGS = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.0)
-COARSE = IntensitySettings(max_range_m=10.0, min_count=20, range_bin_m=0.4, incidence_bin_deg=4.0)
+SETTINGS = IntensityTuning(max_range_m=10.0, min_count=10, min_contrast=0.0)
+COARSE = IntensityTuning(max_range_m=10.0, min_count=20, range_bin_m=0.4, incidence_bin_deg=4.0)
 GAINS = np.random.default_rng(9).uniform(0.6, 1.4, (2, 16))
 
 
@@ -99,7 +100,7 @@ def test_a_bin_without_deviation_is_only_shifted():
 def test_a_bin_of_one_material_is_not_stretched_to_the_contrast_of_all():
     # All: 20 x 39, 20 x 41, 20 x 10, 20 x 70: mean 40, sigma 21.2; the bin itself has sigma 1.
     sums = sums_of([39, 41] * 20, 0, 10, 2.0) + sums_of([10, 70] * 20, 1, 10, 2.0)
-    settings = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.5)
+    settings = IntensityTuning(max_range_m=10.0, min_count=10, min_contrast=0.5)
 
     table = table_of_sums(sums, settings=settings, largest=255.0)
 
@@ -108,7 +109,7 @@ def test_a_bin_of_one_material_is_not_stretched_to_the_contrast_of_all():
 
 @pytest.mark.parametrize(("upper", "limit"), [("raw", 200.0), ("twice_mean", 100.0)])
 def test_results_stay_between_zero_and_the_upper_limit(upper, limit):
-    settings = IntensitySettings(max_range_m=10.0, min_count=10, min_contrast=0.0, upper=upper)
+    settings = IntensityTuning(max_range_m=10.0, min_count=10, min_contrast=0.0, upper=upper)
     sums = sums_of([20, 80] * 20, 0, 10, 2.0)
 
     table = table_of_sums(sums, settings=settings, largest=200.0)

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from recon4.intensity.surfaces import Observations, Surfaces, cells_of, learn_surfaces
+from recon4.intensity.tuning import IntensityTuning
 from recon4.kernels.intensity import surface_equations
-from recon4.settings import IntensitySettings
 
 SHAPE = (1, 4, 5, 6)
-SETTINGS = IntensitySettings(min_count=2)
+SETTINGS = IntensityTuning(min_count=2)
 
 
 def made_up(points=40_000, cells=300, *, seed=3, interaction=None):
@@ -64,7 +64,7 @@ def test_a_bin_with_few_points_keeps_the_product_of_its_factors():
     seen, _ = made_up(interaction=(1, 2, 3))
 
     bold, shy = (
-        learn_surfaces(seen, SHAPE, settings=IntensitySettings(min_count=n)).factor[0]
+        learn_surfaces(seen, SHAPE, settings=IntensityTuning(min_count=n)).factor[0]
         for n in (2, 100_000)
     )
 

@@ -4,9 +4,9 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.kernels.overlap import nearest_ranges
 from recon4.registration.overlap import RangeImage, make_range_image, overlap
-from recon4.settings import OverlapSettings
+from recon4.registration.tuning import OverlapTuning
 
-SETTINGS = OverlapSettings()
+SETTINGS = OverlapTuning()
 
 
 def sphere(range_m, count=200_000, seed=1):
@@ -83,7 +83,7 @@ def test_the_four_modes():
     target = make_range_image(ring_of(0, 4.0), SETTINGS)
 
     found = {
-        mode: overlap(source, target, SE3.identity(), settings=OverlapSettings(mode=mode))
+        mode: overlap(source, target, SE3.identity(), settings=OverlapTuning(mode=mode))
         for mode in ("target", "source", "min", "harmonic")
     }
 
@@ -97,7 +97,7 @@ def test_the_target_is_moved_into_the_source():
 
     assert overlap(source, target, T_source_target, settings=SETTINGS) == 1.0
     assert overlap(source, target, T_source_target.inverse(), settings=SETTINGS) == 0.0
-    backward = OverlapSettings(mode="source")
+    backward = OverlapTuning(mode="source")
     assert overlap(target, source, T_source_target.inverse(), settings=backward) == 1.0
 
 
@@ -107,4 +107,4 @@ def test_without_points_nothing_overlaps():
 
     assert overlap(view, empty, SE3.identity(), settings=SETTINGS) == 0.0
     assert overlap(empty, view, SE3.identity(), settings=SETTINGS) == 0.0
-    assert overlap(empty, empty, SE3.identity(), settings=OverlapSettings(mode="harmonic")) == 0.0
+    assert overlap(empty, empty, SE3.identity(), settings=OverlapTuning(mode="harmonic")) == 0.0

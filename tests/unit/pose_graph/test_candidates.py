@@ -14,10 +14,8 @@ from recon4.pose_graph.candidates import (
     revisit_pairs,
     rounds,
 )
+from recon4.pose_graph.tuning import GraphTuning
 from recon4.registration.submap import node_rows
-from recon4.settings import (
-    GraphSettings,
-)
 from tests.unit.pose_graph.graphs import ends, graph_at, laps, line
 
 # -- which multiframes become nodes
@@ -60,7 +58,7 @@ def test_the_schedule_holds_each_distance_once_and_grows(farthest):
 
 @pytest.mark.parametrize("nodes", [2, 3, 4, 9, 10])
 def test_a_closed_walk_tries_each_pair_once(nodes):
-    settings = GraphSettings(exhaustive=True, closed_trajectory=True)
+    settings = GraphTuning(exhaustive=True, closed_trajectory=True)
 
     tried = [p for batch in rounds(nodes, settings) for p in ends(batch(line(nodes)))]
 
@@ -70,7 +68,7 @@ def test_a_closed_walk_tries_each_pair_once(nodes):
 
 @pytest.mark.parametrize("nodes", [2, 3, 10, 11])
 def test_an_open_walk_tries_each_pair_once_its_ends_included(nodes):
-    settings = GraphSettings(exhaustive=True)
+    settings = GraphTuning(exhaustive=True)
 
     tried = [p for batch in rounds(nodes, settings) for p in ends(batch(line(nodes)))]
 
@@ -80,9 +78,9 @@ def test_an_open_walk_tries_each_pair_once_its_ends_included(nodes):
 def test_wrapping_pairs_need_a_closed_trajectory():
     graph = line(6)
 
-    open_pairs = ends(pairs_at_distances(graph, distances=[2], settings=GraphSettings()))
+    open_pairs = ends(pairs_at_distances(graph, distances=[2], settings=GraphTuning()))
     closed = ends(
-        pairs_at_distances(graph, distances=[2], settings=GraphSettings(closed_trajectory=True))
+        pairs_at_distances(graph, distances=[2], settings=GraphTuning(closed_trajectory=True))
     )
 
     assert open_pairs == [(0, 2), (1, 3), (2, 4), (3, 5)]
@@ -99,7 +97,7 @@ def test_registered_pairs_are_not_selected_again():
     )
     graph = line(5).with_edges((tried,))
 
-    assert ends(pairs_at_distances(graph, distances=[2], settings=GraphSettings())) == [
+    assert ends(pairs_at_distances(graph, distances=[2], settings=GraphTuning())) == [
         (0, 2),
         (2, 4),
     ]
@@ -109,7 +107,7 @@ def test_registered_pairs_are_not_selected_again():
     ("10", 5, 2), ("10", 2, 5), ("10", 20, 1), ("overlap", 5, 4), ("beyond", 5, 4)
 ])  # fmt: skip
 def test_mode_10_tries_ten_multiframes_and_the_others_their_neighbors(mode, stride, farthest):
-    settings = GraphSettings(mode=mode, node_stride=stride)
+    settings = GraphTuning(mode=mode, node_stride=stride)
 
     pairs = ends(neighbor_pairs(line(30), settings))
 
@@ -118,7 +116,7 @@ def test_mode_10_tries_ten_multiframes_and_the_others_their_neighbors(mode, stri
 
 
 def test_mode_10_stays_within_ten_multiframes_in_an_exhaustive_search_too():
-    settings = GraphSettings(mode="10", exhaustive=True)
+    settings = GraphTuning(mode="10", exhaustive=True)
 
     tried = [p for batch in rounds(30, settings) for p in ends(batch(line(30)))]
 
@@ -127,7 +125,7 @@ def test_mode_10_stays_within_ten_multiframes_in_an_exhaustive_search_too():
 
 def test_a_pair_starts_from_the_poses_of_the_graph():
     graph = line(4)
-    pair = neighbor_pairs(graph, GraphSettings())[0]
+    pair = neighbor_pairs(graph, GraphTuning())[0]
 
     np.testing.assert_allclose(pair.T_i_j.t, [0.5, 0, 0])
     assert pair.kind is EdgeKind.NEIGHBOR
@@ -135,7 +133,7 @@ def test_a_pair_starts_from_the_poses_of_the_graph():
 
 def test_revisits_are_near_in_space_but_not_in_time():
     graph = laps(2)
-    settings = GraphSettings()
+    settings = GraphTuning()
 
     pairs = revisit_pairs(graph, settings=settings, limit=6)
 
@@ -151,14 +149,14 @@ def test_revisits_are_near_in_space_but_not_in_time():
 def test_each_visit_is_represented_before_any_comes_twice():
     graph = laps(4)
 
-    pairs = revisit_pairs(graph, settings=GraphSettings(), limit=3)
+    pairs = revisit_pairs(graph, settings=GraphTuning(), limit=3)
 
     # Node 130 lies in the fourth lap; 10, 50 and 90 are the same place in the laps before.
     assert [i for i, j in ends(pairs) if j == 130] == [10, 50, 90]
 
 
 def test_a_single_visit_is_represented_more_than_once_but_not_by_neighbors():
-    pairs = revisit_pairs(laps(2, nodes=120), settings=GraphSettings(), limit=6)
+    pairs = revisit_pairs(laps(2, nodes=120), settings=GraphTuning(), limit=6)
 
     earlier = [i for i, j in ends(pairs) if j == 180 and i < 120]  # those of the lap before
     assert 60 in earlier
@@ -169,7 +167,7 @@ def test_a_single_visit_is_represented_more_than_once_but_not_by_neighbors():
 def test_no_node_has_more_revisits_than_the_limit_and_two_limits_never_repeat():
     graph = laps(6)
 
-    few = revisit_pairs(graph, settings=GraphSettings(), limit=2)
+    few = revisit_pairs(graph, settings=GraphTuning(), limit=2)
     made = tuple(
         Edge(
             i=p.i,
@@ -180,7 +178,7 @@ def test_no_node_has_more_revisits_than_the_limit_and_two_limits_never_repeat():
         )
         for p in few
     )
-    more = revisit_pairs(graph.with_edges(made), settings=GraphSettings(), limit=6)
+    more = revisit_pairs(graph.with_edges(made), settings=GraphTuning(), limit=6)
 
     assert np.bincount([p.j for p in few]).max() == 2
     assert not set(ends(few)) & set(ends(more))
@@ -189,8 +187,8 @@ def test_no_node_has_more_revisits_than_the_limit_and_two_limits_never_repeat():
 
 def test_the_number_of_pairs_is_linear_in_the_path_length():
     count = [
-        len(revisit_pairs(laps(n), settings=GraphSettings(), limit=6))
-        + len(neighbor_pairs(laps(n), GraphSettings()))
+        len(revisit_pairs(laps(n), settings=GraphTuning(), limit=6))
+        + len(neighbor_pairs(laps(n), GraphTuning()))
         for n in (10, 20, 40)
     ]
 
@@ -206,15 +204,15 @@ def test_the_revisit_radius_grows_with_the_path_length():
     t_m[:, 0] = np.concatenate([out, back])
     t_m[400:, 1] = np.linspace(0, 7, 400)
 
-    tolerant = revisit_pairs(graph_at(t_m), settings=GraphSettings(), limit=2)
-    strict = revisit_pairs(graph_at(t_m), settings=GraphSettings(drift_ratio=0.0), limit=2)
+    tolerant = revisit_pairs(graph_at(t_m), settings=GraphTuning(), limit=2)
+    strict = revisit_pairs(graph_at(t_m), settings=GraphTuning(drift_ratio=0.0), limit=2)
 
     assert 799 in [j for _, j in ends(tolerant)]
     assert 799 not in [j for _, j in ends(strict)]
 
 
 def test_a_single_node_has_no_pairs():
-    settings = GraphSettings()
+    settings = GraphTuning()
 
     assert neighbor_pairs(line(1), settings) == []
     assert revisit_pairs(line(1), settings=settings, limit=6) == []

@@ -6,9 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind, Verdict
 from recon4.pose_graph.search import odometry_edges
-from recon4.settings import (
-    GraphSettings,
-)
+from recon4.pose_graph.tuning import GraphTuning
 from tests.unit.pose_graph.graphs import line
 
 ROWS = np.array([2, 7, 12])
@@ -18,7 +16,7 @@ def consecutive(T_odom_body, *, lost=(), motion_cov=None, settings=None):
     was_lost = np.isin(np.arange(15), lost)
     cov = np.zeros((15, 6, 6)) if motion_cov is None else np.tile(motion_cov, (15, 1, 1))
     return odometry_edges(
-        T_odom_body, ROWS, was_lost, motion_cov=cov, settings=settings or GraphSettings()
+        T_odom_body, ROWS, was_lost, motion_cov=cov, settings=settings or GraphTuning()
     )
 
 
@@ -31,7 +29,7 @@ def test_odometry_edges_join_consecutive_nodes():
 
 
 def test_an_odometry_edge_is_never_surer_than_its_floor():
-    g = GraphSettings()
+    g = GraphTuning()
 
     sd = np.diag(consecutive(line(3).T_map_body)[0].information) ** -0.5
 
@@ -46,7 +44,7 @@ def test_deviations_of_the_motion_between_two_nodes_add_up_in_the_axes_of_the_se
 
     edge = consecutive(T, motion_cov=cov)[0]
 
-    g = GraphSettings()
+    g = GraphTuning()
     sd = np.sqrt(np.diag(np.linalg.inv(edge.information)))
     assert sd[4] == pytest.approx(np.hypot(5 * 0.02, g.odometry_sd_m))
     assert sd[3] == pytest.approx(g.odometry_sd_m)
@@ -67,9 +65,9 @@ def test_an_odometry_edge_counts_the_motion_after_its_first_node_up_to_its_secon
     for frame in (ROWS[0], ROWS[0] + 1, ROWS[1], ROWS[1] + 1):
         cov = np.zeros((15, 6, 6))
         cov[frame] = 0.01**2 * np.eye(6)
-        edge = odometry_edges(
-            T, ROWS, np.zeros(15, bool), motion_cov=cov, settings=GraphSettings()
-        )[0]
+        edge = odometry_edges(T, ROWS, np.zeros(15, bool), motion_cov=cov, settings=GraphTuning())[
+            0
+        ]
         sd_m.append(np.sqrt(np.linalg.inv(edge.information)[5, 5]))
 
     assert [sd > 0.01 for sd in sd_m] == [False, True, True, False]

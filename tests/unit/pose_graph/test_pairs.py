@@ -8,6 +8,7 @@ import pytest
 from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import EdgeKind, Measure, Reason, Verdict
 from recon4.pose_graph.pairs import Pair, PairRegistrar
+from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.progress import Silent
 from recon4.registration.collar_lines import register_lines
 from recon4.registration.overlap import RangeImage, overlap
@@ -18,8 +19,10 @@ from recon4.registration.submap import (
     median_range_m,
     node_rows,
 )
-from recon4.settings import Settings, override
+from recon4.registration.tuning import OVERLAP, OdometryTuning, OverlapTuning
+from recon4.settings import Settings
 from tests.scanned_room import strolling, walk
+from tests.tuned import with_tuning
 
 NOTHING_LOST = np.zeros(21, bool)
 
@@ -32,15 +35,20 @@ def stroll():
 def submaps_of(stroll, rows, settings=None, *, skip=NOTHING_LOST, trajectory=None):
     tracked = TrackedFrames(stroll, trajectory or stroll.truth, skip)
     scratch = Path(gettempdir())
-    return Submaps(tracked, np.array(rows), settings=settings or Settings(), scratch=scratch)
+    return Submaps(tracked, np.array(rows), scratch=scratch)
 
 
-def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None):
-    settings = override(Settings(), ["graph.workers=1", *assignments])
+def registrar(stroll, *assignments, lost=NOTHING_LOST, trajectory=None, overlaps=OVERLAP):
+    settings = with_tuning(Settings(), "graph.workers=1", *assignments)
     rows = node_rows(stroll.t_mid_ns, settings.graph.node_stride, lost)
-    views = NodeRangeImages(len(rows), settings, Path(gettempdir()))
+    views = NodeRangeImages(
+        len(rows),
+        graph_tuning(settings.graph),
+        overlap=overlaps,
+        scratch=Path(gettempdir()),
+    )
     submaps = submaps_of(stroll, rows, settings, skip=lost, trajectory=trajectory)
-    made = PairRegistrar(submaps, views, settings)
+    made = PairRegistrar(submaps, views, settings, overlap=overlaps)
     made.prepare(len(rows), Silent())
     return made
 
@@ -79,16 +87,14 @@ def test_a_good_pair_is_accepted_with_all_its_figures(stroll):
 def test_the_limit_is_a_hundredth_of_the_median_range_and_five_centimeters(stroll):
     edge = try_one(stroll)
 
-    settings = Settings()
     submaps = submaps_of(stroll, [2])
-    range_m = median_range_m(submaps.around(0, settings.graph.source_reach))
+    range_m = median_range_m(submaps.around(0, GraphTuning().source_reach))
     assert 2.0 < range_m < 5.0
     assert edge.limit_m == pytest.approx(0.01 * range_m + 0.05, abs=2e-4)
 
 
 @pytest.mark.parametrize(("assignments", "wrong", "reason"), [
     ([], SE3.from_rpy(0, 0, 0, t=[40.0, 0, 0]), Reason.OVERLAP),
-    (["overlap.threshold=1.01"], None, Reason.OVERLAP),
     (["registration.max_iterations=2"], None, Reason.NOT_CONVERGED),
     (["graph.error_relative=0.0", "graph.error_absolute_m=0.001"], None, Reason.ERROR),
     (["graph.min_match_ratio=1.01"], None, Reason.FEW_MATCHES),
@@ -113,7 +119,7 @@ def test_a_wrong_pose_has_points_where_the_other_visit_saw_through(stroll):
     made = registrar(stroll)
     edge = made.register([pair(stroll, 0, 3)], Silent())[0]
     elsewhere = edge.evolve(T_i_j=edge.T_i_j @ SE3.from_rpy(0, 0, 0, t=[1.5, 0, 0]))
-    most = Settings().graph.max_seen_through
+    most = GraphTuning().max_seen_through
 
     assert made.seen_through(edge) < 0.1 * most
     assert made.seen_through(elsewhere) > most
@@ -139,20 +145,28 @@ def test_a_pair_without_overlap_keeps_its_initial_pose(stroll):
     assert edge.iterations == 0
 
 
+def test_a_pair_below_the_threshold_of_the_overlap_is_rejected(stroll):
+    edge = try_one(stroll, overlaps=OverlapTuning(threshold=1.01))
+
+    assert edge.reason is Reason.OVERLAP
+
+
 def test_the_mode_of_overlap_counts(stroll):
     # From outside the room all walls of the other are behind the nearest one.
     wrong = SE3.from_rpy(0, 0, 0, t=[3.0, 0, 0])
     found = {
-        mode: try_one(stroll, f"overlap.mode={mode}", "overlap.threshold=1.01", wrong=wrong).overlap
+        mode: try_one(
+            stroll, overlaps=OverlapTuning(mode=mode, threshold=1.01), wrong=wrong
+        ).overlap
         for mode in ("target", "source", "min", "harmonic")
     }
 
     submaps = submaps_of(stroll, [2, 17])
-    views = NodeRangeImages(2, Settings(), Path(gettempdir()))
+    views = NodeRangeImages(2, graph_tuning(Settings().graph), scratch=Path(gettempdir()))
     views.fill(submaps, [0, 1])
     first, second = (RangeImage(views.ends(k).reshape(-1, 3), views.nearest_m(k)) for k in (0, 1))
     asked = true_motion(stroll, 0, 3) @ wrong
-    assert found["target"] == overlap(first, second, asked, settings=Settings().overlap)
+    assert found["target"] == overlap(first, second, asked)
     assert found["target"] != found["source"]
     assert found["min"] == min(found["target"], found["source"])
     a, b = found["target"], found["source"]
@@ -191,7 +205,7 @@ def test_the_solvers_of_lines_try_pairs_too(stroll, solver):
 
     off = true_motion(stroll, 0, 3).inverse() @ edge.T_i_j
     assert np.linalg.norm(off.t) < 0.05
-    g = Settings().graph
+    g = GraphTuning()
     np.testing.assert_allclose(
         np.diag(edge.information) ** -0.5, np.repeat([g.loop_sd_rad, g.loop_sd_m], 3)
     )
@@ -231,7 +245,7 @@ def test_lines_keep_the_overlapping_fraction_of_matches(stroll, monkeypatch):
 def test_the_information_is_positive_definite_and_within_its_limit(stroll):
     edge = try_one(stroll)
 
-    g = Settings().graph
+    g = GraphTuning()
     assert np.linalg.eigvalsh(edge.information).min() > 0.0
     np.testing.assert_array_equal(edge.information, edge.information.T)
     sd = np.sqrt(np.diag(np.linalg.inv(edge.information)))
@@ -240,14 +254,14 @@ def test_the_information_is_positive_definite_and_within_its_limit(stroll):
 
 
 def test_the_information_scale_sets_the_fraction_of_independent_matches(stroll):
-    g = Settings().graph
+    g = GraphTuning()
     floor = np.repeat([g.loop_sd_rad, g.loop_sd_m], 3) ** 2
     usual, naive = (
         np.diag(np.linalg.inv(edge.information)) - floor
         for edge in (try_one(stroll), try_one(stroll, "odometry.information_scale=1.0"))
     )
 
-    np.testing.assert_allclose(usual, naive / Settings().odometry.information_scale, rtol=0.05)
+    np.testing.assert_allclose(usual, naive / OdometryTuning().information_scale, rtol=0.05)
 
 
 def test_the_information_is_in_the_axes_of_the_second_node(stroll):
@@ -309,8 +323,8 @@ def test_a_submap_at_the_start_takes_what_there_is(stroll):
 
 
 def test_nodes_keep_a_limited_number_of_segments_spread_over_all(stroll, tmp_path):
-    settings = override(Settings(), ["graph.source_segments=500"])
-    views = NodeRangeImages(1, settings, tmp_path)
+    settings = with_tuning(Settings(), "graph.source_segments=500")
+    views = NodeRangeImages(1, graph_tuning(settings.graph), scratch=tmp_path)
     views.fill(submaps_of(stroll, [10], settings), [0])
 
     ends = views.ends(0)

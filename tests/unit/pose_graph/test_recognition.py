@@ -21,9 +21,9 @@ from recon4.pose_graph.bounds import relative_bounds
 from recon4.pose_graph.density import make_density_image, overlays, yaws_within
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
 from recon4.pose_graph.places import Places
-from recon4.settings import RecognitionSettings
+from recon4.pose_graph.tuning import RecognitionTuning
 
-SETTINGS = RecognitionSettings()
+SETTINGS = RecognitionTuning()
 TWO_CUBES = np.array([[0.0, 0.0], [0.0, 4.0], [6.0, 4.0], [6.0, -1.0]])
 
 

@@ -18,10 +18,12 @@ from recon4.pose_graph.candidates import (
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.pose_graph.pairs import tried_event
 from recon4.pose_graph.search import OdometryTrack, build_graph, search
+from recon4.pose_graph.tuning import GraphTuning
 from recon4.pose_graph.verification import verify
 from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
 from recon4.registration.submap import NodeRangeImages
+from recon4.registration.tuning import OverlapTuning
 from recon4.registration.walk import WalkInputs
 from recon4.semi_rigid.refine import refine
 from recon4.settings import (
@@ -32,6 +34,7 @@ from recon4.settings import (
 )
 from recon4.store.arrays import load_trajectory
 from tests.scanned_room import strolling, walk, without_points
+from tests.tuned import with_tuning
 from tests.unit.pose_graph.graphs import ends, graph_at
 
 # -- the stage
@@ -43,7 +46,7 @@ def stroll():
 
 
 def settings_of(*assignments):
-    return override(Settings(), ["graph.workers=1", *assignments])
+    return with_tuning(Settings(), "graph.workers=1", *assignments)
 
 
 @pytest.fixture(scope="module")
@@ -226,16 +229,14 @@ def test_a_full_disk_is_reported_before_the_search_begins(tmp_path):
     resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, before[1]))
     try:
         with pytest.raises(OSError, match=r"too large|No space") as caught:
-            NodeRangeImages(50, Settings(), tmp_path)
+            NodeRangeImages(50, GraphTuning(), overlap=OverlapTuning(), scratch=tmp_path)
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
     assert caught.value.errno in {errno.EFBIG, errno.ENOSPC}
 
 
-@pytest.mark.parametrize(
-    "assignment", ["node_stride=0", "workers=0", "retry_rounds=-1", "retry_move_m=0"]
-)
+@pytest.mark.parametrize("assignment", ["node_stride=0", "workers=0"])
 def test_invalid_settings_of_the_graph_are_rejected(assignment):
     with pytest.raises(ConfigError, match=assignment.partition("=")[0]):
         settings_of(f"graph.{assignment}")

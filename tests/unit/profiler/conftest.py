@@ -4,11 +4,12 @@ from dataclasses import replace
 
 import pytest
 
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
-from recon4.settings import IngestSettings, LineSettings, Settings
+from recon4.settings import IngestSettings, Settings
 from recon4.simulation.backpack import BackpackModels, prepare_backpack, simulate_backpack
 from recon4.simulation.profiler import Laser2dModel, ProfilerModel
 from recon4.store.frames import FrameStore
@@ -19,7 +20,7 @@ SECONDS = 24.0
 @pytest.fixture(scope="session")
 def settings():
     """Every point counts in a small recording."""
-    lines = LineSettings(knot_s=0.1, map_every=1, match_every=1, turn_every=1, link_pairs=50)
+    lines = LineTuning(knot_s=0.1, map_every=1, match_every=1, turn_every=1, link_pairs=50)
     return replace(Settings(), lines=lines)
 
 

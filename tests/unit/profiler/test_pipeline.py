@@ -14,7 +14,9 @@ from recon4.profiler.samples import line_points
 from recon4.profiler.stage_odometry import run_line_odometry
 from recon4.profiler.sweep_graph import build_sweep_graph
 from recon4.profiler.sweeps import unwind_sweeps
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Silent
+from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import LineStoreWriter, load_laser_scans, load_lines
@@ -53,7 +55,9 @@ def test_the_first_trajectory_is_near_the_truth(odometry, truth):
 def test_turns_are_unwound_by_the_pose_of_every_point(frames, truth, settings):
     lines = load_lines(frames.folder)
 
-    sweeps = unwind_sweeps(frames, lines, truth, settings=settings.lines, progress=Silent())
+    sweeps = unwind_sweeps(
+        frames, lines, truth, settings=tuned(LineTuning, settings.lines), progress=Silent()
+    )
 
     ends = lines.sweeps()
     assert len(sweeps) == len(ends) - 1

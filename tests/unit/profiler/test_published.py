@@ -11,12 +11,14 @@ from recon4.kernels.pairs import accumulate_pairs
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.global_icp import preregister, register_all
 from recon4.profiler.published_refine import PublishedRefiner
+from recon4.profiler.sweep_graph import published_graph
 from recon4.profiler.sweeps import Sweep, Sweeps
+from recon4.profiler.tuning import LineTuning
 from recon4.progress import Silent
-from recon4.settings import LineSettings
+from recon4.settings import Settings
 from recon4.store.line_store import load_lines
 
-SETTINGS = LineSettings(link_distance_m=0.4)
+SETTINGS = LineTuning(link_distance_m=0.4)
 
 
 def room(rng, *, count=4000):
@@ -87,6 +89,26 @@ def test_preregistration_reaches_farther_and_moves_later_turns_along(poses):
     after = np.linalg.norm(found.t - poses.t, axis=1)
     assert before[1:].min() > 0.4
     assert after.max() < 0.05
+
+
+def test_turns_are_registered_to_the_one_before_only_on_request(poses):
+    rng = np.random.default_rng(3)
+    sweeps = sweeps_of([poses[k] for k in range(4)], rng)
+    shift = SE3.from_rpy(0.0, 0.0, 0.03, t=[0.35, 0.25, 0.0])
+    start = SE3.stack([poses[0], *((poses[k] @ shift) for k in range(1, 4))])
+    off_m = []
+    for first in (False, True):
+        lines = LineTuning(preregister=first, link_distance_m=0.1, slam_rounds=60)
+        graph = published_graph(
+            sweeps,
+            Trajectory(sweeps.t_ns, start),
+            np.zeros(4, bool),
+            settings=Settings(lines=lines),
+            progress=Silent(),
+        )
+        off_m.append(np.linalg.norm(graph.T_map_body.t - poses.t, axis=1).max())
+
+    assert off_m[1] < 0.05 < off_m[0]
 
 
 def test_pairs_pull_a_shifted_point_to_its_partner():

@@ -201,10 +201,12 @@ def test_poses_that_never_change_are_not_chosen(tmp_path):
     def walk(bag, t_ns, k):
         bag.odometry("/b", t_ns, 0.1 * k)
 
-    found, report = opened(write(tmp_path, lidar(), still, walk))
+    path = write(tmp_path, lidar(), still, walk)
+    found, report = opened(path)
 
     assert found.odometry_topic == "/b"
     assert report.warnings == []
+    assert opened(path, odometry_topic="/a")[0].odometry_topic == "/a"
 
 
 # -- 2-D lasers

@@ -10,10 +10,10 @@ from recon4.findings.witnesses.motion import Bridges
 from recon4.geometry.se3 import SE3
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.scans import lay_onto, make_scan
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import ScanTuning
 from tests.said import texts
 
-SCANS = ScanSettings()
+SCANS = ScanTuning()
 UP_M = (-1.2, 1.8)
 MOVED = SE3.from_rpy(0.0, 0.0, 0.4, t=[3.0, 1.5, 0.0])
 

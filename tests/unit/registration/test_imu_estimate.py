@@ -10,8 +10,9 @@ from recon4.geometry.se3 import so3_exp
 from recon4.model.samples import ImuSamples
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.odometry import Odometry
-from recon4.settings import Settings, override
+from recon4.settings import Settings
 from tests.said import texts
+from tests.tuned import with_tuning
 
 SD, SETTINGS = 2e-4, Settings()
 
@@ -66,7 +67,7 @@ def test_a_wrong_clock_is_measured_and_named(walked, late_ns, words):
 
 
 def test_without_the_estimate_a_wrong_scale_turns_the_walk(walked):
-    fixed = override(SETTINGS, ["odometry.gyro_gain_sd=0", "odometry.imu_clock_sd_s=0"])
+    fixed = with_tuning(SETTINGS, "odometry.gyro_gain_sd=0", "odometry.imu_clock_sd_s=0")
     _, right = walked()
     _, corrected = walked(scale=1.03)
     found, wrong = walked(scale=1.03, settings=fixed)

@@ -8,7 +8,8 @@ import pytest
 from recon4.registration.lost import LostLimits
 from recon4.registration.odometry import Odometry
 from recon4.registration.plane_map import Match
-from recon4.settings import OdometrySettings, Settings, override
+from recon4.registration.tuning import OdometryTuning, ScanTuning
+from recon4.settings import OdometrySettings, Settings
 from tests.scanned_room import strolling, walk, without_points
 
 
@@ -94,7 +95,7 @@ def test_without_an_imu_a_long_gap_begins_a_new_piece(stroll):
 
 
 def test_without_an_imu_sure_scans_begin_a_new_piece_after_tracking_was_lost(stroll):
-    settings = override(Settings(), ["scans.sure_scans=3", "odometry.lost_error_m=1e-9"])
+    settings = Settings(odometry=OdometryTuning(scans=ScanTuning(sure_scans=3), lost_error_m=1e-9))
     odometry = Odometry(stroll.rig, settings)
 
     steps = [odometry.push(frame) for frame in list(stroll)[:8]]
@@ -105,7 +106,7 @@ def test_without_an_imu_sure_scans_begin_a_new_piece_after_tracking_was_lost(str
 
 
 def test_empty_scans_are_never_sure(stroll):
-    settings = override(Settings(), ["scans.sure_scans=3"])
+    settings = Settings(odometry=OdometryTuning(scans=ScanTuning(sure_scans=3)))
     frames = [frame if k < 4 else without_points(frame) for k, frame in enumerate(stroll)]
     odometry = Odometry(stroll.rig, settings)
 

@@ -15,10 +15,11 @@ from recon4.registration.result import Registration, StopReason
 from recon4.registration.smoother import dense_trajectory, smooth
 from recon4.registration.stage import run_odometry
 from recon4.registration.walk import WalkInputs
-from recon4.settings import Settings, override, preset
+from recon4.settings import Settings, preset
 from recon4.store.arrays import load_arrays, load_trajectory
 from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import RIG, noise_frame, scan, standing, strolling, walk, without_points
+from tests.tuned import with_tuning
 
 STEPS = (
     "frame_id", "t_mid_ns", "quat_xyzw", "t_m", "error_m", "match_ratio", "rounds", "converged",
@@ -132,7 +133,7 @@ def test_the_same_frames_give_the_same_bits(stroll):
 
 
 def test_with_an_imu_a_new_map_is_begun_in_an_unknown_place(stroll):
-    settings = override(Settings(), ["odometry.restart_after=3"])
+    settings = with_tuning(Settings(), "odometry.restart_after=3")
     frames = list(stroll)
     for k in (4, 5, 6):
         frames[k] = without_points(frames[k])
@@ -243,9 +244,11 @@ def test_lines_follow_a_slow_motion(mode):
         return SE3.exp(np.asarray(t_s)[:, None] * [0, 0, 0.05, 0.15, 0.05, 0.0])
 
     recording = walk(slow, 8, with_imu=False)
-    settings = override(
+    settings = with_tuning(
         THESIS,
-        ["registration.max_iterations=60", "odometry.history=3", f"odometry.history_mode={mode}"],
+        "registration.max_iterations=60",
+        "odometry.history=3",
+        f"odometry.history_mode={mode}",
     )
 
     steps = push_all(LineOdometry(recording.rig, settings), recording)
@@ -262,7 +265,7 @@ def test_lines_bridge_a_gap_at_the_speed_they_had():
         return SE3.exp(np.asarray(t_s)[:, None] * [0, 0, 0.05, 0.15, 0.05, 0.0])
 
     recording = walk(steady, 11, with_imu=False)
-    settings = override(THESIS, ["registration.max_iterations=60"])
+    settings = with_tuning(THESIS, "registration.max_iterations=60")
 
     steps = push_all(LineOdometry(recording.rig, settings), [*recording[:5], *recording[7:]])
 
@@ -273,7 +276,7 @@ def test_lines_bridge_a_gap_at_the_speed_they_had():
 
 def test_lines_keep_the_matches_that_overlap_and_not_a_fixed_half():
     frames = [scan(standing, T0_NS + k * FRAME_NS, frame_id=k, columns=1800) for k in range(2)]
-    settings = override(THESIS, ["registration.max_iterations=20"])
+    settings = with_tuning(THESIS, "registration.max_iterations=20")
 
     steps = push_all(LineOdometry(RIG, settings), frames)
 
@@ -297,10 +300,7 @@ def test_the_poses_against_a_history_are_averaged_over_those_that_converged():
 
 
 def test_line_odometry_uses_the_gyroscope_if_allowed(stroll):
-    settings = override(
-        THESIS,
-        ["odometry.use_imu=true", "registration.max_iterations=30"],
-    )
+    settings = with_tuning(THESIS, "odometry.use_imu=true", "registration.max_iterations=30")
 
     steps = push_all(LineOdometry(stroll.rig, settings, stroll.imu), stroll.frames[:5])
 
@@ -311,7 +311,7 @@ def test_line_odometry_uses_the_gyroscope_if_allowed(stroll):
 def test_line_odometry_works_after_an_empty_first_frame():
     frames = [scan(standing, T0_NS + k * FRAME_NS, frame_id=k) for k in range(4)]
     frames[0] = without_points(frames[0])
-    settings = override(THESIS, ["registration.max_iterations=40"])
+    settings = with_tuning(THESIS, "registration.max_iterations=40")
 
     steps = push_all(LineOdometry(RIG, settings), frames)
 
@@ -322,7 +322,7 @@ def test_line_odometry_works_after_an_empty_first_frame():
 def test_line_odometry_loses_an_empty_frame():
     frames = [scan(standing, T0_NS + k * FRAME_NS, frame_id=k) for k in range(4)]
     frames[2] = without_points(frames[2])
-    settings = override(THESIS, ["registration.max_iterations=40"])
+    settings = with_tuning(THESIS, "registration.max_iterations=40")
 
     steps = push_all(LineOdometry(RIG, settings), frames)
 

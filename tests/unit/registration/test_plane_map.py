@@ -5,9 +5,9 @@ import pytest
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.registration.plane_map import PlaneMap
-from recon4.settings import PlaneSettings
+from recon4.registration.tuning import PlaneTuning
 
-SETTINGS = PlaneSettings()
+SETTINGS = PlaneTuning()
 ORIGIN = np.zeros(3)
 
 

@@ -8,9 +8,11 @@ import pytest
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.registration.odometry import Odometry
 from recon4.registration.point_map import FramePoints, PointMap, WeakDirections, frame_points
-from recon4.settings import PlaneSettings, Settings, override
+from recon4.registration.tuning import PlaneTuning
+from recon4.settings import Settings
 from tests import scanned_room
 from tests.scanned_room import RIG, scan, standing, walk
+from tests.tuned import with_tuning
 
 ALONG = np.array([[1.0, 0.0, 0.0]])
 FRAMES = 90
@@ -59,14 +61,14 @@ def test_the_ends_of_a_blank_corridor_carry_odometry(corridor):
 
 
 def test_without_points_the_same_corridor_slides_and_says_so(corridor):
-    error_m, steps = error_along_m(corridor, override(Settings(), ["odometry.weak_eigenvalue=0"]))
+    error_m, steps = error_along_m(corridor, with_tuning(Settings(), "odometry.weak_eigenvalue=0"))
 
     assert np.abs(error_m[-1]) > 0.2
     assert np.median([step.weak_sd_m for step in steps[5:]]) > 0.05
 
 
 def filled(*patches):
-    point_map = PointMap(PlaneSettings())
+    point_map = PointMap(PlaneTuning())
     points = np.concatenate(patches)
     for _ in range(VIEWPOINTS):
         point_map.add(FramePoints(points, np.zeros(len(points))), np.array([0.0, 0.1]), still())
@@ -137,7 +139,7 @@ def test_the_plane_that_one_ring_spans_is_no_surface():
 
 
 def test_an_empty_map_gives_no_points():
-    assert len(chosen(PointMap(PlaneSettings()), wall(0, 3.0))) == 0
+    assert len(chosen(PointMap(PlaneTuning()), wall(0, 3.0))) == 0
 
 
 def test_no_more_points_than_the_rounds_can_afford():

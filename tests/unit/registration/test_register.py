@@ -13,11 +13,11 @@ from recon4.registration.planes import register_to_planes
 from recon4.registration.result import StopReason
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
-from recon4.settings import PlaneSettings, RegistrationSettings, SegmentSettings
+from recon4.registration.tuning import PlaneTuning, RegistrationTuning
 from tests.room_walks import T0_NS
 from tests.scanned_room import RIG, scan, standing, walk
 
-PLANES = PlaneSettings()
+PLANES = PlaneTuning()
 T_TRUE = SE3.from_rpy(0.01, -0.02, 0.06, t=[0.25, -0.10, 0.04])
 SOLVERS = ("planes", "common_normal", "svd")
 # Lines are sampled again in each frame: without a plane between them they agree less well.
@@ -26,7 +26,7 @@ TOLERANCE_M = {"planes": 0.004, "common_normal": 0.012, "svd": 0.06}
 
 def settings_of(solver, **changes):
     rounds = 200 if solver == "svd" else 40
-    return RegistrationSettings(solver=solver, max_iterations=rounds, **changes)
+    return RegistrationTuning(solver=solver, max_iterations=rounds, **changes)
 
 
 def ends_of(T_map_body, *, first_id, frames=6):
@@ -34,7 +34,7 @@ def ends_of(T_map_body, *, first_id, frames=6):
     parts = []
     for k in range(first_id, first_id + frames):
         frame = scan(lambda t_s: T_map_body @ SE3.identity(len(t_s)), T0_NS, frame_id=k)
-        segments = sample_segments(frame, RIG, SegmentSettings())
+        segments = sample_segments(frame, RIG)
         parts.append(np.stack([segments.a_body, segments.b_body], axis=1))
     return np.concatenate(parts)
 
@@ -281,7 +281,7 @@ def test_portion_is_the_fraction_of_lines_kept(target_ends, source_ends):
 def test_segments_are_the_same_every_time_and_within_their_bounds():
     frame = scan(standing, T0_NS, columns=1800)
 
-    first, again = (sample_segments(frame, RIG, SegmentSettings()) for _ in range(2))
+    first, again = (sample_segments(frame, RIG) for _ in range(2))
 
     np.testing.assert_array_equal(first.a_body, again.a_body)
     assert 0.8 * 2 * 2700 < len(first) <= 2 * 2700
@@ -293,7 +293,7 @@ def test_segments_of_a_sensor_that_is_off_are_not_drawn():
     rig = replace(RIG, sensors=(RIG.sensors[0], replace(RIG.sensors[1], enabled=False)))
     frame = scan(standing, T0_NS)
 
-    both, one = (sample_segments(frame, r, SegmentSettings()) for r in (RIG, rig))
+    both, one = (sample_segments(frame, r) for r in (RIG, rig))
 
     assert 0 < len(one) < len(both)
     np.testing.assert_array_equal(one.a_body, both.a_body[: len(one)])
@@ -302,7 +302,7 @@ def test_segments_of_a_sensor_that_is_off_are_not_drawn():
 def test_each_end_keeps_the_time_and_place_of_its_point():
     frame = scan(standing, T0_NS, noise_m=0.0)
 
-    segments = sample_segments(frame, RIG, SegmentSettings())
+    segments = sample_segments(frame, RIG)
 
     T = RIG.T_body_sensor[frame.sensor]
     p_body = (T @ frame.xyz.astype(np.float64)).round(9)
@@ -314,7 +314,7 @@ def test_each_end_keeps_the_time_and_place_of_its_point():
 def test_an_empty_frame_has_no_segments():
     frame = scan(standing, T0_NS).take(slice(0, 0))
 
-    segments = sample_segments(frame, RIG, SegmentSettings())
+    segments = sample_segments(frame, RIG)
     placed = place_segments(
         segments, frame.t_ns, frame.duration_ns, trajectory=walk(standing, 1).truth
     )

@@ -8,8 +8,9 @@ from recon4.registration.odometry import Odometry
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.segments import sample_segments
 from recon4.registration.state import END, VECTOR
+from recon4.registration.tuning import OdometryTuning, ScanTuning
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
-from recon4.settings import Settings, override
+from recon4.settings import Settings
 from tests.room_walks import FRAME_NS
 from tests.scanned_room import RIG, standing, strolling, walk
 
@@ -62,7 +63,7 @@ def test_a_walking_body_is_not_stationary():
 def test_scans_with_oscillating_matches_are_not_lost():
     recording = walk(strolling, 6, with_imu=False)
     # Two rounds never end by a small step.
-    settings = override(Settings(), ["scans.rounds=2"])
+    settings = Settings(odometry=OdometryTuning(scans=ScanTuning(rounds=2)))
 
     T, _ = poses(recording, settings)
 
@@ -74,8 +75,8 @@ def test_scans_with_oscillating_matches_are_not_lost():
 def fit_of_second_frame(recording, state):
     """Its prediction from a state and its fit to the planes of the first frame."""
     settings, start_ns = Settings(), recording[1].t_ns
-    first, second = (sample_segments(recording[k], RIG, settings.segments) for k in (0, 1))
-    target = PlaneMap(settings.planes)
+    first, second = (sample_segments(recording[k], RIG) for k in (0, 1))
+    target = PlaneMap()
     target.add(np.concatenate([first.a_body, first.b_body]))
     prediction = FreeMotion(settings.odometry).predict(state, start_ns + FRAME_NS)
     fitter = FrameFitter(settings.odometry, 1e-4, coarse=3, rounds=8)
@@ -114,9 +115,9 @@ def velocity_after(recording, rest):
     motion = FreeMotion(settings.odometry)
     state = motion.between(T, (start_ns - FRAME_NS, start_ns), start_ns)
     prediction = motion.predict(state, start_ns + FRAME_NS)
-    segments = sample_segments(recording[1], RIG, settings.segments)
+    segments = sample_segments(recording[1], RIG)
     fitter = FrameFitter(settings.odometry, 1e-4, coarse=3, rounds=8)
-    fit = fitter.fit(PlaneMap(settings.planes), segments, prediction, rest=rest)
+    fit = fitter.fit(PlaneMap(), segments, prediction, rest=rest)
     after = prediction.end.corrected(fit.delta[END], fit.P[END, END])
     return after.vector[VECTOR.velocity], fit.stationary
 

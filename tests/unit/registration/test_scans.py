@@ -10,9 +10,9 @@ from recon4.kernels.scans import accumulate_symmetric, neighbor_normals
 from recon4.registration.result import StopReason
 from recon4.registration.scan_chain import ScanChain
 from recon4.registration.scans import make_scan, overlay_plans, register_scans, search_scans
-from recon4.settings import ScanSettings
+from recon4.registration.tuning import ScanTuning
 
-SCANS = ScanSettings(voxel_m=0.2)
+SCANS = ScanTuning(voxel_m=0.2)
 
 
 def room(seed=1, count=12_000):

@@ -14,12 +14,15 @@ from recon4.registration.plane_map import Match
 from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.semi_rigid.refine import _Sweep, corrected_by_graph, refine, refine_trajectory
+from recon4.semi_rigid.tuning import RefineTuning
 from recon4.settings import Settings, override
 from recon4.store.arrays import load_trajectory, save_trajectory
 from tests.scanned_room import strolling, walk, without_points
 
-ROUNDS = ["graph.workers=1", "refine.rounds=6", "refine.converged_step_m=0.0002"]
-SETTINGS = override(Settings(), ROUNDS)
+SETTINGS = replace(
+    override(Settings(), ["graph.workers=1"]),
+    refine=RefineTuning(rounds=6, converged_step_m=0.0002),
+)
 
 
 @pytest.fixture(scope="module")
@@ -46,6 +49,10 @@ def lost_none(frames):
     return np.zeros(len(frames), bool)
 
 
+def tuned_by(**values):
+    return replace(SETTINGS, refine=replace(SETTINGS.refine, **values))
+
+
 def refined(stroll, start, *, lost=None, settings=SETTINGS):
     lost = lost_none(stroll) if lost is None else lost
     return refine_trajectory(stroll, start, lost, settings=settings, progress=Silent())
@@ -70,14 +77,14 @@ def test_the_truth_stays_where_it_is(stroll):
 
 
 def test_refinement_stops_once_nothing_moves(stroll):
-    patient = override(SETTINGS, ["refine.converged_step_m=0.02"])
+    patient = tuned_by(converged_step_m=0.02)
 
     assert len(refined(stroll, stroll.truth, settings=patient)[1]) == 1
 
 
 def test_threads_do_not_change_a_bit(stroll):
-    two = override(SETTINGS, ["graph.workers=2", "refine.rounds=1"])
-    one = override(SETTINGS, ["refine.rounds=1"])
+    two = override(tuned_by(rounds=1), ["graph.workers=2"])
+    one = tuned_by(rounds=1)
 
     a, b = (refined(stroll, bent(stroll.truth), settings=s)[0] for s in (one, two))
 
@@ -123,7 +130,7 @@ def test_both_ends_of_a_segment_are_matched_each_at_its_own_time(stroll):
 
     t_ns = frame.t_ns + np.rint(asked.fraction * frame.duration_ns).astype(np.int64)
     back = stroll.truth.at(t_ns).inverse()
-    segments = sample_segments(frame, stroll.rig, SETTINGS.segments)
+    segments = sample_segments(frame, stroll.rig)
     ends = np.stack([segments.a_body, segments.b_body], axis=1).reshape(-1, 3)
     p_body = np.einsum("nij,nj->ni", back.R, asked.p_map) + back.t
     np.testing.assert_allclose(p_body, ends, atol=1e-4)
@@ -135,7 +142,7 @@ def test_both_ends_of_a_segment_are_matched_each_at_its_own_time(stroll):
 
 def matched(stroll, gap_s):
     """Multiframes that match a map of the first multiframe only."""
-    settings = override(SETTINGS, [f"refine.min_gap_s={gap_s}", "refine.map_stride=1000"])
+    settings = tuned_by(min_gap_s=gap_s, map_stride=1000)
     frames = lost_none(stroll)
     sweep = _Sweep(stroll, stroll.truth, frames, settings=settings, progress=Silent())
     system, _, _ = sweep.match(sweep.build())
@@ -153,14 +160,14 @@ def test_a_short_recording_matches_all_it_has(stroll):
 
 
 def test_the_map_is_whole_again_after_a_sweep_but_for_the_end(stroll):
-    settings = override(SETTINGS, ["refine.min_gap_s=0.3"])
+    settings = tuned_by(min_gap_s=0.3)
     sweep = _Sweep(stroll, stroll.truth, lost_none(stroll), settings=settings, progress=Silent())
     planes, whole = sweep.build(), sweep.build()
 
     sweep.match(planes)
 
     frame, early = stroll[2], stroll.truth.at(stroll.t_mid_ns[2:3]).t[0]
-    segments = sample_segments(frame, stroll.rig, settings.segments)
+    segments = sample_segments(frame, stroll.rig)
     ends = place_segments(segments, frame.t_ns, frame.duration_ns, trajectory=stroll.truth)
     fraction = np.full(len(ends), 0.5)
     a, b = (
@@ -174,8 +181,7 @@ def test_the_map_is_whole_again_after_a_sweep_but_for_the_end(stroll):
 def test_points_far_in_time_straighten_a_bend_more_than_its_own(stroll):
     start = bent(stroll.truth)
     own, far = (
-        refined(stroll, start, settings=override(SETTINGS, [f"refine.min_gap_s={gap_s}"]))[0]
-        for gap_s in (0.0, 0.5)
+        refined(stroll, start, settings=tuned_by(min_gap_s=gap_s))[0] for gap_s in (0.0, 0.5)
     )
 
     assert off_m(far, stroll.truth) < 0.9 * off_m(own, stroll.truth)
