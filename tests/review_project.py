@@ -12,8 +12,6 @@ import sys
 from pathlib import Path
 
 import numpy as np
-from recon4_app.jobs.folder import JobFolder
-from recon4_app.jobs.worker import main
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.figures import FrameFigures, GraphFigures
@@ -36,6 +34,8 @@ from recon4.workflows.lidar import LIDAR
 from recon4.workflows.publish import publish
 from recon4.workflows.summary import About
 from recon4.workflows.workflow import Run
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.worker import main
 from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import RIG, scan
 

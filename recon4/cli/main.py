@@ -15,9 +15,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
-from recon4_app.cli.keys import keys
-from recon4_app.cli.serve import server
-from recon4_app.cli.users import users
 
 import recon4
 from recon4.cli.backup import backups
@@ -33,6 +30,9 @@ from recon4.cli.slices import slices
 from recon4.cli.terminal import write
 from recon4.errors import Cancelled, Recon4Error
 from recon4.system.stopping import StopSignals
+from recon4_app.cli.keys import keys
+from recon4_app.cli.serve import server
+from recon4_app.cli.users import users
 
 if TYPE_CHECKING:
     from recon4.settings import Settings

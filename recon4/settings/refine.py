@@ -12,5 +12,5 @@ from recon4.settings.require import Checked, ValueRange
 class RefineSettings(Checked):
     """Semi-rigid refinement of every multiframe (requirements A12 L-4; mode ``beyond`` only)."""
 
-    rounds: Annotated[int, ValueRange(1, 20)] = 3
+    rounds: Annotated[int, ValueRange(0, 20)] = 3
     """Largest number of rounds; each builds the map and corrects all multiframes."""

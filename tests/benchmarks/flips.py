@@ -15,8 +15,6 @@ from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from recon4_app.access.reserve import RESERVE_FILE
-
 from recon4.archive.verify import verify
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
@@ -24,6 +22,7 @@ from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.store.hashing import files_below
 from recon4.store.seal import changing
+from recon4_app.access.reserve import RESERVE_FILE
 from tests.project_builder import approve_project, build_project
 
 
@@ -113,11 +112,10 @@ def main() -> int:
 
 def make_server_state(root: Path) -> None:
     """Files of a server: queue, users, an interrupted upload."""
-    from recon4_app.access.login.login_service import open_access
-    from recon4_app.jobs.store import JobStore
-
     from recon4.archive.verify import seal_state
     from recon4.review.signature import sign
+    from recon4_app.access.login.login_service import open_access
+    from recon4_app.jobs.store import JobStore
 
     state = root / ".recon4"
     (state / "uploads" / ("a" * 12)).mkdir(parents=True)

@@ -26,8 +26,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from recon4_app.settings import ServerSettings
-from recon4_app.uploads.store import UploadStore
 
 from recon4.errors import Recon4Error
 from recon4.progress import Silent
@@ -40,6 +38,8 @@ from recon4.simulation.simulate import simulate
 from recon4.store.atomic import make_folders
 from recon4.store.project import is_project, read_stages
 from recon4.store.stage import damage_of
+from recon4_app.settings import ServerSettings
+from recon4_app.uploads.store import UploadStore
 from tests.power_cut.disk_model import Disk, Keeps, operations
 from tests.power_cut.recording_disk import MARK
 from tests.service import tus_client

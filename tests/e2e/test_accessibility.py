@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
-from recon4_app.pages import WEB
 
+from recon4_app.pages import WEB
 from tests.e2e.conftest import leave_out_viewer
 from tests.project_builder import build_project
 from tests.review_project import make

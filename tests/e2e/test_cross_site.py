@@ -7,8 +7,8 @@ import threading
 from urllib.parse import urlsplit
 
 import pytest
-from recon4_app.compute_pool.model import Lane
 
+from recon4_app.compute_pool.model import Lane
 from tests.security.test_cross_site import EXPORT
 from tests.served import office, served
 

@@ -14,7 +14,6 @@ from urllib.parse import urlsplit
 
 import pytest
 from playwright.sync_api import expect
-from recon4_app.live.stream_state import BYTES_A_POINT
 
 from recon4.errors import Cancelled
 from recon4.live.replay import datagrams_of, replay
@@ -24,6 +23,7 @@ from recon4.progress import Silent
 from recon4.recording.sources import Sources
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
+from recon4_app.live.stream_state import BYTES_A_POINT
 from tests.e2e.conftest import EXPECTED_NOISE
 from tests.scan_captures import capture_server
 from tests.served import served

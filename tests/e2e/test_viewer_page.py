@@ -8,11 +8,11 @@ import numpy as np
 import psutil
 import pytest
 from playwright.sync_api import expect
+
+from recon4.model.pose_graph import Reason
 from recon4_app.viewer.client.show import start_m
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.build import Content, bounds
-
-from recon4.model.pose_graph import Reason
 from tests.e2e.conftest import looks
 from tests.processes import command_of
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph

@@ -22,14 +22,13 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from recon4_app.jobs.folder import JobFolder
-from recon4_app.jobs.limits import prepare_worker, worker_policy
-from recon4_app.viewer.process import viewer_policy
-
 from recon4.live.confinement import confine_mapper, confine_recorder
 from recon4.live.session import CaptureSession
 from recon4.sandbox import confine, refuse_new_sockets, restart_with_one_thread
 from recon4.sandbox.private_cache import is_compiled
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.limits import prepare_worker, worker_policy
+from recon4_app.viewer.process import viewer_policy
 
 PTRACE_SEIZE = 0x4206
 MAX_FORKS = 64

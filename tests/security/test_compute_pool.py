@@ -16,14 +16,14 @@ from functools import partial
 from pathlib import Path
 
 import pytest
+
+from recon4.errors import Recon4Error
+from recon4.system.processes import ChildRegister
 from recon4_app.compute_pool.fair_queue import MAX_PASSED, FairQueue
 from recon4_app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.compute_pool.process import ChildFailed
 from recon4_app.errors import AppError, ComputeFailed, TooMany
-
-from recon4.errors import Recon4Error
-from recon4.system.processes import ChildRegister
 from tests import pool_functions as work
 from tests.deadlines import BUSY_S
 from tests.service.running import wait_for

@@ -19,9 +19,9 @@ from pathlib import Path
 import httpx
 import pytest
 from prometheus_client.parser import text_string_to_metric_families
+
 from recon4_app.network import accept
 from recon4_app.network.connections import open_file_limit, raise_file_limit
-
 from tests.deadlines import BUSY_S
 from tests.security.raw_clients import connect, head, rest_of
 from tests.service.running import ROOT, server_thread, wait_for

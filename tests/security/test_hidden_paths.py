@@ -10,11 +10,11 @@ import sqlite3
 from pathlib import Path
 
 import pytest
+
 from recon4_app.errors import NotFound, Refused
 from recon4_app.main import create_app
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.settings import ServerSettings
-
 from tests.project_builder import build_project
 from tests.served import served
 from tests.service.running import SLOW, recording_with_gate

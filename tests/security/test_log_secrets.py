@@ -10,10 +10,10 @@ import subprocess
 import sys
 
 import httpx
+
 from recon4_app.access.login.login_service import open_access
 from recon4_app.access.people import Role
 from recon4_app.metrics_routes import make_metrics_token
-
 from tests.deadlines import HANG_S
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD

@@ -13,9 +13,9 @@ import time
 
 import psutil
 import pytest
-from recon4_app.viewer.pool import socket_folder
 
 from recon4.system.processes import ChildRegister, process_identity
+from recon4_app.viewer.pool import socket_folder
 from tests.deadlines import BUSY_S
 from tests.processes import command_of
 from tests.project_builder import build_project

@@ -9,10 +9,11 @@ import itertools
 import time
 
 import pytest
+from zxcvbn.frequency_lists import FREQUENCY_LISTS
+
 from recon4_app.access.login import passwords
 from recon4_app.access.login.passwords import require_strong
 from recon4_app.errors import WeakPassword
-from zxcvbn.frequency_lists import FREQUENCY_LISTS
 
 NAME = "Anna Kowalska"
 WORDS = (

@@ -10,10 +10,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from recon4_app.jobs.supervisor import _spawn
 
 from recon4.sandbox.private_cache import KERNELS, cached_elsewhere, planted, private_cache
 from recon4.sandbox.private_cache import _numba_name as numba_name
+from recon4_app.jobs.supervisor import _spawn
 
 ROOT = Path(__file__).parents[2]
 PLANTED = ("numpy.py", "json.py", "logging.py", "recon4.py", "recon4_app.py", "signal.py")

@@ -22,7 +22,6 @@ from urllib.parse import urlsplit
 import psutil
 import pytest
 import viser
-from recon4_app.viewer import unix_socket
 from viser import _messages
 from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidMessage
 from websockets.sync.client import connect
@@ -31,6 +30,7 @@ from recon4.errors import StoreError
 from recon4.live.ipc.line_server import LineServer
 from recon4.live.protocol import Done
 from recon4.system import runtime_folder as places
+from recon4_app.viewer import unix_socket
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_process
 from tests.service.viser_client import PROTOCOL, camera, viewing

@@ -15,13 +15,13 @@ import tempfile
 from pathlib import Path
 
 import pytest
-from recon4_app.jobs.folder import JobFolder, Limits
-from recon4_app.jobs.model import Inputs
-from recon4_app.settings import worker_environment
 
 from recon4.sandbox import kernel, landlock
 from recon4.sandbox.private_cache import KERNELS
 from recon4.sandbox.syscalls import number
+from recon4_app.jobs.folder import JobFolder, Limits
+from recon4_app.jobs.model import Inputs
+from recon4_app.settings import worker_environment
 
 pytestmark = pytest.mark.skipif(
     kernel.machine() is None or landlock.abi() < landlock.SCOPES_SINCE,

@@ -7,8 +7,8 @@ import time
 from urllib.parse import urlsplit
 
 import pytest
-from recon4_app.network import accept, http_timeouts, listen, slow_readers
 
+from recon4_app.network import accept, http_timeouts, listen, slow_readers
 from tests.deadlines import BUSY_S
 from tests.project_builder import build_project
 from tests.security.raw_clients import SOON_S, connect, counts_of, head, lasts_s

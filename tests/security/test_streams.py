@@ -10,11 +10,11 @@ import contextlib
 from types import SimpleNamespace
 
 import pytest
+from websockets.exceptions import ConnectionClosed
+
 from recon4_app.access.people import LOCAL, Person, Role
 from recon4_app.errors import TooMany
 from recon4_app.network.streams import StreamLimits, Streams
-from websockets.exceptions import ConnectionClosed
-
 from tests.served import served
 from tests.service.secure import secure_server
 

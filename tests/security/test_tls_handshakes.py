@@ -5,8 +5,8 @@ import ssl
 import time
 
 import pytest
-from recon4_app.network import accept, http_timeouts
 
+from recon4_app.network import accept, http_timeouts
 from tests.deadlines import BUSY_S
 from tests.security.raw_clients import SOON_S, TRUSTING, connect, counts_of, lasts_s
 from tests.service.running import wait_for

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from recon4_app.viewer.client.view import ViewState
 
+from recon4_app.viewer.client.view import ViewState
 from tests.processes import viewer_process
 from tests.project_builder import add_multiframes, build_project
 from tests.security.viewer_attacks import MALFORMED, PROPERTIES, VALUES, VIEWS, packed, pointer

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+
 from recon4_app.jobs.events import MAX_BYTES, read_events
 from recon4_app.jobs.folder import JobFolder, Limits
 from recon4_app.jobs.model import Inputs

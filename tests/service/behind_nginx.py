@@ -16,11 +16,11 @@ from unittest.mock import patch
 
 import httpx
 import pytest
+
 from recon4_app.access.login import passwords
 from recon4_app.access.login.login_service import open_access
 from recon4_app.network.behind import public_address
 from recon4_app.network.certificate import Certificate, made_certificate
-
 from tests.deadlines import HANG_S
 from tests.project_builder import build_project
 from tests.service.running import ROOT, server_thread, wait_for

@@ -5,11 +5,10 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from recon4_app.jobs.folder import JobFolder
-from recon4_app.jobs.worker import main
-
 from recon4.progress import Progress
 from recon4.system.stopping import end_process
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.worker import main
 from tests.project_builder import build_project
 
 

@@ -9,14 +9,13 @@ import fcntl
 import sys
 from pathlib import Path
 
-from recon4_app.jobs.folder import JobFolder
-from recon4_app.jobs.limits import worker_policy
-from recon4_app.jobs.worker import main, process
-
 from recon4.model.events import Event, StageChanged
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.system.stopping import end_process
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.limits import worker_policy
+from recon4_app.jobs.worker import main, process
 
 AT_GATE = "waiting at the gate"
 

@@ -20,10 +20,10 @@ from typing import Any, TextIO
 import httpx
 import numpy as np
 import psutil
-from recon4_app.jobs.run_progress import AFTER, BEFORE, STAGE_PERCENT
-from recon4_app.viewer.pool import socket_folder
 from websockets.exceptions import ConnectionClosed
 
+from recon4_app.jobs.run_progress import AFTER, BEFORE, STAGE_PERCENT
+from recon4_app.viewer.pool import socket_folder
 from tests.processes import command_of
 from tests.service.gated_worker import AT_GATE
 from tests.service.running import WITHOUT_TLS, Running, end_workers, server_process, wait_for

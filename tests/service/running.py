@@ -20,6 +20,8 @@ from typing import Any
 import httpx
 import numpy as np
 from fastapi import FastAPI
+
+from recon4.system.stopping import StopSignals, end_process
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.main import create_app, serve
 from recon4_app.network.listen import (
@@ -30,8 +32,6 @@ from recon4_app.network.listen import (
     uvicorn_config,
 )
 from recon4_app.settings import ServerSettings, recording_folders_from_environment
-
-from recon4.system.stopping import StopSignals, end_process
 from tests.deadlines import HANG_S
 
 ROOT = Path(__file__).parents[2]

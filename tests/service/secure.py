@@ -15,12 +15,12 @@ from urllib.parse import urlsplit
 import httpx
 from anyio.from_thread import BlockingPortal, start_blocking_portal
 from argon2 import PasswordHasher
-from recon4_app.access.login import passwords
-from recon4_app.access.login.login_service import open_access
-from recon4_app.access.people import Role
 from websockets.asyncio.client import ClientConnection, connect
 from websockets.typing import Subprotocol
 
+from recon4_app.access.login import passwords
+from recon4_app.access.login.login_service import open_access
+from recon4_app.access.people import Role
 from tests.deadlines import HANG_S
 from tests.service.running import Running, server_thread
 

@@ -15,9 +15,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from recon4_app.jobs.folder import JobFolder
-from recon4_app.jobs.limits import worker_policy
-from recon4_app.jobs.worker import main, titled
 
 from recon4.errors import EmptyRecording
 from recon4.progress import Progress
@@ -26,6 +23,9 @@ from recon4.settings import Settings
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from recon4.system.stopping import end_process
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.jobs.limits import worker_policy
+from recon4_app.jobs.worker import main, titled
 
 
 def take_memory(_: Path) -> None:

@@ -4,12 +4,12 @@ import time
 from urllib.parse import urlsplit
 
 import pytest
+from websockets.exceptions import ConnectionClosed, InvalidStatus
+
 from recon4_app.access.login.login_service import open_access
 from recon4_app.access.people import Role
 from recon4_app.network.listen import make_state
 from recon4_app.settings import ServerSettings
-from websockets.exceptions import ConnectionClosed, InvalidStatus
-
 from tests.deadlines import BUSY_S
 from tests.served import office, served
 from tests.service.running import server_thread

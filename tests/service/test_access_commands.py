@@ -12,9 +12,9 @@ from dataclasses import dataclass
 
 import httpx
 import pytest
-from recon4_app.access.login.login_service import open_access
 
 from recon4.cli.main import main
+from recon4_app.access.login.login_service import open_access
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD
 

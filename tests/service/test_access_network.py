@@ -6,9 +6,9 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
-from recon4_app.settings import ServerSettings
 
 from recon4.errors import ConfigError
+from recon4_app.settings import ServerSettings
 from tests.served import served
 from tests.service.secure import PASSWORD, secure_server
 

@@ -5,11 +5,11 @@ import re
 from urllib.parse import quote, urlsplit
 
 import pytest
+
 from recon4_app.access.middleware.origin import SAFE_METHODS
 from recon4_app.access.routes_check import declared
 from recon4_app.main import create_app
 from recon4_app.settings import ServerSettings
-
 from tests.deadlines import HANG_S
 from tests.project_builder import build_project
 from tests.service.running import server_thread

@@ -7,6 +7,9 @@ import httpx
 import msgspec.msgpack
 import pytest
 from fastapi import FastAPI
+from viser import _messages
+from websockets.exceptions import InvalidStatus
+
 from recon4_app.access.middleware.origin import SAFE_METHODS
 from recon4_app.access.middleware.session import OPEN_PATHS
 from recon4_app.access.people import MAY, Permission, Role
@@ -14,9 +17,6 @@ from recon4_app.access.routes_check import check_declared, declared
 from recon4_app.main import create_app
 from recon4_app.settings import ServerSettings
 from recon4_app.viewer.browser_messages import KINDS
-from viser import _messages
-from websockets.exceptions import InvalidStatus
-
 from tests.served import office, served
 from tests.service.running import SLOW, recording_with_gate, wait_for
 from tests.service.secure import ROLES, secure_server

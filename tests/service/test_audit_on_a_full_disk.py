@@ -6,8 +6,8 @@ from contextlib import contextmanager
 
 import httpx
 import pytest
-from recon4_app.access.reserve import NEEDED_BYTES, RESERVE_BYTES, RESERVE_FILE
 
+from recon4_app.access.reserve import NEEDED_BYTES, RESERVE_BYTES, RESERVE_FILE
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD, secure_server
 

@@ -6,13 +6,13 @@ import re
 import httpx
 import pytest
 import viser
-from recon4_app.network.behind import public_address
-from recon4_app.settings import ServerSettings
 from websockets.asyncio.client import connect
 from websockets.exceptions import InvalidStatus
 from websockets.typing import Subprotocol
 
 from recon4.errors import ConfigError
+from recon4_app.network.behind import public_address
+from recon4_app.settings import ServerSettings
 from tests.deadlines import HANG_S
 from tests.service.behind_nginx import behind_nginx, needs_nginx, sign_in
 from tests.service.secure import PASSWORD

@@ -7,15 +7,15 @@ from datetime import date
 from pathlib import Path
 
 import pytest
-from recon4_app.access.login.login_service import open_access
-from recon4_app.access.restoring import access_copies
-from recon4_app.metrics_routes import TOKEN_FILE, make_metrics_token
-from recon4_app.network.certificate import made_certificate
 
 from recon4.archive.backup import back_up
 from recon4.archive.listing import newest, read_list
 from recon4.cli.main import main
 from recon4.progress import Silent
+from recon4_app.access.login.login_service import open_access
+from recon4_app.access.restoring import access_copies
+from recon4_app.metrics_routes import TOKEN_FILE, make_metrics_token
+from recon4_app.network.certificate import made_certificate
 from tests.deadlines import HANG_S
 from tests.service.running import wait_for
 from tests.service.secure import secure_server
@@ -70,7 +70,6 @@ def secure_server_of_these_people(root):
     from unittest.mock import patch
 
     from recon4_app.access.login import passwords
-
     from tests.service.running import server_thread
     from tests.service.secure import CHEAP, Secure
 

@@ -6,8 +6,8 @@ from posixpath import join, normpath
 
 import pytest
 from markdown_it import MarkdownIt
-from recon4_app.docs_pages import files, folder, policy_of
 
+from recon4_app.docs_pages import files, folder, policy_of
 from tests.served import served
 from tests.service.running import ROOT
 

@@ -4,11 +4,11 @@ import http.client
 from urllib.parse import urlsplit
 
 import pytest
-from recon4_app.settings import ServerSettings
 from websockets.exceptions import InvalidStatus
 from websockets.sync.client import connect
 
 from recon4.errors import ConfigError
+from recon4_app.settings import ServerSettings
 from tests.project_builder import build_project
 from tests.served import office, served
 

@@ -7,8 +7,8 @@ from urllib.parse import urlsplit
 
 import httpx
 import pytest
-from recon4_app.network import http_timeouts
 
+from recon4_app.network import http_timeouts
 from tests.deadlines import BUSY_S
 from tests.service.running import server_thread
 

@@ -3,8 +3,8 @@
 import shutil
 
 import pytest
-from recon4_app.jobs.run_progress import PIECES, STAGE_PERCENT
 
+from recon4_app.jobs.run_progress import PIECES, STAGE_PERCENT
 from tests.service import killing
 from tests.service.killing import (
     IN_A_STAGE,

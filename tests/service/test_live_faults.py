@@ -23,8 +23,6 @@ from pathlib import Path
 import httpx
 import numpy as np
 import pytest
-from recon4_app.errors import Conflict
-from recon4_app.live.current_capture import CurrentCapture
 
 from recon4.errors import StoreError
 from recon4.live.replay import ReplayDatagram, replay
@@ -41,6 +39,8 @@ from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
+from recon4_app.errors import Conflict
+from recon4_app.live.current_capture import CurrentCapture
 from tests.loopback import an_address
 from tests.service.running import wait_for
 

@@ -185,10 +185,9 @@ def test_the_state_of_the_server_is_there(server):
 
 def test_the_packets_of_a_live_capture_are_counted(server):
     """With a capture's messages as its recorder and reader send them."""
-    from recon4_app.live.capture import Capture
-
     from recon4.live.protocol import FileState
     from recon4.live.session import CaptureSession
+    from recon4_app.live.capture import Capture
     from tests.live_messages import notes, status
 
     capture = Capture(CaptureSession(project=server.root / "walk"))

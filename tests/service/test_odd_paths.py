@@ -8,12 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from recon4_app.settings import ServerSettings
 
 from recon4.errors import ConfigError, RecordingError
 from recon4.progress import Silent
 from recon4.store.inputs import input_file
 from recon4.store.ledger import Ledger
+from recon4_app.settings import ServerSettings
 from tests.made_once import made_once
 from tests.project_builder import add_multiframes, approve_project, build_project
 from tests.service.running import server_thread

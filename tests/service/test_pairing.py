@@ -7,8 +7,8 @@ import logging
 from urllib.parse import urlsplit
 
 import pytest
-from recon4_app.access.pairing.routes import is_served
 
+from recon4_app.access.pairing.routes import is_served
 from tests.served import served
 from tests.service.running import server_thread
 from tests.service.secure import PASSWORD, secure_server

@@ -5,14 +5,14 @@ import socket
 
 import httpx
 import pytest
-from recon4_app.main import serve
-from recon4_app.network.listen import listening
-from recon4_app.settings import ServerSettings
 
 from recon4.errors import StoreError
 from recon4.store.atomic import write_json
 from recon4.store.seal import changing
 from recon4.system.stopping import StopSignals
+from recon4_app.main import serve
+from recon4_app.network.listen import listening
+from recon4_app.settings import ServerSettings
 from tests.project_builder import build_project
 from tests.served import served
 from tests.service.running import server_process, server_thread

@@ -6,9 +6,9 @@ import time
 
 import httpx
 import pytest
-from recon4_app.projects.trash import Trash
 
 from recon4.settings import Settings
+from recon4_app.projects.trash import Trash
 from tests.project_builder import build_project
 from tests.served import served
 from tests.service.running import (

@@ -10,10 +10,10 @@ from pathlib import Path, PurePosixPath
 
 import httpx
 import pytest
+
 from recon4_app.settings import ServerSettings
 from recon4_app.uploads.model import UploadedFile
 from recon4_app.uploads.store import UploadStore
-
 from tests.served import served
 from tests.service.running import server_process, server_thread
 from tests.service.tus_client import CHUNK, TUS, create, offset, patch, patch_and_break_off

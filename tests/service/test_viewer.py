@@ -9,12 +9,12 @@ from urllib.parse import urlsplit
 
 import numpy as np
 import pytest
-from recon4_app.jobs.events import EventWriter
-from recon4_app.viewer.page import SHIMS
 from websockets.exceptions import ConnectionClosed
 
 from recon4.model.events import EdgeTried, NodesPlaced, StageChanged, VerdictsChanged
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
+from recon4_app.jobs.events import EventWriter
+from recon4_app.viewer.page import SHIMS
 from tests.processes import viewer_process
 from tests.project_builder import add_multiframes, build_project, loop_walk, verified_graph
 from tests.service.running import server_thread

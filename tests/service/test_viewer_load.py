@@ -4,9 +4,9 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+
 from recon4_app.viewer import proxy
 from recon4_app.viewer.client.legend_html import count
-
 from tests.benchmarks.viewer_figures import PEOPLE, own_server
 from tests.deadlines import HANG_S
 from tests.processes import viewer_process

@@ -5,10 +5,10 @@ from dataclasses import fields
 import msgspec.msgpack
 import numpy as np
 import pytest
-from recon4_app.viewer.browser_messages import KINDS, RefusedMessage, checked
-from recon4_app.viewer.proxy import Rate
 from viser import _messages
 
+from recon4_app.viewer.browser_messages import KINDS, RefusedMessage, checked
+from recon4_app.viewer.proxy import Rate
 from tests.served import office, served
 from tests.service.viser_client import camera, viewing
 

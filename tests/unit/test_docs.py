@@ -8,15 +8,15 @@ from functools import cache
 from pathlib import Path
 
 import pytest
-from recon4_app.access.routes_check import declared
-from recon4_app.main import create_app
-from recon4_app.settings import ServerSettings
 from rich.text import Text
 from typer.main import get_command
 
 from recon4.cli.main import app
 from recon4.model.rig import parse_rig
 from recon4.settings import Settings
+from recon4_app.access.routes_check import declared
+from recon4_app.main import create_app
+from recon4_app.settings import ServerSettings
 
 ROOT = Path(__file__).parents[2]
 IN_DOCS = sorted((ROOT / "docs").rglob("*.md"))

@@ -3,13 +3,13 @@
 import re
 
 import pytest
-from recon4_app.access.routes_check import declared
-from recon4_app.main import create_app
-from recon4_app.settings import ServerSettings
 from typer.main import get_command
 
 from recon4 import api
 from recon4.cli.main import app
+from recon4_app.access.routes_check import declared
+from recon4_app.main import create_app
+from recon4_app.settings import ServerSettings
 from tools.reference_pages import FOLDER, PAGES
 
 

@@ -3,11 +3,11 @@
 import re
 
 import pytest
+
 from recon4_app.access.routes_check import declared
 from recon4_app.main import create_app
 from recon4_app.pages import WEB, html_of
 from recon4_app.settings import ServerSettings
-
 from tools.structure import ROOT
 
 HELPERS = ("at", "wholeUrl", "socketUrl", "urlOf")

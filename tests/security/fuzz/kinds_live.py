@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import IO, cast
 
 import numpy as np
-from recon4_app.live.current_capture import marks_of
 
 from recon4.errors import Recon4Error
 from recon4.live.mapper.gnss_watch import GnssWatch
@@ -56,6 +55,7 @@ from recon4.recording.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.velodyne.position_packets import PositionDecoder
 from recon4.recording.velodyne.sensor_clock import SensorClock
 from recon4.settings import IngestSettings, Settings
+from recon4_app.live.current_capture import marks_of
 from tests.builders import T0_NS, room_packets
 from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables

@@ -6,11 +6,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from recon4_app.review.store import Reviews
 
 from recon4.review.decisions import Decision, DecisionKind, fold
 from recon4.review.journal import append, read_rows
 from recon4.review.source import Source
+from recon4_app.review.store import Reviews
 from tests.review_project import make
 from tests.service.review.reviewing import RIGHT, WRONG, decide
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+
 from recon4_app.access.login.login_service import LoginService, open_access
 
 

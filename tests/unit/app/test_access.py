@@ -6,6 +6,7 @@ import re
 import threading
 
 import pytest
+
 from recon4_app.access.login.login_service import LoginOrigin
 from recon4_app.access.login.sessions import LIVES, form_token
 from recon4_app.access.middleware import session as session_middleware

@@ -1,6 +1,7 @@
 """Which passwords are refused, and how they are kept."""
 
 import pytest
+
 from recon4_app.access.login import passwords
 from recon4_app.errors import WeakPassword
 

@@ -3,6 +3,7 @@
 import threading
 
 import pytest
+
 from recon4_app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
 from recon4_app.access.login.login_service import LoginOrigin
 from recon4_app.access.people import Role

@@ -5,6 +5,7 @@ import threading
 from dataclasses import replace
 
 import pytest
+
 from recon4_app.access.audit import entry_hash
 from recon4_app.access.login.login_service import LoginOrigin, open_access
 from recon4_app.access.people import LOCAL

@@ -1,6 +1,7 @@
 """A job canceled while it is being started: no traceback, and it stops."""
 
 import pytest
+
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.jobs.model import Inputs, Job, JobState
 from recon4_app.jobs.store import JobStore

@@ -1,10 +1,10 @@
 """The certificate of this computer: made once, replaced when damaged."""
 
 import pytest
-from recon4_app.network.certificate import made_certificate, own_certificate
-from recon4_app.network.hosts import own_names
 
 from recon4.errors import ConfigError
+from recon4_app.network.certificate import made_certificate, own_certificate
+from recon4_app.network.hosts import own_names
 
 
 def test_a_certificate_is_made_once_for_this_computers_names(tmp_path):

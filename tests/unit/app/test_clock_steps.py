@@ -4,13 +4,13 @@ import os
 import time
 
 import pytest
-from recon4_app.access.people import RECENT_LOGIN_S, Role
-from recon4_app.jobs.folder import JobFolder
-from recon4_app.projects.trash import Trash
 
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, broken, read_rows
 from recon4.store.project import Project
+from recon4_app.access.people import RECENT_LOGIN_S, Role
+from recon4_app.jobs.folder import JobFolder
+from recon4_app.projects.trash import Trash
 
 PASSWORD = "three green owls dance"
 DAY_S = 86_400.0

@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from recon4_app.compute_pool.model import FileAccess, Lane, Terms
-from recon4_app.compute_pool.pool import ComputePool
-from recon4_app.errors import ComputeFailed
 
 from recon4.errors import ConfigError, GraphError, WrongSettings
 from recon4.system.processes import ChildRegister
+from recon4_app.compute_pool.model import FileAccess, Lane, Terms
+from recon4_app.compute_pool.pool import ComputePool
+from recon4_app.errors import ComputeFailed
 from tests import pool_functions as work
 
 EVA = Terms(person="Eva")

@@ -5,6 +5,7 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from recon4_app.projects.folder_names import folder_name, free_folder_name
 from recon4_app.projects.store import PROJECT_ID
 

@@ -3,15 +3,15 @@
 import sqlite3
 
 import pytest
+
+from recon4.errors import Cancelled
+from recon4.model.events import NodesPlaced, RunStarted, StageChanged
 from recon4_app.errors import Conflict, IllegalTransition, NotFound
 from recon4_app.jobs.events import EventWriter, event_of, read_events
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.jobs.model import TRANSITIONS, Inputs, Job, JobState
 from recon4_app.jobs.status import JobStatus, after
 from recon4_app.jobs.store import JobStore
-
-from recon4.errors import Cancelled
-from recon4.model.events import NodesPlaced, RunStarted, StageChanged
 
 
 @pytest.fixture

@@ -10,13 +10,12 @@ import sys
 import time
 from contextlib import suppress
 
+from recon4.review.newest_approval import record_path
+from recon4.store.atomic import make_folders
 from recon4_app.errors import AppError
 from recon4_app.projects.trash import Trash
 from recon4_app.settings import ServerSettings
 from recon4_app.uploads.store import UploadStore
-
-from recon4.review.newest_approval import record_path
-from recon4.store.atomic import make_folders
 
 CHANGES = ("os.rename", "os.remove", "os.mkdir", "os.rmdir", "os.chmod", "os.truncate")
 DATA = b"packets"

@@ -2,10 +2,9 @@
 
 import asyncio
 
-from recon4_app.live.capture import Capture, unfinished
-
 from recon4.live.protocol import Done, encode
 from recon4.live.session import CaptureSession
+from recon4_app.live.capture import Capture, unfinished
 from tests.live_messages import pose
 
 POSE = pose()

@@ -7,14 +7,14 @@ import time
 import numpy as np
 import pytest
 from fastapi import WebSocket
-from recon4_app.live import phone as phones
-from recon4_app.live.capture import Capture
-from recon4_app.live.current_capture import CurrentCapture
-from recon4_app.live.phone import Phone
 
 from recon4.live.protocol import Points
 from recon4.live.session import CaptureSession
 from recon4.model.rig import load_rig
+from recon4_app.live import phone as phones
+from recon4_app.live.capture import Capture
+from recon4_app.live.current_capture import CurrentCapture
+from recon4_app.live.phone import Phone
 from tests.live_messages import pose
 
 POINTS = 400_000

@@ -2,9 +2,9 @@
 
 import numpy as np
 from msgspec import UNSET
-from recon4_app.live.stream_state import Cursor, StreamState
 
 from recon4.live.protocol import Mark, Points
+from recon4_app.live.stream_state import Cursor, StreamState
 from tests import live_messages
 
 SECOND_NS = 1_000_000_000

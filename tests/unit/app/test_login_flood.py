@@ -6,6 +6,7 @@ import sys
 import threading
 
 import pytest
+
 from recon4_app.access.login.login_backoff import MAX_KEYS, LoginBackoff, TokenBuckets
 from recon4_app.access.login.login_service import WAITING_LOGINS, LoginOrigin
 from recon4_app.access.people import Role

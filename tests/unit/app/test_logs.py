@@ -8,6 +8,7 @@ import sys
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from recon4_app import logs as module
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.logs import Logs, RepeatFilter, printable, rotate_grown

@@ -3,6 +3,7 @@
 import re
 
 import pytest
+
 from recon4_app.pages import HEAD_HERE, WEB, html_of
 
 PAGES = sorted(

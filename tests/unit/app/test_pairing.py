@@ -4,6 +4,7 @@ import contextlib
 import threading
 
 import pytest
+
 from recon4_app.access.pairing.grants import (
     INVITATION_S,
     MAX_OPEN,

@@ -5,11 +5,11 @@ import asyncio
 import httpx
 import pytest
 from fastapi import FastAPI
+
+from recon4.errors import ConfigError, NoSpace
 from recon4_app.access.people import Person, Role
 from recon4_app.error_responses import install
 from recon4_app.errors import STORAGE, Conflict, NoRoom, project_page
-
-from recon4.errors import ConfigError, NoSpace
 
 
 def answer(error: Exception, role: Role) -> dict[str, object]:

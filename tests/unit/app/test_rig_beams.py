@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-from recon4_app.rigs.content import content_of, problems_of, rig_of
 
 from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
+from recon4_app.rigs.content import content_of, problems_of, rig_of
 
 RIG = load_rig("4recon")
 BEAMS = BeamCorrections.of(1e-3 * np.random.default_rng(1).standard_normal((3, 16)))

@@ -1,6 +1,7 @@
 """Progress of a whole run from the events of its worker."""
 
 import pytest
+
 from recon4_app.jobs.events import event_of
 from recon4_app.jobs.exit_reasons import exit_reason
 from recon4_app.jobs.run_progress import RunProgress, after, stage_weight

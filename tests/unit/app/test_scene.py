@@ -2,6 +2,11 @@
 
 import numpy as np
 import pytest
+
+from recon4.mapping.notes import MapNotes
+from recon4.mapping.tile import FIELDS
+from recon4.mapping.tile_writer import TileWriter
+from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, Reason, Verdict, known_judgment
 from recon4_app.viewer.client.captions import (
     Facts,
     edge_facts,
@@ -25,11 +30,6 @@ from recon4_app.viewer.scene.build import (
 from recon4_app.viewer.scene.layers import EdgeTable, edge_layer, edge_layers
 from recon4_app.viewer.scene.nodes import LinesNode
 from recon4_app.viewer.scene.source import ProjectSource
-
-from recon4.mapping.notes import MapNotes
-from recon4.mapping.tile import FIELDS
-from recon4.mapping.tile_writer import TileWriter
-from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, Reason, Verdict, known_judgment
 from tests.project_builder import build_project, loop_walk, verified_graph
 
 

@@ -10,9 +10,9 @@ import time
 from contextlib import suppress
 
 import pytest
-from recon4_app.jobs.silence import SilenceClock
 
 from recon4.system.processes import first_line, waited_for_processor_s
+from recon4_app.jobs.silence import SilenceClock
 from tests.service.running import wait_for
 
 SPIN = "import os; os.sched_setaffinity(0, {int(__import__('sys').argv[1])})\nwhile True: pass"

@@ -5,6 +5,7 @@ import re
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+
 from recon4_app.errors import BadRequest
 from recon4_app.uploads.names import another, safe_name, safe_path, slug
 

@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
-from recon4_app.viewer.client.point_budget import FEWEST_POINTS, FIRST_POINTS, PointBudget
-from recon4_app.viewer.cloud.lod import Camera, TileBoxes, base_step, choose, chunks_of, in_sight
 
 from recon4.mapping.tile import progressive
+from recon4_app.viewer.client.point_budget import FEWEST_POINTS, FIRST_POINTS, PointBudget
+from recon4_app.viewer.cloud.lod import Camera, TileBoxes, base_step, choose, chunks_of, in_sight
 
 AHEAD = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 """Looks along x, z up."""

@@ -6,9 +6,6 @@ import time
 
 import numpy as np
 import pytest
-from recon4_app.jobs.events import EventWriter, event_of
-from recon4_app.viewer.scene.live import JobWatch, LiveGraph
-from recon4_app.viewer.scene.source import ProjectSource
 
 from recon4.model.plain import to_plain
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict
@@ -19,6 +16,9 @@ from recon4.progress import Silent
 from recon4.registration.stage import run_odometry
 from recon4.registration.walk import WalkInputs
 from recon4.settings import Settings, VerificationSettings, override
+from recon4_app.jobs.events import EventWriter, event_of
+from recon4_app.viewer.scene.live import JobWatch, LiveGraph
+from recon4_app.viewer.scene.source import ProjectSource
 from tests.project_builder import build_project
 from tests.scanned_room import strolling, walk
 

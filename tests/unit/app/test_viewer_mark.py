@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+
+from recon4.geometry.se3 import SE3
+from recon4.model.trajectory import Trajectory
 from recon4_app.viewer.client.view import Stretch
 from recon4_app.viewer.scene.build import Content
 from recon4_app.viewer.scene.mark import stretch_nodes, stretch_positions
 from recon4_app.viewer.scene.nodes import LabelNode, LinesNode
-
-from recon4.geometry.se3 import SE3
-from recon4.model.trajectory import Trajectory
 from tests.project_builder import loop_walk
 
 WALK = loop_walk()

@@ -4,14 +4,14 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+
+from recon4.slam2d.map_files import TrinaryMap
 from recon4_app.viewer.client.pointer_tools import PointerTools
 from recon4_app.viewer.client.view import ViewState
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.cloud.pick import Ray, pick_cell, pick_edge, pick_gnss, pick_point
 from recon4_app.viewer.scene.build import Content, GnssMarks
 from recon4_app.viewer.scene.layers import EdgeTable
-
-from recon4.slam2d.map_files import TrinaryMap
 from tests.project_builder import ROOM_M, build_project, loop_walk, verified_graph
 
 

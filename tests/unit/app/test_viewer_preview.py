@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
-from recon4_app.viewer.cloud.multiframes import Multiframes
-from recon4_app.viewer.cloud.palette import paint
-from recon4_app.viewer.cloud.preview import HEIGHTS, PIECE, JobPreview
-from recon4_app.viewer.scene.source import ProjectSource
 
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
+from recon4_app.viewer.cloud.multiframes import Multiframes
+from recon4_app.viewer.cloud.palette import paint
+from recon4_app.viewer.cloud.preview import HEIGHTS, PIECE, JobPreview
+from recon4_app.viewer.scene.source import ProjectSource
 from tests.project_builder import ROOM_M, add_multiframes, build_project, loop_walk
 
 

@@ -3,11 +3,11 @@
 import json
 
 import pytest
+
+from recon4.store.earlier_names import PALETTES
 from recon4_app.viewer.client.view import Stretch, ViewState, stretch_from_text, view_from_json
 from recon4_app.viewer.cloud.palette import Range
 from recon4_app.viewer.scene.layers import FINAL
-
-from recon4.store.earlier_names import PALETTES
 
 VIEW = ViewState(
     color_by="raw intensity",

@@ -1,9 +1,9 @@
 """What the phone says of the map while the walk goes on."""
 
 import pytest
-from recon4_app.live.stream_state import StreamState
 
 from recon4.live.so_far import WalkSoFar
+from recon4_app.live.stream_state import StreamState
 from tests.live_messages import pose
 
 

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from recon4_app.viewer.cloud.parts import Cloud
 
 from recon4.errors import OutOfRange, StoreError
 from recon4.export.laz import export_laz
@@ -22,6 +21,7 @@ from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings, preset
 from recon4.store.earlier_names import TILE_FIELDS
+from recon4_app.viewer.cloud.parts import Cloud
 from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
 
 ALL = MapSettings(voxel_m=0.0, min_neighborhood=1, surface="raw")

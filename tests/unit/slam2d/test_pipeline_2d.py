@@ -5,12 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from recon4_app.projects.import_folders import ImportFolders
-from recon4_app.projects.store import ProjectStore
-from recon4_app.viewer.client.view import ViewState
-from recon4_app.viewer.scene.build import bounds, describe
-from recon4_app.viewer.scene.nodes import ImageNode
-from recon4_app.viewer.scene.source import ProjectSource
 
 from recon4.archive.verify import verify
 from recon4.cli.main import main
@@ -28,6 +22,12 @@ from recon4.slam2d import occupancy
 from recon4.slam2d.map_files import read_map
 from recon4.store.hashing import hash_file
 from recon4.workflows.planar_results import RESULTS_2D
+from recon4_app.projects.import_folders import ImportFolders
+from recon4_app.projects.store import ProjectStore
+from recon4_app.viewer.client.view import ViewState
+from recon4_app.viewer.scene.build import bounds, describe
+from recon4_app.viewer.scene.nodes import ImageNode
+from recon4_app.viewer.scene.source import ProjectSource
 from tests.g2o_reader import read_g2o
 from tests.laser_rows import rows_of, with_rows
 from tests.planar_walks import (

@@ -2,14 +2,14 @@
 
 import numpy as np
 import pytest
+
+from recon4.mapping.tiles import surface_text
 from recon4_app.slices.model import PickRequest, SliceImageRequest, SlicePlaneSpec, WindowSpec
 from recon4_app.slices.slice_work import pick_point, slice_image
 from recon4_app.viewer.client.legend import legend
 from recon4_app.viewer.client.view import ViewState, view_from_json
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.build import Content
-
-from recon4.mapping.tiles import surface_text
 from tests.unit.slices.room_map import write_map
 
 LEVEL = SlicePlaneSpec(kind="horizontal", z_m=1.0, thickness_m=0.5)

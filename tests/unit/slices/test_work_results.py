@@ -4,13 +4,9 @@ import inspect
 
 import numpy as np
 import pytest
-import recon4_app.review.review_work
 from pydantic import TypeAdapter
-from recon4_app.compute_pool.messages import declared, decode_result, encode_result
-from recon4_app.review.review_work import pair_facts, preview
-from recon4_app.slices.control_work import control_report
-from recon4_app.slices.slice_work import comparison
 
+import recon4_app.review.review_work
 from recon4.evaluation.slices import SliceError
 from recon4.model.pose_graph import Judge, Judgment, Measure, Reason, Verdict
 from recon4.review.pairs import PairFacts
@@ -23,6 +19,10 @@ from recon4.slices.fit import ReferenceFit
 from recon4.slices.measured import MeasuredPosition
 from recon4.slices.residuals import residuals
 from recon4.slices.signed import SignedFigures
+from recon4_app.compute_pool.messages import declared, decode_result, encode_result
+from recon4_app.review.review_work import pair_facts, preview
+from recon4_app.slices.control_work import control_report
+from recon4_app.slices.slice_work import comparison
 
 WORK = [
     function
