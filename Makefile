@@ -5,6 +5,7 @@
 #   make test                everything that has to hold; `make unit`, `make lint`, … are its parts
 #   make quick               what a change needs before it is committed: two minutes
 #   make site                build the documentation site, which the server serves under /docs
+#   make studies             the tests that are too long for every run: a few minutes
 #   make bench               benchmarks, by hand: they need a quiet machine
 #   make docs                write what is generated: settings, findings, HTTP types, NOTICE
 #   make examples            run the programs in examples/ and write their pages
@@ -34,7 +35,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e bench site docs examples constraints lock audit sbom clean
+.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs examples constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run site
@@ -52,7 +53,7 @@ quick:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) format lint types touched
 
 touched: $(VENV)/installed-dev
-	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not e2e and not slow" $$($(BIN)/python -m tools.touched)
+	$(BIN)/python -m pytest -n 2 --dist loadfile -m "not e2e and not slow and not study" $$($(BIN)/python -m tools.touched)
 
 format: $(VENV)/installed-dev
 	$(BIN)/ruff format --check .
@@ -64,7 +65,7 @@ types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
 unit: $(VENV)/installed-dev site
-	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e' --durations=10
+	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
 
 e2e: $(VENV)/installed-dev site
 	$(BIN)/python -m pytest -m e2e --durations=10
@@ -79,6 +80,9 @@ kernels: $(VENV)/installed-dev
 # What pip would do while nothing else can run yet; a confined process cannot keep what it compiles.
 bytecode: $(VENV)/installed-dev
 	@$(BIN)/python -m compileall -qq -x '/tests?/' $(VENV)/lib || true
+
+studies: $(VENV)/installed-dev
+	$(BIN)/python -m pytest -m study --durations=0
 
 bench: $(VENV)/installed-dev
 	@for name in decode false_loops real_sequences; do \

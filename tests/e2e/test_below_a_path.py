@@ -102,6 +102,7 @@ def test_a_person_works_below_the_path(site, page, tmp_path):
     page.get_by_role("link", name="Help").click()
     page.wait_for_url(f"{site.url}/docs/")
     page.evaluate("localStorage.setItem('maps/old/x', '1'); localStorage.setItem('other', '2')")
+    page.go_back()
     page.get_by_role("button", name="Sign out").click()
     page.wait_for_url(f"{site.url}/login")
     assert page.evaluate("Object.keys(localStorage)") == ["other"]

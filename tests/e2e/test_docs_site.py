@@ -10,10 +10,13 @@ from tests.served import served
 pytestmark = pytest.mark.e2e
 
 server = served()
+SEARCH_IS_READY = "() => [...document.querySelectorAll('*')].some((one) => one.shadowRoot)"
+"""Its dialog is in a shadow tree; before, keys open nothing."""
 
 
 def test_the_search_finds_a_page_without_internet(server, page, look, screenshot):
     page.goto(f"{server.url}/docs/")
+    page.wait_for_function(SEARCH_IS_READY)
     screenshot(page, "docs-start")
 
     page.keyboard.press("Control+k")

@@ -218,7 +218,7 @@ def axes_are_shown(page, screenshot):
     expect(steps).to_have_count(4)
     expect(steps.nth(1)).to_have_text(re.compile(r"\d+° and \d+° of 25°"))
     rotation = page.locator("#dance-axes tr").nth(0)
-    expect(rotation).to_have_text(re.compile(r"rotation(\d+ %|✓ observed){3}"))
+    expect(rotation).to_have_text(re.compile(r"rotation\s*((\d+ %|✓ observed)\s*){3}"))
     fits(page, "#dance")
     on_one_line(page.locator("#dance-axes td").nth(2), "✓ observed")
     screenshot(page, "live-dance")

@@ -101,6 +101,7 @@ def _off(edge, T_map_body):
     )
 
 
+@pytest.mark.study
 def test_a_wall_doubled_by_one_wrong_loop_is_found_and_a_good_map_has_none(process):
     root = process()
     good = doubles(root)

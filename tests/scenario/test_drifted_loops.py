@@ -1,8 +1,11 @@
 """Loop closures of a walk whose odometry has drifted."""
 
+import pytest
+
 from tests.benchmarks.drifted_loops import loops_found, prepared
 
 
+@pytest.mark.study
 def test_stairs_are_recognized_after_a_drift_of_a_sixth_of_the_path(tmp_path):
     """The flights look alike from above, and a step changes the view more than on a floor."""
     walk = prepared("staircase/3/44", tmp_path)

@@ -21,6 +21,7 @@ PUBLISHED_M, PUBLISHED_DEG = 0.045, 0.6
 """Class of published graph SLAM on the log aces."""
 
 
+@pytest.mark.study
 def test_aces_is_as_good_as_published_graph_slam(tmp_path, data):
     summary = process(Sources((data("laser2d/aces.clf.bz2"),)), tmp_path)
 

@@ -50,9 +50,11 @@ test("what the browser keeps is kept apart from that of other servers of the hos
   assert.deepEqual(Object.keys(stored), ["of another server"]);
 });
 
-test("what the viewer kept is forgotten too, whatever the path of the server", () => {
+test("what viewer and documentation kept is forgotten too, whatever the path of the server", () => {
   stored["viser-user:recon4.stretch.office"] = "span=1,2";
+  stored[`${BASE}docs/.__palette`] = "{}";
   forgetKept();
   assert.equal(stored["viser-user:recon4.stretch.office"], undefined);
+  assert.equal(stored[`${BASE}docs/.__palette`], undefined);
   assert.equal(stored["of another server"], "2");
 });

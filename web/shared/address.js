@@ -40,10 +40,12 @@ export const keep = (name, text) => localStorage.setItem(keyOf(name), text);
 
 const BY_VIEWER = "viser-user:"; // viser keeps what the viewer chose by names without our path
 
+const BY_DOCS = `${BASE}docs/`; // the documentation keeps its colors by the whole path
+
 /** Forgets all of it, for the next person at this browser. */
 export function forgetKept() {
-  const ours = Object.keys(localStorage).filter(
-    (key) => key.startsWith(keyOf("")) || key.startsWith(BY_VIEWER),
+  const ours = Object.keys(localStorage).filter((key) =>
+    [keyOf(""), BY_VIEWER, BY_DOCS].some((begin) => key.startsWith(begin)),
   );
   for (const key of ours) localStorage.removeItem(key);
 }

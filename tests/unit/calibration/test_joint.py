@@ -150,7 +150,7 @@ def test_a_right_rig_file_is_not_changed_on_request(right, tmp_path):
     )
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_exchanged_mounts_are_called_so(dance, tmp_path):
     first, second = dance.rig.sensors
     rig = replace(

@@ -16,6 +16,7 @@ from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slam2d.odometry import run_odometry_2d
+from recon4.slam2d.tuning import Slam2dTuning
 from tests.laser_rows import rows_of, with_rows, with_times
 from tests.planar_walks import (
     along,
@@ -71,8 +72,8 @@ def ring():
 def test_the_poses_are_those_of_the_finished_recording(room, odometry):
     scans = room.scans if odometry else replace(room.scans, odometry=None)
     scans = with_times(scans, 1e-4)
-    steps = run_odometry_2d(scans, attitude=None, settings=Settings().slam2d, progress=Silent())
-    tracker, attitude = ScanTracker(LASER.sensors[0], Settings().slam2d), LiveAttitude(LASER)
+    steps = run_odometry_2d(scans, attitude=None, settings=Slam2dTuning(), progress=Silent())
+    tracker, attitude = ScanTracker(LASER.sensors[0], Slam2dTuning()), LiveAttitude(LASER)
 
     found = [tracker.push(scan, attitude) for scan in rows(scans)]
 
@@ -206,8 +207,8 @@ def test_a_laser_that_was_silent_goes_on_in_the_same_map(room):
 def test_scans_whose_angles_change_are_mapped_live_as_when_finished(layout):
     truth = along(np.array([[-2.5, 0.5], [0.5, 0.2]]), speed_m_s=0.4)
     scans = with_times(scanned_in(furnished_room(), truth, layout(len(truth))).scans, 1e-4)
-    steps = run_odometry_2d(scans, attitude=None, settings=Settings().slam2d, progress=Silent())
-    tracker, attitude = ScanTracker(LASER.sensors[0], Settings().slam2d), LiveAttitude(LASER)
+    steps = run_odometry_2d(scans, attitude=None, settings=Slam2dTuning(), progress=Silent())
+    tracker, attitude = ScanTracker(LASER.sensors[0], Slam2dTuning()), LiveAttitude(LASER)
 
     found = [tracker.push(scan, attitude) for scan in rows(scans)]
 
@@ -241,7 +242,7 @@ def test_scans_left_out_are_counted(room):
 
 
 def test_memory_does_not_grow_with_the_number_of_scans(room):
-    tracker, attitude = ScanTracker(LASER.sensors[0], Settings().slam2d), LiveAttitude(LASER)
+    tracker, attitude = ScanTracker(LASER.sensors[0], Slam2dTuning()), LiveAttitude(LASER)
     for scan in rows(room.scans):
         tracker.push(scan, attitude)
 

@@ -6,6 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3, so3_exp, so3_log
 from recon4.model.samples import ImuSamples
 from recon4.registration.motion import FreeMotion, ImuMotion, MotionState, Rest
+from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
 from tests.room_walks import T0_NS
 from tests.scanned_room import RIG, imu_of, standing, strolling
@@ -151,7 +152,7 @@ def test_a_clock_that_is_far_off_is_not_followed_without_bound():
 
 
 def test_settings_say_how_well_scale_and_clock_are_known():
-    sure = replace(SETTINGS, gyro_gain_sd=0.0, imu_clock_sd_s=0.0)
+    sure = OdometryTuning(gyro_gain_sd=0.0, imu_clock_sd_s=0.0)
     free, fixed = (ImuMotion(imu_of(strolling, 2.0), RIG, s) for s in (SETTINGS, sure))
 
     ends = [motion.predict(motion.initial(T0_NS), T0_NS + S_NS).end for motion in (free, fixed)]

@@ -32,7 +32,7 @@ def errors_m(frames, truth):
 def test_the_velocity_of_the_first_two_scans(office_frames, truth):
     first, second = office_frames[FIRST], office_frames[FIRST + 1]
 
-    found = starting_velocity(first, second, rig=office_frames.rig, settings=Settings().scans)
+    found = starting_velocity(first, second, rig=office_frames.rig)
 
     moved = truth[FIRST].inverse() @ truth[FIRST + 1]
     assert np.linalg.norm(moved.t) > 0.05
@@ -42,9 +42,9 @@ def test_the_velocity_of_the_first_two_scans(office_frames, truth):
 def test_a_body_that_stands_has_no_velocity(office_frames):
     standing = office_frames[0], office_frames[1]
 
-    assert starting_velocity(*standing, rig=office_frames.rig, settings=Settings().scans) is None
+    assert starting_velocity(*standing, rig=office_frames.rig) is None
     late = office_frames[FIRST], office_frames[FIRST + 9]
-    assert starting_velocity(*late, rig=office_frames.rig, settings=Settings().scans) is None
+    assert starting_velocity(*late, rig=office_frames.rig) is None
 
 
 def test_a_walk_that_begins_in_motion_is_followed(office_frames, truth, monkeypatch):

@@ -15,7 +15,6 @@ from recon4.registration.degeneracy import CURVED_INFORMATION, of_rigid_pose, we
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.step import OdometryStep
 from recon4.registration.weak_turns import weak_turns
-from recon4.settings import Settings
 
 CENTER = np.array([0.5, 3.0, 0.0])
 
@@ -36,7 +35,7 @@ def hall(points, rng, *, is_round):
 def weakest_in(is_round):
     """The motion that a scan from the origin observes least in such a hall."""
     rng = np.random.default_rng(4)
-    planes = PlaneMap(Settings().planes)
+    planes = PlaneMap()
     planes.add(hall(60_000, rng, is_round=is_round))
     scan = hall(1500, rng, is_round=is_round)
     match = planes.match(scan, np.zeros(len(scan)), center=np.zeros(3), finest=0, gate_m=0.2)
