@@ -47,7 +47,7 @@ def calibrated(dance, tmp_path_factory):
     return recorded, found, true
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_beams_are_corrected_and_other_windows_confirm_it(calibrated):
     _, found, true = calibrated
 
@@ -59,7 +59,7 @@ def test_the_beams_are_corrected_and_other_windows_confirm_it(calibrated):
         assert np.sqrt(np.mean(error[2] ** 2)) < np.deg2rad(0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_the_walk_shows_is_within_its_standard_deviation(calibrated):
     recorded, found, true = calibrated
     known = [row for row in found.figures.beams if row.status != "not observable"]
@@ -76,7 +76,7 @@ def test_what_the_walk_shows_is_within_its_standard_deviation(calibrated):
     assert np.mean(np.abs(error) < 3.0 * np.array([row.sd for row in known])) > 0.8
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_the_calibrated_rig_corrects_the_points_of_the_recording(calibrated, dance, tmp_path):
     recorded, found, _ = calibrated
     found.save(tmp_path)

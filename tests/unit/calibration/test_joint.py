@@ -235,7 +235,7 @@ def test_on_a_circle_a_right_rig_file_raises_no_alarm(on_a_circle, tmp_path, mon
     assert abs(clock.change) < 1e-3
 
 
-@pytest.mark.slow
+@pytest.mark.study
 @pytest.mark.parametrize(("motion", "corrected"), [(circle, 4), (straight, 0)])
 def test_what_a_walk_does_not_show_keeps_its_value_and_pulls_nothing_along(
     motion, corrected, tmp_path

@@ -79,7 +79,7 @@ def test_fixes_show_who_pulled_the_odometry_along() -> None:
     assert walks(found)[:2] == [Because.START, Because.MOVING_BY_FIXES] and len(walks(found)) <= 4
 
 
-@pytest.mark.slow
+@pytest.mark.study
 def test_what_contradicts_the_fixes_without_them_is_not_said_to_hold() -> None:
     walk = Walk(GROUP, ROWS, seconds=4.5)
 
