@@ -56,6 +56,7 @@ NEXT: Mapping[tuple[Mode, Seen], Mode] = {
     (Mode.BRIDGED, Seen.CROSSES_GAP): Mode.BRIDGED,
     (Mode.BRIDGED, Seen.GAP): Mode.RESTARTED,
     (Mode.RESTARTED, Seen.FITS): Mode.TRACKING,
+    (Mode.RESTARTED, Seen.CROSSES_GAP): Mode.BRIDGED,
     (Mode.RESTARTED, Seen.GAP): Mode.RESTARTED,
 }
 """The only transitions. The first multiframe of a map fits, whatever it shows."""

@@ -25,6 +25,12 @@ def test_a_gap_begins_another_piece_and_a_bridge_does_not():
     assert after(Seen.FITS, Seen.CROSSES_GAP).mode is Mode.BRIDGED
 
 
+def test_a_gap_right_after_a_restart_is_crossed_like_any_other():
+    again = after(Seen.FITS, Seen.MISSES, Seen.SURE_AGAIN, Seen.CROSSES_GAP)
+
+    assert (again.mode, again.piece) == (Mode.BRIDGED, 1)
+
+
 def test_lost_frames_are_counted_in_a_row():
     assert after(Seen.FITS, Seen.MISSES, Seen.MISSES).lost_frames == 2
     assert after(Seen.FITS, Seen.MISSES, Seen.FITS).lost_frames == 0
