@@ -12,7 +12,12 @@ from rosbags.rosbag2 import Writer as Writer2
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.velodyne.encode import PacketBlocks, PcapWriter, encode_vlp16, vlp16_firings
+from recon4.recording.packets.velodyne.encode import (
+    PacketBlocks,
+    PcapWriter,
+    encode_vlp16,
+    vlp16_firings,
+)
 
 ROOM_M = np.array([8.0, 6.0, 3.0])
 T0_NS = 1_700_000_000_000_000_000

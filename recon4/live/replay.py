@@ -26,9 +26,9 @@ from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
 from recon4.recording.formats.pcap import address_text, read_pcap
 from recon4.recording.kinds import pcap_files
+from recon4.recording.packets.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_replay import datagrams_of_scans, has_scans
-from recon4.recording.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE
 
 _STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
 """Packet size -> offset of its microseconds past the hour."""

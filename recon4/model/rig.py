@@ -15,6 +15,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
+from recon4.model.lidars import LIDARS
 from recon4.model.toml_tables import TomlTable, parse_toml
 from recon4.untrusted.bounded import read_text_limited
 
@@ -25,7 +26,8 @@ LASER2D_PORT, PROFILER_PORT = 8311, 8312
 MAX_RIG_BYTES = 128 * 1024
 """A rig file has some hundred bytes per sensor."""
 MAX_SENSORS = 64
-SENSOR_MODELS = ("VLP-16", "VLP-16 Hi-Res", "VLP-32C", "HDL-32E", "HDL-64E", "generic")
+SENSOR_MODELS = tuple(LIDARS)
+"""Models that a rig file may name."""
 SensorKind = Literal["lidar", "profiler", "laser2d"]
 """``lidar``: many beams that spin. ``profiler``: one beam that measures line scans, on a head that
 turns slowly. ``laser2d``: one beam that spins in a plane."""

@@ -41,6 +41,9 @@ from recon4.recording.formats.bags import (
 from recon4.recording.lidar_choice import is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
+from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.velodyne.data_packets import PacketDecoder
+from recon4.recording.packets.velodyne.models import likely_model, velodyne_model
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.stamp_order import StampOrder
@@ -56,9 +59,6 @@ from recon4.recording.topic_choice import (
     named_imu,
     require_topic,
 )
-from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.models import likely_model, velodyne_model
-from recon4.recording.velodyne.sensor_clock import SensorClock
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory

@@ -8,9 +8,9 @@ from pathlib import Path
 
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import pcap_files
+from recon4.recording.packets.streams import PacketStream, require_one_capture, scan_pcap
+from recon4.recording.packets.velodyne.models import RETURN_MODES
 from recon4.recording.scan_capture import ScanStreams, scan_streams
-from recon4.recording.velodyne.models import RETURN_MODES
-from recon4.recording.velodyne.streams import PacketStream, require_one_capture, scan_pcap
 
 WHOLE_BYTES = 64 << 20
 """Files up to this size are read completely."""

@@ -16,9 +16,9 @@ from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.cloud_files import Table
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4.recording.point_times import PointClock
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.models import MODELS
 from recon4.settings import IngestSettings
 
 TIME_FIELDS = ("t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "t_us")

@@ -21,12 +21,12 @@ from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recogni
 from recon4.recording.laser_mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.laser_tables import is_laser_table, read_laser_table
 from recon4.recording.line_recording import profiler_rig
+from recon4.recording.packets.streams import require_one_capture
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
 from recon4.recording.scan_messages import ScanCollector
 from recon4.recording.topic_choice import LASER_KIND, ODOMETRY_KIND, Named, choose_topic
-from recon4.recording.velodyne.streams import require_one_capture
 from recon4.settings import IngestSettings
 
 Rows = NDArray[np.intp]

@@ -20,6 +20,9 @@ from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
 from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
+from recon4.recording.packets.slots import in_slots
+from recon4.recording.packets.streams import address_number
+from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -30,9 +33,6 @@ from recon4.recording.scan_datagrams import (
     is_scan_datagram,
 )
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
-from recon4.recording.velodyne.models import DATA_SIZE
-from recon4.recording.velodyne.slots import in_slots
-from recon4.recording.velodyne.streams import address_number
 
 _PROBED, _PROBED_BATCHES = 20_000, 16
 """Datagrams and batches at the head of a file from which its streams are known."""

@@ -15,7 +15,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress, Silent
 from recon4.recording.formats.poses import write_tum
-from recon4.recording.velodyne.models import MODELS
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.lidar import Firings
 from recon4.simulation.setup import SimulationSetup, gnss_samples, imu_samples
 from recon4.simulation.truth import true_trajectory

@@ -14,7 +14,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
-from recon4.recording.velodyne.models import BLOCKS, MODELS
+from recon4.recording.packets.velodyne.models import BLOCKS, MODELS
 from recon4.simulation.companions import REFLECTIVITY as OF_PEOPLE
 from recon4.simulation.companions import Companions
 from recon4.simulation.mirrors import follow

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.velodyne.encode import (
+from recon4.recording.packets.velodyne.encode import (
     PacketBlocks,
     PcapWriter,
     encode_position,
     encode_vlp16,
     rmc_sentence,
 )
-from recon4.recording.velodyne.models import BLOCKS, CHANNELS
+from recon4.recording.packets.velodyne.models import BLOCKS, CHANNELS
 from recon4.simulation.degradation import Degradation
 from recon4.simulation.gnss import geodetic
 from recon4.simulation.lidar import Firings

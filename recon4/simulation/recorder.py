@@ -15,8 +15,8 @@ from recon4.model.beams import BeamCorrections
 from recon4.model.rig import Rig, format_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.formats.poses import write_tum
-from recon4.recording.velodyne.encode import PcapWriter
-from recon4.recording.velodyne.models import MODELS
+from recon4.recording.packets.velodyne.encode import PcapWriter
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.bag import BagWriter, open_bag
 from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
 from recon4.simulation.degradation import Degradation

@@ -15,9 +15,9 @@ import numpy as np
 import velodyne_decoder
 
 from recon4.recording.formats.pcap import read_pcap
+from recon4.recording.packets.velodyne.data_packets import PacketDecoder
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.encode import PcapWriter
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import sensor, spin
 

@@ -25,7 +25,7 @@ import pytest
 from recon4.live.project_files import begin
 from recon4.live.session import load_session
 from recon4.model.rig import load_rig
-from recon4.recording.velodyne.encode import PcapWriter
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.sandbox import ONE_THREAD
 from recon4.store.project import read_artifacts
 from recon4.system.stopping import CLEANING_UP_S, SIGNALS

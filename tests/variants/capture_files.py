@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from recon4.recording.velodyne.models import DATA_SIZE, DUAL
-from recon4.recording.velodyne.packet_filter import as_packets
+from recon4.recording.packets.velodyne.models import DATA_SIZE, DUAL
+from recon4.recording.packets.velodyne.sound_packets import as_packets
 
 _RECORD = 16
 _HEADERS = 42

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.recording.velodyne.encode import PcapWriter, encode_position, rmc_sentence
+from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position, rmc_sentence
 from tests.variants.capture_files import spoil_file
 from tests.variants.other_lidars import packets_of
 from tests.variants.tables import write_tables

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from recon4.kernels.simulation import make_rays
 from recon4.model.trajectory import Times
-from recon4.recording.velodyne.encode import PacketBlocks, encode_packets
-from recon4.recording.velodyne.models import BLOCKS, CHANNELS, DUAL, MODELS, VelodyneModel
-from recon4.recording.velodyne.packet_filter import as_packets
+from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets
+from recon4.recording.packets.velodyne.models import BLOCKS, CHANNELS, DUAL, MODELS, VelodyneModel
+from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.simulation.lidar import RESOLUTION_M, LidarModel, RaysAndHits, hit_noise, measure_hits
 from recon4.simulation.setup import SimulationSetup
 from tests.variants.walk import TURN_NS, RecordedWalk

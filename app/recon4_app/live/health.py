@@ -55,7 +55,7 @@ def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
 
 
 def _clock(warnings: list[str], *, free: bool) -> str:
-    """State of the clock, from the warnings of `recon4.recording.velodyne.sensor_clock`."""
+    """State of the clock, from the warnings of `recon4.recording.packets.sensor_clock`."""
     if any("jumped by" in text for text in warnings):
         return JUMPED
     return SHIFTED if free else IN_STEP

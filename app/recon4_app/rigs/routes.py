@@ -11,7 +11,7 @@ from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, Res
 from starlette.concurrency import run_in_threadpool
 
 from recon4.model.rig import SENSOR_MODELS, format_rig, load_rig, rig_presets
-from recon4.recording.velodyne.models import MODELS
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms

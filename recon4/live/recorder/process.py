@@ -49,7 +49,7 @@ from recon4.live.recorder.serial_port import open_serial_device
 from recon4.live.session import CaptureSession, load_session, stretched
 from recon4.model.rig import Rig, load_rig
 from recon4.model.serial_device import SerialDevice, parse_serial_device
-from recon4.recording.velodyne.models import DATA_SIZE
+from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.sandbox import refuse_new_sockets, restart_with_one_thread
 from recon4.store.atomic import write_json
 from recon4.system.stopping import StopSignals, end_process

@@ -10,11 +10,11 @@ from recon4.model.rig import Rig, load_rig
 from recon4.recording.kinds import pcap_files
 from recon4.recording.line_recording import WUERZBURG
 from recon4.recording.openers.request import Item, OpenRequest, Recording
+from recon4.recording.packets.capture import WAIT_S, VelodynePcap
+from recon4.recording.packets.streams import PacketStream, require_one_capture
+from recon4.recording.packets.velodyne.position_packets import PositionSamples
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.scan_capture import ScanCapture, scan_streams
-from recon4.recording.velodyne.capture import WAIT_S, VelodynePcap
-from recon4.recording.velodyne.position_packets import PositionSamples
-from recon4.recording.velodyne.streams import PacketStream, require_one_capture
 
 
 def open_scan_capture(request: OpenRequest) -> Recording | None:

@@ -2,8 +2,8 @@
 
 import json
 
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
-from recon4.recording.velodyne.encode import PcapWriter
 from tests.builders import (
     T0_NS,
     room_cloud,

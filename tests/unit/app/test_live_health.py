@@ -7,8 +7,8 @@ from recon4.live.mapper.notes import NotesWatch
 from recon4.live.newest import Newest
 from recon4.live.session import CaptureSession
 from recon4.model.rig import format_rig, load_rig
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.sensor_clock import SensorClock
 from recon4_app.live.current_capture import marks_of
 from recon4_app.live.health import lidars
 from recon4_app.live.power import Battery, Power, battery_findings, read_battery

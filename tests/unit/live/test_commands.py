@@ -4,7 +4,7 @@ import signal
 import subprocess
 import sys
 
-from recon4.recording.velodyne.encode import PcapWriter
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.store.project import read_artifacts
 from tests.loopback import an_address
 from tests.unit.recording.packet_builders import spin

@@ -3,8 +3,8 @@
 import pytest
 
 from recon4.live.mapper.latency import LATE_NS, Latency
+from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock
 from tests.unit.recording.test_packets_clock import PACKET_NS, packets
 
 

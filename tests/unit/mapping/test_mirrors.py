@@ -10,7 +10,7 @@ from recon4.findings.witnesses.placing import Mirrors
 from recon4.geometry.mesh import MIRROR
 from recon4.mapping.mirrors import Sight, find_mirrors
 from recon4.model.figures import LevelFigures
-from recon4.recording.velodyne.models import MODELS
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.setup import SimulationSetup, prepare
 from recon4.simulation.world import World
 from recon4.simulation.worlds import build_world

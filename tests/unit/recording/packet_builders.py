@@ -6,10 +6,10 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
+from recon4.recording.packets.velodyne.data_packets import PacketDecoder
+from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets
+from recon4.recording.packets.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.encode import PacketBlocks, encode_packets
-from recon4.recording.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.settings import IngestSettings
 
 T0_NS = 1_700_000_000_000_000_000

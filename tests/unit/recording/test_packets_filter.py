@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from recon4.recording.packets.packet_order import PacketOrder
+from recon4.recording.packets.sensor_clock import SECOND_NS
+from recon4.recording.packets.velodyne.data_packets import PacketDecoder
+from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.packet_filter import PacketOrder, as_packets
-from recon4.recording.velodyne.sensor_clock import SECOND_NS
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
 

@@ -7,8 +7,8 @@ import pytest
 
 from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.recording.formats.pcap import address_text, is_pcap, read_pcap
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.encode import PcapWriter
 from tests.unit.recording.packet_builders import spin
 
 SECONDS, NANOSECONDS = 1_700_000_000, 123_456_789

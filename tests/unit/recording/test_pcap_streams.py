@@ -7,10 +7,10 @@ from recon4.errors import ConfigError, EmptyRecording
 from recon4.model.rig import parse_rig
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
+from recon4.recording.packets.capture import VelodynePcap
+from recon4.recording.packets.streams import scan_pcap
+from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position, rmc_sentence
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.capture import VelodynePcap
-from recon4.recording.velodyne.encode import PcapWriter, encode_position, rmc_sentence
-from recon4.recording.velodyne.streams import scan_pcap
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, rig, sensor, spin
 
 FIRST, SECOND = "192.168.1.201", "192.168.1.202"

@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from recon4.model.samples import GnssQuality
+from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.velodyne.encode import encode_position, rmc_sentence
+from recon4.recording.packets.velodyne.position_packets import (
+    PositionDecoder,
+    parse_fix,
+    utc_offset_ns,
+)
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.encode import encode_position, rmc_sentence
-from recon4.recording.velodyne.position_packets import PositionDecoder, parse_fix, utc_offset_ns
-from recon4.recording.velodyne.sensor_clock import SensorClock
 from tests.unit.recording.packet_builders import T0_NS, sensor
 
 GGA = "GPGGA,221320.50,4912.0000,N,01636.0000,E,4,12,0.8,250.000,M,44.500,M,1.0,0000"

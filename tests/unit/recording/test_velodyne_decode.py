@@ -4,10 +4,14 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.recording.packets.velodyne.data_packets import (
+    PacketDecoder,
+    PacketSource,
+    decode_packets,
+)
+from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets, encode_vlp16
+from recon4.recording.packets.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.data_packets import PacketDecoder, PacketSource, decode_packets
-from recon4.recording.velodyne.encode import PacketBlocks, encode_packets, encode_vlp16
-from recon4.recording.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.settings import IngestSettings
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, decode_all, sensor, spin
 

@@ -24,12 +24,16 @@ from scipy.spatial import cKDTree
 
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import read_pcap
+from recon4.recording.packets.capture import VelodynePcap
+from recon4.recording.packets.velodyne.data_packets import (
+    PacketDecoder,
+    PacketSource,
+    decode_packets,
+)
+from recon4.recording.packets.velodyne.models import DATA_SIZE, DUAL, MODELS, velodyne_model
+from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import join
-from recon4.recording.velodyne.capture import VelodynePcap
-from recon4.recording.velodyne.data_packets import PacketDecoder, PacketSource, decode_packets
-from recon4.recording.velodyne.models import DATA_SIZE, DUAL, MODELS, velodyne_model
-from recon4.recording.velodyne.packet_filter import as_packets
 from tests.unit.recording.packet_builders import WIDE, rig, sensor
 
 PCD_VLP16 = np.dtype(

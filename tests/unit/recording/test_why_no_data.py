@@ -7,8 +7,8 @@ import pytest
 
 from recon4.errors import EmptyRecording
 from recon4.recording.info import describe
+from recon4.recording.packets.capture import VelodynePcap
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.capture import VelodynePcap
 from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
 from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture, read
 

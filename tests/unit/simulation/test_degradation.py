@@ -10,8 +10,8 @@ from recon4.model.rig import load_rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4.recording.samples.csv_files import read_imu_csv
-from recon4.recording.velodyne.models import MODELS
 from recon4.simulation.degradation import KINDS, Degradation, parse_degradations
 from recon4.simulation.imu import ImuModel
 from recon4.simulation.lidar import Firings, Lidar, LidarModel

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.geometry.mesh import GLASS, MeshBuilder
 from recon4.model.rig import load_rig
-from recon4.recording.velodyne.models import MODELS
+from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.lidar import LidarModel
 from tests.unit.simulation.rooms import PERFECT, SENSOR, around, fire, still, straight, walls
 

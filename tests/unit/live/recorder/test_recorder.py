@@ -15,8 +15,8 @@ from recon4.live.replay import ReplayDatagram, replay, shifted_in_time
 from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.pcap import read_pcap
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.encode import PcapWriter
 from tests.unit.live.recorder.recorder_process import Talk, decode, numbers, recording, send
 from tests.unit.recording.packet_builders import spin
 

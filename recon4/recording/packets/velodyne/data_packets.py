@@ -13,9 +13,11 @@ from recon4.kernels import velodyne as kernel
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.report import ImportReport
-from recon4.recording.tuning import IngestTuning
-from recon4.recording.velodyne.models import (
+from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.packet_holes import PacketHoles
+from recon4.recording.packets.packet_order import PacketOrder
+from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.velodyne.models import (
     DUAL,
     RETURN_MODES,
     STRONGEST,
@@ -24,9 +26,9 @@ from recon4.recording.velodyne.models import (
     product_text,
     velodyne_model,
 )
-from recon4.recording.velodyne.packet_filter import PacketOrder, Payloads, as_packets, sound_packets
-from recon4.recording.velodyne.packet_holes import PacketHoles
-from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
+from recon4.recording.report import ImportReport
+from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
 from recon4.settings.tuning import tuned
 
@@ -184,7 +186,7 @@ class PacketDecoder:
     def push(self, t_arrival_ns: Times, payloads: Payloads) -> Shots:
         """Take packets in, give out the shots that are certain to be in order.
 
-        Counts, besides those of `recon4.recording.velodyne.packet_filter` and `decode_packets`:
+        Counts, besides those of `sound_packets`, `PacketOrder` and `decode_packets`:
         ``packets_other_product`` (not the product byte of the rest) and ``packets_missing``, also
         as ``packets_missing_NAME``.
 

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.packets.velodyne.models import HOUR_US
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.models import HOUR_US
 
 SECOND_NS = 1_000_000_000
 HOUR_NS = 3600 * SECOND_NS

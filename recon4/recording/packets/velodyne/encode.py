@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.velodyne.models import (
+from recon4.recording.packets.velodyne.models import (
     BLOCK_FLAG,
     BLOCKS,
     CHANNELS,

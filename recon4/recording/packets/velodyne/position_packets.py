@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from recon4.model.rig import Sensor
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock, nearest_hour
+from recon4.recording.packets.velodyne.models import HOUR_US, POSITION_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import height_of_gga
-from recon4.recording.velodyne.models import HOUR_US, POSITION_SIZE
-from recon4.recording.velodyne.sensor_clock import SECOND_NS, SensorClock, nearest_hour
 
 _DAY_NS = 24 * 3600 * SECOND_NS
 _LONGEST_AGE_NS = 5 * SECOND_NS // 2

@@ -1,4 +1,4 @@
-"""The packet filter: which data packets of a sensor are decoded, and in which order."""
+"""Puts the packets of one sensor in order of time, each once."""
 
 from __future__ import annotations
 
@@ -8,52 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.packets.family import Payloads
 from recon4.recording.report import ImportReport
-from recon4.recording.velodyne.models import (
-    BLOCK_FLAG,
-    DATA_PACKET,
-    DATA_SIZE,
-    LOWER_BLOCK_FLAG,
-)
-
-Payloads = NDArray[np.uint8]
 
 _SET_BACK_NS = 1_000_000_000
 """Packets so far behind the ones before are not late: the clocks were set back together."""
 _STRAGGLERS = 8
 """Fewer packets in a row are late all the same."""
-
-
-def as_packets(payloads: Payloads) -> NDArray[np.void]:
-    """Payloads seen as `DATA_PACKET` records, (N,)."""
-    return np.ascontiguousarray(payloads).view(DATA_PACKET)[:, 0]
-
-
-def sound_packets(payloads: Payloads, report: ImportReport) -> NDArray[np.bool_]:
-    """Which of the payloads are data packets, (N,).
-
-    Counts ``packets`` and what is dropped: ``packets_wrong_length`` (not 1206 bytes),
-    ``packets_hdl64`` (blocks of the lower lasers of an HDL-64E), ``packets_wrong_flag`` (any of
-    the 12 blocks without 0xEEFF) and ``packets_wrong_azimuth`` (above 360°, which itself is sent
-    now and then for 0°). The time is judged by `SensorClock`.
-    """
-    report.count("packets", len(payloads))
-    if payloads.ndim != 2 or payloads.shape[1] != DATA_SIZE:
-        report.count("packets_wrong_length", len(payloads))
-        return np.zeros(len(payloads), dtype=np.bool_)
-    packets = as_packets(payloads)
-    flags = packets["blocks"]["flag"]
-    flagged = (flags == BLOCK_FLAG).all(axis=1)
-    turned = (packets["blocks"]["azimuth_cdeg"] <= 36000).all(axis=1)
-    sound = flagged & turned
-    if sound.all():
-        return sound
-    known = (flags == BLOCK_FLAG) | (flags == LOWER_BLOCK_FLAG)
-    lower = ~flagged & known.all(axis=1)
-    report.count("packets_hdl64", int(lower.sum()))
-    report.count("packets_wrong_flag", int((~flagged & ~lower).sum()))
-    report.count("packets_wrong_azimuth", int((flagged & ~turned).sum()))
-    return sound
 
 
 @dataclass(slots=True, eq=False)
@@ -67,7 +28,7 @@ class PacketOrder:
     """Packets that are late by at most this are put in their place [ns]."""
     report: ImportReport
     _t_ns: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
-    _payloads: Payloads = field(default_factory=lambda: np.zeros((0, DATA_SIZE), dtype=np.uint8))
+    _payloads: Payloads = field(default_factory=lambda: np.zeros((0, 0), dtype=np.uint8))
     _given: Times = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     _behind: int = 0
     step_ns: int = 0
@@ -89,7 +50,8 @@ class PacketOrder:
             return self._over_a_jump(t_ns, payloads, jump)
         tidy = t_ns[0] > newest and np.all(t_ns[1:] > t_ns[:-1])
         t_ns = np.concatenate([self._t_ns, t_ns])
-        payloads = np.concatenate([self._payloads, payloads])
+        if len(self._payloads):
+            payloads = np.concatenate([self._payloads, payloads])
         if not tidy:
             t_ns, payloads = self._sorted(t_ns, payloads)
         ready = int(np.searchsorted(t_ns, t_ns[-1:] - self.window_ns)[0]) if len(t_ns) else 0

@@ -15,10 +15,10 @@ from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
-from recon4.recording.report import ImportReport
-from recon4.recording.samples.datagrams import SampleDecoder
-from recon4.recording.velodyne.data_packets import Rotation
-from recon4.recording.velodyne.models import (
+from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.sensor_clock import SECOND_NS, nearest_hour
+from recon4.recording.packets.velodyne.data_packets import Rotation
+from recon4.recording.packets.velodyne.models import (
     BLOCK_FLAG,
     DATA_SIZE,
     LOWER_BLOCK_FLAG,
@@ -29,9 +29,10 @@ from recon4.recording.velodyne.models import (
     likely_model,
     product_text,
 )
-from recon4.recording.velodyne.packet_filter import Payloads, as_packets, sound_packets
-from recon4.recording.velodyne.position_packets import utc_offset_ns
-from recon4.recording.velodyne.sensor_clock import SECOND_NS, nearest_hour
+from recon4.recording.packets.velodyne.position_packets import utc_offset_ns
+from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
+from recon4.recording.report import ImportReport
+from recon4.recording.samples.datagrams import SampleDecoder
 
 KINDS = ("data", "position", "IMU", "GNSS", "other")
 _CONTENTS = {

@@ -15,14 +15,9 @@ from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.pcap import Datagrams, OpenFile, open_plain, read_pcap
-from recon4.recording.report import ImportReport
-from recon4.recording.samples.datagrams import SampleDecoder
-from recon4.recording.velodyne.data_packets import PacketDecoder
-from recon4.recording.velodyne.models import DATA_SIZE, POSITION_SIZE, velodyne_model
-from recon4.recording.velodyne.position_packets import PositionDecoder, PositionSamples
-from recon4.recording.velodyne.sensor_clock import SensorClock
-from recon4.recording.velodyne.slots import in_slots
-from recon4.recording.velodyne.streams import (
+from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.slots import in_slots
+from recon4.recording.packets.streams import (
     PacketStream,
     address_number,
     fits,
@@ -30,6 +25,11 @@ from recon4.recording.velodyne.streams import (
     scan_pcap,
     unread_text,
 )
+from recon4.recording.packets.velodyne.data_packets import PacketDecoder
+from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE, velodyne_model
+from recon4.recording.packets.velodyne.position_packets import PositionDecoder, PositionSamples
+from recon4.recording.report import ImportReport
+from recon4.recording.samples.datagrams import SampleDecoder
 from recon4.settings import IngestSettings
 
 WAIT_S = 1.0

@@ -1,0 +1,77 @@
+"""The LiDARs that recon4 knows: what weights, overlap, surfaces and the simulator use of each.
+
+Sources are the user manuals and data sheets of the makers, named at each row's group. How the
+packets of a model are decoded is in `recon4.recording.packets`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+Scanning = Literal["spinning", "solid-state", "rosette"]
+"""``spinning``: rings around an axis. ``solid-state``: lines in a limited view. ``rosette``: a
+pattern that does not repeat."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LidarFacts:
+    """One model."""
+
+    name: str
+    """As in rig files."""
+    maker: str
+    """Family of its packets."""
+    beams: int
+    """Rings, or lines; 0 = unknown."""
+    scanning: Scanning = "spinning"
+    elevation_deg: tuple[float, float]
+    """Lowest and highest direction above the horizontal plane of the sensor [°]."""
+    azimuth_deg: float = 360.0
+    """Horizontal field of view [°]."""
+    min_range_m: float
+    """Nearer returns are not of surfaces [m]."""
+    range_m: float
+    """Usual range at 10 % reflectivity [m]."""
+    accuracy_m: float
+    """Standard deviation of a range [m]."""
+    divergence_rad: float
+    """Full angle of a beam [rad]."""
+
+
+_VLP16 = LidarFacts(
+    name="VLP-16",
+    maker="Velodyne",
+    beams=16,
+    elevation_deg=(-15.0, 15.0),
+    min_range_m=0.4,
+    range_m=50.0,
+    accuracy_m=0.03,
+    divergence_rad=0.003,
+)
+_VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3)
+    _VLP16,
+    replace(_VLP16, name="VLP-16 Hi-Res", elevation_deg=(-10.0, 10.0)),
+    replace(_VLP16, name="VLP-32C", beams=32, elevation_deg=(-25.0, 15.0), range_m=80.0),
+    replace(_VLP16, name="HDL-32E", beams=32, elevation_deg=(-30.67, 10.67), accuracy_m=0.02),
+    replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), accuracy_m=0.02),
+)
+
+_GENERIC = LidarFacts(
+    name="generic",
+    maker="",
+    beams=0,
+    elevation_deg=(-90.0, 90.0),
+    min_range_m=0.4,
+    range_m=50.0,
+    accuracy_m=0.03,
+    divergence_rad=0.003,
+)
+
+LIDARS: dict[str, LidarFacts] = {model.name: model for model in (*_VELODYNE, _GENERIC)}
+"""All models by name; ``generic`` is any LiDAR whose points come as clouds."""
+
+
+def lidar_model(name: str) -> LidarFacts:
+    """The facts of a model; those of ``generic`` for an unknown name."""
+    return LIDARS.get(name, _GENERIC)

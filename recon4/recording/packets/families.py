@@ -1,0 +1,8 @@
+"""The families of LiDARs whose packets are read, one row each."""
+
+from __future__ import annotations
+
+from recon4.recording.packets.family import PacketFamily
+
+FAMILIES: tuple[PacketFamily, ...] = ()
+"""In the order in which they are asked whether a sender is theirs."""

@@ -1,0 +1,182 @@
+"""What a family of LiDARs gives so that its packets are read: one module, one row in `families`.
+
+Everything else is common to all families: finding the senders in a capture, clocks, order, holes,
+bags, live capture. A family tells what its packets look like and turns packets into points::
+
+    head of a sender ──► `PacketFamily.recognize` ──► `Recognized`
+    `PacketSensor` ────► `PacketFamily.open` ───────► `PacketFormat` (one per sensor)
+
+`recon4.recording.packets.decoder.PacketDecoder` drives the `PacketFormat`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.rig import Sensor
+from recon4.model.samples import GnssSamples, ImuSamples
+from recon4.model.trajectory import Times
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.pcap import Datagrams
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+
+Payloads = NDArray[np.uint8]
+"""UDP payloads of one size as rows of bytes, (N, size)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Companion:
+    """A small file beside a recording, or a text in a bag: metadata, a table of angles."""
+
+    name: str
+    """Display name: file name, or topic."""
+    content: bytes
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PacketSamples:
+    """Samples in the packets of a LiDAR; None where there are none."""
+
+    imu: ImuSamples | None = None
+    """In the frame and on the clock of the rig file's IMU: m/s², rad/s."""
+    gnss: GnssSamples | None = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Recognized:
+    """What the first packets of one sender to one port are."""
+
+    family: str
+    """Name of the family."""
+    kind: str
+    """``data``: points; ``samples``: other packets of a LiDAR (IMU, positions, device data)."""
+    model: str = ""
+    """Name in `recon4.model.lidars.LIDARS`; empty = not known."""
+    mode: str = ""
+    """Return mode in words, as ``dual``; empty = not known."""
+    packet_s: float = float("nan")
+    """Usual time from one data packet to the next [s]."""
+    rotation_hz: float = float("nan")
+    """Revolutions a second; NaN = does not spin, or not known."""
+    serial: str = ""
+    """Serial number, if the packets or the companions tell it."""
+    size: int = 0
+    """Bytes of a data packet."""
+    remarks: tuple[str, ...] = ()
+    """Warnings, as about a model byte that contradicts the data."""
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class PacketSensor:
+    """One sensor whose packets are to be decoded."""
+
+    row: int
+    """Row in ``Rig.sensors``."""
+    sensor: Sensor
+    """Its model selects the tables."""
+    head: Datagrams
+    """First data packets of the sensor; none if it is silent at the beginning."""
+    companions: Sequence[Companion]
+    """Files beside the recording; the family finds out which are of this sensor."""
+    settings: IngestSettings
+    """Limits of the range."""
+    report: ImportReport
+    """Receives counts, warnings and what was derived."""
+
+
+class PacketFormat(Protocol):
+    """The packets of one sensor: sound or not, time, points.
+
+    All methods but `samples` are given data packets of one size.
+    """
+
+    size: int
+    """Bytes of a data packet."""
+    packet_s: float
+    """Usual time from one data packet to the next [s]."""
+    clock_period_ns: int
+    """After which the clock of the stamps starts again: an hour for Velodyne; 0 = never."""
+
+    def sound(self, payloads: Payloads) -> NDArray[np.bool_]:
+        """Which payloads are data packets of this sensor, (N,).
+
+        Counts ``packets`` and each reason for which one is dropped (``packets_wrong_flag``, …).
+        """
+        ...
+
+    def stamps_ns(self, payloads: Payloads) -> Times:
+        """Time of the first shot of each packet on the clock of the sensor [ns], (N,)."""
+        ...
+
+    def azimuth_cdeg(self, payloads: Payloads) -> NDArray[np.int64] | None:
+        """Direction at the start of each packet, clockwise [0.01°], (N,); None = does not spin.
+
+        From it come the rotation rate and the holes of a limited field of view.
+        """
+        ...
+
+    def decode(self, t_ns: Times, payloads: Payloads) -> Shots:
+        """Points of sound packets in order of time.
+
+        Counts ``points``, ``points_no_return``, ``points_near`` and ``points_far``.
+
+        Args:
+            t_ns: Time of the first shot of each packet on the clock of the rig [ns],
+                non-decreasing, (P,): the clock of the stamps, moved.
+            payloads: The packets, (P, size).
+        """
+        ...
+
+    def samples(self, datagrams: Datagrams, ahead_ns: int) -> PacketSamples | None:
+        """What the other packets of the sender tell: IMU, positions; None = nothing.
+
+        Args:
+            datagrams: All that the sender sends and that is no data packet.
+            ahead_ns: Clock of the rig minus clock of the stamps [ns].
+        """
+        ...
+
+
+class PacketFamily(Protocol):
+    """The LiDARs of one maker, as far as their packets are alike."""
+
+    name: str
+    """As in `recon4.model.lidars.LidarFacts.maker`."""
+    messages: Mapping[str, MessagePackets]
+    """Type of a message in a bag (``pandar_msgs/msg/PandarScan``) -> how to get its packets."""
+
+    def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+        """What the datagrams of one sender to one port are; None = not of this family.
+
+        A right answer needs few packets; a wrong one makes recon4 read noise: flags, sizes and
+        values must all fit in more than half of the datagrams.
+        """
+        ...
+
+    def open(self, sensor: PacketSensor) -> PacketFormat:
+        """Prepare to decode the packets of one sensor.
+
+        Raises:
+            ConfigError: If it cannot be: says what is missing (a metadata file, an angle table)
+                and where it is looked for.
+        """
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class MessagePackets:
+    """A type of message that carries packets."""
+
+    definition: str
+    """The type in ROS's language, for bags that do not bring it; with ``===`` sections for the
+    types it is made of."""
+    packets: Callable[[Any], list[tuple[int, bytes]]]
+    """The packets of a decoded message: arrival time [ns] (0 = that of the message), bytes."""
+    samples: bool = False
+    """Whether they are other packets of the LiDAR (IMU, device data), not points."""
