@@ -101,8 +101,10 @@ def test_of_several_image_requests_of_a_page_the_latest_is_answered(server):
 
 
 def test_image_requests_that_arrive_in_another_order(server):
-    def one(turn):
-        return httpx.post(f"{server.url}{BASE}/image", json=ask(page="p2", turn=turn), timeout=60)
+    def one(sequence):
+        return httpx.post(
+            f"{server.url}{BASE}/image", json=ask(page="p2", sequence=sequence), timeout=60
+        )
 
     late, early, later = one(7), one(6), one(8)
 

@@ -1076,7 +1076,7 @@ export interface SliceImageRequest {
   height: number;
   ground?: "light" | "dark";
   page?: string;
-  turn?: number;
+  sequence?: number;
 }
 
 export interface SliceImageView {

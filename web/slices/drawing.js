@@ -25,7 +25,7 @@ export const page = {
   shown: /** @type {SliceImageView | null} */ (null),
   caption: "", // of the first slice
   secondCaption: "",
-  turn: 0, // number of the newest request of an image
+  sequence: 0, // number of the newest request of an image
   measuring: false,
   measured: /** @type {PickView[]} */ ([]), // at most two points
   picked: /** @type {PickView | null} */ (null),

@@ -90,22 +90,22 @@ function ask(view, more) {
 }
 
 async function load() {
-  const mine = ++page.turn;
+  const mine = ++page.sequence;
   document.body.classList.add("drawing");
   try {
-    const image = await readSlice(id, ask(first, { page: `${tab}1`, turn: mine }));
-    if (mine !== page.turn) return;
+    const image = await readSlice(id, ask(first, { page: `${tab}1`, sequence: mine }));
+    if (mine !== page.sequence) return;
     await first.show(image);
     page.shown = image;
     if (page.state.beside || page.state.besideColor) await loadSecond(mine);
     say(byId("message"), "");
     describe();
   } catch (error) {
-    if (mine !== page.turn || (error instanceof Error && error.name === "Superseded")) return;
+    if (mine !== page.sequence || (error instanceof Error && error.name === "Superseded")) return;
     showError(byId("message"), error);
     if (error instanceof ApiError && error.status === 422) first.clear();
   } finally {
-    if (mine === page.turn) document.body.classList.remove("drawing");
+    if (mine === page.sequence) document.body.classList.remove("drawing");
   }
 }
 
@@ -116,9 +116,9 @@ async function loadSecond(/** @type {number} */ mine) {
   const range = color === firstColor ? {} : { low: null, high: null };
   const image = await readSlice(
     id,
-    ask(second, { page: `${tab}2`, turn: mine, color, source, ...range }),
+    ask(second, { page: `${tab}2`, sequence: mine, color, source, ...range }),
   );
-  if (mine !== page.turn) return;
+  if (mine !== page.sequence) return;
   await second.show(image);
   const points = count(image.points);
   page.secondCaption = imageText(

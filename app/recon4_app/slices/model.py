@@ -102,7 +102,7 @@ class SliceImageRequest(SliceView):
     ground: Ground = "light"
     page: str = Field(default="", max_length=40)
     """Id of the page: of several requests of one page only the latest gets an image."""
-    turn: int = Field(default=0, ge=0, le=1 << 53)
+    sequence: int = Field(default=0, ge=0, le=1 << 53)
     """The page's request counter: requests may arrive in another order than they were sent."""
 
 

@@ -96,7 +96,7 @@ async def slice_image(
     reference = slices.reference(project_id, ask.reference)
     ask.plane.slice_plane()  # an invalid plane is rejected before the request waits
     terms = slices.terms(project_id, caller.name, ask.source)
-    asking = Asking(ask.page, ask.turn)
+    asking = Asking(ask.page, ask.sequence)
     return await caller.wait(
         slices.run_latest(
             asking,

@@ -61,7 +61,7 @@ class Asking:
 
     page: str
     """Id of the page; empty = a single request."""
-    turn: int
+    sequence: int
     """The greatest is the latest; of equal ones the last to arrive."""
 
 
@@ -69,7 +69,7 @@ class Asking:
 class _Latest:
     """The newest request of a page, and the work on it."""
 
-    turn: int
+    sequence: int
     work: asyncio.Future[Any]
 
 
@@ -328,19 +328,19 @@ class Slices:
             return await self.run_interactive(terms, function, *args, **kwargs)
         page = (terms.person, asking.page)
         before = self._newest.get(page)
-        if before is not None and before.turn > asking.turn:
+        if before is not None and before.sequence > asking.sequence:
             raise Superseded("a newer image was requested")
         if before is not None:
             before.work.cancel()
         work = asyncio.ensure_future(self.run_interactive(terms, function, *args, **kwargs))
-        self._newest[page] = _Latest(asking.turn, work)
+        self._newest[page] = _Latest(asking.sequence, work)
         self._newest.move_to_end(page)
         while len(self._newest) > MAX_PAGES:
             self._newest.popitem(last=False)
         try:
             return await work
         except asyncio.CancelledError:
-            if self._newest.get(page) != _Latest(asking.turn, work):
+            if self._newest.get(page) != _Latest(asking.sequence, work):
                 raise Superseded("a newer image was requested") from None
             raise
 
