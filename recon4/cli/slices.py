@@ -62,7 +62,8 @@ def cut_map(  # noqa: PLR0913 - options of a command
         look = SliceLook("distance" if against else color, project.name, against)
         points = write_planes(opened, planes, file, look=look)
     state = latest_state(project, draft=draft)
-    sys.stdout.write(f"{points} points in {file}\n{state.text}\n")
+    note = ", one per square centimeter drawn" if file.suffix.lower() == ".dxf" else ""
+    sys.stdout.write(f"{points} points in {file}{note}\n{state.text}\n")
 
 
 @slices.command("doubles")

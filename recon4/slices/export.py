@@ -39,19 +39,23 @@ class SliceSelection:
     window: SliceWindow | None = None
     """Only this part of each slice."""
 
-    def parts(
-        self, fields: Sequence[str], *, cell_m: float = 0.0
-    ) -> Iterator[tuple[int, TilePart, Array]]:
-        """Number of the slice (from 1), points, and their map coordinates.
-
-        Args:
-            fields: Columns to read.
-            cell_m: Thinned to one point in a cell of this size; 0 = all.
-        """
+    def parts(self, fields: Sequence[str]) -> Iterator[tuple[int, TilePart, Array]]:
+        """Number of the slice (from 1), points with these fields, and their map coordinates."""
         for number, plane in enumerate(self.planes, start=1):
             for part in points_in(self.tiles, plane, fields, window=self.window):
-                kept = _thinned(part, cell_m) if cell_m else part
-                yield number, kept, plane.to_map(kept.uvd)
+                yield number, part, plane.to_map(part.uvd)
+
+
+@dataclass(frozen=True, slots=True)
+class DrawnPoints:
+    """The points of a DXF."""
+
+    layers: Sequence[tuple[int, Array]]
+    """Number of the slice (from 1), and coordinates (N, 3)."""
+    drawn: int
+    """How many these are."""
+    points: int
+    """How many the slices have; a point of two slices counts twice."""
 
 
 def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
@@ -110,6 +114,7 @@ def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool
     """Write points as DXF R2010 in meters: one layer per slice, one point per cm² of the slice.
 
     ezdxf writes the skeleton of the file; the points are written into it after they were counted.
+    A comment at the begin of the file says how many points of the slices are drawn.
 
     Args:
         chosen: The points; layers are named by number and position of the slices.
@@ -118,47 +123,68 @@ def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool
         flat: u, v and 0 instead of coordinates: a section to lay on a sheet.
 
     Returns:
-        How many points were written.
+        How many points the slices have, as of every other format; fewer are drawn.
 
     Raises:
-        ConfigError: If there are more than `MAX_DXF_POINTS`; before anything is written.
+        ConfigError: If more than `MAX_DXF_POINTS` are to be drawn; before anything is written.
         StoreError: If the file cannot be written.
     """
     layers = [layer_name(k, plane) for k, plane in enumerate(chosen.planes, start=1)]
-    drawn = _drawn(chosen, frame, flat=flat)
+    made = _drawn(chosen, frame, flat=flat)
     before, after, owner = _dxf_frame(layers)
     handle = _FIRST_HANDLE
     with atomic_file(path) as temporary, temporary.open("w", encoding="utf-8") as file:
+        file.write(
+            f"999\nrecon4 slice: {made.drawn} of {made.points} points, one per square centimeter\n"
+        )
         file.write(before)
-        for number, p in drawn:
+        for number, p in made.layers:
             file.writelines(_dxf_points(p, layers[number - 1], owner=owner, handle=handle))
             handle += len(p)
         file.write(after)
-    return handle - _FIRST_HANDLE
+    return made.points
 
 
-def _drawn(chosen: SliceSelection, frame: MapFrame, *, flat: bool) -> list[tuple[int, Array]]:
-    """Number of the slice and coordinates of the points of a DXF, all counted.
+def _drawn(chosen: SliceSelection, frame: MapFrame, *, flat: bool) -> DrawnPoints:
+    """The first point of each square centimeter of each slice.
 
     Raises:
         ConfigError: If there are too many; none are kept while the rest is counted.
     """
     kept: list[tuple[int, Array]] = []
-    count = 0
-    for number, part, p_map in chosen.parts([], cell_m=_DXF_CELL_M):
-        count += len(part)
-        if count > MAX_DXF_POINTS:
+    cells: list[NDArray[np.int64]] = [np.empty(0, np.int64) for _ in chosen.planes]
+    points = 0
+    for number, part, p_map in chosen.parts([]):
+        points += len(part)
+        rows, cells[number - 1] = _first_of_cells(part.uvd, cells[number - 1])
+        if sum(map(len, cells)) > MAX_DXF_POINTS:
             kept.clear()
         elif flat:
-            kept.append((number, part.uvd * [1.0, 1.0, 0.0]))
+            kept.append((number, part.uvd[rows] * [1.0, 1.0, 0.0]))
         else:
-            kept.append((number, frame.to_crs(p_map) if frame.to_crs else p_map))
-    if count > MAX_DXF_POINTS:
+            p = p_map[rows]
+            kept.append((number, frame.to_crs(p) if frame.to_crs else p))
+    drawn = sum(map(len, cells))
+    if drawn > MAX_DXF_POINTS:
         raise ConfigError(
             f"DXF: expected at most {MAX_DXF_POINTS} points (one per cm² of each slice), got "
-            f"{count}: export a smaller part or fewer slices, use a thinner slice, or export LAZ"
+            f"{drawn}: export a smaller part or fewer slices, use a thinner slice, or export LAZ"
         )
-    return kept
+    return DrawnPoints(kept, drawn, points)
+
+
+def _first_of_cells(
+    uvd: Array, taken: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows of the first points, (N, 3) given, of square centimeters that are not taken yet.
+
+    Returns:
+        Rows, and the keys of all squares that are taken after them, ascending.
+    """
+    u, v = np.floor(uvd[:, :2] / _DXF_CELL_M).astype(np.int64).T
+    keys, first = np.unique((u << 32) + v, return_index=True)
+    fresh = ~np.isin(keys, taken, assume_unique=True)
+    return np.sort(first[fresh]), np.union1d(taken, keys[fresh])
 
 
 def layer_name(number: int, plane: SlicePlane) -> str:
@@ -273,14 +299,6 @@ def _dxf_points(p: Array, layer: str, *, owner: str, handle: int) -> Iterator[st
             f"  0\nPOINT\n  5\n{handle + k:X}\n330\n{owner}\n100\nAcDbEntity\n  8\n{layer}\n"
             f"100\nAcDbPoint\n 10\n{x:.4f}\n 20\n{y:.4f}\n 30\n{z:.4f}\n"
         )
-
-
-def _thinned(part: TilePart, cell_m: float) -> TilePart:
-    cells = np.floor(part.uvd[:, :2] / cell_m).astype(np.int64)
-    _, first = np.unique(cells, axis=0, return_index=True)
-    rows = np.sort(first)
-    columns = {name: column[rows] for name, column in part.columns.items()}
-    return TilePart(part.tile, part.rows[rows], part.uvd[rows], columns)
 
 
 def _dxf_frame(layers: list[str]) -> tuple[str, str, str]:

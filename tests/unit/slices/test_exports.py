@@ -12,6 +12,8 @@ import pytest
 import rasterio
 import rasterio.transform
 
+from recon4.api.maps import OpenedMap
+from recon4.api.slices import SliceLook, write_planes
 from recon4.errors import ConfigError, GeoreferenceError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.recording.formats.scratch import sweep_scratch
@@ -23,7 +25,7 @@ from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.sheet import SheetText, approval_text, grid_step_m, lay_out, write_sheet
 from recon4.slices.slice_image import RasterGrid, draw
 from recon4.slices.slice_plane import SlicePlane
-from tests.unit.slices.room_map import wall, write_map
+from tests.unit.slices.room_map import TILE_M, wall, write_map
 
 BRNO = CrsTransform(
     GeodeticOrigin(
@@ -64,11 +66,36 @@ def test_a_dxf_has_a_layer_a_slice_in_metres_and_opens_without_complaint(tiles, 
     points = list(drawing.modelspace())
     layers = {point.dxf.layer for point in points}
     assert drawing.audit().errors == [] and drawing.units == ezdxf.units.M
-    assert len(points) == count > 300
+    assert 300 < len(points) < count == sum(map(len, inside(tiles, *planes)))
     assert sorted(layers) == ["SLICE_001_Z_0_500", "SLICE_002_Z_0_800", "SLICE_003_Z_1_100"]
-    assert len({point.dxf.handle for point in points}) == count
+    assert len({point.dxf.handle for point in points}) == len(points)
+    comment = (tmp_path / "s.dxf").read_text("utf-8").splitlines()[1]
+    assert comment == f"recon4 slice: {len(points)} of {count} points, one per square centimeter"
     z = np.array([p.dxf.location.z for p in points if p.dxf.layer == "SLICE_002_Z_0_800"])
     assert np.abs(z - 0.8).max() <= 0.1001
+
+
+def test_all_files_of_a_slice_state_the_same_number_of_points(tiles, tmp_path):
+    opened, look = OpenedMap(tiles, LOCAL, None), SliceLook("height", "wall")
+
+    stated = {
+        name: write_planes(opened, [CUT], tmp_path / f"s.{name}", look=look)
+        for name in ("pdf", "tif", "dxf", "laz", "csv")
+    }
+
+    assert set(stated.values()) == {len(inside(tiles, CUT)[0])}
+
+
+def test_a_square_centimeter_of_a_dxf_has_one_point_also_where_two_tiles_meet(tmp_path):
+    p, normal = wall(np.random.default_rng(3), 4_000, x_m=TILE_M, size_m=(0.5, 0.5))
+    tiles = write_map(tmp_path / "m", p, normal=normal)
+    along = SlicePlane.vertical((TILE_M, 0.0), (TILE_M, 1.0), thickness_m=0.5)
+
+    write_dxf(SliceSelection(tiles, [along]), tmp_path / "s.dxf", frame=LOCAL, flat=True)
+
+    xyz = np.array([p.dxf.location.xyz for p in ezdxf.readfile(tmp_path / "s.dxf").modelspace()])
+    cells = np.floor(xyz[:, :2] / 0.01)
+    assert len(tiles.tiles) == 2 and len(np.unique(cells, axis=0)) > 0.97 * len(cells) > 1000
 
 
 def test_a_flat_dxf_has_the_section_on_the_sheet(tiles, tmp_path):
@@ -258,9 +285,10 @@ def test_a_dxf_of_too_many_points_is_refused_with_their_number_before_it_is_writ
     tiles, tmp_path, monkeypatch
 ):
     plane = CUT.repeated(3, spacing_m=0.3)
-    count = write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL)
+    write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL)
+    count = len(list(ezdxf.readfile(tmp_path / "s.dxf").modelspace()))
     monkeypatch.setattr(export, "MAX_DXF_POINTS", count)
-    assert write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL) == count
+    assert write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL) > count
     monkeypatch.setattr(export, "MAX_DXF_POINTS", count // 2)
     monkeypatch.setattr(export, "atomic_file", None)  # nothing may be begun
 
