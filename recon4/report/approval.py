@@ -51,9 +51,14 @@ def replace_block(page: str, block: str) -> str:
 
 
 def add_to_block(page: str, lines: Iterable[str]) -> str:
-    """Add lines of HTML to the block with the approval; escaping is up to the caller."""
+    """Add notes of reviewers, HTML each, to the block; escaping is up to the caller."""
     items = "".join(f'<li><b class="note">acknowledged</b>{line}</li>' for line in lines)
     return page.replace(_LAST, items + _LAST, 1)
+
+
+def is_draft(page: str) -> bool:
+    """Whether a report, or its first part, says that nobody approved the map."""
+    return draft_block() in page
 
 
 def _block(level: str, mark: str, words: str) -> str:

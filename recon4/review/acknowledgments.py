@@ -6,15 +6,19 @@ such finding, because it is gone or its stretch, level or figures differ, it is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from html import escape
 from pathlib import Path
 
 from recon4.findings.notes import SaidFinding, findings_in
-from recon4.report.approval import add_to_block
+from recon4.report.approval import add_to_block, is_draft
 from recon4.review.decisions import DecisionKind, SeenFinding
-from recon4.review.journal import JournalRow
+from recon4.review.journal import JournalRow, read_rows
+from recon4.review.state import read_summary
+
+_HEAD_BYTES = 1 << 20
+"""The block with the approval is within the first bytes of a report."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -96,6 +100,35 @@ def write_into_report(report: Path, signed: Sequence[Mapping[str, object]]) -> N
     if signed and report.is_file():
         page = add_to_block(report.read_text("utf-8"), map(_line, signed))
         report.write_text(page, "utf-8")
+
+
+def report_with_notes(root: Path, report: Path) -> Iterator[bytes]:
+    """The bytes of a report; a draft with the notes of reviewers as they stand now.
+
+    The file keeps the bytes of the run, which an approval compares; the approved report has the
+    notes that were signed.
+
+    Args:
+        root: Project.
+        report: Its ``report.html``.
+
+    Raises:
+        StoreError: If the journal or the summary is damaged.
+    """
+    with report.open("rb") as file:
+        page = file.read(_HEAD_BYTES).decode("utf-8", errors="surrogateescape")
+    if is_draft(page):
+        notes = signed_acknowledgments(read_rows(root), read_summary(root) or {})
+        page = add_to_block(page, map(_line, notes))
+    return _with_rest(page.encode("utf-8", errors="surrogateescape"), report)
+
+
+def _with_rest(head: bytes, report: Path) -> Iterator[bytes]:
+    yield head
+    with report.open("rb") as file:
+        file.seek(_HEAD_BYTES)
+        while part := file.read(_HEAD_BYTES):
+            yield part
 
 
 def _line(one: Mapping[str, object]) -> str:

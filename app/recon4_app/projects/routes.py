@@ -6,10 +6,11 @@ from dataclasses import replace
 from typing import Literal
 
 from fastapi import APIRouter, Depends, Request
-from fastapi.responses import FileResponse, PlainTextResponse
+from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, StreamingResponse
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
+from recon4.review.acknowledgments import report_with_notes
 from recon4.review.state import artifact_keys
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, needs
@@ -129,12 +130,15 @@ def download(project_id: str, name: str, server: Server) -> FileResponse:
     )
 
 
-@router.get("/projects/{project_id}/report", response_class=FileResponse, summary="Report")
-def report(project_id: str, server: Server) -> FileResponse:
-    """Show the quality report."""
+@router.get("/projects/{project_id}/report", response_class=HTMLResponse, summary="Report")
+def report(project_id: str, server: Server) -> StreamingResponse:
+    """Show the quality report; that of a draft with the notes of reviewers."""
     path = server.projects.result(project_id, "report.html")
-    policy = {"Content-Security-Policy": REPORT_POLICY}
-    return FileResponse(path, media_type="text/html; charset=utf-8", headers=policy)
+    return StreamingResponse(
+        report_with_notes(server.projects.folder(project_id), path),
+        media_type="text/html; charset=utf-8",
+        headers={"Content-Security-Policy": REPORT_POLICY},
+    )
 
 
 @router.get(

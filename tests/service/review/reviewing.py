@@ -23,6 +23,12 @@ class Reviewing:
     def post(self, path, **options):
         return self.running.post(self._url(path), **options)
 
+    def report(self):
+        """The report as the server shows it."""
+        answer = self.running.get(f"/api/projects/{self.root.name}/report")
+        assert answer.status_code == 200, answer.text
+        return answer.text
+
     def _url(self, path):
         return f"/api/projects/{self.root.name}/review{path}"
 

@@ -80,6 +80,31 @@ def test_the_approval_and_its_report_carry_the_notes(server, root):
     assert server.get().json()["approval"]["kind"] == "approved"
 
 
+def test_the_report_of_a_draft_carries_the_notes_as_they_stand(server, root):
+    before = (root / "report.html").read_bytes()
+    acknowledge(server, root, why="an earlier note")
+    acknowledge(server, root)
+
+    shown = server.report()
+
+    assert (
+        "seen on site: &lt;b&gt;glass&lt;/b&gt; doors" in shown and "an earlier note" not in shown
+    )
+    assert shown.index("acknowledged by local") < shown.index("<dl")  # in the block on top
+    assert (root / "report.html").read_bytes() == before  # which an approval compares
+    assert shown.endswith(before[-1000:].decode())
+
+
+def test_the_report_of_an_approved_map_has_the_signed_notes_only(server, root):
+    acknowledge(server, root, why="signed")
+    assert server.post("/approve", json={"why": "checked against the plan"}).status_code == 201
+    acknowledge(server, root, why="written later")
+
+    shown = server.report()
+
+    assert "signed" in shown and "written later" not in shown
+
+
 @pytest.mark.parametrize(
     "change",
     [
