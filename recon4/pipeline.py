@@ -220,7 +220,7 @@ def _finished(out: Path) -> Workflow:
 
 @contextmanager
 def _continued(
-    out: Path, workflow: Workflow, *, kept: tuple[Stage[Any], ...], progress: Progress
+    out: Path, workflow: Workflow, *, kept: tuple[Stage[Any, Any], ...], progress: Progress
 ) -> Iterator[tuple[Run, Settings]]:
     """A run that begins with the artifacts of some stages, and the settings to go on with."""
     made = read_artifacts(out)

@@ -23,6 +23,7 @@ from recon4.report.approval import draft_block
 from recon4.review.approval import approve
 from recon4.review.approved import Approval
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameWriter
@@ -62,15 +63,20 @@ def build_project(
         project.describe(preset="indoor", rig="4RECON")
         runner = StageRunner(project, Settings(), Silent())
         walk = Input("walk", loop_walk())
-        runner.run(Stage("odometry", 1, (), _odometry, EarlierOdometry), walk=walk)
+        runner.run(Stage("odometry", 1, ReadsNothing, _odometry, EarlierOdometry), walk=walk)
         if not with_map:
             return
-        runner.run(Stage("verification", 1, (), _verification), walk=walk)
-        runner.run(Stage("level", 1, (), _level, LevelFigures), walk=walk)
+        runner.run(Stage("verification", 1, ReadsNothing, _verification), walk=walk)
+        runner.run(Stage("level", 1, ReadsNothing, _level, LevelFigures), walk=walk)
         count = Input(f"points {points}", points)
         loose = Input(f"strays {strays}", strays)
         faces = Input(f"normals {normals}", normals)
-        runner.run(Stage("map", 1, (), _map, MapFigures), points=count, strays=loose, normals=faces)
+        runner.run(
+            Stage("map", 1, ReadsNothing, _map, MapFigures),
+            points=count,
+            strays=loose,
+            normals=faces,
+        )
     (root / "trajectory.tum").write_text("0 0 0 0 0 0 0 1\n")
     (root / "report.html").write_text(
         "<!doctype html><title>Report</title><h1>Report</h1>" + draft_block()
@@ -116,7 +122,7 @@ def add_multiframes(root: Path) -> None:
     """Give a project the multiframes of the walk: few points each, seen from where it was."""
     with Project.open(root) as project:
         runner = StageRunner(project, Settings(), Silent())
-        runner.run(Stage("frames", 1, (), _frames, FrameFigures))
+        runner.run(Stage("frames", 1, ReadsNothing, _frames, FrameFigures))
 
 
 def loop_walk() -> Trajectory:

@@ -23,6 +23,7 @@ from recon4.pose_graph.files import save_graph
 from recon4.progress import Progress, Silent
 from recon4.review.journal import read_decided
 from recon4.settings import MapSettings, RefineSettings, Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore, FrameWriter
@@ -67,9 +68,9 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
         project.describe(preset="indoor", rig="test", inputs=[])
         runner = StageRunner(project, SETTINGS, progress or Silent())
         walk = Input("two rounds", None)
-        frames = runner.run(Stage("frames", 1, (), _frames, FrameFigures), walk=walk)
-        runner.run(Stage("odometry", 1, (), _odometry, OdometryFigures), frames=frames)
-        searched = runner.run(Stage("graph", 1, (), _graph, GraphFigures), frames=frames)
+        frames = runner.run(Stage("frames", 1, ReadsNothing, _frames, FrameFigures), walk=walk)
+        runner.run(Stage("odometry", 1, ReadsNothing, _odometry, OdometryFigures), frames=frames)
+        searched = runner.run(Stage("graph", 1, ReadsNothing, _graph, GraphFigures), frames=frames)
         runner.run(stages.VERIFICATION, graph=searched)
         run = Run(runner, read_decided(root))
         if graph_only:

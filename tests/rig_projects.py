@@ -22,6 +22,7 @@ from recon4.model.calibration_figures import (
 from recon4.model.rig import Rig
 from recon4.progress import Silent
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.frames import FrameWriter
 from recon4.store.project import Project
 from recon4.store.stage import Stage, StageContext, StageRunner
@@ -114,8 +115,8 @@ def calibrated_project(root: Path, *, rig: Rig, found: Rig | None) -> None:
     build_project(root, with_map=False)
     with Project.open(root) as project:
         runner = StageRunner(project, Settings(), Silent())
-        runner.run(Stage("frames", 1, (), partial(_frames, rig=rig)))
-        runner.run(Stage("calibration", 1, (), partial(_calibration, found=found)))
+        runner.run(Stage("frames", 1, ReadsNothing, partial(_frames, rig=rig)))
+        runner.run(Stage("calibration", 1, ReadsNothing, partial(_calibration, found=found)))
 
 
 def tilted(rig: Rig) -> Rig:

@@ -21,14 +21,14 @@ from recon4.model.calibration_figures import (
     GnssOutcome,
 )
 from recon4.progress import Progress
-from recon4.settings import Settings
+from recon4.settings.reads import CalibrationReads
 
 _AIDED_SD_FACTOR = 3.0
 """True errors against stated ones, of an estimate from a trajectory that the fixes pulled."""
 
 
 def with_antenna(
-    found: CalibrationResult, walk: RecordedWalk, *, settings: Settings, progress: Progress
+    found: CalibrationResult, walk: RecordedWalk, *, settings: CalibrationReads, progress: Progress
 ) -> CalibrationResult:
     """Add what the fixes say of lever arm and clock of the receiver; correct them on request.
 
@@ -61,7 +61,7 @@ def with_antenna(
     return _corrected(found, free, recorded_ns=walk.start_ns)
 
 
-def _estimate(walk: RecordedWalk, settings: Settings) -> AntennaCalibration | None:
+def _estimate(walk: RecordedWalk, settings: CalibrationReads) -> AntennaCalibration | None:
     frames = walk.frames
     return calibrate_antenna(
         walk.trajectory,

@@ -39,7 +39,8 @@ from recon4.geometry.se3 import Array
 from recon4.model.calibration_figures import GNSS, IMU, CalibrationOutcome, ParameterFigures
 from recon4.model.rig import Rig
 from recon4.progress import Progress, track
-from recon4.settings import CalibrationSettings, Settings
+from recon4.settings import CalibrationSettings
+from recon4.settings.reads import CalibrationReads
 from recon4.settings.tuning import tuned
 
 _MIN_WINDOWS = 3
@@ -120,7 +121,7 @@ def audit(
     start: Rig,
     parameters: Parameters,
     *,
-    settings: Settings,
+    settings: CalibrationReads,
     progress: Progress,
 ) -> JointEstimate | None:
     """Estimate the rig from a few short windows; None if no window has planes.
@@ -151,7 +152,7 @@ def calibrate(
     start: Rig,
     parameters: Parameters,
     *,
-    settings: Settings,
+    settings: CalibrationReads,
     progress: Progress,
 ) -> Calibration | None:
     """Calibrate the rig on every second window and check it on the others.
@@ -226,7 +227,7 @@ def _from_other_mounts(
     start: Rig,
     parameters: Parameters,
     *,
-    settings: Settings,
+    settings: CalibrationReads,
     progress: Progress,
 ) -> list[JointEstimate]:
     """Estimates that begin with exchanged axes or mounts, from windows of one LiDAR alone."""
@@ -249,7 +250,7 @@ def _shared_points(found: JointEstimate | None) -> int:
 class _Estimator:
     """Joint estimates of one calibration."""
 
-    settings: Settings
+    settings: CalibrationReads
     progress: Progress
     """Counts their rounds."""
     every: int = 1

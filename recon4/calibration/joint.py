@@ -24,7 +24,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import apply_knots
-from recon4.settings import Settings
+from recon4.settings.reads import CalibrationReads
 from recon4.settings.tuning import tuned
 
 _TIGHT = RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.08, kernel_m=0.04)
@@ -114,7 +114,7 @@ def calibrate_jointly(
     parameters: Parameters,
     *,
     rounds: Iterable[RoundBounds] = ROUNDS,
-    settings: Settings,
+    settings: CalibrationReads,
 ) -> JointEstimate:
     """Estimate mounts and clocks from windows of a walk.
 
@@ -161,7 +161,7 @@ def thinned_rounds(
 
 
 def explain(
-    windows: Sequence[Window], rig: Rig, *, every: int, settings: Settings
+    windows: Sequence[Window], rig: Rig, *, every: int, settings: CalibrationReads
 ) -> list[Fit | None]:
     """How well a rig explains windows, with the best trajectory for each; None = no planes.
 

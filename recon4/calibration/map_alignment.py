@@ -16,7 +16,7 @@ from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import SE3, Array, mean_rotation
 from recon4.model.rig import Rig
 from recon4.registration.scans import make_scan, register_scans
-from recon4.settings import Settings
+from recon4.settings.reads import CalibrationReads
 
 _WINDOWS, _WINDOW_S = 6, 8.0
 _SCATTER_RAD, _SCATTER_M = float(np.deg2rad(1.5)), 0.1
@@ -42,7 +42,7 @@ class MapAlignment:
 
 
 def align_maps(
-    walk: RecordedWalk, rig: Rig, row: int, *, reference: int, settings: Settings
+    walk: RecordedWalk, rig: Rig, row: int, *, reference: int, settings: CalibrationReads
 ) -> MapAlignment | None:
     """Mount of a LiDAR such that its maps lie on those of the reference; None if none registers.
 
@@ -78,7 +78,7 @@ def align_maps(
 
 
 def _aligned(
-    both: tuple[Window, Window], rig: Rig, rows: tuple[int, int], *, settings: Settings
+    both: tuple[Window, Window], rig: Rig, rows: tuple[int, int], *, settings: CalibrationReads
 ) -> SE3 | None:
     """Both maps begin at the same body pose, so what is between them is the mount's error."""
     target, source = (

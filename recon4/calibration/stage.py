@@ -36,7 +36,7 @@ from recon4.model.calibration_figures import (
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.progress import Progress
-from recon4.settings import Settings
+from recon4.settings.reads import CalibrationReads
 from recon4.store.frames import FrameStore
 
 _SAME_RAD, _SAME_M = 0.1, 0.1
@@ -44,7 +44,7 @@ _SAME_RAD, _SAME_M = 0.1, 0.1
 
 
 def run_calibration(
-    frames: FrameStore, odometry: Path, *, settings: Settings, progress: Progress
+    frames: FrameStore, odometry: Path, *, settings: CalibrationReads, progress: Progress
 ) -> CalibrationResult:
     """Compare the rig of a recording with what its sensors measured.
 
@@ -83,7 +83,7 @@ def _audit(
     start: Start,
     parameters: Parameters,
     *,
-    settings: Settings,
+    settings: CalibrationReads,
     progress: Progress,
 ) -> CalibrationResult:
     if not len(parameters):
@@ -109,7 +109,11 @@ def _audit(
 
 
 def _to_calibrate(
-    walk: RecordedWalk, audited: CalibrationResult, parameters: Parameters, *, settings: Settings
+    walk: RecordedWalk,
+    audited: CalibrationResult,
+    parameters: Parameters,
+    *,
+    settings: CalibrationReads,
 ) -> tuple[Rig | None, Parameters]:
     """Where a calibration begins, None = there is none, and what it estimates."""
     rig = walk.frames.rig

@@ -13,7 +13,7 @@ from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
-from recon4.settings import Settings
+from recon4.settings.reads import CalibrationReads
 
 _MIN_EXPLAINED = 0.9
 """Part of the turning that an IMU explains if it is the right one and only its mount is wrong."""
@@ -40,7 +40,7 @@ class Start:
     """What the IMU's axes, units or clock contradict."""
 
 
-def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Start:
+def find_start(walk: RecordedWalk, *, reference: int, settings: CalibrationReads) -> Start:
     """The rig to begin with: the rig file's, with the IMU turned where its axes are exchanged.
 
     Args:
@@ -65,7 +65,7 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: Settings) -> Sta
 
 
 def _align_alone(
-    walk: RecordedWalk, imu: ImuSamples, reference: int, *, settings: Settings
+    walk: RecordedWalk, imu: ImuSamples, reference: int, *, settings: CalibrationReads
 ) -> GyroAlignment | None:
     """Alignment to a trajectory of the reference LiDAR alone, where all together contradict."""
     rows = walk.rows(1, _ALONE_S, with_lost=True)

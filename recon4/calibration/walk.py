@@ -17,7 +17,8 @@ from recon4.model.usability import WEAK_SD_M
 from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
 from recon4.registration.smoother import dense_trajectory, smooth
-from recon4.settings import OdometrySettings, Settings
+from recon4.settings import OdometrySettings
+from recon4.settings.reads import OdometryReads
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
@@ -82,7 +83,7 @@ class RecordedWalk:
         rows = self.rows(count, seconds)
         return [cut_window(self.frames, self.trajectory, part) for part in rows]
 
-    def tracked_freely(self, settings: Settings, progress: Progress) -> Trajectory:
+    def tracked_freely(self, settings: OdometryReads, progress: Progress) -> Trajectory:
         """``T_odom_body``, dense, of an odometry that no fixes pull."""
         odometry = Odometry(self.frames.rig, settings, self.frames.imu)
         frames = track(self.frames, progress, what="odometry without GNSS", unit="multiframe")
@@ -92,7 +93,7 @@ class RecordedWalk:
         self,
         rows: list[range],
         rig: Rig,
-        settings: Settings,
+        settings: OdometryReads,
         *,
         imu: ImuSamples | None,
         points: int = POINTS_OF_FRAME,

@@ -26,7 +26,7 @@ from recon4.findings.witnesses.turn_scale import TurnScales
 from recon4.findings.witnesses.uncertainty import Uncertainty
 from recon4.findings.witnesses.weak_directions import WeakStretches
 from recon4.model.figures import AuditFigures
-from recon4.settings import Settings
+from recon4.settings.reads import AuditReads
 from recon4.store.atomic import write_json
 from recon4.untrusted.bounded import read_json_object
 
@@ -36,7 +36,7 @@ _MOST_OF_A_KIND = 200
 _MAX_BYTES = 16 << 20
 
 
-def witnesses(settings: Settings) -> tuple[Witness, ...]:
+def witnesses(settings: AuditReads) -> tuple[Witness, ...]:
     """All witnesses of a 3-D map, in the order in which findings of one level are shown."""
     return (
         Tracking(),
@@ -70,7 +70,7 @@ def witnesses(settings: Settings) -> tuple[Witness, ...]:
     )
 
 
-def check_walk(walk: WalkRecord, settings: Settings) -> tuple[Finding, ...]:
+def check_walk(walk: WalkRecord, settings: AuditReads) -> tuple[Finding, ...]:
     """What all witnesses find in a walk, worst first, each with its place in the map."""
     found = [
         placed(one, walk.final)

@@ -36,7 +36,8 @@ from recon4.pose_graph.uncertainty import PoseUncertainty, pose_uncertainty
 from recon4.pose_graph.uncertainty_files import save_uncertainty, uncertainty_figures
 from recon4.pose_graph.verification import confirmed_again
 from recon4.progress import Progress
-from recon4.settings import GnssSettings, Settings
+from recon4.settings import GnssSettings
+from recon4.settings.reads import LevelReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
@@ -125,7 +126,7 @@ class RefinedWalk:
 
 
 def level_and_georeference(
-    frames: FrameStore, walk: RefinedWalk, *, settings: Settings, progress: Progress
+    frames: FrameStore, walk: RefinedWalk, *, settings: LevelReads, progress: Progress
 ) -> LeveledMap:
     """Level a finished trajectory and, if there are GNSS positions, georeference it.
 

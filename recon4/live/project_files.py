@@ -14,6 +14,7 @@ from recon4.model.figures import FrameFigures
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.progress import Silent
 from recon4.settings import Settings
+from recon4.settings.reads import ImportReads
 from recon4.store.atomic import make_folders, write_text
 from recon4.store.hashing import hash_json, size_of
 from recon4.store.inputs import input_file, input_files
@@ -80,7 +81,7 @@ def finish(session: CaptureSession, frames: Path, settings: Settings) -> int:
         StoreError: If the project is in use or cannot be written.
     """
 
-    def moved(context: StageContext, **_: object) -> FrameFigures:
+    def moved(context: StageContext[ImportReads], **_: object) -> FrameFigures:
         for path in frames.iterdir():
             shutil.move(path, context.out / path.name)
         return stages.frames_figures(context.out)

@@ -22,7 +22,7 @@ from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
 from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_range_m
 from recon4.registration.tuning import OVERLAP, OdometryTuning, OverlapTuning
-from recon4.settings import Settings
+from recon4.settings.reads import GraphReads
 from recon4.settings.tuning import tuned
 
 _CHUNK = 8
@@ -48,7 +48,7 @@ class PairRegistrar:
         self,
         submaps: Submaps,
         views: NodeRangeImages,
-        settings: Settings,
+        settings: GraphReads,
         *,
         overlap: OverlapTuning = OVERLAP,
     ) -> None:
@@ -241,7 +241,7 @@ def tried_event(edge: Edge) -> EdgeTried:
     )
 
 
-def _information(found: Registration, settings: Settings) -> Array:
+def _information(found: Registration, settings: GraphReads) -> Array:
     """Inverse covariance of the tangent of ``T_i_j`` by the matches, with a smallest covariance.
 
     A correction (omega, v) on the left about the source's origin is (R^T omega, R^T v) on the

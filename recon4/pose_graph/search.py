@@ -28,7 +28,7 @@ from recon4.pose_graph.solve import Kernel, Solution, optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.progress import Progress
 from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames, node_rows
-from recon4.settings import Settings
+from recon4.settings.reads import GraphReads
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
@@ -65,7 +65,7 @@ class OdometryTrack:
 
 
 def build_graph(
-    frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
+    frames: FrameStore, odometry: Path, out: Path, *, settings: GraphReads, progress: Progress
 ) -> GraphFigures:
     """Run the stage ``graph``: create nodes and odometry edges, search for loop closures.
 
@@ -91,7 +91,7 @@ def search(
     frames: FrameStore,
     odometry: OdometryTrack,
     *,
-    settings: Settings,
+    settings: GraphReads,
     progress: Progress,
     scratch: Path,
 ) -> PoseGraph:
@@ -133,7 +133,7 @@ def make_registrar(
     odometry: OdometryTrack,
     rows: NDArray[np.intp],
     *,
-    settings: Settings,
+    settings: GraphReads,
     scratch: Path,
 ) -> PairRegistrar:
     """Make what registers pairs of the multiframes ``rows``; arguments as of `search`."""

@@ -40,7 +40,7 @@ from recon4.progress import Progress
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.tuning import PLANES, OdometryTuning, PlaneTuning
 from recon4.semi_rigid.refine import Refinement, corrected_by_graph
-from recon4.settings import Settings
+from recon4.settings.reads import LineRefineReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -252,7 +252,12 @@ class _LineSweep:
 
 
 def refine_lines(
-    frames: FrameStore, odometry: Path, graph: PoseGraph, *, settings: Settings, progress: Progress
+    frames: FrameStore,
+    odometry: Path,
+    graph: PoseGraph,
+    *,
+    settings: LineRefineReads,
+    progress: Progress,
 ) -> Refinement:
     """Correct the first trajectory by the graph of turns and refine every line scan.
 

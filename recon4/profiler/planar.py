@@ -16,7 +16,7 @@ from recon4.profiler.fusion import PlanarPoses, attitude
 from recon4.profiler.imu_chain import Drive
 from recon4.profiler.mirrored import is_mirrored
 from recon4.progress import Progress
-from recon4.settings import Settings
+from recon4.settings.reads import Slam2dReads
 from recon4.slam2d.slam import Slam2dResult, slam2d
 
 _FLOOR_SD = np.array([0.02, 0.02, 0.004])
@@ -43,7 +43,7 @@ def map_in_plane(
     rig: Rig,
     drive: Drive,
     *,
-    settings: Settings,
+    settings: Slam2dReads,
     progress: Progress,
 ) -> PlanarMap | None:
     """Run 2-D SLAM.
@@ -83,7 +83,7 @@ def map_in_plane(
     return PlanarMap(poses, found, mirrored, lag)
 
 
-def _blur_s(scans: LaserScans, settings: Settings) -> float:
+def _blur_s(scans: LaserScans, settings: Slam2dReads) -> float:
     """Half the duration of a scan whose beams are not undistorted [s]: which one is not known."""
     scan_s = float(np.median(scans.duration_s))
     if scan_s == 0.0:

@@ -22,7 +22,7 @@ from recon4.profiler.planar import PlanarMap, map_in_plane
 from recon4.profiler.samples import TimedPoints
 from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
-from recon4.settings import Settings
+from recon4.settings.reads import LineOdometryReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameStore
@@ -39,7 +39,7 @@ _SILENT_S = 1.0
 
 
 def run_line_odometry(
-    frames: FrameStore, out: Path, *, settings: Settings, progress: Progress
+    frames: FrameStore, out: Path, *, settings: LineOdometryReads, progress: Progress
 ) -> OdometryFigures:
     """Estimate the first trajectory of a recording with line scans.
 

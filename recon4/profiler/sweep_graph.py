@@ -35,7 +35,7 @@ from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
 from recon4.registration.tuning import PLANES, OdometryTuning
-from recon4.settings import Settings
+from recon4.settings.reads import LineGraphReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
@@ -51,7 +51,7 @@ _PLANES = replace(PLANES, max_sd_m=0.05)
 
 
 def build_sweep_graph(
-    frames: FrameStore, odometry: Path, out: Path, *, settings: Settings, progress: Progress
+    frames: FrameStore, odometry: Path, out: Path, *, settings: LineGraphReads, progress: Progress
 ) -> GraphFigures:
     """Run the stage ``graph`` of a rig with a profiler.
 
@@ -83,7 +83,7 @@ def sweep_graph(
     trajectory: Trajectory,
     lost: NDArray[np.bool_],
     *,
-    settings: Settings,
+    settings: LineGraphReads,
     progress: Progress,
 ) -> PoseGraph:
     """Nodes at the sweeps, edges between those that see the same."""
@@ -122,7 +122,7 @@ def published_graph(
     trajectory: Trajectory,
     lost: NDArray[np.bool_],
     *,
-    settings: Settings,
+    settings: LineGraphReads,
     progress: Progress,
 ) -> PoseGraph:
     """Sweeps registered as published: to the one before if requested, then all at once (L §4.2).
@@ -157,7 +157,7 @@ def published_graph(
     return PoseGraph(sweeps.frame_rows, sweeps.t_ns, T, tuple(edges))
 
 
-def linked(sweeps: Sweeps, T: SE3, settings: Settings) -> list[tuple[int, int, float]]:
+def linked(sweeps: Sweeps, T: SE3, settings: LineGraphReads) -> list[tuple[int, int, float]]:
     """Pairs of sweeps with enough closest pairs, and which part of the points has one.
 
     Neighbors first; of earlier visits those with the most pairs (requirements A12 L-3).
@@ -192,7 +192,7 @@ class Link:
 
 
 def register_pair(
-    points: tuple[Points, Points], link: Link, *, settings: Settings
+    points: tuple[Points, Points], link: Link, *, settings: LineGraphReads
 ) -> tuple[Edge, float]:
     """Register two sweeps from a predicted pose, whatever their overlap.
 
@@ -217,7 +217,7 @@ def register_pair(
 
 
 def _register(
-    target: PlaneMap, points: tuple[Points, Points], link: Link, *, settings: Settings
+    target: PlaneMap, points: tuple[Points, Points], link: Link, *, settings: LineGraphReads
 ) -> Edge:
     """Register sweep ``j`` to the planes of sweep ``i`` and judge the result."""
     g = graph_tuning(settings.graph)
@@ -254,7 +254,7 @@ def _close_ratio(tree: cKDTree, points: Points, T_i_j: SE3, *, reach_m: float) -
     return float(np.mean(np.isfinite(distance)))
 
 
-def _information(found: Registration, settings: Settings) -> Array:
+def _information(found: Registration, settings: LineGraphReads) -> Array:
     """Inverse covariance of the tangent of ``T_i_j``; a sweep is bent by the error of its poses."""
     s = tuned(LineTuning, settings.lines)
     floor = np.diag(np.repeat([s.turn_sd_rad, s.turn_sd_m], 3) ** 2)
@@ -267,7 +267,7 @@ def _information(found: Registration, settings: Settings) -> Array:
 
 
 def _chain(
-    sweeps: Sweeps, T: SE3, lost: NDArray[np.bool_], *, settings: Settings
+    sweeps: Sweeps, T: SE3, lost: NDArray[np.bool_], *, settings: LineGraphReads
 ) -> tuple[Edge, ...]:
     """Edges between consecutive sweeps by the first trajectory."""
     s = tuned(LineTuning, settings.lines)

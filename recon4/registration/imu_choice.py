@@ -25,7 +25,7 @@ from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
 from recon4.registration.step import OdometryStep
 from recon4.registration.table import row_of
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,7 +89,11 @@ class ImuTrials:
 
 
 def choose_imu(
-    frames: FramesWithImu, settings: Settings, windows: Sequence[range], *, trusted: bool = False
+    frames: FramesWithImu,
+    settings: OdometryReads,
+    windows: Sequence[range],
+    *,
+    trusted: bool = False,
 ) -> ImuTrials:
     """Choose the samples as recorded, with the gyroscope's bias removed, without forces, or none.
 
@@ -206,7 +210,7 @@ def _track(
     frames: FramesWithImu,
     hypothesis: Hypothesis,
     *,
-    settings: Settings,
+    settings: OdometryReads,
     windows: Sequence[TriedWindow],
 ) -> TrackedWindows:
     """Register each window by itself; of the multiframes that settle nothing counts."""

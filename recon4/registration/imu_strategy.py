@@ -23,7 +23,7 @@ from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import OdometryTuning, registration_tuning
 from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 
 _AS_PREDICTED_M = 0.03
@@ -35,7 +35,7 @@ class ImuStrategy:
     """An IMU predicts every frame, also those that are lost."""
 
     def __init__(
-        self, imu: ImuSamples, rig: Rig, settings: Settings, *, aiding: GnssAiding | None
+        self, imu: ImuSamples, rig: Rig, settings: OdometryReads, *, aiding: GnssAiding | None
     ) -> None:
         self._rig, self._settings, self._aiding = rig, settings, aiding
         self._imu, self._free = (

@@ -21,7 +21,7 @@ from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning, registration_tuning
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 
 _PREDICTOR = 3
@@ -51,7 +51,7 @@ class LineOdometry:
     the motion; then both steps are repeated. The fraction of matches kept is the overlap (V §2.5).
     """
 
-    def __init__(self, rig: Rig, settings: Settings, imu: ImuSamples | None = None) -> None:
+    def __init__(self, rig: Rig, settings: OdometryReads, imu: ImuSamples | None = None) -> None:
         self._rig, self._settings = rig, settings
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
         self._imu = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else None

@@ -12,14 +12,14 @@ from recon4.registration.plane_map import PlaneMap
 from recon4.registration.point_map import PointMap
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.view import FrameView
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 
 
 class LocalMap:
     """Planes of the last keyframes, and points of all that are near."""
 
-    def __init__(self, settings: Settings, *, longest: int) -> None:
+    def __init__(self, settings: OdometryReads, *, longest: int) -> None:
         """Empty.
 
         Args:

@@ -21,7 +21,7 @@ from recon4.registration.step import OdometryStep, make_step
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.view import FrameView
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 
 _INTERRUPTED_NS = 2_000_000_000
@@ -51,7 +51,7 @@ class Odometry:
     def __init__(
         self,
         rig: Rig,
-        settings: Settings,
+        settings: OdometryReads,
         imu: ImuSamples | None = None,
         *,
         aiding: GnssAiding | None = None,

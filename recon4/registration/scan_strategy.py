@@ -20,7 +20,7 @@ from recon4.registration.tuning import PLANES, OdometryTuning, registration_tuni
 from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 
 _UNSEEN_NS = 200_000_000
@@ -31,7 +31,7 @@ lost shows a change of what stands around: the doors of an elevator that opened 
 class ScanStrategy:
     """Without an IMU: the last scan says where the next one is expected."""
 
-    def __init__(self, settings: Settings, aiding: GnssAiding | None) -> None:
+    def __init__(self, settings: OdometryReads, aiding: GnssAiding | None) -> None:
         self._settings, self._aiding = settings, aiding
         self._free, self._chain = (
             FreeMotion(settings.odometry),

@@ -26,7 +26,7 @@ from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
 from recon4.registration.smoother import dense_trajectory, smooth
 from recon4.registration.step import OdometryStep
-from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads
 
 _REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
 """The pose of every n-th multiframe is reported while the stage runs, some per event."""
@@ -49,7 +49,7 @@ class WalkInputs:
     """What the stage ``odometry`` is given."""
 
     frames: RecordedFrames
-    settings: Settings
+    settings: OdometryReads
     progress: Progress
     aiding: GnssAiding | None = None
     """Fixes of a GNSS/INS, outdoors."""

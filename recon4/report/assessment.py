@@ -13,6 +13,7 @@ from recon4.findings.verdict import verdict_of
 from recon4.findings.walk import WalkRecord, read_walk
 from recon4.model.usability import MapVerdict
 from recon4.report.facts import ReportFacts
+from recon4.settings.reads import AuditReads, part_of
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,4 +49,4 @@ def _audited(facts: ReportFacts, results: WalkRecord) -> tuple[Finding, ...]:
     audit = facts.artifacts.get("audit")
     if audit is not None and (audit / FINDINGS).is_file():
         return load_findings(audit)
-    return check_walk(results, facts.settings)
+    return check_walk(results, part_of(facts.settings, AuditReads))

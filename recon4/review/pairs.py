@@ -30,6 +30,7 @@ from recon4.review.planar_pairs import align_keyframes, keyframe_points
 from recon4.review.queue import MAX_PATHS, AlternativePath, alternative_paths
 from recon4.review.source import Source
 from recon4.review.sweep_pairs import align_sweeps, has_sweeps, multiframes_of
+from recon4.settings.reads import GraphReads, VerificationReads, part_of
 from recon4.store.arrays import load_arrays, load_trajectory
 
 MAGIC = b"R4PP"
@@ -124,7 +125,8 @@ def pair_facts(source: Source, pair: Pair) -> PairFacts:
     predicted = graph.T_map_body[i].inverse() @ graph.T_map_body[j]
     measured = edge is not None and is_measured(edge)
     T_i_j = edge.T_i_j if edge is not None and measured else predicted
-    paths = alternative_paths(graph, i, j, T_i_j=T_i_j, settings=source.settings)
+    settings = part_of(source.settings, VerificationReads)
+    paths = alternative_paths(graph, i, j, T_i_j=T_i_j, settings=settings)
     return PairFacts(
         pair=pair,
         t_ns=(int(graph.t_ns[i]), int(graph.t_ns[j])),
@@ -165,7 +167,7 @@ def align(source: Source, pair: Pair, predicted: tuple[float, ...]) -> Alignment
 
 def _align_multiframes(source: Source, pair: Pair, T_predicted: SE3) -> Edge:
     # An operator's pair is registered at any overlap.
-    settings = source.settings
+    settings = part_of(source.settings, GraphReads)
     rows = np.array(pair, dtype=np.intp)
     scratch = Path(gettempdir())
     views = NodeRangeImages(2, graph_tuning(settings.graph), scratch=scratch)

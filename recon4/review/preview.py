@@ -21,6 +21,7 @@ from recon4.review.solve import (
     review_figures,
 )
 from recon4.review.source import Source
+from recon4.settings.reads import VerificationReads, part_of
 
 _REMEMBERED = 6
 _solved: OrderedDict[tuple[str, str], Reviewed] = OrderedDict()
@@ -95,7 +96,8 @@ def _review(source: Source, decided: Decided) -> Reviewed:
         return Reviewed(source.verified, (), (), ())
     known = (source.key, decided.key)
     if known not in _solved:
-        _solved[known] = review(source.verified, decided.standing, settings=source.settings)
+        settings = part_of(source.settings, VerificationReads)
+        _solved[known] = review(source.verified, decided.standing, settings=settings)
         if len(_solved) > _REMEMBERED:
             _solved.popitem(last=False)
     _solved.move_to_end(known)

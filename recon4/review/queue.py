@@ -19,7 +19,7 @@ from recon4.review.apply import is_measured
 from recon4.review.influence import influence_m
 from recon4.review.solve import pair_of
 from recon4.review.source import Source
-from recon4.settings import Settings
+from recon4.settings.reads import VerificationReads, part_of
 from recon4.settings.tuning import tuned
 
 MAX_PATHS = 60
@@ -68,7 +68,7 @@ def queue_json(source: Source) -> bytes:
         StoreError: If there is no verified graph.
     """
     graph = source.verified
-    rows = queue_rows(graph, settings=source.settings)
+    rows = queue_rows(graph, settings=part_of(source.settings, VerificationReads))
     record = {
         "key": source.key,
         "began_ns": int(graph.t_ns[0]),
@@ -79,7 +79,7 @@ def queue_json(source: Source) -> bytes:
     return json.dumps(record, separators=(",", ":"), allow_nan=False).encode()
 
 
-def queue_rows(graph: PoseGraph, *, settings: Settings) -> list[QueueRow]:
+def queue_rows(graph: PoseGraph, *, settings: VerificationReads) -> list[QueueRow]:
     """One row per pair, in the order of the review.
 
     First pairs with a good registration, accepted or rejected by verification; then pairs with a
@@ -115,7 +115,9 @@ def _rank(edge: Edge) -> int:
     return _WEAK if edge.reason in _WEAK_REASONS else _GOOD
 
 
-def medians_of_all(graph: PoseGraph, *, settings: Settings) -> tuple[Array, NDArray[np.int64]]:
+def medians_of_all(
+    graph: PoseGraph, *, settings: VerificationReads
+) -> tuple[Array, NDArray[np.int64]]:
     """Path discrepancy of every edge, also of edges that are not in the graph.
 
     Returns:
@@ -144,7 +146,7 @@ class AlternativePath:
 
 
 def alternative_paths(
-    graph: PoseGraph, i: int, j: int, *, T_i_j: SE3, settings: Settings
+    graph: PoseGraph, i: int, j: int, *, T_i_j: SE3, settings: VerificationReads
 ) -> list[AlternativePath]:
     """All simple paths between two nodes that the verification uses, worst first.
 
@@ -181,7 +183,7 @@ def _path_record(graph: PoseGraph, nodes: tuple[int, ...], apart: SE3) -> Altern
     return AlternativePath(frames, float(np.linalg.norm(apart.t)), float(apart.angle()))
 
 
-def _index(graph: PoseGraph, settings: Settings) -> PathIndex:
+def _index(graph: PoseGraph, settings: VerificationReads) -> PathIndex:
     v = tuned(VerificationTuning, settings.verification)
     cycle = v.variant == "cycle"
     return PathIndex.build(

@@ -26,7 +26,7 @@ from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent
 from recon4.review.apply import apply_decisions
 from recon4.review.decisions import Pair, Standing
-from recon4.settings import Settings
+from recon4.settings.reads import VerificationReads
 from recon4.settings.tuning import tuned
 from recon4.store.atomic import write_json
 
@@ -124,7 +124,7 @@ def run_review(
     decisions: Sequence[Standing],
     out: Path,
     *,
-    settings: Settings,
+    settings: VerificationReads,
     progress: Progress,
 ) -> ReviewFigures:
     """Run the stage ``review``: apply decisions to the verified graph and solve it.
@@ -168,7 +168,7 @@ def review(
     verified: PoseGraph,
     decisions: Sequence[Standing],
     *,
-    settings: Settings,
+    settings: VerificationReads,
     progress: Progress | None = None,
 ) -> Reviewed:
     """Apply the decisions, then verify and solve the graph again.

@@ -7,6 +7,7 @@ from recon4.model.pose_graph import Edge
 from recon4.pose_graph.pairs import too_little_overlap
 from recon4.profiler.tuning import LineTuning
 from recon4.review.source import Source
+from recon4.settings.reads import LineGraphReads, part_of
 from recon4.settings.tuning import tuned
 
 
@@ -46,7 +47,8 @@ def align_sweeps(source: Source, nodes: tuple[int, int], predicted: SE3) -> Edge
         for node in nodes
     )
     link = Link(*nodes, initial=predicted, overlap=0.0)
-    edge, close_points = register_pair((first, second), link, settings=settings)
+    reads = part_of(settings, LineGraphReads)
+    edge, close_points = register_pair((first, second), link, settings=reads)
     if not edge.reason and close_points < tuned(LineTuning, settings.lines).link_pairs:
         return edge.judged(too_little_overlap(edge.overlap))
     return edge

@@ -33,7 +33,7 @@ from recon4.registration.submap import place_segments
 from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
 from recon4.semi_rigid.tuning import RefineTuning
-from recon4.settings import Settings
+from recon4.settings.reads import RefineReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory, save_record, save_trajectory
 from recon4.store.frames import FrameStore
@@ -68,7 +68,12 @@ class Refinement:
 
 
 def refine(
-    frames: FrameStore, odometry: Path, graph: PoseGraph, *, settings: Settings, progress: Progress
+    frames: FrameStore,
+    odometry: Path,
+    graph: PoseGraph,
+    *,
+    settings: RefineReads,
+    progress: Progress,
 ) -> Refinement:
     """Correct the odometry by the graph and, in mode ``beyond``, refine every multiframe.
 
@@ -98,7 +103,7 @@ def refine_trajectory(
     start: Trajectory,
     lost: NDArray[np.bool_],
     *,
-    settings: Settings,
+    settings: RefineReads,
     progress: Progress,
 ) -> tuple[Trajectory, list[RefineRound]]:
     """Build the plane map and correct all multiframes to fit it, in several rounds.
@@ -144,7 +149,7 @@ class _Sweep:
         trajectory: Trajectory,
         lost: NDArray[np.bool_],
         *,
-        settings: Settings,
+        settings: RefineReads,
         progress: Progress,
     ) -> None:
         self._frames, self._trajectory, self._lost = frames, trajectory, lost

@@ -14,6 +14,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent, track
 from recon4.settings import Settings
+from recon4.settings.reads import Map2dReads, Odometry2dReads, Slam2dReads, part_of
 from recon4.settings.tuning import tuned
 from recon4.slam2d.correction import corrected_poses
 from recon4.slam2d.covariance import node_covariances
@@ -53,7 +54,7 @@ def slam2d(
     scans: LaserScans,
     *,
     attitude: Trajectory | None = None,
-    settings: Settings | None = None,
+    settings: Slam2dReads | None = None,
     progress: Progress | None = None,
 ) -> Slam2dResult:
     """Map the scans of a 2-D laser.
@@ -62,8 +63,7 @@ def slam2d(
         scans: At least one; their odometry is used if there is any.
         attitude: Attitude of the laser (``R_world_laser``, as of an IMU) around the times of all
             scans; positions are ignored. Roll and pitch level the scans, the yaw predicts turns.
-        settings: Groups ``slam2d``, ``loops2d``, ``verification`` and ``grid2d`` are
-            read; None = the defaults.
+        settings: None = the defaults.
         progress: Counts scans and pairs.
 
     Raises:
@@ -71,7 +71,7 @@ def slam2d(
         GraphError: If the graph cannot be solved.
         Cancelled: If the caller requested to stop.
     """
-    settings, watcher = settings or Settings(), progress or Silent()
+    settings, watcher = settings or part_of(Settings(), Slam2dReads), progress or Silent()
     steps = run_steps(scans, attitude=attitude, settings=settings, progress=watcher)
     keyframes = make_keyframes(
         scans, steps, attitude=attitude, settings=tuned(Slam2dTuning, settings.slam2d)
@@ -95,7 +95,7 @@ def slam2d(
 
 
 def run_steps(
-    scans: LaserScans, *, attitude: Trajectory | None, settings: Settings, progress: Progress
+    scans: LaserScans, *, attitude: Trajectory | None, settings: Odometry2dReads, progress: Progress
 ) -> Steps2d:
     """Odometry with the method of the settings."""
     if settings.slam2d.method == "hector":
@@ -127,7 +127,7 @@ def make_grid(
     poses: Array,
     *,
     attitude: Trajectory | None,
-    settings: Settings,
+    settings: Map2dReads,
     progress: Progress,
 ) -> OccupancyGrid:
     """The occupancy grid of all scans at their final poses.

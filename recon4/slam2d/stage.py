@@ -20,7 +20,8 @@ from recon4.progress import Progress
 from recon4.recording.laser2d import read_laser_recording
 from recon4.recording.laser_mount import MountedScans, mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
-from recon4.settings import IngestSettings, Settings
+from recon4.settings import IngestSettings
+from recon4.settings.reads import Graph2dReads, Map2dReads, Odometry2dReads
 from recon4.settings.tuning import tuned
 from recon4.slam2d.beam_order import with_true_order
 from recon4.slam2d.keyframes import Keyframes, make_keyframes
@@ -140,7 +141,7 @@ def read_scans(folder: Path) -> LaserScans:
 
 
 def run_odometry(
-    scans: Path, out: Path, *, settings: Settings, progress: Progress
+    scans: Path, out: Path, *, settings: Odometry2dReads, progress: Progress
 ) -> Odometry2dFigures:
     """Register all scans; writes ``steps.npz`` and ``trajectory.npz``."""
     found = read_scans(scans)
@@ -169,7 +170,7 @@ def read_keyframes(scans: Path, odometry: Path, *, settings: Slam2dTuning) -> Ke
 
 
 def build_graph(
-    scans: Path, odometry: Path, out: Path, *, settings: Settings, progress: Progress
+    scans: Path, odometry: Path, out: Path, *, settings: Graph2dReads, progress: Progress
 ) -> GraphFigures:
     """Close loops; writes the pose graph.
 
@@ -199,7 +200,7 @@ def build_graph(
 
 
 def build_map(
-    artifacts: dict[str, Path], out: Path, *, settings: Settings, progress: Progress
+    artifacts: dict[str, Path], out: Path, *, settings: Map2dReads, progress: Progress
 ) -> Map2dFigures:
     """Place all scans by the verified graph; writes trajectory, covariances and the grid.
 
@@ -242,7 +243,9 @@ def read_covariance(folder: Path) -> Array:
     return np.asarray(load_arrays(folder / "poses.npz", ["covariance"])["covariance"])
 
 
-def _crossing(grid: OccupancyGrid, scans: LaserScans, poses: Array, *, settings: Settings) -> float:
+def _crossing(
+    grid: OccupancyGrid, scans: LaserScans, poses: Array, *, settings: Map2dReads
+) -> float:
     def placed() -> Iterator[tuple[Array, Array]]:
         for k in range(0, len(scans), max(1, len(scans) // _CHECKED_SCANS)):
             points = scan_points(scans, k, settings=tuned(Slam2dTuning, settings.slam2d)).points

@@ -22,7 +22,7 @@ def check_recipes(artifacts: Iterable[Path]) -> None:
         check_sealed(folder.parent.parent, f"artifacts/{folder.name}/manifest.json")
 
 
-def settings_to_repeat(made: Mapping[str, Path], kept: Sequence[Stage[Any]]) -> Settings:
+def settings_to_repeat(made: Mapping[str, Path], kept: Sequence[Stage[Any, Any]]) -> Settings:
     """Settings for the stages after some that are kept as they are.
 
     Of a setting that a cut-off run changed, what the kept stages were made with counts.

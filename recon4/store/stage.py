@@ -5,9 +5,9 @@ from __future__ import annotations
 import secrets
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, dataclass, fields, replace
+from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any, Generic, TypedDict, TypeVar
+from typing import Any, Concatenate, Generic, TypedDict, TypeVar
 
 import msgspec
 
@@ -17,6 +17,7 @@ from recon4.model.figures import Figures
 from recon4.model.plain import to_plain
 from recon4.progress import Progress
 from recon4.settings import Settings, to_json
+from recon4.settings.reads import Reads, groups_of, part_of
 from recon4.store.atomic import atomic_folder, write_json
 from recon4.store.checked import Altered
 from recon4.store.hashing import FileDigest, FileEntry, files_below, hash_file, hash_json
@@ -32,31 +33,29 @@ SAVING = "save"
 
 OfStage = TypeVar("OfStage", bound=Figures)
 """Figures of a stage."""
-_NOT_DECLARED: Any = None
-"""In place of a group of settings that a stage does not declare."""
 
 
 @dataclass(frozen=True, slots=True)
-class StageContext:
+class StageContext(Generic[Reads]):
     """What every stage is given besides its inputs."""
 
     out: Path
     """Folder of its artifact, empty at the start."""
-    settings: Settings
-    """Those of its groups; the others are None."""
+    settings: Reads
+    """The groups of settings that it declares."""
     progress: Progress
 
 
 @dataclass(frozen=True, slots=True)
-class Stage(Generic[OfStage]):
+class Stage(Generic[Reads, OfStage]):
     """A stage: a pure function of its inputs and of some groups of settings."""
 
     name: str
     version: int
     """Increased whenever the same inputs give another result than before."""
-    groups: tuple[str, ...]
-    """Groups of `Settings` it reads; the others are None when it runs."""
-    function: Callable[..., OfStage | None]
+    reads: type[Reads]
+    """Record of `recon4.settings.reads` with the groups of settings it is given."""
+    function: Callable[Concatenate[StageContext[Reads], ...], OfStage | None]
     """``function(context, **inputs)``. Writes into the empty folder ``context.out``; returns the
     figures for the manifest, None = it has none."""
     figures: type[OfStage] = Figures  # type: ignore[assignment]  # those of a stage without any
@@ -144,7 +143,7 @@ class StageRunner:
         self._settings = settings
         self._progress = progress
 
-    def run(self, stage: Stage[Any], **inputs: Input | Artifact | None) -> Artifact:
+    def run(self, stage: Stage[Any, Any], **inputs: Input | Artifact | None) -> Artifact:
         """Run a stage, or reuse its finished artifact.
 
         Args:
@@ -164,7 +163,7 @@ class StageRunner:
             done = self._make(stage, artifact, inputs)
         return self._took(stage, artifact, done, reused=reused)
 
-    def keep(self, stage: Stage[Any]) -> Artifact:
+    def keep(self, stage: Stage[Any, Any]) -> Artifact:
         """Reuse the artifact of a stage in the latest run without a check of its recipe.
 
         Raises:
@@ -181,7 +180,7 @@ class StageRunner:
         return self._took(stage, artifact, done, reused=True)
 
     def _took(
-        self, stage: Stage[Any], artifact: Artifact, done: FinishedStage, *, reused: bool
+        self, stage: Stage[Any, Any], artifact: Artifact, done: FinishedStage, *, reused: bool
     ) -> Artifact:
         name, key = artifact.stage, artifact.key
         self._project.ledger.set_current(name, key)
@@ -195,7 +194,7 @@ class StageRunner:
         )
         return artifact
 
-    def skip(self, stage: Stage[Any]) -> None:
+    def skip(self, stage: Stage[Any, Any]) -> None:
         """Omit a stage in this run: an artifact of an earlier run does not belong to it."""
         self._project.ledger.clear_current(stage.name)
 
@@ -230,10 +229,13 @@ class StageRunner:
         self._progress.event(ArtifactDamaged(stage=artifact.stage, moved_to=moved_to, files=files))
 
     def _make(
-        self, stage: Stage[Any], artifact: Artifact, inputs: Mapping[str, Input | Artifact | None]
+        self,
+        stage: Stage[Any, Any],
+        artifact: Artifact,
+        inputs: Mapping[str, Input | Artifact | None],
     ) -> FinishedStage:
         values = {name: None if given is None else given.value for name, given in inputs.items()}
-        settings = only(self._settings, stage.groups)
+        settings = part_of(self._settings, stage.reads)
         meter = Meter()
         with atomic_folder(artifact.folder) as folder:
             figures = stage.function(StageContext(folder, settings, self._progress), **values)
@@ -254,19 +256,10 @@ class StageRunner:
 
 
 def stage_key(
-    stage: Stage[Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
+    stage: Stage[Any, Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
 ) -> str:
     """Key of a stage: SHA-256 of its name and version, its settings and the keys of its inputs."""
     return hash_json(_recipe(stage, settings, inputs))
-
-
-def only(settings: Settings, groups: tuple[str, ...]) -> Settings:
-    """The settings with all other groups set to None.
-
-    A stage that reads a group it did not declare fails immediately instead of being cached wrongly.
-    """
-    missing = [f.name for f in fields(settings) if f.name not in groups]
-    return replace(settings, **dict.fromkeys(missing, _NOT_DECLARED))
 
 
 def read_manifest(folder: Path) -> Manifest:
@@ -307,7 +300,7 @@ def read_figures(folder: Path, kind: type[OfStage]) -> OfStage:
         ) from error
 
 
-def figures_of(runs: Mapping[str, StageRun[Any]], stage: Stage[OfStage]) -> OfStage:
+def figures_of(runs: Mapping[str, StageRun[Any]], stage: Stage[Any, OfStage]) -> OfStage:
     """The figures of a stage that ran."""
     figures: OfStage = runs[stage.name].figures
     return figures
@@ -347,12 +340,12 @@ def _finished_stage(artifact: Artifact) -> FinishedStage:
 
 
 def _recipe(
-    stage: Stage[Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
+    stage: Stage[Any, Any], settings: Settings, inputs: Mapping[str, Input | Artifact | None]
 ) -> StageRecipe:
     return {
         "stage": stage.name,
         "version": stage.version,
-        "settings": {group: to_json(getattr(settings, group)) for group in sorted(stage.groups)},
+        "settings": {group: to_json(getattr(settings, group)) for group in groups_of(stage.reads)},
         "inputs": {name: given.key if given else None for name, given in sorted(inputs.items())},
     }
 

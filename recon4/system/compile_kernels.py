@@ -21,6 +21,7 @@ from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
 from recon4.sandbox.private_cache import is_compiled, mark_compiled
 from recon4.settings import override, preset
+from recon4.settings.reads import OdometryReads, part_of
 from recon4.simulation.backpack import measured_seconds, prepare_backpack, simulate_backpack
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
@@ -82,7 +83,9 @@ def _lidars(folder: Path) -> None:
     draw(tiles, plane, paper, color="sensor")
     store = FrameStore.open(made["frames"])
     frames = list(store)[:_FRAMES]
-    live, without_imu = LiveMap(store.rig, preset("indoor")), Odometry(store.rig, preset("indoor"))
+    settings = preset("indoor")
+    live = LiveMap(store.rig, settings)
+    without_imu = Odometry(store.rig, part_of(settings, OdometryReads))
     if store.imu is not None:
         live.extend_imu(store.imu)
     for frame in frames:

@@ -40,6 +40,7 @@ from recon4.recording.sources import Sources
 from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, CloudSlice
 from recon4.report.rig import DISPLAY_UNITS
 from recon4.settings import Settings, override, preset
+from recon4.settings.reads import CalibrationReads, part_of
 from recon4.settings.tuning import tuned
 from recon4.store.frames import FrameStore
 from recon4.store.project import is_project, read_artifacts
@@ -181,9 +182,9 @@ def _maps(task: _Task) -> MethodResult:
     parameters = calibrated_parameters(
         rig, reference=reference, with_imu=False, settings=chosen.calibration
     )
-    report_lines = []
+    report_lines, reads = [], part_of(chosen, CalibrationReads)
     for row in parameters.lidars:
-        found = align_maps(walk, walk.frames.rig, row, reference=reference, settings=chosen)
+        found = align_maps(walk, walk.frames.rig, row, reference=reference, settings=reads)
         if found is None:
             raise CalibrationError(
                 f"the maps of {rig.sensors[reference].name!r} and {rig.sensors[row].name!r} "

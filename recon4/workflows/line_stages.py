@@ -10,10 +10,11 @@ from pathlib import Path
 
 from recon4.model.figures import GraphFigures, RefineFigures
 from recon4.model.odometry_figures import OdometryFigures
+from recon4.settings.reads import LineGraphReads, LineOdometryReads, LineRefineReads
 from recon4.store.stage import Stage, StageContext
 
 
-def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
+def _line_odometry(context: StageContext[LineOdometryReads], *, frames: Path) -> OdometryFigures:
     from recon4.profiler.stage_odometry import run_line_odometry
     from recon4.store.frames import FrameStore
 
@@ -22,7 +23,9 @@ def _line_odometry(context: StageContext, *, frames: Path) -> OdometryFigures:
     )
 
 
-def _sweep_graph(context: StageContext, *, frames: Path, odometry: Path) -> GraphFigures:
+def _sweep_graph(
+    context: StageContext[LineGraphReads], *, frames: Path, odometry: Path
+) -> GraphFigures:
     from recon4.profiler.sweep_graph import build_sweep_graph
     from recon4.store.frames import FrameStore
 
@@ -33,7 +36,7 @@ def _sweep_graph(context: StageContext, *, frames: Path, odometry: Path) -> Grap
 
 
 def _refine_lines(
-    context: StageContext, *, frames: Path, odometry: Path, graph: Path
+    context: StageContext[LineRefineReads], *, frames: Path, odometry: Path, graph: Path
 ) -> RefineFigures:
     from recon4.pose_graph.files import load_graph
     from recon4.profiler.line_refine import refine_lines
@@ -46,15 +49,12 @@ def _refine_lines(
     return found.save(context.out)
 
 
-_PLANAR = ("slam2d", "loops2d", "grid2d", "verification")
-LINE_ODOMETRY = Stage(
-    "odometry", 5, ("odometry", "lines", *_PLANAR), _line_odometry, OdometryFigures
-)
+LINE_ODOMETRY = Stage("odometry", 5, LineOdometryReads, _line_odometry, OdometryFigures)
 TURN_GRAPH = Stage(
     "graph",
     3,
-    ("odometry", "lines", "graph", "registration"),
+    LineGraphReads,
     _sweep_graph,
     GraphFigures,
 )
-LINE_REFINE = Stage("refine", 4, ("odometry", "lines"), _refine_lines, RefineFigures)
+LINE_REFINE = Stage("refine", 4, LineRefineReads, _refine_lines, RefineFigures)

@@ -13,12 +13,19 @@ from recon4.model.figures import (
     Scan2dFigures,
 )
 from recon4.model.rig import Rig, Sensor
+from recon4.settings.reads import (
+    Graph2dReads,
+    ImportReads,
+    Map2dReads,
+    Odometry2dReads,
+    ReadsNothing,
+)
 from recon4.store.hashing import hash_json
 from recon4.store.stage import Input, Stage, StageContext
 
 
 def _scans(
-    context: StageContext, *, recordings: tuple[Path, ...], laser: Sensor | None
+    context: StageContext[ImportReads], *, recordings: tuple[Path, ...], laser: Sensor | None
 ) -> Scan2dFigures:
     from recon4.slam2d.stage import import_scans
 
@@ -40,13 +47,13 @@ def laser_input(rig: Rig | None) -> Input | None:
     return Input(hash_json([laser.T_body_sensor.matrix().tolist(), laser.topic]), laser)
 
 
-def _odometry(context: StageContext, *, scans: Path) -> Odometry2dFigures:
+def _odometry(context: StageContext[Odometry2dReads], *, scans: Path) -> Odometry2dFigures:
     from recon4.slam2d.stage import run_odometry
 
     return run_odometry(scans, context.out, settings=context.settings, progress=context.progress)
 
 
-def _graph(context: StageContext, *, scans: Path, odometry: Path) -> GraphFigures:
+def _graph(context: StageContext[Graph2dReads], *, scans: Path, odometry: Path) -> GraphFigures:
     from recon4.slam2d.stage import build_graph
 
     return build_graph(
@@ -54,14 +61,16 @@ def _graph(context: StageContext, *, scans: Path, odometry: Path) -> GraphFigure
     )
 
 
-def _map(context: StageContext, *, scans: Path, odometry: Path, graph: Path) -> Map2dFigures:
+def _map(
+    context: StageContext[Map2dReads], *, scans: Path, odometry: Path, graph: Path
+) -> Map2dFigures:
     from recon4.slam2d.stage import build_map
 
     artifacts = {"scans": scans, "odometry": odometry, "graph": graph}
     return build_map(artifacts, context.out, settings=context.settings, progress=context.progress)
 
 
-def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
+def _audit(context: StageContext[ReadsNothing], **artifacts: Path) -> AuditFigures:
     from recon4.findings.audit import save_findings
     from recon4.findings.planar_walk import read_planar
     from recon4.findings.witnesses.planar import check_planar
@@ -69,8 +78,8 @@ def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
     return save_findings(context.out, check_planar(read_planar(artifacts)))
 
 
-SCANS_2D = Stage("scans_2d", 11, ("ingest",), _scans, Scan2dFigures)
-ODOMETRY_2D = Stage("odometry_2d", 1, ("slam2d",), _odometry, Odometry2dFigures)
-GRAPH_2D = Stage("graph_2d", 2, ("slam2d", "loops2d"), _graph, GraphFigures)
-MAP_2D = Stage("map_2d", 2, ("slam2d", "grid2d"), _map, Map2dFigures)
-AUDIT_2D = Stage("audit", AUDIT_VERSION, (), _audit, AuditFigures)
+SCANS_2D = Stage("scans_2d", 11, ImportReads, _scans, Scan2dFigures)
+ODOMETRY_2D = Stage("odometry_2d", 1, Odometry2dReads, _odometry, Odometry2dFigures)
+GRAPH_2D = Stage("graph_2d", 2, Graph2dReads, _graph, GraphFigures)
+MAP_2D = Stage("map_2d", 2, Map2dReads, _map, Map2dFigures)
+AUDIT_2D = Stage("audit", AUDIT_VERSION, ReadsNothing, _audit, AuditFigures)

@@ -24,13 +24,23 @@ from recon4.model.import_notes import import_notes
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.review.decisions import Standing
+from recon4.settings.reads import (
+    AuditReads,
+    CalibrationReads,
+    GraphReads,
+    ImportReads,
+    IntensityReads,
+    LevelReads,
+    MapReads,
+    OdometryReads,
+    RefineReads,
+    VerificationReads,
+)
 from recon4.store.stage import Stage, StageContext
-
-_MATCHING = ("registration", "odometry", "graph", "recognition")
 
 
 def _frames(
-    context: StageContext,
+    context: StageContext[ImportReads],
     *,
     recordings: tuple[Path, ...],
     rig: Rig | None,
@@ -63,7 +73,7 @@ def frames_figures(folder: Path) -> FrameFigures:
 
 
 def _odometry(
-    context: StageContext,
+    context: StageContext[OdometryReads],
     *,
     frames: Path,
     calibration: Path | None = None,
@@ -86,7 +96,9 @@ def _odometry(
     return run_odometry(recording, context.out)
 
 
-def _calibration(context: StageContext, *, frames: Path, odometry: Path) -> CalibrationFigures:
+def _calibration(
+    context: StageContext[CalibrationReads], *, frames: Path, odometry: Path
+) -> CalibrationFigures:
     from recon4.calibration.stage import run_calibration
     from recon4.store.frames import open_frames
 
@@ -97,7 +109,11 @@ def _calibration(context: StageContext, *, frames: Path, odometry: Path) -> Cali
 
 
 def _graph(
-    context: StageContext, *, frames: Path, odometry: Path, calibration: Path | None = None
+    context: StageContext[GraphReads],
+    *,
+    frames: Path,
+    odometry: Path,
+    calibration: Path | None = None,
 ) -> GraphFigures:
     from recon4.pose_graph.search import build_graph
     from recon4.store.frames import open_frames
@@ -108,7 +124,7 @@ def _graph(
     )
 
 
-def _verification(context: StageContext, *, graph: Path) -> VerificationFigures:
+def _verification(context: StageContext[VerificationReads], *, graph: Path) -> VerificationFigures:
     from recon4.pose_graph.files import load_graph, save_graph
     from recon4.pose_graph.verification import verify
     from recon4.store.atomic import write_json
@@ -131,7 +147,7 @@ def _verification(context: StageContext, *, graph: Path) -> VerificationFigures:
 
 
 def _review(
-    context: StageContext, *, graph: Path, decisions: tuple[Standing, ...]
+    context: StageContext[VerificationReads], *, graph: Path, decisions: tuple[Standing, ...]
 ) -> ReviewFigures:
     from recon4.review.solve import run_review
 
@@ -141,7 +157,7 @@ def _review(
 
 
 def _refine(
-    context: StageContext,
+    context: StageContext[RefineReads],
     *,
     frames: Path,
     odometry: Path,
@@ -160,7 +176,7 @@ def _refine(
 
 
 def _level(
-    context: StageContext,
+    context: StageContext[LevelReads],
     *,
     frames: Path,
     refined: Path,
@@ -188,7 +204,7 @@ def _level(
 
 
 def _intensity(
-    context: StageContext,
+    context: StageContext[IntensityReads],
     *,
     frames: Path,
     odometry: Path,
@@ -211,7 +227,7 @@ def _intensity(
 
 
 def _map(
-    context: StageContext,
+    context: StageContext[MapReads],
     *,
     frames: Path,
     odometry: Path,
@@ -259,35 +275,33 @@ def _map(
     )
 
 
-def _audit(context: StageContext, **artifacts: Path) -> AuditFigures:
+def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures:
     from recon4.findings.audit import check_walk, save_findings
     from recon4.findings.walk import read_walk
 
     return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
 
 
-FRAMES = Stage("frames", 29, ("ingest",), _frames, FrameFigures)
+FRAMES = Stage("frames", 29, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
     39,
-    ("registration", "odometry"),
+    OdometryReads,
     _odometry,
     OdometryFigures,
 )
 CALIBRATION = Stage(
     "calibration",
     14,
-    ("calibration", "registration", "odometry", "graph", "gnss"),
+    CalibrationReads,
     _calibration,
     CalibrationFigures,
 )
-GRAPH = Stage("graph", 10, _MATCHING, _graph, GraphFigures)
-VERIFICATION = Stage(
-    "verification", 3, ("verification", "graph"), _verification, VerificationFigures
-)
-REVIEW = Stage("review", 4, ("verification", "graph"), _review, ReviewFigures)
-REFINE = Stage("refine", 4, ("odometry", "graph", "refine"), _refine, RefineFigures)
-LEVEL = Stage("level", 24, ("level", "gnss", "verification"), _level, LevelFigures)
-AUDIT = Stage("audit", AUDIT_VERSION, ("gnss", "rig"), _audit, AuditFigures)
-INTENSITY: Stage[Figures] = Stage("intensity", 2, ("intensity",), _intensity)
-MAP = Stage("map", 9, ("map",), _map, MapFigures)
+GRAPH = Stage("graph", 10, GraphReads, _graph, GraphFigures)
+VERIFICATION = Stage("verification", 3, VerificationReads, _verification, VerificationFigures)
+REVIEW = Stage("review", 4, VerificationReads, _review, ReviewFigures)
+REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)
+LEVEL = Stage("level", 24, LevelReads, _level, LevelFigures)
+AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures)
+INTENSITY: Stage[IntensityReads, Figures] = Stage("intensity", 2, IntensityReads, _intensity)
+MAP = Stage("map", 9, MapReads, _map, MapFigures)

@@ -23,7 +23,7 @@ class Run:
     decided: Decided = field(default=NOTHING_DECIDED)
     """Decisions of people in force."""
 
-    def stage(self, stage: Stage[Any], **inputs: str | Input | None) -> None:
+    def stage(self, stage: Stage[Any, Any], **inputs: str | Input | None) -> None:
         """Run a stage, or reuse its artifact.
 
         Args:
@@ -89,17 +89,17 @@ class Workflow:
     """A kind of walk: which stages it has, and what a finished run leaves."""
 
     name: str
-    imports: Stage[Any]
+    imports: Stage[Any, Any]
     """Reads the recording."""
     before_review: Callable[[Run], None]
     """The stages that decisions of people do not change, up to the verified graph."""
     from_review: Callable[[Run], None]
     """The stages from the reviewed graph to the map."""
-    kept: tuple[Stage[Any], ...]
+    kept: tuple[Stage[Any, Any], ...]
     """Stages that are kept as they are when decisions change, in order."""
-    remade: tuple[Stage[Any], ...]
+    remade: tuple[Stage[Any, Any], ...]
     """Stages that follow them, in order."""
-    audit: Stage[Any]
+    audit: Stage[Any, Any]
     publish: Publish
 
     def run(self, run: Run) -> None:

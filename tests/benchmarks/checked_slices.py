@@ -14,6 +14,7 @@ from pathlib import Path
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Silent
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.slices.points import extent
 from recon4.slices.slice_image import RasterGrid, draw
 from recon4.slices.slice_plane import SlicePlane
@@ -36,7 +37,7 @@ def main(folder: Path, points: int) -> None:
     if not folder.exists():
         with Project.open(folder) as project:
             runner = StageRunner(project, Settings(), Silent())
-            runner.run(Stage("map", 1, (), _map), points=Input(f"large {points}", points))
+            runner.run(Stage("map", 1, ReadsNothing, _map), points=Input(f"large {points}", points))
     artifact = read_artifacts(folder)["map"]
     plain, checked = TileSet.open(artifact), TileSet.open(artifact, CheckedArtifact.open(artifact))
     _seconds(plain)  # compiles, and brings the file into memory

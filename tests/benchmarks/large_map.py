@@ -16,6 +16,7 @@ from recon4.mapping.tile import FIELDS, progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.progress import Silent
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from tests.project_builder import BEGAN_NS, _level, _odometry, _verification, loop_walk
@@ -38,8 +39,8 @@ def build_large_project(root: Path, *, points: int = 20_000_000) -> None:
             ("verification", _verification),
             ("level", _level),
         ):
-            runner.run(Stage(name, 1, (), function), walk=walk)
-        runner.run(Stage("map", 1, (), _map), points=Input(f"large {points}", points))
+            runner.run(Stage(name, 1, ReadsNothing, function), walk=walk)
+        runner.run(Stage("map", 1, ReadsNothing, _map), points=Input(f"large {points}", points))
 
 
 def write_large_map(out: Path, *, points: int) -> None:

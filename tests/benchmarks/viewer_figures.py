@@ -24,6 +24,7 @@ from recon4.mapping.tile import FIELDS, progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.progress import Silent
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.arrays import save_trajectory
 from recon4.store.project import Project
 from recon4.store.stage import Stage, StageContext, StageRunner
@@ -200,8 +201,8 @@ def make_project(root: Path, points: int) -> None:
     with Project.open(root) as project:
         project.describe(preset="outdoor", rig="made up")
         runner = StageRunner(project, Settings(), Silent())
-        runner.run(Stage("level", 1, (), _level))
-        runner.run(Stage("map", 1, (), lambda context: _map(points, context.out)))
+        runner.run(Stage("level", 1, ReadsNothing, _level))
+        runner.run(Stage("map", 1, ReadsNothing, lambda context: _map(points, context.out)))
 
 
 def _level(context: StageContext) -> None:

@@ -20,6 +20,7 @@ from recon4.errors import EmptyRecording
 from recon4.progress import Progress
 from recon4.sandbox import Policy
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageContext, StageRunner
 from recon4.system.stopping import end_process
@@ -93,8 +94,8 @@ def _process(root: Path, recording: Path, progress: Progress) -> None:
     with Project.open(root) as project:
         runner = StageRunner(project, Settings(), progress)
         given = Input(str(recording), recording)
-        frames = runner.run(Stage("frames", 1, (), _frames), recording=given)
-        runner.run(Stage("odometry", 1, (), _odometry), recording=given, frames=frames)
+        frames = runner.run(Stage("frames", 1, ReadsNothing, _frames), recording=given)
+        runner.run(Stage("odometry", 1, ReadsNothing, _odometry), recording=given, frames=frames)
     (root / "summary.json").write_text("{}")
 
 

@@ -20,6 +20,7 @@ from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning
 from recon4.settings import Settings
+from recon4.settings.reads import OdometryReads, part_of
 from recon4.settings.tuning import tuned
 
 _TRIED_FRAMES = 20
@@ -44,7 +45,8 @@ class Tracker:
             settings.odometry,
             history=tuned(OdometryTuning, settings.odometry).longest_map(with_imu=False),
         )
-        self._rig, self._settings = rig, replace(settings, odometry=shorter)
+        self._rig = rig
+        self._settings = replace(part_of(settings, OdometryReads), odometry=shorter)
         self._offset_ns = round(rig.imu_time_offset_s * 1e9)
         self._waiting: list[ImuSamples] = []
         self._odometry: Odometry | None = None

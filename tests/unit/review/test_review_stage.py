@@ -18,6 +18,7 @@ from recon4.review.preview import preview
 from recon4.review.queue import COLUMNS, alternative_paths, queue_json, queue_rows
 from recon4.review.source import Source
 from recon4.settings import Settings
+from recon4.settings.reads import ReadsNothing
 from recon4.store.project import Project, read_artifacts
 from recon4.store.stage import Input, Stage, StageRunner
 from recon4.workflows import stages
@@ -28,7 +29,7 @@ def _searched(context, *, graph):
     save_graph(context.out, graph)
 
 
-SEARCH = Stage("graph", 1, (), _searched)
+SEARCH = Stage("graph", 1, ReadsNothing, _searched)
 
 
 @pytest.fixture

@@ -17,6 +17,7 @@ from typing import NoReturn
 from recon4.model.figures import Figures
 from recon4.progress import Silent
 from recon4.settings import Settings
+from recon4.settings.reads import ImportReads, MapReads, ReadsNothing
 from recon4.store.project import Project
 from recon4.store.stage import Input, Stage, StageRunner
 
@@ -49,9 +50,9 @@ def total(context, *, counted, scaled):
     (context.out / "total.txt").write_text(f"{found * range_m:.6f}")
 
 
-COUNT = Stage("count", 1, ("ingest",), count, WordCount)
-SCALE = Stage("scale", 1, ("map",), scale)
-TOTAL = Stage("total", 1, (), total)
+COUNT = Stage("count", 1, ImportReads, count, WordCount)
+SCALE = Stage("scale", 1, MapReads, scale)
+TOTAL = Stage("total", 1, ReadsNothing, total)
 TEXT = "a walk through an office and back"
 
 

@@ -132,6 +132,7 @@ def test_a_copy_to_a_full_disk_is_reported(small_disk, tmp_path):
 def test_a_stage_on_a_full_disk_leaves_nothing_and_can_resume(small_disk):
     from recon4.progress import Silent
     from recon4.settings import Settings
+    from recon4.settings.reads import ReadsNothing
     from recon4.store.project import Project
     from recon4.store.stage import Stage, StageRunner
 
@@ -143,11 +144,11 @@ def test_a_stage_on_a_full_disk_leaves_nothing_and_can_resume(small_disk):
     with Project.open(small_disk / "p") as project:
         runner = StageRunner(project, Settings(), Silent())
         with pytest.raises(NoSpace, match="make room and start again"):
-            runner.run(Stage("fills", 1, (), fills))
+            runner.run(Stage("fills", 1, ReadsNothing, fills))
         assert list(project.artifacts.iterdir()) == []
         ballast.unlink()
 
-        artifact = runner.run(Stage("fills", 1, (), fills))
+        artifact = runner.run(Stage("fills", 1, ReadsNothing, fills))
 
     assert (
         json.loads((artifact.folder / "manifest.json").read_text())["files"]["large"]["bytes"]

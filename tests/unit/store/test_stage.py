@@ -8,6 +8,7 @@ from recon4.errors import Recon4Error
 from recon4.model.events import ArtifactDamaged
 from recon4.progress import Silent
 from recon4.settings import Settings, override, to_json
+from recon4.settings.reads import ImportReads, ReadsNothing
 from recon4.store.package_versions import versions
 from recon4.store.project import Project, read_artifacts, read_stages
 from recon4.store.stage import Input, Stage, StageRunner, stage_key
@@ -90,8 +91,8 @@ def test_a_stage_that_reads_a_group_it_did_not_declare_fails_at_once(tmp_path):
 
     with Project.open(tmp_path / "p") as project:
         runner = StageRunner(project, SETTINGS, Silent())
-        with pytest.raises(AttributeError, match="voxel_m"):
-            runner.run(Stage("sly", 1, ("ingest",), sly))
+        with pytest.raises(AttributeError, match="map"):
+            runner.run(Stage("sly", 1, ImportReads, sly))
         assert list(project.artifacts.iterdir()) == []
 
 
@@ -104,7 +105,7 @@ def test_a_stage_that_fails_leaves_nothing_and_keeps_what_was_finished(tmp_path)
         runner = StageRunner(project, SETTINGS, Silent())
         counted = runner.run(COUNT, text=TEXT_INPUT)
         with pytest.raises(Recon4Error, match="no floor found"):
-            runner.run(Stage("fails", 1, (), fails), counted=counted)
+            runner.run(Stage("fails", 1, ReadsNothing, fails), counted=counted)
         assert list(project.artifacts.iterdir()) == [counted.folder]
     assert [row.stage for row in read_stages(tmp_path / "p")] == ["count"]
 
@@ -171,7 +172,7 @@ def test_the_watcher_hears_of_every_stage(tmp_path):
 def test_the_time_of_a_repeated_stage_is_counted_each_time(tmp_path):
     with Project.open(tmp_path / "p") as project:
         runner = StageRunner(project, SETTINGS, Silent())
-        stage = Stage("odometry", 1, (), lambda context, walk: None)
+        stage = Stage("odometry", 1, ReadsNothing, lambda context, walk: None)
         first = runner.run(stage, walk=Input("recorded rig", None))
         once = spent(runner.runs["odometry"])
         runner.run(stage, walk=Input("calibrated rig", None))
