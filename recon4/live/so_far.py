@@ -9,6 +9,7 @@ from recon4.findings.wording import text_of
 from recon4.live.findings import CaptureFinding
 from recon4.live.findings import Level as Urgency
 from recon4.live.protocol import Pose
+from recon4.live.stretches import Stretches
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS, Usability
 
 _LONGEST_STEP_S = 1.0
@@ -25,6 +26,8 @@ class WalkSoFar:
         self.multiframes = self.lost = 0
         self.unobserved_s = 0.0
         """Time in stretches along which one direction is hardly observed [s]."""
+        self.stretches = Stretches()
+        """Where the walk had these problems."""
         self._stretch_s = 0.0
         self._t_ns: int | None = None
 
@@ -38,12 +41,23 @@ class WalkSoFar:
         self.lost += pose.lost
         weak = not pose.lost and pose.weak_sd_m is not None and pose.weak_sd_m > WEAK_SD_M
         follows = 0.0 < step_s <= _LONGEST_STEP_S
-        if not follows or not weak:
+        if not follows:
+            self.stretches.take(None, pose.p, counts=False)
+        if follows and weak:
+            before_s = self._counted_s
+            self._stretch_s += step_s
+            self.unobserved_s += self._counted_s - before_s
+        else:
             self._stretch_s = 0.0
-            return
-        before_s = self._counted_s
-        self._stretch_s += step_s
-        self.unobserved_s += self._counted_s - before_s
+        self._mark(pose, weak=follows and weak)
+
+    def _mark(self, pose: Pose, *, weak: bool) -> None:
+        if pose.lost:
+            self.stretches.take("TRACKING-LOST", pose.p, counts=True)
+        elif weak:
+            self.stretches.take("WEAK-DIRECTION", pose.p, counts=self._counted_s > 0.0)
+        else:
+            self.stretches.take(None, pose.p, counts=False)
 
     @property
     def _counted_s(self) -> float:

@@ -12,6 +12,7 @@ import time
 from contextlib import contextmanager
 from urllib.parse import urlsplit
 
+import msgspec
 import pytest
 from playwright.sync_api import expect
 
@@ -23,8 +24,9 @@ from recon4.progress import Silent
 from recon4.recording.sources import Sources
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
-from recon4_app.live.stream_state import BYTES_A_POINT
+from recon4_app.live.stream_state import BYTES_A_POINT, Cursor, StreamState
 from tests.e2e.conftest import EXPECTED_NOISE
+from tests.live_messages import pose
 from tests.scan_captures import capture_server
 from tests.served import served
 from tests.service.cuttable import cuttable
@@ -289,6 +291,49 @@ def same_as_from_the_file(live, again):
     assert files
     for file in files:
         assert file.read_bytes() == (live / file.relative_to(again)).read_bytes(), file.name
+
+
+PIXELS = """(name) => {
+  const canvas = document.getElementById("overlay");
+  const pen = document.createElement("canvas").getContext("2d");
+  pen.fillStyle = getComputedStyle(document.body).getPropertyValue(`--${name}`).trim();
+  pen.fillRect(0, 0, 1, 1);
+  const wanted = pen.getImageData(0, 0, 1, 1).data;
+  const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+  let count = 0;
+  for (let at = 0; at < data.length; at += 4)
+    count += [0, 1, 2].every((k) => Math.abs(data[at + k] - wanted[k]) < 8);
+  return count;
+}"""
+
+
+def walked_with_problems():
+    """What a phone lacks of a round walk that lost tracking and, later, hardly saw a direction."""
+    stream = StreamState()
+    for k in range(300):
+        angle = 2 * math.pi * k / 330
+        found = {"lost": 60 <= k < 90, "weak_sd_m": 0.5 if 160 <= k < 240 else 0.01}
+        p, yaw = [8 * math.cos(angle), 8 * math.sin(angle), 0.0], angle + math.pi / 2
+        stream.take(pose(frame_id=k, t_ns=k * 100_000_000, p=p, yaw=yaw, **found))
+    return msgspec.json.encode(stream.lacking(Cursor())[0]).decode()
+
+
+def test_the_stretches_of_findings_are_marked_on_the_map(server, page, screenshot):
+    sockets = []
+
+    def relay(socket):
+        socket.connect_to_server()
+        sockets.append(socket)
+
+    page.route_web_socket("**/api/live/stream", relay)
+    begin(page, server.url)
+    before = [page.evaluate(PIXELS, name) for name in ("bad", "poor")]
+    sockets[-1].send(walked_with_problems())
+    page.get_by_role("button", name="Follow").click()
+
+    page.wait_for_function(f"({PIXELS})('bad') > 150 && ({PIXELS})('poor') > 500")
+    screenshot(page, "live-findings")
+    assert before == [0, 0]
 
 
 def test_everything_fits_on_a_small_phone_both_ways(server, page):

@@ -21,7 +21,7 @@ import { clock, coverageTexts, hint, isCapturing, stateText } from "./captions.j
 
 const HEAD_M = 0.5;
 const MIN_FREE_PX = 80;
-const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor"];
+const COLORS = ["path", "gap", "me", "ink", "sky", "accent", "well", "poor", "bad"];
 const SUN = "recon4.live.sun";
 const cloud = new CloudCanvas(byId("points", HTMLCanvasElement));
 const camera = new Camera();

@@ -15,6 +15,11 @@ export interface Mark {
   text: string;
   p: [number, number, number] | null;
 }
+/** Where the walk had a problem; `kind` is the code of its finding. */
+export interface MarkedStretch {
+  kind: "TRACKING-LOST" | "WEAK-DIRECTION";
+  p: Array<[number, number, number]>;
+}
 export interface Gap {
   p: [number, number];
   width_m: number;
@@ -84,6 +89,7 @@ export interface Message {
   path?: { start: number; points: Array<[number, number, number]> };
   pose?: Pose;
   marks?: { start: number; marks: Mark[] };
+  stretches?: { start: number; stretches: MarkedStretch[] };
   gaps?: Gaps;
   plan?: Plan;
   findings?: Warning[];

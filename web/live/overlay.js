@@ -1,20 +1,23 @@
-// Draws over the points: coverage plan, path, gaps, marks and position.
+// Draws over the points: coverage plan, path with the stretches of findings, gaps, marks, position.
 
 import { drawScaleBar } from "../shared/scale_bar.js";
+import { circle, label, polygon } from "./shapes.js";
+import { drawStretches } from "./stretch_marks.js";
 
 /**
- * @import {Gap, Mark, Plan, Pose} from "./messages"
+ * @import {Gap, Mark, MarkedStretch, Plan, Pose} from "./messages"
  * @import {Camera} from "./camera.js"
  * @typedef {Mark & {p: number[]}} PlacedMark
  * @typedef {number[][]} Box its corners, [[x, y], [x, y]] [m]
  * @typedef {Plan & {bitmap: ImageBitmap, box: Box | null}} PaintedPlan
- * @typedef {Record<"path" | "gap" | "me" | "ink" | "sky" | "accent" | "well" | "poor",
+ * @typedef {Record<"path" | "gap" | "me" | "ink" | "sky" | "accent" | "well" | "poor" | "bad",
  *   string>} Styles
  * @typedef {{left: number, right: number, top: number, bottom: number}} Area [px]
  * @typedef {CanvasRenderingContext2D} Context
  * @typedef {object} Drawn what is drawn
  * @property {Array<[number, number, number]>} path
  * @property {PlacedMark[]} marks
+ * @property {MarkedStretch[]} stretches
  * @property {Gap[]} gaps
  * @property {Pose | null} me
  * @property {PaintedPlan | null} plan
@@ -135,6 +138,7 @@ export function drawOverlay(
   };
   if (scene.showPlan && scene.plan && camera.above) drawPlan(context, camera, scene.plan);
   drawPath(context, camera, scene.path, styles);
+  drawStretches(context, camera, scene.stretches, { inside, styles });
   if (scene.showPlan)
     scene.gaps.forEach((gap, k) =>
       drawGap(context, camera, [...gap.p, floor], gap, styles, k === scene.chosen),
@@ -299,65 +303,4 @@ function drawMe(context, camera, me, styles) {
     styles.sky,
   );
   context.restore();
-}
-
-/**
- * @param {Context} context
- * @param {number} x
- * @param {number} y
- * @param {number} r
- * @param {string} inside
- * @param {string} around
- */
-function circle(context, x, y, r, inside, around) {
-  context.beginPath();
-  context.arc(x, y, r, 0, 2 * Math.PI);
-  context.lineWidth = 3;
-  [context.fillStyle, context.strokeStyle] = [inside, around];
-  context.fill();
-  context.stroke();
-}
-
-/**
- * @param {Context} context
- * @param {Array<[number, number]>} corners
- * @param {string} inside
- * @param {string} around
- */
-function polygon(context, corners, inside, around) {
-  context.beginPath();
-  for (const corner of corners) context.lineTo(...corner);
-  context.closePath();
-  context.lineWidth = 2;
-  [context.fillStyle, context.strokeStyle] = [inside, around];
-  context.fill();
-  context.stroke();
-}
-
-/**
- * @param {Context} context
- * @param {string} text
- * @param {number} x
- * @param {number} y
- * @param {string} color
- * @param {string} around
- */
-function label(
-  context,
-  text,
-  x,
-  y,
-  color,
-  around,
-  align = /** @type {CanvasTextAlign} */ ("center"),
-) {
-  context.font = "600 14px system-ui, sans-serif";
-  context.textAlign = align;
-  context.textBaseline = "middle";
-  context.lineWidth = 4;
-  context.lineJoin = "round";
-  context.strokeStyle = around;
-  context.strokeText(text, x, y);
-  context.fillStyle = color;
-  context.fillText(text, x, y);
 }

@@ -4,7 +4,7 @@ import { openLiveStream, readCurrentUser } from "../shared/api.js";
 
 /**
  * @import {CloudCanvas} from "../shared/cloud_canvas.js"
- * @import {Gap, Mark, Message, Plan, Points, Pose} from "./messages"
+ * @import {Gap, Mark, MarkedStretch, Message, Plan, Points, Pose} from "./messages"
  * @import {PaintedPlan} from "./overlay.js"
  * @typedef {object} SceneListeners
  * @property {() => unknown} news something has changed
@@ -26,6 +26,8 @@ export class LiveScene {
   path = [];
   /** @type {Mark[]} */
   marks = [];
+  /** @type {MarkedStretch[]} */
+  stretches = [];
   /** @type {Gap[]} */
   gaps = [];
   /** @type {Pose | null} */
@@ -134,6 +136,8 @@ export class LiveScene {
     if (message.path) this.path.splice(message.path.start, Infinity, ...message.path.points);
     if (message.pose) this.me = message.pose;
     if (message.marks) this.marks.splice(message.marks.start, Infinity, ...message.marks.marks);
+    if (message.stretches)
+      this.stretches.splice(message.stretches.start, Infinity, ...message.stretches.stretches);
     if (message.gaps) this.gaps = message.gaps.gaps;
     if (message.plan) this.#on.plan(message.plan);
     this.#on.news();
@@ -154,6 +158,7 @@ export class LiveScene {
     this.project = project;
     this.path = [];
     this.marks = [];
+    this.stretches = [];
     this.gaps = [];
     this.me = this.plan = null;
     this.newest = {};

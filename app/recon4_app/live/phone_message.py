@@ -7,6 +7,7 @@ from msgspec import UNSET, UnsetType
 
 from recon4.live import protocol
 from recon4.live.findings import CaptureFinding
+from recon4.live.stretches import MarkedStretch
 from recon4_app.live.health import LidarHealth
 from recon4_app.live.power import Battery
 
@@ -34,6 +35,13 @@ class MarksPart(msgspec.Struct, frozen=True):
 
     start: int
     marks: list[LocatedMark]
+
+
+class StretchesPart(msgspec.Struct, frozen=True):
+    """The stretches of findings from number ``start`` on."""
+
+    start: int
+    stretches: list[MarkedStretch]
 
 
 class PointsPart(msgspec.Struct, frozen=True):
@@ -86,6 +94,7 @@ class PhoneMessage(msgspec.Struct, kw_only=True):
     pose: protocol.Pose | UnsetType = UNSET
     path: PathPart | UnsetType = UNSET
     marks: MarksPart | UnsetType = UNSET
+    stretches: StretchesPart | UnsetType = UNSET
     points: PointsPart | UnsetType = UNSET
     project: str | UnsetType = UNSET
     state: str | UnsetType = UNSET

@@ -12,7 +12,14 @@ from dataclasses import dataclass, field
 from recon4.live.newest import Newest
 from recon4.live.protocol import Done, Mark, Message, Path, Points, Pose, Status, kind_of
 from recon4.live.so_far import WalkSoFar
-from recon4_app.live.phone_message import LocatedMark, MarksPart, PathPart, PhoneMessage, PointsPart
+from recon4_app.live.phone_message import (
+    LocatedMark,
+    MarksPart,
+    PathPart,
+    PhoneMessage,
+    PointsPart,
+    StretchesPart,
+)
 
 POINTS_AT_ONCE = 20_000
 """Points per message: 140 kB, so that the map grows steadily on a slow phone."""
@@ -35,6 +42,10 @@ class Cursor:
     points: int = 0
     path: int = 0
     marks: int = 0
+    stretches: int = 0
+    """Those that do not change any more."""
+    stretches_changed: int = 0
+    """`Stretches.changed` as of then."""
     versions: dict[str, int] = field(default_factory=dict)
 
 
@@ -125,7 +136,18 @@ class StreamState:
         if cursor.marks < len(self._marks):
             message.marks = MarksPart(cursor.marks, self._marks[cursor.marks :])
             cursor.marks = len(self._marks)
+        self._add_stretches(cursor, message)
         return message, self._lacking_points(cursor, message, min(most, POINTS_AT_ONCE))
+
+    def _add_stretches(self, cursor: Cursor, message: PhoneMessage) -> None:
+        """The stretches that are new, and the last one as long as it grows."""
+        stretches = self.so_far.stretches
+        if cursor.stretches_changed == stretches.changed:
+            return
+        start = cursor.stretches
+        message.stretches = StretchesPart(start, stretches.marked[start:])
+        cursor.stretches = max(0, len(stretches.marked) - 1)
+        cursor.stretches_changed = stretches.changed
 
     def complete(self, cursor: Cursor) -> bool:
         """Whether a phone with this cursor has all points."""

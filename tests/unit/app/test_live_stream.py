@@ -116,3 +116,27 @@ def test_a_phone_with_more_marks_than_there_are_gets_all():
     stream.restore_marks([mark(1.0, "crack")])
 
     assert stream.lacking(Cursor(marks=3))[0].marks.start == 0
+
+
+def test_a_phone_gets_each_stretch_of_a_finding_once_and_the_last_while_it_grows():
+    stream, cursor = StreamState(), Cursor()
+
+    def walked(*seconds, lost):
+        for second in seconds:
+            stream.take(
+                live_messages.pose(t_ns=second * SECOND_NS, p=[second, 0.0, 1.0], lost=lost)
+            )
+        part = stream.lacking(cursor)[0].stretches
+        return (
+            UNSET if part is UNSET else (part.start, [[p[0] for p in s.p] for s in part.stretches])
+        )
+
+    assert walked(1, lost=False) is UNSET
+    assert walked(2, 3, lost=True) == (0, [[2, 3]])
+    assert walked(lost=True) is UNSET
+    assert walked(4, lost=True) == (0, [[2, 3, 4]])
+    walked(5, lost=False)
+    assert walked(6, lost=True) == (0, [[2, 3, 4], [6]])
+    assert walked(7, lost=True) == (1, [[6, 7]])
+    again = stream.lacking(Cursor())[0].stretches
+    assert (again.start, len(again.stretches)) == (0, 2)

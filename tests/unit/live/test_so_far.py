@@ -3,6 +3,7 @@
 import pytest
 
 from recon4.live.so_far import WalkSoFar
+from recon4.live.stretches import MOST_STRETCHES
 from recon4_app.live.stream_state import StreamState
 from tests.live_messages import pose
 
@@ -65,3 +66,41 @@ def test_the_stream_counts_the_poses_of_the_mapper():
     stream.take(pose(frame_id=3, t_ns=1, lost=True))
 
     assert stream.so_far.lost == 1
+
+
+def stretches(*parts):
+    """Kind, first and last x of each marked stretch of a walk along x at 1 m/s and 10 Hz."""
+    so_far, k = WalkSoFar(), 0
+    for count, changed in parts:
+        for _ in range(count):
+            so_far.take(pose(frame_id=k, t_ns=k * 100_000_000, p=[k / 10, 0.0, 0.0], **changed))
+            k += 1
+    return [(one.kind, one.p[0][0], one.p[-1][0]) for one in so_far.stretches.marked]
+
+
+@pytest.mark.parametrize(
+    ("parts", "expected"),
+    [
+        ([(100, GOOD)], []),
+        ([(50, GOOD), (20, LOST), (50, GOOD)], [("TRACKING-LOST", 5.0, 6.5)]),
+        ([(50, GOOD), (15, WEAK), (50, GOOD)], []),  # too short for a finding
+        ([(50, GOOD), (60, WEAK), (50, GOOD)], [("WEAK-DIRECTION", 5.0, 10.5)]),
+        (
+            [(50, GOOD), (60, WEAK), (30, LOST)],
+            [("WEAK-DIRECTION", 5.0, 10.5), ("TRACKING-LOST", 11.0, 13.5)],
+        ),
+        (
+            [(10, LOST), (10, GOOD), (10, LOST)],
+            [("TRACKING-LOST", 0.0, 0.5), ("TRACKING-LOST", 2.0, 2.5)],
+        ),
+    ],
+)
+def test_the_stretches_of_findings_are_marked_where_they_were(parts, expected):
+    assert stretches(*parts) == expected
+
+
+def test_a_long_stretch_goes_on_as_another_and_all_together_are_bounded():
+    found = stretches((1500, LOST))
+
+    assert len(found) == 2 and found[0][2] == found[1][1]
+    assert len(stretches(*[(1, LOST), (1, GOOD)] * 300)) == MOST_STRETCHES

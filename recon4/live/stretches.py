@@ -1,0 +1,68 @@
+"""Stretches of the walk that findings of a capture are about, as positions for the phone."""
+
+from __future__ import annotations
+
+import math
+from typing import Literal
+
+import msgspec
+
+StretchKind = Literal["TRACKING-LOST", "WEAK-DIRECTION"]
+_STEP_M = 0.5
+"""Distance between stored positions of a stretch …"""
+_MOST_POSITIONS = 200
+"""… and the most of one; a longer stretch goes on as another."""
+MOST_STRETCHES = 200
+"""The first ones stay: a walk with more is broken all over."""
+
+
+class MarkedStretch(msgspec.Struct):
+    """Where a walk had a problem."""
+
+    kind: StretchKind
+    """Code of the finding."""
+    p: list[list[float]]
+    """Positions as they were mapped then [m], a position every `_STEP_M`."""
+
+
+class Stretches:
+    """The stretches of a walk, from the positions of its poses."""
+
+    def __init__(self) -> None:
+        self.marked: list[MarkedStretch] = []
+        self.changed = 0
+        """How often any has changed."""
+        self._open: MarkedStretch | None = None
+        """The one that goes on; among `marked` once it is known to count."""
+
+    def take(self, kind: StretchKind | None, p: list[float], *, counts: bool) -> None:
+        """Add a position.
+
+        Args:
+            kind: Of the problem there; None = none, a stretch ends.
+            p: Position [m].
+            counts: Whether the stretch is long enough for a finding.
+        """
+        if kind is None:
+            self._open = None
+            return
+        before = self._open
+        if before is None or before.kind != kind or len(before.p) >= _MOST_POSITIONS:
+            goes_on = before is not None and before.kind == kind
+            self._open = MarkedStretch(kind, before.p[-1:] if before and goes_on else [])
+        assert self._open is not None
+        grown = self._extend(self._open.p, p)
+        if counts and not self._is_marked(self._open) and len(self.marked) < MOST_STRETCHES:
+            self.marked.append(self._open)
+            grown = True
+        self.changed += grown and self._is_marked(self._open)
+
+    def _is_marked(self, one: MarkedStretch) -> bool:
+        return bool(self.marked) and self.marked[-1] is one
+
+    @staticmethod
+    def _extend(places: list[list[float]], p: list[float]) -> bool:
+        if places and math.dist(places[-1], p) < _STEP_M:
+            return False
+        places.append([round(value, 2) for value in p])
+        return True
