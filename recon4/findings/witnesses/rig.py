@@ -21,13 +21,14 @@ from recon4.model.calibration_figures import (
     ParameterStatus,
     RigScatter,
 )
+from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig_origin import RigOrigin
 
 _VAGUE_M = 0.01
 """A lever arm that is known no better is named [m]."""
-_ESTIMATED = {"rotation": 0.012, "clock": 0.004}
-"""The odometry estimates the axes and the clock of an IMU by itself, and says so from these errors
-on [rad, s]: smaller ones cost the map nothing."""
+_OF_NO_COST = {"rotation": 0.005, "clock": 0.004}
+"""Smaller errors of an IMU cost the map nothing [rad, s]: the odometry estimates the axes of its
+gyroscope and its clock, and a leveled map is stated to be tilted by as much as that rotation."""
 _SHOWN = {"rad": (float(np.rad2deg(1.0)), "°"), "m": (100.0, " cm"), "s": (1e3, " ms")}
 
 
@@ -39,7 +40,9 @@ class RigFile:
         figures = walk.calibration
         if figures is None:
             return
-        found = list(rig_findings(figures, untimed=has_untimed_clouds(walk)))
+        corrected = walk.odometry_figures.imu_faults if walk.odometry_figures else ()
+        untimed = has_untimed_clouds(walk)
+        found = list(rig_findings(figures, corrected=corrected, untimed=untimed))
         yield from found or [agreement(figures.outcome, figures.statuses)]
 
 
@@ -68,13 +71,19 @@ class RigAge:
             )
 
 
-def rig_findings(figures: CalibrationFigures, *, untimed: bool = False) -> Iterator[Finding]:
+def rig_findings(
+    figures: CalibrationFigures,
+    *,
+    corrected: Sequence[ImuFault] = (),
+    untimed: bool = False,
+) -> Iterator[Finding]:
     """What a recording says against its rig file.
 
     A calibration corrects what it estimates: that is a note where the calibrated rig is used.
 
     Args:
         figures: Of the audit or calibration.
+        corrected: Errors of the IMU that the odometry found, named and corrected by itself.
         untimed: Whether times of points are derived, see `has_untimed_clouds`.
     """
     for fault in figures.imu_faults:
@@ -90,10 +99,22 @@ def rig_findings(figures: CalibrationFigures, *, untimed: bool = False) -> Itera
     for sensor in dict.fromkeys(row.sensor for row in rows if row.status == "off"):
         if sensor != GNSS or figures.applied:
             mine = [row for row in rows if row.sensor == sensor]
-            level = Level.NOTE if figures.applied else _level(mine, untimed=untimed)
+            left = [_left(row, corrected) for row in mine]
+            level = Level.NOTE if figures.applied else _level(left, untimed=untimed)
             yield _contradicted(sensor, mine, level, applied=figures.applied)
     if figures.applied:
         yield from _vague([row for row in rows if row.sensor == GNSS and row.unit == "m"])
+
+
+def _left(row: ParameterFigures, corrected: Sequence[ImuFault]) -> ParameterFigures:
+    """What of a difference was still there when the map was made.
+
+    The clock of an IMU that is ahead is set back by the rig file's offset, so signs are opposite.
+    """
+    if (row.sensor, row.quantity) != (IMU, "clock"):
+        return row
+    ahead_s = sum(fault.value for fault in corrected if fault.kind == "clock")
+    return replace(row, change=row.change + ahead_s)
 
 
 def _level(rows: Sequence[ParameterFigures], *, untimed: bool) -> Level:
@@ -108,7 +129,7 @@ def _costs_nothing(row: ParameterFigures, *, untimed: bool) -> bool:
     """Whether the odometry corrects an error, or nothing states the time it is measured against."""
     if row.quantity == "clock" and untimed:
         return True
-    return row.sensor == IMU and abs(row.change) <= _ESTIMATED.get(row.quantity, 0.0)
+    return row.sensor == IMU and abs(row.change) <= _OF_NO_COST.get(row.quantity, 0.0)
 
 
 def agreement(outcome: CalibrationOutcome | str, statuses: Sequence[ParameterStatus]) -> Finding:
