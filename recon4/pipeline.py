@@ -43,6 +43,7 @@ from recon4.workflows.choice import (
 )
 from recon4.workflows.line_stages import LINE_ODOMETRY
 from recon4.workflows.planar import PLANAR
+from recon4.workflows.publish import publish
 from recon4.workflows.stages import CALIBRATION, FRAMES, ODOMETRY
 from recon4.workflows.summary import About, RunSummary
 from recon4.workflows.workflow import Run, Workflow
@@ -241,4 +242,4 @@ def _publish(
     out: Path, workflow: Workflow, run: Run, *, settings: Settings, progress: Progress
 ) -> RunSummary:
     about = About(ProjectDescription.read(out), settings)
-    return workflow.publish(out, run.runner.runs, about, progress=progress)
+    return publish(out, workflow.results, run.runner.runs, about=about, progress=progress)

@@ -78,7 +78,8 @@ def make(root: Path, *, graph_only: bool = False, progress: Progress | None = No
             return
         LIDAR.run_from_review(run)
         about = About(ProjectDescription.read(root), SETTINGS)
-        publish(root, runner.runs, about, progress=progress or Silent())
+        watcher = progress or Silent()
+        publish(root, LIDAR.results, runner.runs, about=about, progress=watcher)
 
 
 def judge(root: Path, **verdict: object) -> None:

@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from rich.progress import ProgressColumn, Task, TaskID
 
     from recon4.model.events import Event, StageChanged
+    from recon4.workflows.map_results import Summary
     from recon4.workflows.planar_results import Summary2d
-    from recon4.workflows.publish import Summary
     from recon4.workflows.summary import RunSummary
 
 _LINE_EVERY_S = 5.0
@@ -189,7 +189,7 @@ def describe_tried(out: Path) -> list[str]:
 
 def describe_summary(summary: RunSummary) -> str:
     """What a finished run came to, and where its results are."""
-    from recon4.workflows.publish import Summary
+    from recon4.workflows.map_results import Summary
 
     if isinstance(summary, Summary):
         return _describe_3d(summary)

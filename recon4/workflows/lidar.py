@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from recon4.workflows.publish import publish
+from recon4.workflows.map_results import MAP_RESULTS
 from recon4.workflows.stages import (
     AUDIT,
     CALIBRATION,
@@ -52,5 +52,5 @@ LIDAR = Workflow(
     kept=(FRAMES, ODOMETRY, CALIBRATION, GRAPH, VERIFICATION),
     remade=(REVIEW, REFINE, LEVEL, INTENSITY, MAP),
     audit=AUDIT,
-    publish=publish,
+    results=MAP_RESULTS,
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from recon4.workflows.planar_results import publish_2d
+from recon4.workflows.planar_results import PLANAR_RESULTS
 from recon4.workflows.planar_stages import AUDIT_2D, GRAPH_2D, MAP_2D, ODOMETRY_2D, SCANS_2D
 from recon4.workflows.stages import REVIEW, VERIFICATION
 from recon4.workflows.workflow import Run, Workflow
@@ -28,5 +28,5 @@ PLANAR = Workflow(
     kept=(SCANS_2D, ODOMETRY_2D, GRAPH_2D, VERIFICATION),
     remade=(REVIEW, MAP_2D),
     audit=AUDIT_2D,
-    publish=publish_2d,
+    results=PLANAR_RESULTS,
 )

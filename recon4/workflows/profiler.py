@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from recon4.workflows.line_stages import LINE_ODOMETRY, LINE_REFINE, TURN_GRAPH
-from recon4.workflows.publish import publish
+from recon4.workflows.map_results import MAP_RESULTS
 from recon4.workflows.stages import (
     AUDIT,
     CALIBRATION,
@@ -43,5 +43,5 @@ PROFILER = Workflow(
     kept=(FRAMES, LINE_ODOMETRY, TURN_GRAPH, VERIFICATION),
     remade=(REVIEW, LINE_REFINE, LEVEL, INTENSITY, MAP),
     audit=AUDIT,
-    publish=publish,
+    results=MAP_RESULTS,
 )

@@ -15,7 +15,6 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict
 from recon4.report.facts import StageTiming
 from recon4.settings import Settings
-from recon4.store.hashing import hash_file
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import ProjectDescription
 from recon4.store.stage import StageRun
@@ -144,13 +143,3 @@ def seconds_of(runs: Mapping[str, StageRun[Any]]) -> float:
 def peak_bytes_of(runs: Mapping[str, StageRun[Any]]) -> int:
     """Largest resident memory of any stage [bytes]."""
     return max(spent(run).peak_bytes for run in runs.values())
-
-
-def hashes_of(
-    root: Path, described: ProjectDescription, results: tuple[str, ...]
-) -> dict[str, dict[str, str]]:
-    """SHA-256 of the inputs, as described, and of result files, as they are now."""
-    return {
-        "inputs": {file.name: file.sha256 for file in described.inputs},
-        "results": {name: hash_file(root / name) for name in results},
-    }

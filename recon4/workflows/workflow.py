@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, field
-from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 from recon4.model.calibration_figures import CalibrationFigures
-from recon4.progress import Progress
 from recon4.review.decisions import NOTHING_DECIDED, Decided
-from recon4.store.stage import Input, Stage, StageRun, StageRunner
+from recon4.store.stage import Input, Stage, StageRunner
+from recon4.workflows.publish import Results
 from recon4.workflows.stages import CALIBRATION, REVIEW, VERIFICATION
-from recon4.workflows.summary import About, RunSummary
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,15 +73,6 @@ class Run:
         return CALIBRATION.name if audited else None
 
 
-class Publish(Protocol):
-    """Writes the result files of a finished run, ``summary.json`` last."""
-
-    def __call__(
-        self, root: Path, runs: Mapping[str, StageRun[Any]], about: About, *, progress: Progress
-    ) -> RunSummary:
-        """Write them into the project folder."""
-
-
 @dataclass(frozen=True, slots=True)
 class Workflow:
     """A kind of walk: which stages it has, and what a finished run leaves."""
@@ -100,7 +89,8 @@ class Workflow:
     remade: tuple[Stage[Any, Any], ...]
     """Stages that follow them, in order."""
     audit: Stage[Any, Any]
-    publish: Publish
+    results: Results[Any]
+    """What a finished run leaves in the project folder."""
 
     def run(self, run: Run) -> None:
         """All stages after the import; each is skipped when its artifact is there."""

@@ -41,7 +41,7 @@ from recon4.store.hashing import hash_json
 from recon4.store.project import Project, ProjectDescription, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
 from recon4.workflows.lidar import LIDAR, to_trajectory
-from recon4.workflows.publish import report_facts
+from recon4.workflows.map_results import report_facts
 from recon4.workflows.summary import About
 from recon4.workflows.workflow import Run as WorkflowRun
 from tests.benchmarks.proving_errors import Errors, measure

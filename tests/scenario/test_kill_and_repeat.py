@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from recon4.cli.main import main
-from recon4.workflows.publish import RESULTS as ALL_RESULTS
+from recon4.workflows.map_results import RESULTS as ALL_RESULTS
 
 FEW = [
     *("--set", "map.voxel_m=0.1", "--set", "graph.node_stride=4"),

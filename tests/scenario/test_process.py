@@ -10,7 +10,7 @@ from recon4.cli.main import main
 from recon4.evaluation.evaluate import evaluate
 from recon4.settings import preset, to_json
 from recon4.store.hashing import hash_file
-from recon4.workflows.publish import RESULTS
+from recon4.workflows.map_results import RESULTS
 
 FEW = ["--set", "map.voxel_m=0.05", "--set", "graph.node_stride=10"]
 

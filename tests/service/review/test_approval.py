@@ -13,7 +13,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import NAME, append
 from recon4.store.hashing import hash_file
-from recon4.workflows.publish import RESULTS
+from recon4.workflows.map_results import RESULTS
 from tests.g2o_reader import read_g2o
 from tests.review_project import LOST, judge, make
 from tests.service.review.reviewing import RIGHT, Reviewing, decide, keys_of, make_a_new_map
