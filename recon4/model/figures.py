@@ -118,6 +118,11 @@ class UncertaintyFigures(msgspec.Struct, frozen=True, kw_only=True):
     """Where, in the map [m]."""
     on_earth: bool
     """False: relative to the first pose. True: on the earth."""
+    shape_rms_m: float | None = None
+    """Expected RMS of all positions after the best rigid alignment with the truth [m]; None = an
+    earlier version, as the next one."""
+    shape_largest_sd_m: float | None = None
+    """Largest standard deviation of a position after it, along its worst axis [m]."""
     point_from_s: float
     """A control point from here … [s]"""
     point_to_s: float

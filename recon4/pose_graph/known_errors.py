@@ -31,26 +31,35 @@ class KnownErrors:
     carried: CarriedMotion | None = None
     """Motion that only the accelerometer carries: part of the odometry edges; None = none."""
 
-    def cov(self, t_ns: Times, T_map_body: SE3, *, on_earth: bool) -> Array:
-        """Covariances that they add to poses, (N, 6, 6), turn first, in axes of the map.
+    def modes(self, t_ns: Times, T_map_body: SE3, *, on_earth: bool) -> Array:
+        """Independent errors of all poses that they make, one standard deviation each, (N, 6, M).
 
         Args:
             t_ns: Times of the poses, the first one that of the walk.
             T_map_body: N poses with z up.
             on_earth: False = relative to the first pose.
+
+        Returns:
+            Turn and shift of each pose, in axes of the map, by each error.
         """
-        out = self.rig.cov(T_map_body, on_earth=on_earth)
         since_s = (t_ns - t_ns[0]) / 1e9
-        for doubt in () if on_earth else self.heights:
-            height_m = np.interp(since_s, [doubt.start_s, doubt.end_s], [0.0, doubt.rise_m])
-            out[:, _Z, _Z] += height_m**2
-        for turn in () if on_earth else self.turns:
-            out += _turn_cov(turn, since_s, T_map_body)
-        return out
+        of_rig = self.rig.modes(T_map_body, on_earth=on_earth)
+        if on_earth:
+            return of_rig
+        heights = (_height_mode(doubt, since_s) for doubt in self.heights)
+        turns = (_turn_mode(turn, since_s, T_map_body) for turn in self.turns)
+        return np.concatenate([of_rig, *heights, *turns], axis=2)
 
 
-def _turn_cov(turn: TurnDoubt, since_s: Array, T_map_body: SE3) -> Array:
-    """Covariances of poses by a turn that grows while nothing observes it, (N, 6, 6).
+def _height_mode(doubt: HeightDoubt, since_s: Array) -> Array:
+    """Shifts of poses by a ride, (N, 6, 1)."""
+    mode = np.zeros((len(since_s), 6, 1))
+    mode[:, _Z, 0] = np.interp(since_s, [doubt.start_s, doubt.end_s], [0.0, doubt.rise_m])
+    return mode
+
+
+def _turn_mode(turn: TurnDoubt, since_s: Array, T_map_body: SE3) -> Array:
+    """Errors of poses by a turn that grows while nothing observes it, (N, 6, 1).
 
     Axes of odometry and of a local map differ by its leveling only.
     """
@@ -59,8 +68,7 @@ def _turn_cov(turn: TurnDoubt, since_s: Array, T_map_body: SE3) -> Array:
     arm = T_map_body.t - T_map_body.t[0] - np.array(turn.center_m)
     moved = np.cross(axis, arm)
     twist = np.concatenate([np.broadcast_to(axis, arm.shape), moved], axis=1)
-    twist *= (turn.rate_sd_rad_s * grown_s)[:, None]
-    return np.asarray(twist[:, :, None] * twist[:, None, :])
+    return np.asarray((twist * (turn.rate_sd_rad_s * grown_s)[:, None])[:, :, None])
 
 
 NOTHING_KNOWN = KnownErrors()

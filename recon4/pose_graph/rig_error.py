@@ -13,7 +13,7 @@ from itertools import groupby
 
 import numpy as np
 
-from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array
+from recon4.geometry.se3 import SE3, Array
 from recon4.model.calibration_figures import GNSS, IMU, ParameterFigures
 
 _PULL = 0.35
@@ -32,23 +32,23 @@ class RigError:
     turn_rad: float = 0.0
     shift_m: float = 0.0
 
-    def cov(self, T_map_body: SE3, *, on_earth: bool) -> Array:
-        """Covariances that it adds to poses, (N, 6, 6), turn first, in axes of the map.
+    def modes(self, T_map_body: SE3, *, on_earth: bool) -> Array:
+        """Independent errors of all poses that it makes, one standard deviation each, (N, 6, 12).
 
         Args:
             T_map_body: N poses.
             on_earth: False = relative to the first pose, which has the same error.
+
+        Returns:
+            Turn and shift of each pose, in axes of the map, by each of twelve errors.
         """
         R = T_map_body.R
         since = R if on_earth else R - R[0]
-        turned = since @ np.swapaxes(since, 1, 2)
         # A turn that is not small acts about every axis, by its square.
-        spread = np.trace(turned, axis1=1, axis2=2)[:, None, None] / 3.0 * np.eye(3)
-        every = turned + self.turn_rad**2 * spread
-        out = np.zeros((len(R), 6, 6))
-        out[:, ROTATION, ROTATION] = self.turn_rad**2 * every
-        out[:, TRANSLATION, TRANSLATION] = self.shift_m**2 * every
-        return out
+        size = np.sqrt((since**2).sum(axis=(1, 2)) / 3.0)[:, None, None]
+        spread = self.turn_rad * size * np.eye(3)
+        every = np.concatenate([since, spread], axis=2)
+        return np.kron(np.diag([self.turn_rad, self.shift_m]), every)
 
 
 EXACT = RigError()

@@ -19,6 +19,7 @@ from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.model.trajectory import Times
 from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement, agreement
+from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.solve import PositionPriors
 
@@ -55,14 +56,31 @@ class PoseUncertainty:
     """Turn about the pose's own origin, then shift, in the axes of the map, (N, 6, 6)."""
     on_earth: bool
     """False: relative to the first pose. True: in the frame of the positions."""
+    shape_cov: Array
+    """Of the positions after the best rigid alignment of all of them, in axes of the map,
+    (N, 3, 3)."""
     helpful: HelpfulPoint
     """Where a control point would help most."""
 
     @property
     def sd_m(self) -> Array:
         """Standard deviation of the position along its worst axis [m], (N,)."""
-        worst = np.linalg.eigvalsh(self.cov[:, TRANSLATION, TRANSLATION])[:, -1]
-        return np.sqrt(np.maximum(worst, 0.0))
+        return _worst_sd(self.cov[:, TRANSLATION, TRANSLATION])
+
+    @property
+    def shape_sd_m(self) -> Array:
+        """The same after the best alignment of all positions [m], (N,)."""
+        return _worst_sd(self.shape_cov)
+
+    @property
+    def shape_rms_m(self) -> float:
+        """Expected RMS of all positions after the best alignment [m]."""
+        return _expected_rms(self.shape_cov)
+
+    @property
+    def rms_m(self) -> float:
+        """Expected RMS of all positions in the frame of the covariances [m]."""
+        return _expected_rms(self.cov[:, TRANSLATION, TRANSLATION])
 
     def at(self, t_ns: Times) -> Array:
         """Covariances at other times, linear between two and constant outside, (M, 6, 6)."""
@@ -70,6 +88,14 @@ class PoseUncertainty:
         t, known = ((v - start_ns).astype(np.float64) for v in (t_ns, self.t_ns))
         columns = [np.interp(t, known, column) for column in self.cov.reshape(-1, 36).T]
         return np.stack(columns, axis=1).reshape(-1, 6, 6)
+
+
+def _worst_sd(cov: Array) -> Array:
+    return np.asarray(np.sqrt(np.maximum(np.linalg.eigvalsh(cov)[:, -1], 0.0)))
+
+
+def _expected_rms(cov: Array) -> float:
+    return float(np.sqrt(np.trace(cov, axis1=1, axis2=2).mean()))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,12 +148,29 @@ def pose_uncertainty(
     every = cho_solve(cho_factor(information), np.eye(6 * knots)).reshape(knots, 6, knots, 6)
     own = np.arange(knots)
     on_earth = positions is not None
-    alone = _alone(chain, model, agrees.ratio, on_earth=on_earth)
-    alone += known.cov(chain.t_ns, chain.T_map_body, on_earth=on_earth)
+    single = _single(chain, model, agrees.ratio)
+    modes = known.modes(chain.t_ns, chain.T_map_body, on_earth=on_earth)
+    alone = _alone(chain, model, single, on_earth=on_earth) + modes @ np.swapaxes(modes, 1, 2)
     cov = every[own, :, own, :] + alone
-    place = every[:, TRANSLATION, :, TRANSLATION].transpose(0, 2, 1, 3)
-    helpful = _helpful(place, alone[:, TRANSLATION, TRANSLATION], chain.t_ns)
-    return PoseUncertainty(chain.t_ns, cov, on_earth, helpful)
+    place = every[:, TRANSLATION, :, TRANSLATION]
+    shape = _shape_cov(place, modes[:, TRANSLATION], chain.T_map_body.t, single_m=single[1])
+    helpful = _helpful(place.transpose(0, 2, 1, 3), alone[:, TRANSLATION, TRANSLATION], chain.t_ns)
+    return PoseUncertainty(chain.t_ns, cov, on_earth, shape, helpful)
+
+
+def _shape_cov(place: Array, modes: Array, p_map: Array, *, single_m: float) -> Array:
+    """Covariances of positions after the best alignment, (K, 3, 3).
+
+    Args:
+        place: Covariance of all positions by the graph, (K, 3, K, 3).
+        modes: Shifts of the positions by known errors, (K, 3, M).
+        p_map: Positions, (K, 3).
+        single_m: Error of each position that no other shares.
+    """
+    count = 3 * len(p_map)
+    known = modes.reshape(count, -1)
+    cov = place.reshape(count, count) + known @ known.T + single_m**2 * np.eye(count)
+    return aligned_cov(cov, p_map)
 
 
 def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
@@ -314,10 +357,14 @@ def _add_positions(
         information[own, own] += row.T @ np.diag(sd_m**-2.0) @ row
 
 
-def _alone(chain: _Chain, model: ErrorModel, ratio: Array, *, on_earth: bool) -> Array:
-    """What the errors of single poses add, and on earth that of all positions, (K, 6, 6)."""
+def _single(chain: _Chain, model: ErrorModel, ratio: Array) -> Array:
+    """Error of a single pose that no other shares: turn [rad], shift [m]."""
     anchor = ratio * [model.anchor_rad, model.anchor_m]
-    single = np.maximum(anchor, model.anchor_ratio * chain.usual)
+    return np.maximum(anchor, model.anchor_ratio * chain.usual)
+
+
+def _alone(chain: _Chain, model: ErrorModel, single: Array, *, on_earth: bool) -> Array:
+    """What the errors of single poses add, and on earth that of all positions, (K, 6, 6)."""
     alone = np.diag(np.repeat(single, 3) ** 2)
     if on_earth:
         common = np.diag(np.repeat([0.0, model.gnss_m], 3) ** 2)

@@ -6,6 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from recon4.errors import StoreError
+from recon4.geometry.se3 import TRANSLATION
 from recon4.model.figures import UncertaintyFigures
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import HelpfulPoint, PoseUncertainty
@@ -15,6 +17,8 @@ from recon4.store.atomic import atomic_file
 _FILE = "uncertainty.npz"
 _NAMES = ("rx", "ry", "rz", "x", "y", "z")
 _UPPER = np.triu_indices(6)
+_ARRAYS = ("t_ns", "cov", "on_earth", "point_ns", "point_sd_m")
+"""In files of all versions."""
 
 
 def save_uncertainty(folder: Path, found: PoseUncertainty) -> None:
@@ -24,6 +28,7 @@ def save_uncertainty(folder: Path, found: PoseUncertainty) -> None:
         folder / _FILE,
         t_ns=found.t_ns,
         cov=found.cov,
+        shape_cov=found.shape_cov,
         on_earth=np.array(found.on_earth),
         point_ns=np.array([helpful.start_ns, helpful.end_ns], np.int64),
         point_sd_m=np.array(helpful.largest_m),
@@ -33,15 +38,26 @@ def save_uncertainty(folder: Path, found: PoseUncertainty) -> None:
 def load_uncertainty(folder: Path) -> PoseUncertainty | None:
     """Read it from a folder of the stage ``level``; None where nothing is stated.
 
+    Files of earlier versions do not state the covariance of the shape. It is taken for that of the
+    positions, which is larger.
+
     Raises:
         StoreError: If it is damaged.
     """
     if not (folder / _FILE).is_file():
         return None
-    found = load_arrays(folder / _FILE, ["t_ns", "cov", "on_earth", "point_ns", "point_sd_m"])
+    found = load_arrays(folder / _FILE)
+    missing = [name for name in _ARRAYS if name not in found]
+    if missing:
+        raise StoreError(f"{_FILE}: expected arrays {list(_ARRAYS)}, got none of {missing}")
     start_ns, end_ns = found["point_ns"].tolist()
-    helpful = HelpfulPoint(start_ns, end_ns, float(found["point_sd_m"]))
-    return PoseUncertainty(found["t_ns"], found["cov"], bool(found["on_earth"]), helpful)
+    return PoseUncertainty(
+        found["t_ns"],
+        found["cov"],
+        bool(found["on_earth"]),
+        found.get("shape_cov", found["cov"][:, TRANSLATION, TRANSLATION]),
+        HelpfulPoint(start_ns, end_ns, float(found["point_sd_m"])),
+    )
 
 
 def uncertainty_figures(found: PoseUncertainty, trajectory: Trajectory) -> UncertaintyFigures:
@@ -59,6 +75,8 @@ def uncertainty_figures(found: PoseUncertainty, trajectory: Trajectory) -> Uncer
         at_s=after_start(int(found.t_ns[worst])),
         at_m=(x, y, z),
         on_earth=found.on_earth,
+        shape_rms_m=round(found.shape_rms_m, 4),
+        shape_largest_sd_m=round(float(found.shape_sd_m.max()), 4),
         point_from_s=after_start(found.helpful.start_ns),
         point_to_s=after_start(found.helpful.end_ns),
         point_sd_m=round(found.helpful.largest_m, 4),

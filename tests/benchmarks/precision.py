@@ -9,8 +9,9 @@ Of a page with the published table (``.md``) only the first reason of each run i
 A finding is an *alarm* if it makes the verdict worse than good. Its precision is the ratio of its
 alarms that stand in runs whose trajectory is not right, or whose degradation it names; its recall
 the ratio of the wrong runs in which it is an alarm. The last lines are about whole runs: how many
-of the right ones are *do not use* and *check* (goals: 2 % and 10 %), and how many wrong ones are
-good.
+of the right ones are *do not use* and *check* (goals: 2 % and 10 %), how many wrong ones are good,
+and how true the stated uncertainty of the shape is (goal: 2 sigma 0.5 to 4 times the error that
+95 % of the positions stay below after the best alignment).
 """
 
 from __future__ import annotations
@@ -23,12 +24,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from recon4.evaluation.table import percentage, text_table
 from recon4.findings.finding import Level
 from tests.benchmarks.proving_ground import read_lines
 
 Line = Mapping[str, Any]
 
+STATED_GOAL = (0.5, 4.0)
+"""Stated 2 sigma as a multiple of the true 95 % error."""
 _ALARMS = {str(Level.CHECK), str(Level.DO_NOT_USE)}
 NAMES = {
     "extrinsics": {"RIG-CONTRADICTED"},
@@ -62,6 +67,7 @@ _FIRST_REASONS = {
     "The IMU contradicts the recording. The accelerometer": "IMU-SCALE",
     "Tracking was lost": "TRACKING-LOST",
     "The positions are known to": "UNCERTAINTY",
+    "The shape of the map is known to": "UNCERTAINTY",
     "The clock of the IMU": "IMU-CLOCK",
     "The mounts of": "RIG-EXCHANGED",
     "A mirror or a glass wall": "MIRROR",
@@ -114,6 +120,25 @@ def false_alarms(lines: Sequence[Line]) -> dict[str, float]:
     ]  # fmt: skip
     verdicts = Counter(line["verdict"] for line in clean)
     return {name: verdicts[name] / max(len(clean), 1) for name in ("check", "do not use")}
+
+
+def stated_over_true(lines: Iterable[Line]) -> list[float]:
+    """Largest stated 2 sigma of the shape over its true 95 % error, of each run with both."""
+    errors = [line.get("errors") or {} for line in lines]
+    return [one["shape_m"] / one["error_95_m"] for one in errors if one.get("error_95_m")]
+
+
+def _stated(lines: Sequence[Line]) -> str:
+    ratios = np.array(stated_over_true(lines))
+    if not len(ratios):
+        return "stated uncertainty: not known of these runs"
+    low, high = STATED_GOAL
+    below, above = int((ratios < low).sum()), int((ratios > high).sum())
+    return (
+        f"stated 2 sigma over the true 95 % error in {len(ratios)} runs: median "
+        f"{np.median(ratios):.2f}, {len(ratios) - below - above} within {low:g} to {high:g}, "
+        f"{below} below, {above} above"
+    )
 
 
 def _names_a_degradation(line: Line) -> bool:
@@ -185,6 +210,8 @@ def report(lines: Sequence[Line]) -> str:
             f"{len(lines)} runs, {len(lines) - wrong} right, {silent} silent",
             f"right runs without a named degradation: {percentage(rates['do not use'])} do not use "
             f"(goal 2 %), {percentage(rates['check'])} check (goal 10 %)",
+            _stated([line for line in lines if line["outcome"] == "right"]) + " (right runs)",
+            _stated(lines) + " (all)",
         ]
     )
 

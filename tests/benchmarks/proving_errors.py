@@ -37,6 +37,10 @@ class Errors:
     """RMSE of the positions of the final trajectory after the best rigid alignment."""
     largest_m: float
     """Largest of these errors."""
+    error_95_m: float
+    """95 % of these errors are at most this."""
+    shape_m: float
+    """Largest stated 2 sigma of a position after the best alignment."""
     closing_m: float
     """Error of the odometry's motion from the first to the last pose."""
     stated_m: float
@@ -63,7 +67,8 @@ def measure(runs: Mapping[str, StageRun[Any]], truth: Trajectory) -> Errors:
     level, odometry = runs["level"].artifact.folder, runs["odometry"].artifact.folder
     final, raw = (load_trajectory(folder / "trajectory.npz") for folder in (level, odometry))
     pairs = pair_poses(final, truth)
-    error = absolute_error(pairs).position_m
+    absolute = absolute_error(pairs)
+    error = absolute.position_m
     ends = pair_poses(raw, truth)
     motion = ends.T_map_body[0].inverse() @ ends.T_map_body[-1]
     true_motion = ends.T_true_body[0].inverse() @ ends.T_true_body[-1]
@@ -73,6 +78,8 @@ def measure(runs: Mapping[str, StageRun[Any]], truth: Trajectory) -> Errors:
         length_m=_length_m(truth),
         ate_m=error.rmse,
         largest_m=error.maximum,
+        error_95_m=float(np.percentile(absolute.position_errors_m, 95)),
+        shape_m=stated.shape_m,
         closing_m=float(np.linalg.norm((true_motion.inverse() @ motion).t)),
         stated_m=stated.largest_m,
         nees=stated.nees,
@@ -87,6 +94,7 @@ class Stated:
     """Stated covariances against true errors."""
 
     largest_m: float
+    shape_m: float
     nees: float
     bad_places: int
     bad_announced: int
@@ -111,6 +119,7 @@ def _stated(level: Path, final: Trajectory, truth: Trajectory) -> Stated:
     bad = np.linalg.norm(error[:, 3:], axis=1) > BASE_M
     return Stated(
         largest_m=2.0 * float(found.sd_m.max()),
+        shape_m=2.0 * float(found.shape_sd_m.max()),
         nees=float(chi2.mean()) / 6.0,
         bad_places=int(bad.sum()),
         bad_announced=int((bad & (2.0 * found.sd_m[1:] > BASE_M)).sum()),

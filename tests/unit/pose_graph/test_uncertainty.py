@@ -6,12 +6,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from recon4.errors import StoreError
+from recon4.evaluation.ate import PosePairs, absolute_error
 from recon4.geometry.se3 import SE3, TRANSLATION, Array, so3_log
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph import uncertainty
 from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import ErrorModel
+from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import KnownErrors
 from recon4.pose_graph.solve import PositionPriors
 from recon4.pose_graph.uncertainty import pose_uncertainty
@@ -95,6 +98,50 @@ def test_errors_of_a_chain_have_the_stated_covariance() -> None:
     graph = chain()
 
     assert nees(graph, stated(graph).cov[-1]) == pytest.approx(1.0, abs=0.25)
+
+
+def test_the_shape_is_as_wrong_as_stated_after_the_best_alignment() -> None:
+    graph = chain()
+
+    found = stated(graph)
+
+    drawn_m = [
+        absolute_error(
+            PosePairs(
+                graph.t_ns,
+                drawn(graph, np.random.default_rng(seed), tau_s=2.0),
+                graph.T_map_body,
+                coverage_ratio=1.0,
+            )
+        ).position_m.rmse
+        for seed in range(60)
+    ]
+    assert np.sqrt(np.mean(np.square(drawn_m))) == pytest.approx(found.shape_rms_m, rel=0.2)
+    assert found.shape_rms_m < 0.5 * found.rms_m
+
+
+def test_a_wrong_heading_at_the_start_bends_nothing() -> None:
+    graph = chain()
+    _, T = walk(60)
+    turn = np.zeros((60, 3))
+    turn[:, :2] = 0.05 * np.stack([-T.t[:, 1], T.t[:, 0]], axis=1)
+    bent = np.zeros((60, 3))
+    bent[30:, 0] = 0.05
+    error = (turn + np.array([0.3, 0.2, 0.1])).ravel(), bent.ravel()
+
+    of_turn, of_bend = (aligned_cov(np.outer(e, e), graph.T_map_body.t) for e in error)
+
+    np.testing.assert_allclose(of_turn, 0.0, atol=1e-12)
+    assert np.trace(of_bend, axis1=1, axis2=2).mean() > 0.01**2
+
+
+def test_a_straight_walk_has_a_shape_although_a_turn_about_its_axis_moves_nothing() -> None:
+    p = np.outer(np.arange(10.0), [1.0, 0.0, 0.0])
+
+    cov = aligned_cov(1e-4 * np.eye(30), p)
+
+    # Of ten positions a shift and two turns are free: 30 - 5 of 30 degrees of freedom are left.
+    assert np.trace(cov, axis1=1, axis2=2).sum() == pytest.approx(25e-4)
 
 
 def test_joined_nodes_state_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -192,12 +239,30 @@ def test_files_keep_what_is_stated(tmp_path: Path) -> None:
 
     assert again is not None
     np.testing.assert_array_equal(again.cov, found.cov)
+    np.testing.assert_array_equal(again.shape_cov, found.shape_cov)
     assert again.helpful == found.helpful
     path = tmp_path / "poses_covariance.csv"
     write_covariances(path, Trajectory(graph.t_ns, graph.T_map_body), again)
     rows = np.loadtxt(path, delimiter=",", skiprows=1)
     assert rows.shape == (10, 1 + 7 + 21)
     np.testing.assert_allclose(rows[:, 8 + 20], found.cov[:, 5, 5], rtol=1e-3)  # cov_z_z, the last
+
+
+def test_a_file_of_an_earlier_version_states_the_shape_by_its_positions(tmp_path: Path) -> None:
+    found = stated(chain(10))
+    save_uncertainty(tmp_path, found)
+    with np.load(tmp_path / "uncertainty.npz") as file:
+        arrays = {name: file[name] for name in file.files if name != "shape_cov"}
+    np.savez(tmp_path / "uncertainty.npz", **arrays)
+
+    again = load_uncertainty(tmp_path)
+
+    assert again is not None
+    np.testing.assert_array_equal(again.shape_cov, found.cov[:, TRANSLATION, TRANSLATION])
+    del arrays["point_ns"]
+    np.savez(tmp_path / "uncertainty.npz", **arrays)
+    with pytest.raises(StoreError, match="point_ns"):
+        load_uncertainty(tmp_path)
 
 
 def test_a_graph_of_one_node_states_nothing(tmp_path: Path) -> None:

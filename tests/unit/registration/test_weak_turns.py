@@ -138,12 +138,13 @@ def test_poses_know_how_far_the_turn_may_move_them():
         np.array([one.t_mid_ns for one in steps]), SE3.stack(one.T_odom_body for one in steps)
     )
 
-    cov = KnownErrors(turns=found).cov(poses.t_ns, poses.T_a_b, on_earth=False)
+    mode = KnownErrors(turns=found).modes(poses.t_ns, poses.T_a_b, on_earth=False)
+    cov = mode @ np.swapaxes(mode, 1, 2)
 
     turned = found[0].rate_sd_rad_s * 9.9
     arm_m = np.linalg.norm(poses.T_a_b.t[-1] - CENTER)
     np.testing.assert_allclose(cov[0], 0.0)
     assert np.sqrt(cov[-1, 2, 2]) == pytest.approx(turned)
     assert np.sqrt(np.trace(cov[-1, 3:, 3:])) == pytest.approx(turned * arm_m)
-    on_earth = KnownErrors(turns=found).cov(poses.t_ns, poses.T_a_b, on_earth=True)
+    on_earth = KnownErrors(turns=found).modes(poses.t_ns, poses.T_a_b, on_earth=True)
     np.testing.assert_allclose(on_earth, 0.0)

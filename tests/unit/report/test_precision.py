@@ -15,6 +15,7 @@ from tests.benchmarks.precision import (
     kind_counts,
     report,
     source_toml,
+    stated_over_true,
     table_lines,
 )
 from tests.benchmarks.proving_ground import DEGRADATIONS
@@ -46,6 +47,17 @@ def test_an_alarm_is_true_in_a_wrong_run_and_where_it_names_the_degradation():
 def test_right_runs_that_name_their_degradation_are_no_false_alarms():
     assert false_alarms(RUNS) == {"check": 1 / 3, "do not use": 1 / 3}
     assert "5 runs, 4 right, 0 silent" in report(RUNS)
+
+
+def test_the_stated_uncertainty_is_compared_where_a_run_says_both():
+    runs = [
+        run("right", "good") | {"errors": {"shape_m": shape_m, "error_95_m": error_m}}
+        for shape_m, error_m in ((0.02, 0.01), (0.05, 0.01), (0.001, 0.01))
+    ]
+
+    assert stated_over_true([*RUNS, *runs, {"errors": None}]) == pytest.approx([2.0, 5.0, 0.1])
+    assert "3 runs: median 2.00, 1 within 0.5 to 4, 1 below, 1 above (right runs)" in report(runs)
+    assert "not known of these runs" in report(RUNS)
 
 
 def test_degradations_and_kinds_are_those_of_the_program():

@@ -23,8 +23,8 @@ from tests.benchmarks.proving_ground import (
 )
 
 FINE = Errors(
-    length_m=50.0, ate_m=0.09, largest_m=0.2, closing_m=0.1, stated_m=0.2, nees=1.0,
-    bad_places=3, bad_announced=2, placed_m=None,
+    length_m=50.0, ate_m=0.09, largest_m=0.2, error_95_m=0.18, shape_m=0.15, closing_m=0.1,
+    stated_m=0.2, nees=1.0, bad_places=3, bad_announced=2, placed_m=None,
 )  # fmt: skip
 
 
