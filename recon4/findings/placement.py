@@ -22,6 +22,13 @@ class GnssFacts(msgspec.Struct, frozen=True):
     """How the map was georeferenced."""
 
     georeferenced: bool = False
+    reason: str = ""
+    """`LocalReason` why not, or a sentence of an earlier version; empty = georeferenced."""
+    fixes: int = 0
+    fixes_usable: int | None = None
+    fixes_agreeing: int | None = None
+    extent_m: float | None = None
+    beside_m: float | None = None
     edges_rejected: tuple[int, ...] = ()
     """Loop closures that contradict the GNSS priors."""
     t_ns: tuple[int, ...] = ()

@@ -94,6 +94,11 @@ def title_of(kind: FindingKind) -> str:
     return catalog().kinds[kind].title
 
 
+def word_of(kind: FindingKind, word: str) -> str:
+    """A word of a kind of finding in the language of the catalog; one it does not have as it is."""
+    return _Filling(catalog().kinds[kind].words).format_field(word, "word")
+
+
 def headline(usability: str) -> str:
     """The verdict in one line."""
     return catalog().headlines[usability]

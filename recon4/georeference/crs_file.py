@@ -8,9 +8,17 @@ import numpy as np
 
 from recon4.errors import GeoreferenceError, StoreError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
+from recon4.model.local_frame import LocalReason
 from recon4.untrusted.bounded import read_json_object
 
 _MAX_JSON_BYTES = 16 << 20
+_WHY = {
+    LocalReason.NO_GNSS: "no GNSS in the recording",
+    LocalReason.SWITCHED_OFF: "GNSS is switched off (gnss.enabled)",
+    LocalReason.FEW_FIXES: "too few GNSS fixes are usable",
+    LocalReason.NO_AGREEMENT: "too few GNSS fixes agree with the trajectory",
+}
+"""An earlier version wrote sentences."""
 
 
 def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
@@ -29,8 +37,9 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
         record = read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
         if not record["crs"]:
             if crs:
+                reason = record["georeference"]["reason"]
                 raise GeoreferenceError(
-                    f"the map cannot be put into {crs}: {record['georeference']['reason']}"
+                    f"the map cannot be put into {crs}: {_WHY.get(reason, reason)}"
                 )
             return None
         origin = record["georeference"]["origin"]

@@ -16,6 +16,7 @@ from recon4.georeference.gnss_priors import (
     usable_gnss_priors,
 )
 from recon4.georeference.tuning import GnssTuning
+from recon4.model.local_frame import LocalReason
 from recon4.model.pose_graph import AUTOMATIC, Judge, Judgment, PoseGraph
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
@@ -34,8 +35,17 @@ class LocalRecord:
     """A map without a place on earth in ``georeference.json``; the fields are its keys."""
 
     georeferenced: bool = False
-    reason: str
-    fixes: int
+    reason: LocalReason
+    fixes: int = 0
+    """Number of fixes in the recording."""
+    fixes_usable: int | None = None
+    """None = not counted, as all that follows."""
+    fixes_agreeing: int | None = None
+    """Usable fixes that agree with the trajectory."""
+    extent_m: float | None = None
+    """Of the trajectory over these [m]."""
+    beside_m: float | None = None
+    """Largest distance of a usable fix from the trajectory [m]; None = one of them stood, too."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -77,8 +87,8 @@ class GeoreferenceResult:
     """``T_map_body`` with x east, y north, z up at the origin, if there is one."""
     origin: GeodeticOrigin | None
     """None: the map stays in its own local frame and is not georeferenced."""
-    reason: str
-    """Why there is no origin; empty if there is one."""
+    local: LocalRecord | None
+    """Why there is no origin; None if there is one."""
     T_enu_map: SE3
     """Initial rigid alignment: heading and shift only."""
     t_ns: Times
@@ -104,7 +114,8 @@ class GeoreferenceResult:
     def record(self) -> GeoreferenceRecord | LocalRecord:
         """What ``georeference.json`` has of it."""
         if self.origin is None:
-            return LocalRecord(reason=self.reason, fixes=self.samples)
+            assert self.local is not None
+            return self.local
         return GeoreferenceRecord(
             origin=OriginRecord(
                 lat_deg=float(np.rad2deg(self.origin.lat_rad)),
@@ -155,11 +166,12 @@ def georeference(
         GraphError: If the graph itself cannot be solved.
     """
     if gnss is None or not settings.enabled:
-        why = "no GNSS in the recording" if gnss is None else "switched off (gnss.enabled)"
-        return _local(graph, why, samples=0)
+        why = LocalReason.NO_GNSS if gnss is None else LocalReason.SWITCHED_OFF
+        return _local(graph, LocalRecord(reason=why))
     gnss_priors, origin = usable_gnss_priors(graph, trajectory, gnss, rig=rig, settings=settings)
     if origin is None or len(gnss_priors) < _MIN_PRIORS:
-        return _local(graph, f"{len(gnss_priors)} usable fixes of {len(gnss)}", samples=len(gnss))
+        usable, few = len(gnss_priors), LocalReason.FEW_FIXES
+        return _local(graph, LocalRecord(reason=few, fixes=len(gnss), fixes_usable=usable))
     return _place_by_priors(graph, gnss_priors, origin, samples=len(gnss), settings=settings)
 
 
@@ -176,9 +188,15 @@ def _place_by_priors(
     T_enu_map, near = align_heading(p_map, gnss_priors, settings=settings)
     extent = float(np.linalg.norm(np.ptp(p_map[near, :2], axis=0))) if near.any() else 0.0
     if near.sum() < _MIN_PRIORS or extent < settings.min_extent_m:
-        why = f"{near.sum()} agreeing fixes over {extent:.1f} m"
-        why += _contradiction(p_map, gnss_priors, settings=settings)
-        return _local(graph, why, samples=samples)
+        local = LocalRecord(
+            reason=LocalReason.NO_AGREEMENT,
+            fixes=samples,
+            fixes_usable=len(gnss_priors),
+            fixes_agreeing=int(near.sum()),
+            extent_m=round(extent, 3),
+            beside_m=_beside_m(p_map, gnss_priors, settings=settings),
+        )
+        return _local(graph, local)
     graph = graph.with_poses(T_enu_map @ graph.T_map_body)
     rejected = _contradicting(graph, gnss_priors, near, settings=settings)
     graph = with_judgments(graph, rejected)
@@ -186,7 +204,7 @@ def _place_by_priors(
     return GeoreferenceResult(
         graph=graph,
         origin=origin,
-        reason="",
+        local=None,
         T_enu_map=T_enu_map,
         t_ns=gnss_priors.t_ns,
         residual_m=_residuals(graph, gnss_priors),
@@ -197,17 +215,14 @@ def _place_by_priors(
     )
 
 
-def _contradiction(p_map: Array, gnss_priors: GnssPriors, *, settings: GnssTuning) -> str:
-    """By how much fixes contradict a trajectory that they do not place; empty if one stood."""
+def _beside_m(p_map: Array, gnss_priors: GnssPriors, *, settings: GnssTuning) -> float | None:
+    """How far fixes lie from a trajectory that they do not place [m]; None if one stood."""
     tracks = (gnss_priors.p_enu[:, :2], p_map[:, :2])
     if min(np.linalg.norm(np.ptp(track, axis=0)) for track in tracks) < settings.min_extent_m:
-        return ""
+        return None
     T_enu_map = _heading_fit(p_map, gnss_priors.p_enu, gnss_priors.sd_m)
     beside_m = np.linalg.norm((gnss_priors.p_enu - T_enu_map @ p_map)[:, :2], axis=1)
-    return (
-        f" of {len(p_map)} usable ones, which lie up to {beside_m.max():.1f} m beside the "
-        "trajectory. Either the trajectory or GNSS is wrong"
-    )
+    return round(float(beside_m.max()), 3)
 
 
 def align_heading(
@@ -329,15 +344,15 @@ def _residuals(graph: PoseGraph, gnss_priors: GnssPriors) -> Array:
     return gnss_priors.p_enu - graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
 
 
-def _local(graph: PoseGraph, reason: str, *, samples: int) -> GeoreferenceResult:
+def _local(graph: PoseGraph, local: LocalRecord) -> GeoreferenceResult:
     empty = np.zeros(0, dtype=np.int64)
     return GeoreferenceResult(
         graph=graph,
         origin=None,
-        reason=reason,
+        local=local,
         T_enu_map=SE3.identity(),
         t_ns=empty,
         residual_m=np.zeros((0, 3)),
         used=empty.astype(np.bool_),
-        samples=samples,
+        samples=local.fixes,
     )

@@ -103,7 +103,7 @@ class LeveledMap:
             leveled_by=self.leveling.source,
             tilt_deg=round(float(np.rad2deg(self.leveling.tilt_rad)), 4),
             crs=self.crs.name if self.crs else "",
-            local=self.georeference.reason,
+            local=self.georeference.local.reason if self.georeference.local else "",
             edges_rejected=len(self.georeference.rejected),
             antenna=self.antenna,
             uncertainty=(

@@ -151,7 +151,7 @@ class LevelFigures(Figures, frozen=True, kw_only=True):
     crs: str
     """Code of the map's CRS; empty = a local frame."""
     local: str
-    """Why the map is in a local frame; empty = it is not."""
+    """`LocalReason` why the map is in a local frame; empty = it is not."""
     edges_rejected: int = 0
     """Edges that contradict the positions."""
     antenna: AntennaFigures | None = None

@@ -7,6 +7,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 from recon4.evaluation.table import number
+from recon4.findings.kinds import FindingKind
+from recon4.findings.wording import word_of
 from recon4.model.import_counts import count_label
 
 Rows = list[tuple[str, str]]
@@ -29,7 +31,10 @@ def placed_rows(georeference: Mapping[str, Any]) -> Rows:
         out.append(("leveled by", _SOURCES.get(source, str(source))))
     if source != "none":
         out += _rows(level, "leveling: ")
-    inner = dict(georeference.get("georeference", {}))
+    stated = georeference.get("georeference", {})
+    inner = {name: value for name, value in stated.items() if value is not None}
+    if "reason" in inner:
+        inner["reason"] = word_of(FindingKind.GNSS_NOT_USED, inner["reason"])
     if "georeferenced" in inner:
         out.append(("georeferenced", "yes" if inner.pop("georeferenced") else "no"))
     if "edges_rejected" in inner:

@@ -8,6 +8,7 @@ from msgspec.structs import replace
 
 from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
+from recon4.findings.placement import GnssFacts
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.georeference.antenna_audit import antenna_doubts
@@ -54,7 +55,19 @@ class Gnss:
             )
         has_gnss = walk.frames is not None and walk.frames.gnss
         if has_gnss and walk.level is not None and not walk.level.crs:
-            yield finding(FindingKind.GNSS_NOT_USED, Level.CHECK, {"reason": walk.level.local})
+            yield finding(FindingKind.GNSS_NOT_USED, Level.CHECK, _why_not(gnss))
+
+
+def _why_not(gnss: GnssFacts) -> dict[str, Value]:
+    """Why fixes were not used, as far as it is known."""
+    values: dict[str, Value] = {"reason": gnss.reason, "fixes": gnss.fixes}
+    known = {
+        "fixes_usable": gnss.fixes_usable,
+        "fixes_agreeing": gnss.fixes_agreeing,
+        "extent_m": gnss.extent_m,
+        "beside_m": gnss.beside_m,
+    }
+    return values | {name: value for name, value in known.items() if value is not None}
 
 
 class Heights:

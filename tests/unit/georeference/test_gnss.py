@@ -8,6 +8,7 @@ from recon4.georeference.crs import GeodeticOrigin, to_enu, to_geodetic
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.gnss_priors import usable_gnss_priors
 from recon4.georeference.tuning import GnssTuning
+from recon4.model.local_frame import LocalReason
 from recon4.model.pose_graph import (
     AUTOMATIC,
     Edge,
@@ -127,7 +128,7 @@ def test_a_drifting_walk_is_aligned_with_its_positions(true: Trajectory, gnss: G
     assert worst_m(result, true) < 0.08
     assert result.used.mean() > 0.98
     assert np.all(result.rmse_m < 0.04)
-    assert result.reason == ""
+    assert result.local is None
 
 
 def test_exact_positions_pull_a_drifting_walk_to_the_truth(true: Trajectory) -> None:
@@ -306,7 +307,9 @@ def test_with_too_few_fixes_the_map_is_not_georeferenced(
     result = georeference(graph, dense, gnss.take(np.arange(kept)), rig=RIG, settings=GnssTuning())
 
     assert result.origin is None
-    assert f"{kept} usable fixes" in result.reason
+    assert result.local is not None
+    assert result.local.reason is LocalReason.FEW_FIXES
+    assert (result.local.fixes, result.local.fixes_usable) == (kept, kept)
     assert result.graph is graph
     assert result.record().georeferenced is False
 
@@ -317,7 +320,10 @@ def test_a_stationary_receiver_gives_no_heading_and_a_reason(
     result = run(true, gnss.take(np.arange(8)))
 
     assert result.origin is None
-    assert "agreeing fixes" in result.reason
+    assert result.local is not None
+    assert result.local.reason is LocalReason.NO_AGREEMENT
+    assert result.local.extent_m < 1.0
+    assert result.local.beside_m is None
 
 
 def test_fixes_that_contradict_the_trajectory_are_said_with_their_distance(
@@ -329,15 +335,14 @@ def test_fixes_that_contradict_the_trajectory_are_said_with_their_distance(
     result = run(true, elsewhere, gate_relative=0.0)
 
     assert result.origin is None
-    assert f"of {len(gnss)} usable ones" in result.reason
-    assert "Either the trajectory or GNSS is wrong" in result.reason
-    beside_m = float(result.reason.split("up to ")[1].split(" m")[0])
-    assert beside_m > 50.0
+    assert result.local is not None
+    assert result.local.fixes_usable == len(gnss)
+    assert result.local.beside_m > 50.0
 
 
 def test_no_receiver_and_switched_off_are_named(true: Trajectory, gnss: GnssSamples) -> None:
-    assert "no GNSS" in run(true, None).reason
-    assert "switched off" in run(true, gnss, enabled=False).reason
+    assert run(true, None).record().reason is LocalReason.NO_GNSS
+    assert run(true, gnss, enabled=False).record().reason is LocalReason.SWITCHED_OFF
 
 
 def test_the_same_input_gives_the_same_bits(true: Trajectory, gnss: GnssSamples) -> None:

@@ -39,14 +39,15 @@ def test_quantities_have_their_unit(name, value, row):
 def test_a_map_that_is_not_leveled_has_no_angles():
     placed = {
         "levelling": {"source": "none", "roll_deg": 0.0, "spread_deg": None},
-        "georeference": {"georeferenced": False, "reason": "no GNSS in the recording"},
+        "georeference": {"georeferenced": False, "reason": "no-gnss", "fixes_usable": None},
     }
 
     rows = dict(placed_rows(placed))
 
     assert rows["leveled by"].startswith("not leveled")
     assert rows["georeferenced"] == "no"
-    assert rows["reason"] == "no GNSS in the recording"
+    assert rows["reason"] == "there is no GNSS in the recording"
+    assert "fixes usable" not in rows
     assert not [name for name in rows if "roll" in name]
 
 
