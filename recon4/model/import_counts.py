@@ -88,6 +88,11 @@ _PACKETS = {
     "packets_hdl64": _lost("packets", "blocks of the lower lasers of an HDL-64E, dropped"),
     "packets_wrong_azimuth": _lost("packets", "an azimuth above 360°, dropped"),
     "packets_other_product": _lost("packets", "another product byte than the first ones, dropped"),
+    "packets_wrong_header": _lost(
+        "packets", "a version, type or length of another packet, dropped"
+    ),
+    "packets_wrong_stamp": _lost("packets", "a time stamp that is none, dropped"),
+    "packets_wrong_crc": _lost("packets", "damaged by their CRC, dropped"),
     "packets_wrong_clock": _lost("packets", "a time more than 1 s off, dropped"),
     "packets_late": _lost("packets", "arrived after their place had passed, dropped"),
     "packets_missing": _lost("packets", "never arrived: check cable and recorder", apart=True),
@@ -107,6 +112,7 @@ _POINTS = {
     "points_no_return": _usual("", "without an echo", noun="shots"),
     "points_near": _usual("", "nearer than ingest.min_range_m", noun="points"),
     "points_far": _usual("", "farther than ingest.max_range_m", noun="points"),
+    "points_noise": _usual("", "noise of high confidence by their tag, left out", noun="points"),
     "points_invalid": _usual("", "not finite or at the origin: no echo", noun="points"),
     "points_wrong_time": _lost(
         "points", "a time more than two revolutions from the others, dropped", apart=True

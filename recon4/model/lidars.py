@@ -57,6 +57,70 @@ _VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3)
     replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), accuracy_m=0.02),
 )
 
+_AVIA = LidarFacts(
+    name="Avia",
+    maker="Livox",
+    beams=6,
+    scanning="rosette",
+    elevation_deg=(-38.6, 38.6),
+    azimuth_deg=70.4,
+    min_range_m=1.0,
+    range_m=190.0,
+    accuracy_m=0.02,
+    divergence_rad=0.0049,
+)
+_LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 v1.0, Avia v1.2,
+    # Mid-360 v1.2, HAP v1.0; the divergence is the larger one of 0.28° x 0.03° (Mid-360: as the
+    # others, its manual states none that fits its spots)
+    _AVIA,
+    replace(
+        _AVIA, name="Mid-40", beams=1, elevation_deg=(-19.2, 19.2), azimuth_deg=38.4, range_m=90.0
+    ),
+    replace(
+        _AVIA,
+        name="Mid-70",
+        beams=1,
+        elevation_deg=(-35.2, 35.2),
+        azimuth_deg=70.4,
+        min_range_m=0.05,
+        range_m=90.0,
+    ),
+    replace(
+        _AVIA,
+        name="Horizon",
+        elevation_deg=(-12.55, 12.55),
+        azimuth_deg=81.7,
+        min_range_m=0.5,
+        range_m=90.0,
+    ),
+    replace(
+        _AVIA,
+        name="Tele-15",
+        elevation_deg=(-8.1, 8.1),
+        azimuth_deg=14.5,
+        min_range_m=3.0,
+        range_m=320.0,
+        divergence_rad=0.0021,
+    ),
+    replace(
+        _AVIA,
+        name="Mid-360",
+        beams=4,
+        elevation_deg=(-7.0, 52.0),
+        azimuth_deg=360.0,
+        min_range_m=0.1,
+        range_m=40.0,
+    ),
+    replace(
+        _AVIA,
+        name="HAP",
+        elevation_deg=(-12.5, 12.5),
+        azimuth_deg=120.0,
+        min_range_m=0.5,
+        range_m=150.0,
+    ),
+)
+
 _GENERIC = LidarFacts(
     name="generic",
     maker="",
@@ -68,7 +132,7 @@ _GENERIC = LidarFacts(
     divergence_rad=0.003,
 )
 
-LIDARS: dict[str, LidarFacts] = {model.name: model for model in (*_VELODYNE, _GENERIC)}
+LIDARS: dict[str, LidarFacts] = {model.name: model for model in (*_VELODYNE, *_LIVOX, _GENERIC)}
 """All models by name; ``generic`` is any LiDAR whose points come as clouds."""
 
 

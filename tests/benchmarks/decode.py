@@ -1,4 +1,6 @@
-"""One second of two VLP-16 decoded: recon4 against velodyne-decoder, in one run on one thread.
+"""One second of packets decoded, in one run on one thread.
+
+Two VLP-16: recon4 against velodyne-decoder. Other families: how many times faster than real time.
 
 Run: ``python tests/benchmarks/decode.py [ROUNDS]``
 """
@@ -15,15 +17,23 @@ import numpy as np
 import velodyne_decoder
 
 from recon4.recording.formats.pcap import read_pcap
+from recon4.recording.packets.livox.models import LAYOUTS, PointLayout
+from recon4.recording.packets.livox.points import LivoxSource, decode_points
+from recon4.recording.packets.livox.sound import sound_points
+from recon4.recording.packets.livox.sound import stamps_ns as livox_stamps_ns
 from recon4.recording.packets.velodyne.data_packets import PacketDecoder
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
+from tests.security.fuzz.kinds_livox import model_of as livox_model
+from tests.security.fuzz.kinds_livox import packets_of as livox_packets
 from tests.unit.recording.packet_builders import sensor, spin
 
 SENSORS = 2
 PACKETS = 754
 """Packets of a VLP-16 per second."""
+LIVOX_PACKETS = 100
+"""Different packets of a Livox, sent again and again."""
 BATCH = 76
 """Packets of a revolution: as they come in the messages of a bag."""
 
@@ -51,6 +61,24 @@ def theirs(packets: list[velodyne_decoder.VelodynePacket]) -> int:
             scan = velodyne_decoder.PacketVector(packets[at : at + BATCH])
             points += len(decoder.decode(scan)[1])
     return points
+
+
+def livox(layout: PointLayout) -> Callable[[], int]:
+    """One second of a Mid-360 (SDK2) or an Avia (SDK1): filter and decode."""
+    source = LivoxSource(0, livox_model(layout), layout, IngestSettings())
+    seconds = LIVOX_PACKETS * layout.shots * source.model.shot_s
+    payloads = np.tile(livox_packets(layout, LIVOX_PACKETS), (round(1.0 / seconds), 1))
+
+    def work() -> int:
+        report = ImportReport()
+        points = 0
+        for batch in np.array_split(payloads, 10):
+            assert sound_points(batch, layout, report, by_crc=layout.sdk == 2).all()
+            t_ns = livox_stamps_ns(batch, layout.sdk)
+            points += len(decode_points(t_ns, batch, source, report=report))
+        return points
+
+    return work
 
 
 def from_file(path: Path) -> int:
@@ -92,6 +120,11 @@ def main(rounds: int) -> None:
     print(f"{'':34} {'CPU ms':>9} {'best ms':>8} {'result':>8}  of velodyne-decoder")
     for name, (median, best, result) in found.items():
         print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {median / peer:.2f}")
+    print(f"\n{'':34} {'CPU ms':>9} {'best ms':>8} {'points':>8}  times real time")
+    for layout in LAYOUTS:
+        median, best, result = milliseconds(rounds, livox(layout))
+        name = f"Livox SDK{layout.sdk}, data type {layout.data_type}"
+        print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
 
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from recon4.recording.packets.family import PacketFamily
+from recon4.recording.packets.livox.family import LIVOX
 
-FAMILIES: tuple[PacketFamily, ...] = ()
+FAMILIES: tuple[PacketFamily, ...] = (LIVOX,)
 """In the order in which they are asked whether a sender is theirs."""

@@ -38,6 +38,7 @@ from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.kinds_live import LIVE_KINDS
+from tests.security.fuzz.kinds_livox import LIVOX_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
 
 
@@ -349,6 +350,6 @@ def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
 
 
 KINDS: dict[str, Kind] = {
-    kind.name: kind for kind in (*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS)
+    kind.name: kind for kind in (*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS, *LIVOX_KINDS)
 }
 """By name."""

@@ -1,0 +1,216 @@
+"""The family of Livox LiDARs: what their packets look like, and the decoder of one sensor."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.trajectory import Times
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.pcap import Datagrams
+from recon4.recording.packets.family import (
+    Companion,
+    MessagePackets,
+    PacketSamples,
+    PacketSensor,
+    Payloads,
+    Recognized,
+)
+from recon4.recording.packets.livox.models import (
+    IMU_SAMPLE,
+    LAYOUTS,
+    MODELS,
+    SDK1_HEADER,
+    SDK1_IMU_SIZE,
+    SDK1_IMU_TYPE,
+    SDK2_HEADER,
+    SDK2_IMU_SIZE,
+    SDK2_IMU_TYPE,
+    LivoxModel,
+    PointLayout,
+    layout_of,
+)
+from recon4.recording.packets.livox.points import LivoxSource, decode_points
+from recon4.recording.packets.livox.recognition import likely_model, likely_models
+from recon4.recording.packets.livox.sound import (
+    has_crc,
+    has_header,
+    has_stamp,
+    sound_points,
+    stamps_ns,
+)
+from recon4.recording.report import ImportReport
+
+_MODES = {1: "single", 2: "dual", 3: "triple"}
+_MOST_PROBED = 200
+"""Packets at the head of a stream whose sums are compared."""
+
+
+class LivoxFormat:
+    """The packets of one Livox.
+
+    Points are in the frame of Livox's drivers: x forward, y left, z up, origin as in the manual.
+    """
+
+    clock_period_ns = 0
+
+    def __init__(self, sensor: PacketSensor, layout: PointLayout, model: LivoxModel) -> None:
+        """Prepare.
+
+        Args:
+            sensor: What is known of it.
+            layout: Of its data packets.
+            model: Its lines and the rate of its shots.
+        """
+        self.size = layout.size
+        self.packet_s = layout.shots * model.shot_s
+        self._layout, self._report = layout, sensor.report
+        self._source = LivoxSource(sensor.row, model, layout, sensor.settings)
+        self._name = sensor.sensor.name
+        self._by_crc = layout.sdk == 2 and self._sums_are_right(sensor.head)
+
+    def sound(self, payloads: Payloads) -> NDArray[np.bool_]:
+        """Which payloads are data packets of this sensor, (N,); counted."""
+        return sound_points(payloads, self._layout, self._report, by_crc=self._by_crc)
+
+    def stamps_ns(self, payloads: Payloads) -> Times:
+        """Time of the first shot of each packet on the clock of the sensor [ns], (N,)."""
+        return stamps_ns(payloads, self._layout.sdk)
+
+    def azimuth_cdeg(self, payloads: Payloads) -> None:
+        """None: its pattern does not repeat."""
+
+    def decode(self, t_ns: Times, payloads: Payloads) -> Shots:
+        """Points of sound packets, see `decode_points`."""
+        return decode_points(t_ns, payloads, self._source, report=self._report)
+
+    def likely_models(self, usual_s: float) -> tuple[str, ...]:
+        """Models whose packets of this layout come at this interval [s]."""
+        return likely_models(self._layout, usual_s)
+
+    def samples(self, datagrams: Datagrams, ahead_ns: int) -> PacketSamples | None:
+        """Samples of the IMU, in the axes of the points; None if there are none."""
+        sdk = self._layout.sdk
+        size = SDK1_IMU_SIZE if sdk == 1 else SDK2_IMU_SIZE
+        rows = np.flatnonzero(datagrams.length == size)
+        payloads = datagrams.payloads(rows, size)
+        sound = has_header(payloads, sdk, SDK1_IMU_TYPE if sdk == 1 else SDK2_IMU_TYPE) & has_stamp(
+            payloads, sdk
+        )
+        payloads = payloads[sound]
+        if not len(payloads):
+            return None
+        t_ns = stamps_ns(payloads, sdk) + ahead_ns
+        gyro, accel = imu_values(payloads, sdk)
+        kept = np.isfinite(gyro).all(axis=1) & np.isfinite(accel).all(axis=1)
+        self._report.count("imu_samples", int(np.count_nonzero(kept)))
+        return PacketSamples(imu=ImuSamples(t_ns[kept], gyro[kept], accel[kept]))
+
+    def _sums_are_right(self, head: Datagrams) -> bool:
+        """Whether most packets at the head carry the CRC that the protocol describes."""
+        rows = np.flatnonzero(head.length == self.size)[:_MOST_PROBED]
+        right = has_crc(head.payloads(rows, self.size))
+        if len(rows) and 2 * np.count_nonzero(right) <= len(right):
+            self._report.derive(
+                f"{self._name}: the CRC of its packets is not that of the protocol: not checked"
+            )
+        return bool(2 * np.count_nonzero(right) > len(right))
+
+
+class LivoxFamily:
+    """Livox LiDARs with the protocols SDK1 and SDK2."""
+
+    name = "Livox"
+    messages: Mapping[str, MessagePackets] = {}
+    """Livox's drivers publish points, no packets."""
+
+    def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+        """What the datagrams of one sender to one port are; None = not of this family."""
+        del companions
+        layout = _usual_layout(head)
+        if layout is None:
+            return Recognized(family=self.name, kind="samples") if _are_imu(head) else None
+        rows = np.flatnonzero(head.length == layout.size)
+        payloads = head.payloads(rows, layout.size)
+        sound = sound_points(payloads, layout, ImportReport(), by_crc=False)
+        if 2 * np.count_nonzero(sound) <= len(head):
+            return None
+        model, remark = likely_model(layout, payloads[sound])
+        return Recognized(
+            family=self.name,
+            kind="data",
+            model=model.name,
+            mode=_MODES[layout.returns],
+            packet_s=layout.shots * model.shot_s,
+            size=layout.size,
+            remarks=(remark,) if remark else (),
+        )
+
+    def open(self, sensor: PacketSensor) -> LivoxFormat:
+        """Prepare to decode the packets of one sensor.
+
+        Raises:
+            ConfigError: If the model is none of Livox, or its data type is not known.
+        """
+        name = sensor.sensor.model
+        layout = _usual_layout(sensor.head)
+        if layout is None:
+            raise ConfigError(
+                f"{sensor.sensor.name}: no data packet of a Livox at the head of the recording: "
+                "its data type is not known"
+            )
+        if name not in MODELS:
+            raise ConfigError(
+                f"no packet decoder for Livox model {name!r}; decoded: {', '.join(MODELS)}"
+            )
+        model = MODELS[name]
+        if model.sdk != layout.sdk:
+            sent = ", ".join(one.name for one in MODELS.values() if one.sdk == layout.sdk)
+            raise ConfigError(
+                f"{sensor.sensor.name}: its packets are of Livox SDK{layout.sdk} ({sent}), "
+                f"the rig says {name}"
+            )
+        return LivoxFormat(sensor, layout, model)
+
+
+def imu_packets(datagrams: Datagrams, sdk: int) -> tuple[Payloads, Times]:
+    """The IMU packets among datagrams, (N, size), and when they arrived [ns], (N,)."""
+    size, data_type = (SDK1_IMU_SIZE, SDK1_IMU_TYPE) if sdk == 1 else (SDK2_IMU_SIZE, SDK2_IMU_TYPE)
+    rows = np.flatnonzero(datagrams.length == size)
+    payloads = datagrams.payloads(rows, size)
+    sound = has_header(payloads, sdk, data_type) & has_stamp(payloads, sdk)
+    return payloads[sound], datagrams.t_ns[rows[sound]]
+
+
+def imu_values(payloads: Payloads, sdk: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Angular rates [rad/s] and accelerations [m/s²] of IMU packets, (N, 3) each."""
+    header = SDK1_HEADER if sdk == 1 else SDK2_HEADER
+    body = np.ascontiguousarray(payloads[:, header.itemsize :]).view(IMU_SAMPLE)[:, 0]
+    with np.errstate(invalid="ignore"):
+        gyro, accel = body["gyro"].astype(np.float64), body["accel"].astype(np.float64)
+    return gyro, accel * STANDARD_GRAVITY_M_S2
+
+
+def _usual_layout(head: Datagrams) -> PointLayout | None:
+    """The layout of most datagrams that have points; None = none has."""
+    sizes = {layout.size for layout in LAYOUTS}
+    found: Counter[PointLayout] = Counter()
+    for size in sizes & set(head.length.tolist()):
+        rows = np.flatnonzero(head.length == size)[:_MOST_PROBED]
+        layouts = [layout_of(payload) for payload in head.payloads(rows, size)]
+        found.update(layout for layout in layouts if layout is not None)
+    return found.most_common(1)[0][0] if found else None
+
+
+def _are_imu(head: Datagrams) -> bool:
+    """Whether more than half of the datagrams are IMU packets."""
+    found = (len(imu_packets(head, sdk)[0]) for sdk in (1, 2))
+    return 2 * max(found) > len(head)
+
+
+LIVOX = LivoxFamily()

@@ -1,0 +1,91 @@
+"""Which Livox sends packets: by how fast it shoots, and where to."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.livox.models import MODELS, LivoxModel, PointLayout, header_of
+from recon4.recording.packets.livox.points import LivoxSource, decode_points
+from recon4.recording.packets.livox.sound import stamps_ns
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+
+_ALIKE = 0.15
+"""Intervals of one model differ by less than this ratio; those of two by more."""
+_EVERYTHING = IngestSettings(min_range_m=0.0, max_range_m=1000.0)
+_WIDE_DEG, _HIGH_DEG, _TELE_DEG = 37.0, 14.0, 9.5
+"""Half of the view: a Horizon sees 40.9° to the sides and 12.6° up, an Avia 35.2° and 38.6°, a
+Tele-15 7.3° and 8.1°."""
+_ENOUGH_POINTS = 20_000
+"""From which the view is known: 0.1 s."""
+
+
+def likely_models(layout: PointLayout, packet_s: float) -> tuple[str, ...]:
+    """Models whose packets of a layout come at an interval [s]; the usual one first."""
+    names = [
+        model.name
+        for model in MODELS.values()
+        if model.sdk == layout.sdk and abs(packet_s / (layout.shots * model.shot_s) - 1.0) < _ALIKE
+    ]
+    if layout.sdk == 1 and layout.data_type > 1 and "Mid-70" in names:
+        names.sort(key=lambda name: name != "Mid-70")  # a Mid-40 has no tags
+    return tuple(names)
+
+
+def likely_model(layout: PointLayout, payloads: Payloads) -> tuple[LivoxModel, str]:
+    """The model of sound packets, and a remark if it is only assumed.
+
+    Models that shoot alike differ in their field of view.
+
+    Args:
+        layout: Of the packets.
+        payloads: From the head of a stream, (N, size), N > 0.
+    """
+    names = likely_models(layout, _packet_s(layout, payloads))
+    default = "Mid-360" if layout.sdk == 2 else "Avia" if layout.data_type > 1 else "Mid-40"
+    if not names:
+        return MODELS[default], f"the model of this Livox is not known: read as a {default}"
+    if "Avia" not in names:
+        return MODELS[names[0]], ""
+    return MODELS[_by_view(layout, payloads)], ""
+
+
+def _packet_s(layout: PointLayout, payloads: Payloads) -> float:
+    """Usual time of the shots of a packet [s]."""
+    if layout.sdk == 2:
+        stated = np.median(header_of(payloads, 2)["interval"]) * 1e-7
+        if stated > 0:
+            return float(stated)
+    steps = np.diff(np.unique(stamps_ns(payloads, layout.sdk)))
+    return float(np.median(steps)) * 1e-9 if len(steps) else float("nan")
+
+
+def _by_view(layout: PointLayout, payloads: Payloads) -> str:
+    """Horizon, Avia or Tele-15."""
+    azimuth_deg, elevation_deg, points = _view(layout, payloads)
+    if layout.returns == 3 or elevation_deg > _HIGH_DEG:
+        return "Avia"
+    if azimuth_deg > _WIDE_DEG:
+        return "Horizon"
+    if max(azimuth_deg, elevation_deg) < _TELE_DEG and points > _ENOUGH_POINTS:
+        return "Tele-15"
+    return "Avia"
+
+
+def _view(layout: PointLayout, payloads: Payloads) -> tuple[float, float, int]:
+    """Largest directions of points to the side and up or down [°], and the number of points."""
+    source = LivoxSource(0, MODELS["Avia"], layout, _EVERYTHING)
+    none_ns = np.zeros(len(payloads), np.int64)
+    xyz = decode_points(none_ns, payloads, source, report=ImportReport()).xyz
+    if not len(xyz):
+        return 0.0, 0.0, 0
+    azimuth = np.abs(np.arctan2(xyz[:, 1], xyz[:, 0]))
+    elevation = np.abs(np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1])))
+    return _largest_deg(azimuth), _largest_deg(elevation), len(xyz)
+
+
+def _largest_deg(angles_rad: NDArray[np.floating]) -> float:
+    """Without single damaged values."""
+    return float(np.rad2deg(np.percentile(angles_rad, 99.5)))
