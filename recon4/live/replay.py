@@ -24,9 +24,11 @@ from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import stretched
 from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
-from recon4.recording.formats.pcap import address_text, read_pcap
+from recon4.recording.formats.datagrams import address_text
+from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.kinds import pcap_files
-from recon4.recording.packets.velodyne.models import DATA_SIZE, HOUR_US, POSITION_SIZE
+from recon4.recording.packets.sensor_clock import HOUR_US
+from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_replay import datagrams_of_scans, has_scans
 

@@ -6,13 +6,12 @@ from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import islice
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
-from recon4.model.rig import Rig, Sensor
+from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.assembler import moved
@@ -28,12 +27,12 @@ from recon4.recording.bag_messages import (
     stamp_clock,
     stamp_ns,
 )
+from recon4.recording.bag_packets import PacketTopics, model_of_packets
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.driver_topics import no_lidar_text, unread_text
 from recon4.recording.formats.bags import (
     CLOUD,
-    SCAN,
     Bag,
     BagMessage,
     BagTopic,
@@ -41,9 +40,7 @@ from recon4.recording.formats.bags import (
 from recon4.recording.lidar_choice import is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
-from recon4.recording.packets.sensor_clock import SensorClock
-from recon4.recording.packets.velodyne.data_packets import PacketDecoder
-from recon4.recording.packets.velodyne.models import likely_model, velodyne_model
+from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.stamp_order import StampOrder
@@ -62,6 +59,19 @@ from recon4.recording.topic_choice import (
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory
+
+
+class TopicReader(Protocol):
+    """Decodes the messages of one topic of a LiDAR."""
+
+    def push(self, message: BagMessage, content: Any) -> Iterator[Item]:
+        """What a message gives."""
+        ...
+
+    def flush(self) -> Iterator[Item]:
+        """The rest; call once, at the end."""
+        ...
+
 
 _COPIES_WITHIN = 4
 """Messages of a topic among which a copy of a cloud is looked for."""
@@ -135,13 +145,14 @@ class BagRecording:
         for batch in samples.values():
             yield from batch.flush()
 
-    def _lidars(self, bag: Bag) -> dict[str, _Scans | _Clouds]:
+    def _lidars(self, bag: Bag) -> dict[str, TopicReader]:
         kinds = {topic.name: topic for topic in bag.topics}
-        found: dict[str, _Scans | _Clouds] = {}
+        found: dict[str, TopicReader] = {}
+        packets = PacketTopics(bag, self.rig, self._settings, report=self._report)
         for row, sensor in enumerate(self.rig.sensors):
             topic = kinds.get(sensor.topic)
-            if topic is not None and topic.type == SCAN:
-                found[sensor.topic] = _Scans(self._packets(row, sensor), self._report)
+            if topic is not None and topic.type in DATA_MESSAGES:
+                found |= packets.readers(row, sensor)
             elif topic is not None:
                 clouds = CloudDecoder(
                     row,
@@ -159,15 +170,6 @@ class BagRecording:
                 )
         return found
 
-    def _packets(self, row: int, sensor: Sensor) -> PacketDecoder:
-        clock = SensorClock(
-            sensor.name,
-            packet_s=velodyne_model(sensor.model).packet_s(0),
-            report=self._report,
-            alone=len(self.rig.sensors) == 1,
-        )
-        return PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
-
 
 def lidar_streams(
     bag: Bag, rig: Rig | None, settings: IngestSettings, *, report: ImportReport
@@ -183,7 +185,7 @@ def lidar_streams(
     Raises:
         ConfigError: If the settings name a topic that is not there.
     """
-    scans = [t for t in bag.topics if t.type == SCAN and t.messages]
+    scans = [t for t in bag.topics if t.type in DATA_MESSAGES and t.messages]
     clouds = [t for t in bag.topics if is_cloud(t)]
     if settings.lidar_topic:
         there = [t.name for t in (*scans, *clouds)]
@@ -220,26 +222,19 @@ def lidar_streams(
 
 
 def _model(bag: Bag, topic: BagTopic) -> str:
-    """Detect the sensor of a topic from its first readable message."""
+    """Detect the sensor of a topic from its first readable messages."""
+    if topic.type in DATA_MESSAGES:
+        return model_of_packets(bag, topic)
     for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
         content = bag.decode(message)
         if content is None:
             continue
-        if topic.type == SCAN and len(content.packets) > 1:
-            return _model_of_packets(np.stack([p.data for p in content.packets]))
         if topic.type == CLOUD and content.width * content.height:
             try:
                 return model_of_points(cloud_table(content))
             except RecordingError:
                 continue
     return "generic"
-
-
-def _model_of_packets(payloads: NDArray[np.uint8]) -> str:
-    """Detect the model from the packet interval and the product byte, which may be wrong."""
-    stamps_us = payloads[:, 1200:1204].copy().view("<u4")[:, 0].astype(np.int64)
-    interval_s = float(np.median(np.diff(stamps_us))) * 1e-6
-    return likely_model(int(payloads[0, 1205]), interval_s, int(payloads[0, 1204])) or "generic"
 
 
 def _period_ns(head: Sequence[tuple[int, int]]) -> int:
@@ -256,27 +251,6 @@ def _period_ns(head: Sequence[tuple[int, int]]) -> int:
 
 
 # -- LiDARs
-
-
-class _Scans:
-    """Decodes messages of raw packets."""
-
-    def __init__(self, decoder: PacketDecoder, report: ImportReport) -> None:
-        self._decoder, self._report = decoder, report
-
-    def push(self, message: BagMessage, scan: Any) -> Iterator[Shots]:
-        if not scan.packets:
-            return
-        payloads = np.stack([packet.data for packet in scan.packets])
-        t_ns = np.array([stamp_ns(packet.stamp) for packet in scan.packets], np.int64)
-        shots = self._decoder.push(np.where(t_ns > 0, t_ns, message.t_ns), payloads)
-        if len(shots):
-            self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
-            yield shots
-
-    def flush(self) -> Iterator[Shots]:
-        if len(shots := self._decoder.flush()):
-            yield shots
 
 
 class _Clouds:

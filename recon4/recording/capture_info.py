@@ -8,8 +8,8 @@ from pathlib import Path
 
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import pcap_files
+from recon4.recording.packets.companions import companions_of
 from recon4.recording.packets.streams import PacketStream, require_one_capture, scan_pcap
-from recon4.recording.packets.velodyne.models import RETURN_MODES
 from recon4.recording.scan_capture import ScanStreams, scan_streams
 
 WHOLE_BYTES = 64 << 20
@@ -30,8 +30,11 @@ def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
     files = pcap_files(path)
     require_one_capture(files)
     most = _WHOLE_PACKETS if info.bytes <= WHOLE_BYTES else _HEAD_PACKETS
-    streams = [stream for file in files for stream in scan_pcap(file, max_packets=most)]
-    names = {"position": "position packets", "IMU": "IMU samples", "GNSS": "GNSS samples"}
+    beside = companions_of([path])
+    streams = [
+        stream for file in files for stream in scan_pcap(file, max_packets=most, companions=beside)
+    ]
+    names = {"samples": "other packets of a LiDAR", "IMU": "IMU samples", "GNSS": "GNSS samples"}
     samples = [s for s in streams if s.kind in names]
     scanners = scan_streams(files)
     lidars = [_packet_sensor(s) for s in streams if s.kind == "data"]
@@ -44,7 +47,7 @@ def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
         estimated=not all(s.whole for s in streams),
         sensors=tuple(lidars),
         samples=tuple(f"{s.source}:{s.port}: {_total(s)} {names[s.kind]}" for s in samples),
-        unread=tuple(s.found for s in _others(streams, scanners)),
+        unread=tuple(s.text for s in _others(streams, scanners)),
     )
 
 
@@ -64,14 +67,14 @@ def _total(stream: PacketStream) -> int:
 
 def _packet_sensor(stream: PacketStream) -> SensorInfo:
     span_s = (stream.t_last_ns - stream.t_first_ns) / 1e9
-    mode = RETURN_MODES.get(stream.return_mode, f"return mode 0x{stream.return_mode:02x}")
+    mode = f" ({stream.found.mode} return)" if stream.found and stream.found.mode else ""
     return SensorInfo(
         label=f"{stream.source}:{stream.port}",
         model=stream.model or "unknown model",
-        content=f"packets ({mode} return)",
+        content=f"packets{mode}",
         count=_total(stream),
         rate_hz=(stream.packets - 1) / span_s if span_s > 0 else float("nan"),
-        rotation_hz=stream.rotation_hz,
+        rotation_hz=stream.found.rotation_hz if stream.found else float("nan"),
         remarks=stream.remarks,
     )
 

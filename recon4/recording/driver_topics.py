@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from recon4.recording.formats.bags import CLOUD, LASER_SCAN, SCAN, BagTopic
+from recon4.recording.formats.bags import CLOUD, LASER_SCAN, BagTopic
+from recon4.recording.packets.messages import DATA_MESSAGES
 
 _BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
 _REMEDIES = (
@@ -25,7 +26,7 @@ def driver_topics(topics: Sequence[BagTopic]) -> list[tuple[BagTopic, str]]:
     found = []
     for topic in topics:
         kind = topic.type.lower()
-        if not topic.messages or topic.type in (CLOUD, SCAN):
+        if not topic.messages or topic.type in (CLOUD):
             continue
         remedy = next((text for starts, text in _REMEDIES if kind.startswith(starts)), "")
         if remedy and not any(word in kind for word in _NOT_LIDARS):
@@ -45,7 +46,7 @@ def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
     """Why a bag has no LiDAR data that is read: what there is, what is read, what to do."""
     listed = ", ".join(f"{t.name} ({t.type})" for t in topics[:_NAMES_LISTED])
     listed += " …" * (len(topics) > _NAMES_LISTED)
-    kinds = ", ".join(short_type(kind) for kind in (CLOUD, SCAN, LASER_SCAN))
+    kinds = ", ".join(short_type(kind) for kind in (CLOUD, *sorted(DATA_MESSAGES), LASER_SCAN))
     why = unread_text(topics) or f"read are {kinds}"
     if any(topic.type == CLOUD and topic.messages for topic in topics):
         why += (

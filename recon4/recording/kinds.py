@@ -23,6 +23,7 @@ from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
 from recon4.recording.laser_tables import LASER_COLUMNS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
+from recon4.recording.packets.companions import COMPANION_SUFFIXES, MAX_COMPANION_BYTES
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.sources import Sources
 
@@ -30,7 +31,7 @@ from recon4.recording.sources import Sources
 class RecordingKind(StrEnum):
     """Kinds of recordings; the value is shown to users."""
 
-    PCAP = "Velodyne pcap"
+    PCAP = "packets of LiDARs (pcap)"
     BAG1 = "rosbag1"
     BAG2 = "rosbag2"
     FRAMES = f"frames ({CLOUD_FORMATS})"
@@ -40,6 +41,7 @@ class RecordingKind(StrEnum):
     CARMEN = "CARMEN log of a 2-D laser"
     LINE_TABLES = "line scans (CSV or NPZ)"
     LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
+    LIDAR_FILE = "description of a LiDAR (JSON, CSV, YAML, XML or DAT)"
 
 
 PLANAR = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
@@ -178,6 +180,8 @@ def _file_kind(path: Path) -> RecordingKind:
             return kind
     if pose_format(path):
         return RecordingKind.POSES
+    if path.suffix.lower() in COMPANION_SUFFIXES and path.stat().st_size <= MAX_COMPANION_BYTES:
+        return RecordingKind.LIDAR_FILE
     what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
     looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
     raise UnknownFormat(f"{path.name}: no reader recognizes it ({looks}); {_known()}")

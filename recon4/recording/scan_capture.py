@@ -17,11 +17,11 @@ from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.clock_compare import LIDAR
-from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
+from recon4.recording.formats.datagrams import Datagrams, address_number, address_text
+from recon4.recording.formats.pcap import OpenFile, open_plain, read_pcap
 from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
 from recon4.recording.packets.slots import in_slots
-from recon4.recording.packets.streams import address_number
 from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport

@@ -17,11 +17,12 @@ import numpy as np
 import velodyne_decoder
 
 from recon4.recording.formats.pcap import read_pcap
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.livox.models import LAYOUTS, PointLayout
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.sound import sound_points
 from recon4.recording.packets.livox.sound import stamps_ns as livox_stamps_ns
-from recon4.recording.packets.velodyne.data_packets import PacketDecoder
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
@@ -42,8 +43,13 @@ def ours(t_ns: np.ndarray, payloads: np.ndarray, batch: int) -> int:
     """Filter, order, clock, decode; returns the points."""
     points = 0
     for row in range(SENSORS):
-        decoder = PacketDecoder(
-            row, sensor(), settings=IngestSettings(min_range_m=0.0), report=ImportReport()
+        decoder = open_decoder(
+            PacketSensor(
+                row=row,
+                sensor=sensor(),
+                settings=IngestSettings(min_range_m=0.0),
+                report=ImportReport(),
+            )
         )
         for at in range(0, len(t_ns), batch):
             points += len(decoder.push(t_ns[at : at + batch], payloads[at : at + batch]))

@@ -31,7 +31,8 @@ from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.ingest import ingest
-from recon4.recording.packets.velodyne.models import DATA_SIZE, HOUR_US
+from recon4.recording.packets.sensor_clock import HOUR_US
+from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import preset

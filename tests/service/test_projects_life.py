@@ -143,7 +143,7 @@ def test_an_inspection_lists_sensors_and_suitable_settings(tmp_path, data):
         nothing = server.get("/api/look", params={"path": str(folder / "notes.csv")})
         outside = server.get("/api/look", params={"path": "/etc/passwd"})
 
-    assert found["kind"] == "Velodyne pcap"
+    assert found["kind"] == "packets of LiDARs (pcap)"
     assert found["sensors"][0]["model"] and found["seconds"] > 0.0
     assert found["project"] == "morning-walk"
     assert found["preset"] == "outdoor"

@@ -43,9 +43,9 @@ MAY_IMPORT = {
     | {"recon4.system.processes", "recon4.system.stopping"}
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
     | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
-    | {"recon4.recording.formats.pcap"}
+    | {"recon4.recording.formats.datagrams", "recon4.recording.formats.pcap"}
     | {f"recon4.recording.samples.{name}" for name in ("clean", "measured")}
-    | {"recon4.recording.packets.velodyne.models"}
+    | {"recon4.recording.packets.sensor_clock", "recon4.recording.packets.velodyne.models"}
     | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
     | {f"recon4.findings.{name}" for name in ("finding", "kinds", "verdict", "wording")},
     "recon4/live/project_files.py": STAGE

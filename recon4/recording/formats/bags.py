@@ -33,9 +33,9 @@ from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
 from recon4.recording.formats.scratch import scratch_folder
 from recon4.recording.formats.zstd_file import decompress_file
+from recon4.recording.packets.messages import DATA_MESSAGES, DEFINITIONS
 from recon4.recording.report import ImportReport
 
-SCAN = "velodyne_msgs/msg/VelodyneScan"
 CLOUD = "sensor_msgs/msg/PointCloud2"
 IMU = "sensor_msgs/msg/Imu"
 NAVSATFIX = "sensor_msgs/msg/NavSatFix"
@@ -44,13 +44,11 @@ LASER_SCAN = "sensor_msgs/msg/LaserScan"
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
 """Of ROS 2 and late ROS 1, of early ROS 1."""
 TEXT = "std_msgs/msg/String"
-_MEASURED = frozenset({SCAN, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
+_MEASURED = frozenset({*DATA_MESSAGES, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
 """Types whose messages come when something is measured. With simulated time, messages that are sent
 once, such as static transforms, may be recorded at time 0."""
 
 _DEFINITIONS = {
-    "velodyne_msgs/msg/VelodynePacket": "builtin_interfaces/Time stamp\nuint8[1206] data\n",
-    SCAN: "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n",
     **dict.fromkeys(TRANSFORMS, "geometry_msgs/TransformStamped[] transforms\n"),
 }
 STORAGE_SUFFIXES = (".db3", ".mcap")
@@ -131,6 +129,11 @@ class Bag:
 
     def __exit__(self, *_: object) -> None:
         self._stack.close()
+
+    @property
+    def paths(self) -> Sequence[Path]:
+        """The files and folders that are read."""
+        return self._paths
 
     @property
     def seconds(self) -> float:
@@ -325,7 +328,7 @@ def _typestore(ros1: bool) -> Any:
     from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
     store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    for name, text in _DEFINITIONS.items():
+    for name, text in {**DEFINITIONS, **_DEFINITIONS}.items():
         if name not in store.types:
             store.register(get_types_from_msg(text, name))
     return store

@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.model.trajectory import Times
+from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.formats.ip_fragments import Fragment, IpFragments, JoinedDatagram
 from recon4.recording.formats.pcapng import MAGIC as PCAPNG
 from recon4.recording.formats.pcapng import MAX_PACKET_BYTES, Packet, read_packets
 from recon4.recording.formats.unread_records import UnreadRecords
@@ -36,40 +38,6 @@ _ETHERTYPES = np.array([_ETHERTYPE_AT.get(link, -1) for link in sorted(_IP_AT)])
 """The two tables as columns; -1 = no ethertype."""
 _RECORD_HEADER = 16
 _CHUNK = 4 << 20
-_MARGIN = 2048
-"""Zeros behind the buffer, so that a short payload at its end can be viewed at full size."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Datagrams:
-    """A batch of UDP datagrams in file order."""
-
-    t_ns: Times
-    """Times of capture [ns], (N,)."""
-    source: NDArray[np.uint32]
-    """IPv4 address of the sender, `address_text` spells it, (N,)."""
-    port: NDArray[np.uint16]
-    """Destination port, (N,)."""
-    length: NDArray[np.int64]
-    """Bytes of payload, (N,)."""
-    start: NDArray[np.int64]
-    """Offset of each payload in ``buffer``, (N,)."""
-    buffer: NDArray[np.uint8]
-    """Bytes of the file that contain the payloads, with zeros at the end, (B,)."""
-
-    def __len__(self) -> int:
-        return len(self.t_ns)
-
-    def payloads(self, rows: NDArray[np.integer], size: int) -> NDArray[np.uint8]:
-        """First ``size`` (at most 2048) bytes from the start of the payloads of some rows.
-
-        Rows are expected to be at least that long: what follows a shorter payload is not blanked.
-
-        Returns:
-            A copy, (M, size).
-        """
-        windows = np.lib.stride_tricks.sliding_window_view(self.buffer, size)
-        return windows[self.start[rows]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,11 +50,6 @@ class _Records:
     buffer: NDArray[np.uint8]
     link_type: NDArray[np.int64]
     """Of the interface of each, (N,)."""
-
-
-def address_text(source: int) -> str:
-    """``192.168.1.201`` for 0xC0A801C9."""
-    return ".".join(str((int(source) >> shift) & 255) for shift in (24, 16, 8, 0))
 
 
 OpenFile = Callable[[Path], IO[bytes]]
@@ -103,8 +66,9 @@ def read_pcap(
 ) -> Iterator[Datagrams]:
     """Stream the UDP datagrams of a pcap (µs or ns, either byte order) or pcapng file.
 
-    Counts ``records`` and, of them, those that are no datagrams for us: ``records_not_udp``,
-    ``records_fragment`` (an IP fragment), ``records_cut`` (longer than what was captured), with
+    Datagrams in several IP fragments are joined. Counts ``records`` and, of them, those that are no
+    datagrams for us: ``records_not_udp``, ``records_fragment`` (an IP fragment whose others are
+    missing), ``records_cut`` (longer than what was captured), with
     ports, sizes and protocols as details of the counts. A file that ends inside a record yields all
     before it, and ``report.outcome`` becomes ``lossy``.
 
@@ -113,11 +77,15 @@ def read_pcap(
         EmptyRecording: If it holds no packet at all.
     """
     found, damaged, unread = 0, report.counts["files_cut"], UnreadRecords(report)
+    fragments = IpFragments()
     with open_file(path) as file:
         for records in _records(file, path.name, report):
             found += len(records.t_ns)
             report.count("records", len(records.t_ns))
-            yield _datagrams(records, unread)
+            yield _datagrams(records, unread, fragments)
+            unread.add_fragments(fragments.lost())
+        fragments.end()
+        unread.add_fragments(fragments.lost())
     if not found:
         why = f" ({report.warnings[-1]})" if report.counts["files_cut"] > damaged else ""
         raise EmptyRecording(f"{path.name}: a capture file without any packet{why}")
@@ -196,7 +164,9 @@ def _batch(
 ) -> _Records:
     seconds, fraction, length, start = np.array(rows, dtype=np.int64).T
     t_ns = seconds * 1_000_000_000 + fraction * unit_ns
-    return _Records(t_ns, start, length, _with_margin(data), np.full(len(rows), link_type))
+    return _Records(
+        t_ns, start, length, np.frombuffer(data, np.uint8), np.full(len(rows), link_type)
+    )
 
 
 def _next_generation(file: IO[bytes], name: str, report: ImportReport) -> Iterator[_Records]:
@@ -220,14 +190,8 @@ def _joined(packets: list[Packet]) -> _Records:
     length = np.array([len(packet.data) for packet in packets], dtype=np.int64)
     t_ns = np.array([packet.t_ns for packet in packets], dtype=np.int64)
     link_type = np.array([packet.link_type for packet in packets], dtype=np.int64)
-    buffer = _with_margin(b"".join(packet.data for packet in packets))
+    buffer = np.frombuffer(b"".join(packet.data for packet in packets), np.uint8)
     return _Records(t_ns, np.cumsum(length) - length, length, buffer, link_type)
-
-
-def _with_margin(data: bytes) -> NDArray[np.uint8]:
-    buffer = np.zeros(len(data) + _MARGIN, dtype=np.uint8)
-    buffer[: len(data)] = np.frombuffer(data, dtype=np.uint8)
-    return buffer
 
 
 def _require_link_type(link_type: int, name: str) -> None:
@@ -244,35 +208,76 @@ def _salvaged(report: ImportReport, name: str, why: str) -> None:
     report.warn(f"{name}: salvaged: {why}")
 
 
-def _datagrams(records: _Records, unread: UnreadRecords) -> Datagrams:
-    """The UDP datagrams among the records; the others are counted."""
+def _datagrams(records: _Records, unread: UnreadRecords, fragments: IpFragments) -> Datagrams:
+    """The UDP datagrams among the records, whole ones and joined ones; the others are counted."""
     at, ethertype = _ip_header(records)
     end = records.start + records.length
     headed = (ethertype == 0x0800) & (at + 20 <= end) & (_byte(records, at) >> 4 == 4)
     protocol = np.where(headed, _byte(records, at + 9), -1)
     is_udp = protocol == 17
     fits = is_udp & (at + 28 <= end)
-    fragment = _word(records, at + 6)
-    whole = (fragment & 0x3FFF) == 0
+    whole = (_word(records, at + 6) & 0x3FFF) == 0
     udp = at + 4 * (_byte(records, at) & 15)
-    port = np.where(fits & ((fragment & 0x1FFF) == 0), _word(records, udp + 2), -1)
     length = _word(records, udp + 4) - 8
     inside = fits & (length >= 0) & (udp + 8 + length <= end)
     unread.add_others(ethertype[~is_udp], protocol[~is_udp])
-    unread.add_fragments(port[is_udp & ~whole])
     cut = is_udp & whole & ~inside
+    port = np.where(fits, _word(records, udp + 2), -1)
     unread.add_cut(port[cut], records.length[cut])
     kept = np.flatnonzero(is_udp & whole & inside)
-    at, udp = at[kept], udp[kept]
-    source = (_word(records, at + 12) << 16) | _word(records, at + 14)
-    return Datagrams(
+    plain = Datagrams(
         t_ns=records.t_ns[kept],
-        source=source.astype(np.uint32),
-        port=_word(records, udp + 2).astype(np.uint16),
+        source=_long(records, at[kept] + 12).astype(np.uint32),
+        port=port[kept].astype(np.uint16),
         length=length[kept],
-        start=udp + 8,
+        start=udp[kept] + 8,
         buffer=records.buffer,
     )
+    parts = np.flatnonzero(is_udp & ~whole).tolist()
+    joined = [(row, one) for row in parts for one in fragments.push(_fragment(records, row, at))]
+    return _with_joined(plain, kept, joined) if joined else plain
+
+
+def _fragment(records: _Records, row: int, at: NDArray[np.int64]) -> Fragment:
+    """An IP fragment; its data end where the IP header or the captured record says."""
+    here = at[row : row + 1]
+    word = int(_word(records, here + 6)[0])
+    begin = int(here[0] + 4 * (_byte(records, here)[0] & 15))
+    end = min(
+        int(here[0] + _word(records, here + 2)[0]), int(records.start[row] + records.length[row])
+    )
+    return Fragment(
+        t_ns=int(records.t_ns[row]),
+        source=int(_long(records, here + 12)[0]),
+        destination=int(_long(records, here + 16)[0]),
+        number=int(_word(records, here + 4)[0]),
+        offset=8 * (word & 0x1FFF),
+        is_last=not word & 0x2000,
+        data=records.buffer[begin:end].tobytes(),
+    )
+
+
+def _with_joined(
+    plain: Datagrams, kept: NDArray[np.intp], joined: list[tuple[int, JoinedDatagram]]
+) -> Datagrams:
+    """Joined datagrams among the others, each at the place of the fragment that completed it."""
+    sizes = np.array([len(one.payload) for _, one in joined], np.int64)
+    starts = len(plain.buffer) + np.cumsum(sizes) - sizes
+    data = np.frombuffer(b"".join(one.payload for _, one in joined), np.uint8)
+    more = Datagrams(
+        t_ns=np.array([one.t_ns for _, one in joined], np.int64),
+        source=np.array([one.source for _, one in joined], np.uint32),
+        port=np.array([one.port for _, one in joined], np.uint16),
+        length=sizes,
+        start=starts,
+        buffer=data,
+    )
+    order = np.argsort(np.concatenate([kept, [row for row, _ in joined]]), kind="stable")
+    columns = {
+        name: np.concatenate([getattr(plain, name), getattr(more, name)])[order]
+        for name in ("t_ns", "source", "port", "length", "start")
+    }
+    return Datagrams(**columns, buffer=np.concatenate([plain.buffer, data]))
 
 
 def _ip_header(records: _Records) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -295,3 +300,7 @@ def _byte(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
 
 def _word(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
     return (_byte(records, at) << 8) | _byte(records, at + 1)
+
+
+def _long(records: _Records, at: NDArray[np.int64]) -> NDArray[np.int64]:
+    return (_word(records, at) << 16) | _word(records, at + 2)

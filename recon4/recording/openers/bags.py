@@ -11,6 +11,7 @@ from recon4.recording.formats.bags import Bag
 from recon4.recording.kinds import bag_paths
 from recon4.recording.line_recording import LineRecording, profiler_rig
 from recon4.recording.openers.request import OpenRequest, Recording
+from recon4.recording.packets.companions import COMPANION_SUFFIXES
 from recon4.recording.report import ImportReport
 
 
@@ -33,7 +34,8 @@ def open_lidar_bag(request: OpenRequest) -> Recording:
 
 
 def _files(request: OpenRequest) -> list[Path]:
-    return [file for path in request.paths for file in bag_paths(path)]
+    recordings = [p for p in request.paths if p.suffix.lower() not in COMPANION_SUFFIXES]
+    return [file for path in recordings for file in bag_paths(path)]
 
 
 def _profiler_rig(files: Sequence[Path], request: OpenRequest) -> Rig | None:

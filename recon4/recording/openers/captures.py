@@ -1,4 +1,4 @@
-"""Openers of capture files: datagrams of scans, packets of Velodyne LiDARs."""
+"""Openers of capture files: datagrams of scans, packets of LiDARs."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from recon4.model.rig import Rig, load_rig
 from recon4.recording.kinds import pcap_files
 from recon4.recording.line_recording import WUERZBURG
 from recon4.recording.openers.request import Item, OpenRequest, Recording
-from recon4.recording.packets.capture import WAIT_S, VelodynePcap
+from recon4.recording.packets.capture import WAIT_S, PacketCapture
+from recon4.recording.packets.companions import COMPANION_SUFFIXES
+from recon4.recording.packets.family import PacketSamples
 from recon4.recording.packets.streams import PacketStream, require_one_capture
-from recon4.recording.packets.velodyne.position_packets import PositionSamples
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.scan_capture import ScanCapture, scan_streams
 
@@ -27,20 +28,29 @@ def open_scan_capture(request: OpenRequest) -> Recording | None:
     return Recording(rig, scans.read)
 
 
-def open_velodyne(request: OpenRequest) -> Recording:
-    """Packets of Velodyne LiDARs; they are searched for in every capture that nobody else reads."""
+def open_lidar_capture(request: OpenRequest) -> Recording:
+    """Packets of LiDARs; they are searched for in every capture that nobody else reads."""
     files, settings, report = _files(request), request.settings, request.report
     rig = request.rig
+    files += [path for path in request.paths if path.suffix.lower() in COMPANION_SUFFIXES]
     if rig is None:
-        found = VelodynePcap(files, None, settings=settings, report=report).rig.sensors
+        heads = PacketCapture(files, None, settings=settings, report=report)
+        found = heads.rig.sensors
         streams = [Stream(f"{s.address}:{s.port}", s.model, s.address, s.port) for s in found]
         rig = choose_rig(streams, report)
-    pcap = VelodynePcap(files, rig, settings=settings, report=report, open_file=request.open_file)
+    pcap = PacketCapture(
+        files,
+        rig,
+        settings=settings,
+        report=report,
+        open_file=request.open_file,
+    )
     return Recording(pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=WAIT_S)
 
 
 def _files(request: OpenRequest) -> list[Path]:
-    files = [file for path in request.paths for file in pcap_files(path)]
+    captures = [p for p in request.paths if p.suffix.lower() not in COMPANION_SUFFIXES]
+    files = [file for path in captures for file in pcap_files(path)]
     require_one_capture(files)
     return files
 
@@ -65,9 +75,9 @@ def _seconds(streams: Sequence[PacketStream]) -> float:
     return (max(s.t_end_ns for s in streams) - min(s.t_first_ns for s in streams)) / 1e9
 
 
-def _read_pcap(pcap: VelodynePcap) -> Iterator[Item]:
+def _read_pcap(pcap: PacketCapture) -> Iterator[Item]:
     for item in pcap.read():
-        if not isinstance(item, PositionSamples):
+        if not isinstance(item, PacketSamples):
             yield item
             continue
         if item.imu is not None:

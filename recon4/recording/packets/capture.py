@@ -1,4 +1,4 @@
-"""Capture files of Velodyne sensors: assigns streams to sensors and decodes their shots."""
+"""Capture files of LiDARs: assigns streams to sensors and decodes their shots."""
 
 from __future__ import annotations
 
@@ -14,20 +14,19 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
-from recon4.recording.formats.pcap import Datagrams, OpenFile, open_plain, read_pcap
-from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.formats.datagrams import Datagrams, address_number
+from recon4.recording.formats.pcap import OpenFile, open_plain, read_pcap
+from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_of
+from recon4.recording.packets.decoder import PacketDecoder, open_decoder
+from recon4.recording.packets.family import PacketSamples, PacketSensor
 from recon4.recording.packets.slots import in_slots
 from recon4.recording.packets.streams import (
     PacketStream,
-    address_number,
     fits,
     late_stream,
     scan_pcap,
     unread_text,
 )
-from recon4.recording.packets.velodyne.data_packets import PacketDecoder
-from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE, velodyne_model
-from recon4.recording.packets.velodyne.position_packets import PositionDecoder, PositionSamples
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
 from recon4.settings import IngestSettings
@@ -48,11 +47,10 @@ class _Channel:
     sensor: Sensor
     streams: tuple[PacketStream, ...]
     """Its data streams: one per file of the recording."""
-    data: PacketDecoder
-    positions: PositionDecoder
+    decoder: PacketDecoder
 
 
-class VelodynePcap:
+class PacketCapture:
     """The recording in one or several capture files, all sensors on one clock.
 
     ``rig`` is the one given; without one, a rig with one sensor a data stream, all mounted at the
@@ -73,8 +71,8 @@ class VelodynePcap:
         """Scan the heads of the files and assign streams to sensors.
 
         Args:
-            paths: Capture files; the same stream in files that follow each other is one sensor,
-                in files of the same time it is two.
+            paths: Capture files, and files that describe their LiDARs; the same stream in files
+                that follow each other is one sensor, in files of the same time it is two.
             rig: The rig, or None to make one of what is found.
             settings: Range limits and reorder window.
             report: Takes counts, warnings and what was derived.
@@ -82,18 +80,25 @@ class VelodynePcap:
 
         Raises:
             UnknownFormat: If a file is not a capture file.
-            EmptyRecording: If there is no Velodyne data packet in the heads of the files and no
+            EmptyRecording: If there is no data packet of a LiDAR in the heads of the files and no
                 rig, whose ports and addresses identify later ones.
             ConfigError: If the model of a sensor is not decoded from packets.
         """
         self._report = report
         heads = ImportReport()
-        scans = (scan_pcap(path, open_file=open_file, report=heads) for path in paths)
+        self._companions = companions_of(paths)
+        self._paths = [path for path in paths if path.suffix.lower() not in COMPANION_SUFFIXES]
+        scans = (
+            scan_pcap(path, open_file=open_file, report=heads, companions=self._companions)
+            for path in self._paths
+        )
         self.streams = [stream for scan in scans for stream in scan]
         groups = _sensors_of(self.streams)
         if not groups and rig is None:
             found = _found_instead(self.streams, heads)
-            raise EmptyRecording(f"{paths[0].name}: no Velodyne data packets; found: {found}")
+            raise EmptyRecording(
+                f"{paths[0].name}: no data packets of a LiDAR that is read; found: {found}"
+            )
         for stream in self.streams:
             for remark in stream.remarks if rig is None else ():
                 report.warn(f"{stream.label}: {remark}")
@@ -103,10 +108,9 @@ class VelodynePcap:
         self._channels = self._assign(groups)
         self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
         self._samples = SampleDecoder(report)
-        self._paths = list(paths)
         self._open = open_file
 
-    def read(self) -> Iterator[Shots | PositionSamples]:
+    def read(self) -> Iterator[Shots | PacketSamples]:
         """Stream the whole recording once; the shots of one sensor are in order of time."""
         batches = (self._batches(path) for path in self._paths)
         for path, datagrams in heapq.merge(*batches, key=lambda batch: int(batch[1].t_ns[0])):
@@ -115,12 +119,12 @@ class VelodynePcap:
             for channel in self._channels:
                 yield from self._decode(channel, path, datagrams)
         for channel in self._channels:
-            yield channel.data.flush()
+            yield channel.decoder.flush()
 
     @property
     def rotation_hz(self) -> dict[str, float]:
         """Measured rotation rate by the name of the sensor [Hz]; complete after reading."""
-        return {channel.sensor.name: channel.data.rotation_hz for channel in self._channels}
+        return {channel.sensor.name: channel.decoder.rotation_hz for channel in self._channels}
 
     def _batches(self, path: Path) -> Iterator[tuple[Path, Datagrams]]:
         return ((path, slot) for slot in in_slots(read_pcap(path, self._report, self._open)))
@@ -133,7 +137,13 @@ class VelodynePcap:
         for row, sensor in enumerate(self.rig.sensors):
             if sensor.name in there:
                 continue
-            stream = late_stream(self._paths[0], datagrams, sensor, claimed=self._claimed)
+            stream = late_stream(
+                self._paths[0],
+                datagrams,
+                sensor,
+                claimed=self._claimed,
+                companions=self._companions,
+            )
             if stream is not None:
                 self._claimed.add((stream.source, stream.port))
                 streams = tuple(replace(stream, file=path) for path in self._paths)
@@ -142,27 +152,27 @@ class VelodynePcap:
 
     def _decode(
         self, channel: _Channel, path: Path, datagrams: Datagrams
-    ) -> Iterator[Shots | PositionSamples]:
+    ) -> Iterator[Shots | PacketSamples]:
         stream = next((s for s in channel.streams if s.file == path), None)
         if stream is None:
             return
+        decoder = channel.decoder
         from_sensor = datagrams.source == address_number(stream.source)
         to_data = from_sensor & (datagrams.port == stream.port)
-        whole = to_data & (datagrams.length == DATA_SIZE)
-        self._report.count("packets_wrong_length", int((to_data & ~whole).sum()))
-        for size, chosen in (  # data first: they tell the clock best
-            (DATA_SIZE, whole),
-            (POSITION_SIZE, from_sensor & ~to_data & (datagrams.length == POSITION_SIZE)),
-        ):
-            rows = np.flatnonzero(chosen)
-            if len(rows):
-                decoder = channel.positions if size == POSITION_SIZE else channel.data
-                yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, size))
-        if len(whole) and channel.sensor.name in self._report.ahead_ns:
+        whole = to_data & (datagrams.length == decoder.size)
+        beside = from_sensor & ~whole & np.isin(datagrams.length, list(decoder.sample_sizes))
+        self._report.count("packets_wrong_length", int((to_data & ~whole & ~beside).sum()))
+        rows = np.flatnonzero(whole)
+        if len(rows):  # first: they tell the clock best
+            yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, decoder.size))
+        samples = decoder.samples(datagrams.take(beside)) if beside.any() else None
+        if samples is not None:
+            yield samples
+        if len(rows) and channel.sensor.name in self._report.ahead_ns:
             ahead_ns = self._report.ahead_ns[channel.sensor.name] - self._report.utc_ahead_ns
             self._report.note_lag(LIDAR, -ahead_ns)
 
-    def _decode_samples(self, datagrams: Datagrams) -> Iterator[PositionSamples]:
+    def _decode_samples(self, datagrams: Datagrams) -> Iterator[PacketSamples]:
         """Samples of an IMU or a GNSS receiver on separate ports."""
         ports = {port for port in (self.rig.imu_port, self.rig.gnss_port) if port}
         rows = np.flatnonzero(np.isin(datagrams.port, list(ports)))
@@ -171,7 +181,7 @@ class VelodynePcap:
         ends = (datagrams.start + datagrams.length)[rows].tolist()
         starts = datagrams.start[rows].tolist()
         texts = [datagrams.buffer[a:b].tobytes() for a, b in zip(starts, ends, strict=True)]
-        yield PositionSamples(*self._samples.push(datagrams.t_ns[rows].tolist(), texts))
+        yield PacketSamples(*self._samples.push(datagrams.t_ns[rows].tolist(), texts))
 
     def _assign(self, groups: list[tuple[PacketStream, ...]]) -> list[_Channel]:
         chosen = _match(self.rig.sensors, groups, self._report)
@@ -192,35 +202,37 @@ class VelodynePcap:
         for stream in self.streams:
             known = any(fits(sensor, stream.source, stream.port) for sensor in self.rig.sensors)
             if stream.refused and not known and stream.packets > _FOREIGN_RATIO * most:
-                self._report.warn(f"not read: {stream.found}")
+                self._report.warn(f"not read: {stream.text}")
             expected = {"IMU": self.rig.imu_port, "GNSS": self.rig.gnss_port}.get(stream.kind)
             if expected is not None and stream.port != expected:
                 self._report.warn(
-                    f"not read: {stream.found}; the rig expects {stream.kind} at port {expected}: "
+                    f"not read: {stream.text}; the rig expects {stream.kind} at port {expected}: "
                     f"give [{stream.kind.lower()}] port = {stream.port} in the rig file"
                 )
 
     def _sent_instead(self, sensor: Sensor) -> str:
         others = [s for s in self.streams if s.refused and fits(sensor, s.source, s.port)]
-        return f"; found: {'; '.join(s.found for s in others)}" if others else ""
+        return f"; found: {'; '.join(s.text for s in others)}" if others else ""
 
     def _channel(self, row: int, streams: tuple[PacketStream, ...]) -> _Channel:
         sensor = self.rig.sensors[row]
-        clock = SensorClock(
-            sensor.name,
-            packet_s=velodyne_model(sensor.model).packet_s(streams[0].return_mode),
+        of = PacketSensor(
+            row=row,
+            sensor=sensor,
+            head=streams[0].head,
+            companions=self._companions,
+            settings=self._settings,
             report=self._report,
-            utc_offset_ns=streams[0].utc_offset_ns,
-            alone=len(self.rig.sensors) == 1,
         )
-        data = PacketDecoder(row, sensor, settings=self._settings, report=self._report, clock=clock)
-        positions = PositionDecoder(sensor, clock=clock, report=self._report)
-        return _Channel(sensor, streams, data, positions)
+        decoder = open_decoder(
+            of, utc_offset_ns=streams[0].utc_offset_ns, alone=len(self.rig.sensors) == 1
+        )
+        return _Channel(sensor, streams, decoder)
 
 
 def _found_instead(streams: Sequence[PacketStream], heads: ImportReport) -> str:
     """What capture files without data packets have, and why it is not read."""
-    texts = [stream.found for stream in streams[:_STREAMS_NAMED]]
+    texts = [stream.text for stream in streams[:_STREAMS_NAMED]]
     more = len(streams) - len(texts)
     texts += [f"{more} other streams"] * (more > 0)
     return "; ".join(filter(None, [*texts, unread_text(heads)]))

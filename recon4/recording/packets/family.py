@@ -22,7 +22,8 @@ from recon4.model.rig import Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.formats.pcap import Datagrams
+from recon4.recording.formats.datagrams import NO_DATAGRAMS, Datagrams
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
@@ -55,7 +56,8 @@ class Recognized:
     family: str
     """Name of the family."""
     kind: str
-    """``data``: points; ``samples``: other packets of a LiDAR (IMU, positions, device data)."""
+    """``data``: points; ``samples``: other packets of a LiDAR (IMU, positions, device data);
+    ``other``: the size is of this family and the contents are not (a remark says why)."""
     model: str = ""
     """Name in `recon4.model.lidars.LIDARS`; empty = not known."""
     mode: str = ""
@@ -68,6 +70,8 @@ class Recognized:
     """Serial number, if the packets or the companions tell it."""
     size: int = 0
     """Bytes of a data packet."""
+    utc_offset_ns: int | None = None
+    """UTC minus time of arrival, where positions prove that GPS drives the sensor's clock."""
     remarks: tuple[str, ...] = ()
     """Warnings, as about a model byte that contradicts the data."""
 
@@ -80,9 +84,9 @@ class PacketSensor:
     """Row in ``Rig.sensors``."""
     sensor: Sensor
     """Its model selects the tables."""
-    head: Datagrams
+    head: Datagrams = NO_DATAGRAMS
     """First data packets of the sensor; none if it is silent at the beginning."""
-    companions: Sequence[Companion]
+    companions: Sequence[Companion] = ()
     """Files beside the recording; the family finds out which are of this sensor."""
     settings: IngestSettings
     """Limits of the range."""
@@ -96,12 +100,25 @@ class PacketFormat(Protocol):
     All methods but `samples` are given data packets of one size.
     """
 
-    size: int
-    """Bytes of a data packet."""
-    packet_s: float
-    """Usual time from one data packet to the next [s]."""
-    clock_period_ns: int
-    """After which the clock of the stamps starts again: an hour for Velodyne; 0 = never."""
+    @property
+    def size(self) -> int:
+        """Bytes of a data packet."""
+        ...
+
+    @property
+    def sample_sizes(self) -> frozenset[int]:
+        """Bytes of the other packets of the sensor: IMU, positions, device data."""
+        ...
+
+    @property
+    def stamps_past_hour(self) -> bool:
+        """Whether stamps count from the full hour; False = they never start again."""
+        ...
+
+    @property
+    def packet_s(self) -> float:
+        """Usual time from one data packet to the next [s], of those that `sound` saw last."""
+        ...
 
     def sound(self, payloads: Payloads) -> NDArray[np.bool_]:
         """Which payloads are data packets of this sensor, (N,).
@@ -133,12 +150,16 @@ class PacketFormat(Protocol):
         """
         ...
 
-    def samples(self, datagrams: Datagrams, ahead_ns: int) -> PacketSamples | None:
+    def likely_models(self, usual_s: float) -> tuple[str, ...]:
+        """Models of the family whose packets come at this interval [s]; empty = cannot tell."""
+        ...
+
+    def samples(self, datagrams: Datagrams, clock: SensorClock) -> PacketSamples | None:
         """What the other packets of the sender tell: IMU, positions; None = nothing.
 
         Args:
-            datagrams: All that the sender sends and that is no data packet.
-            ahead_ns: Clock of the rig minus clock of the stamps [ns].
+            datagrams: What the sender sends in packets of `sample_sizes` bytes.
+            clock: Turns their stamps into times of the rig (`SensorClock.at_ns`).
         """
         ...
 
@@ -146,10 +167,15 @@ class PacketFormat(Protocol):
 class PacketFamily(Protocol):
     """The LiDARs of one maker, as far as their packets are alike."""
 
-    name: str
-    """As in `recon4.model.lidars.LidarFacts.maker`."""
-    messages: Mapping[str, MessagePackets]
-    """Type of a message in a bag (``pandar_msgs/msg/PandarScan``) -> how to get its packets."""
+    @property
+    def name(self) -> str:
+        """As in `recon4.model.lidars.LidarFacts.maker`."""
+        ...
+
+    @property
+    def messages(self) -> Mapping[str, MessagePackets]:
+        """Type of a message in a bag (``pandar_msgs/msg/PandarScan``) -> how to get its packets."""
+        ...
 
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """What the datagrams of one sender to one port are; None = not of this family.
@@ -173,9 +199,9 @@ class PacketFamily(Protocol):
 class MessagePackets:
     """A type of message that carries packets."""
 
-    definition: str
-    """The type in ROS's language, for bags that do not bring it; with ``===`` sections for the
-    types it is made of."""
+    definitions: Mapping[str, str]
+    """The type and those it is made of, each in ROS's language, for bags that do not bring them:
+    name (``velodyne_msgs/msg/VelodynePacket``) -> text."""
     packets: Callable[[Any], list[tuple[int, bytes]]]
     """The packets of a decoded message: arrival time [ns] (0 = that of the message), bytes."""
     samples: bool = False

@@ -1,4 +1,4 @@
-"""Converts Velodyne timestamps, microseconds past the hour, to absolute time."""
+"""Converts the timestamps of a sensor to absolute time by means of times of arrival."""
 
 from __future__ import annotations
 
@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.packets.velodyne.models import HOUR_US
 from recon4.recording.report import ImportReport
 
 SECOND_NS = 1_000_000_000
 HOUR_NS = 3600 * SECOND_NS
+HOUR_US = HOUR_NS // 1000
 
 _SAME_CLOCK_NS = SECOND_NS // 2
 """A sensor that is this near to the recorder's clock is synchronized with it."""
@@ -75,6 +75,9 @@ class SensorClock:
             utc_offset_ns: UTC minus time of arrival [ns] when GPS is known to drive the sensor.
             alone: Whether it is the only LiDAR.
         """
+        self.past_hour = True
+        """Whether its stamps count from the full hour; others are absolute, or count from when it
+        was switched on."""
         self.utc_offset_ns = utc_offset_ns
         self._name, self._alone = name, alone
         self._report = report
@@ -104,6 +107,26 @@ class SensorClock:
     def is_utc(self) -> bool:
         """Whether GPS drives the sensor, so that its time is UTC."""
         return self.utc_offset_ns is not None
+
+    def push_ns(self, t_arrival_ns: Times, stamps_ns: Times) -> tuple[Times, NDArray[np.bool_]]:
+        """As `push`, of stamps in ns: only their place within the hour counts."""
+        t_us, rest_ns = self._within_hour(stamps_ns)
+        t_ns, kept = self.push(t_arrival_ns, t_us)
+        return t_ns + rest_ns, kept
+
+    def at_ns(self, t_arrival_ns: Times, stamps_ns: Times) -> tuple[Times, NDArray[np.bool_]]:
+        """As `at`, of stamps in ns."""
+        t_us, rest_ns = self._within_hour(stamps_ns)
+        t_ns, valid = self.at(t_arrival_ns, t_us)
+        return t_ns + rest_ns, valid
+
+    def _within_hour(self, stamps_ns: Times) -> tuple[Times, Times]:
+        """Stamps [µs], of an absolute clock past the hour, and the rest below a microsecond [ns].
+
+        A clock that counts from the hour may run on past it: `push` continues such stamps.
+        """
+        t_us, rest_ns = np.divmod(np.asarray(stamps_ns, np.int64), 1000)
+        return (t_us if self.past_hour else t_us % HOUR_US), rest_ns
 
     def push(
         self, t_arrival_ns: Times, t_us: NDArray[np.integer]

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 
 import numpy as np
 
-from recon4.recording.formats.pcap import Datagrams
+from recon4.recording.formats.datagrams import Datagrams, join_datagrams
 
 SLOT_NS = 100_000_000
 FIRST_SLOT_NS = 1_000_000_000
@@ -31,39 +31,11 @@ def in_slots(batches: Iterable[Datagrams]) -> Iterator[Datagrams]:
             t_ns = batch.t_ns[start:]
             beyond = np.flatnonzero((t_ns >= end_ns) | (t_ns < end_ns - _SET_BACK_NS))
             cut = start + int(beyond[0]) if len(beyond) else len(batch)
-            parts.append(_rows(batch, start, cut))
+            parts.append(batch.take(slice(start, cut)))
             start = cut
             if len(beyond):
-                yield _joined(parts)
+                yield join_datagrams(parts)
                 parts = []
                 end_ns = (int(batch.t_ns[cut]) // SLOT_NS + 1) * SLOT_NS
     if parts:
-        yield _joined(parts)
-
-
-def _rows(batch: Datagrams, start: int, stop: int) -> Datagrams:
-    rows = slice(start, stop)
-    return Datagrams(
-        batch.t_ns[rows],
-        batch.source[rows],
-        batch.port[rows],
-        batch.length[rows],
-        batch.start[rows],
-        batch.buffer,
-    )
-
-
-def _joined(parts: list[Datagrams]) -> Datagrams:
-    parts = [part for part in parts if len(part)]
-    if len(parts) == 1:
-        return parts[0]
-    before = np.cumsum([0, *(len(part.buffer) for part in parts[:-1])])
-    starts = [part.start + offset for part, offset in zip(parts, before.tolist(), strict=True)]
-    return Datagrams(
-        np.concatenate([part.t_ns for part in parts]),
-        np.concatenate([part.source for part in parts]),
-        np.concatenate([part.port for part in parts]),
-        np.concatenate([part.length for part in parts]),
-        np.concatenate(starts),
-        np.concatenate([part.buffer for part in parts]),
-    )
+        yield join_datagrams(parts)

@@ -12,32 +12,23 @@ from numpy.typing import NDArray
 
 from recon4.errors import EmptyRecording
 from recon4.model.rig import Sensor
-from recon4.model.trajectory import Times
-from recon4.recording.formats.file_times import FileTimes, require_one_walk
-from recon4.recording.formats.pcap import Datagrams, OpenFile, address_text, open_plain, read_pcap
-from recon4.recording.packets.family import Payloads
-from recon4.recording.packets.sensor_clock import SECOND_NS, nearest_hour
-from recon4.recording.packets.velodyne.data_packets import Rotation
-from recon4.recording.packets.velodyne.models import (
-    BLOCK_FLAG,
-    DATA_SIZE,
-    LOWER_BLOCK_FLAG,
-    MODELS,
-    POSITION_SIZE,
-    PRODUCTS,
-    RETURN_MODES,
-    likely_model,
-    product_text,
+from recon4.recording.formats.datagrams import (
+    NO_DATAGRAMS,
+    Datagrams,
+    address_text,
+    join_datagrams,
 )
-from recon4.recording.packets.velodyne.position_packets import utc_offset_ns
-from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
+from recon4.recording.formats.file_times import FileTimes, require_one_walk
+from recon4.recording.formats.pcap import OpenFile, open_plain, read_pcap
+from recon4.recording.packets.families import FAMILIES
+from recon4.recording.packets.family import Companion, Recognized
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
 
-KINDS = ("data", "position", "IMU", "GNSS", "other")
+KINDS = ("data", "samples", "IMU", "GNSS", "other")
 _CONTENTS = {
     "data": "data packets",
-    "position": "position packets",
+    "samples": "other packets of a LiDAR",
     "IMU": "IMU samples",
     "GNSS": "GNSS samples",
 }
@@ -47,9 +38,12 @@ _TIMED_PACKETS = 1000
 """Datagrams from which the times of a file are estimated."""
 MAX_STREAMS = 256
 """Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
+_HEAD_BYTES = 64 << 20
+_KEPT_PACKETS = 200
+"""First packets of a sensor that its family looks at to prepare the decoder."""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class PacketStream:
     """Datagrams of one sender to one port, as far as they were scanned."""
 
@@ -59,7 +53,8 @@ class PacketStream:
     port: int
     """Destination port."""
     kind: str
-    """``data``, ``position``, ``IMU`` or ``GNSS`` (datagrams of samples), or ``other``."""
+    """``data`` or ``samples`` (packets of a LiDAR), ``IMU`` or ``GNSS`` (datagrams of samples), or
+    ``other``."""
     packets: int
     """In the part that was scanned."""
     t_first_ns: int
@@ -70,23 +65,24 @@ class PacketStream:
     """Capture time of the last in the file; estimated from the file's size if `whole` is false."""
     whole: bool
     """Whether the scan reached the end of the file."""
-    model: str = ""
-    """Model of the sensor: by the interval of its packets, else by the product byte; empty =
-    unknown."""
-    product: int = 0
-    """Product byte; 0 for other kinds."""
-    return_mode: int = 0
-    """0x37 strongest, 0x38 last, 0x39 dual; 0 for other kinds."""
-    rotation_hz: float = float("nan")
-    """Measured; NaN for other kinds."""
-    clock_offset_s: float = float("nan")
-    """Sensor's clock minus the recorder's, within an hour; NaN for other kinds."""
+    found: Recognized | None = None
+    """What its packets are; None = not those of a known LiDAR."""
     utc_offset_ns: int | None = None
     """UTC minus capture time if the GPS of its position packets drives its clock."""
-    remarks: tuple[str, ...] = ()
-    """Warning, for example about a product byte that contradicts the data."""
     refused: str = ""
-    """Why its packets are no data packets of a Velodyne; empty for other kinds than ``other``."""
+    """Why its packets are no data packets of a LiDAR; empty for other kinds than ``other``."""
+    head: Datagrams = NO_DATAGRAMS
+    """Its first packets."""
+
+    @property
+    def model(self) -> str:
+        """Model of the sensor; empty = unknown."""
+        return self.found.model if self.found else ""
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """Warnings, for example about a product byte that contradicts the data."""
+        return self.found.remarks if self.found else ()
 
     @property
     def label(self) -> str:
@@ -94,16 +90,10 @@ class PacketStream:
         return f"{self.source} to port {self.port}"
 
     @property
-    def found(self) -> str:
+    def text(self) -> str:
         """What its packets are, for messages that say why there is no data."""
         what = _CONTENTS.get(self.kind, self.refused)
         return f"{self.packets} packets from {self.label} ({what})"
-
-
-def address_number(address: str) -> int:
-    """0xC0A801C9 for ``192.168.1.201``."""
-    a, b, c, d = (int(part) for part in address.split("."))
-    return a << 24 | b << 16 | c << 8 | d
 
 
 def scan_pcap(
@@ -112,6 +102,7 @@ def scan_pcap(
     max_packets: int = 4000,
     open_file: OpenFile = open_plain,
     report: ImportReport | None = None,
+    companions: Sequence[Companion] = (),
 ) -> list[PacketStream]:
     """Scan the head of a capture file: data streams first, in order of appearance.
 
@@ -120,18 +111,19 @@ def scan_pcap(
         max_packets: Largest number of datagrams to read.
         open_file: Opens the file.
         report: Receives the counts of captured packets up to there; None = not wanted.
+        companions: Files beside the recording.
 
     Raises:
         UnknownFormat: If it is not a capture file.
         EmptyRecording: If it holds no packet.
     """
     head = _head(path, max_packets, open_file, report=report or ImportReport())
-    keys = head.source.astype(np.int64) << 16 | head.port
+    keys = head.datagrams.source.astype(np.int64) << 16 | head.datagrams.port
     _, first, packets = np.unique(keys, return_index=True, return_counts=True)
     first = first[np.argsort(-packets, kind="stable")[:MAX_STREAMS]]
-    streams = [_stream(path, head, keys == keys[row]) for row in sorted(first.tolist())]
+    streams = [_stream(head, keys == keys[row], companions) for row in sorted(first.tolist())]
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
-    offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "position"}
+    offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "samples"}
     return [_with_utc(stream, offsets.get(stream.source)) for stream in streams]
 
 
@@ -162,8 +154,20 @@ def fits(sensor: Sensor, source: str, port: int) -> bool:
     return sensor.address in {"", source} and sensor.port == port
 
 
+def recognized(head: Datagrams, companions: Sequence[Companion] = ()) -> Recognized | None:
+    """What the datagrams of one sender to one port are; None = of no family."""
+    answers = (family.recognize(head, companions) for family in FAMILIES)
+    found = [answer for answer in answers if answer is not None]
+    return min(found, key=lambda one: KINDS.index(one.kind)) if found else None
+
+
 def late_stream(
-    path: Path, datagrams: Datagrams, sensor: Sensor, *, claimed: set[tuple[str, int]]
+    path: Path,
+    datagrams: Datagrams,
+    sensor: Sensor,
+    *,
+    claimed: set[tuple[str, int]],
+    companions: Sequence[Companion] = (),
 ) -> PacketStream | None:
     """The data stream of a sensor that was not in the head of a file, from its first packets.
 
@@ -172,29 +176,29 @@ def late_stream(
         datagrams: Some of its datagrams.
         sensor: Not found so far.
         claimed: Senders and ports of the data streams known already.
+        companions: Files beside the recording.
     """
-    rows = np.flatnonzero((datagrams.port == sensor.port) & (datagrams.length == DATA_SIZE))
+    rows = np.flatnonzero(datagrams.port == sensor.port)
     for source in dict.fromkeys(datagrams.source[rows].tolist()):
         address = address_text(source)
         if (address, sensor.port) in claimed or not fits(sensor, address, sensor.port):
             continue
-        mine = rows[datagrams.source[rows] == source]
-        payloads = datagrams.payloads(mine, DATA_SIZE)
-        sound = sound_packets(payloads, ImportReport())
-        if not sound.any():
+        mine = datagrams.take(rows[datagrams.source[rows] == source])
+        found = recognized(mine, companions)
+        if found is None or found.kind != "data":
             continue
-        times = datagrams.t_ns[mine][sound]
         return PacketStream(
             file=path,
             source=address,
             port=sensor.port,
             kind="data",
-            packets=len(times),
-            t_first_ns=int(times[0]),
-            t_last_ns=int(times[-1]),
-            t_end_ns=int(times[-1]),
+            packets=len(mine),
+            t_first_ns=int(mine.t_ns[0]),
+            t_last_ns=int(mine.t_ns[-1]),
+            t_end_ns=int(mine.t_ns[-1]),
             whole=False,
-            return_mode=int(as_packets(payloads[sound])["return_mode"][0]),
+            found=found,
+            head=mine.take(slice(_KEPT_PACKETS)),
         )
     return None
 
@@ -203,26 +207,22 @@ def late_stream(
 class _Head:
     """Datagrams from the start of a file."""
 
-    t_ns: Times
-    source: NDArray[np.uint32]
-    port: NDArray[np.uint16]
-    length: NDArray[np.int64]
-    payloads: Payloads
-    """First 1206 bytes, (N, 1206)."""
+    file: Path
+    datagrams: Datagrams
     read_ratio: float
     """Part of the file that was read, 0 to 1."""
 
 
 def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportReport) -> _Head:
     """Exactly the first ``max_packets`` datagrams, independent of the size of the reads."""
-    parts: list[tuple[Datagrams, int]] = []
+    parts: list[Datagrams] = []
     left, bytes_read, read_ratio = max_packets, 0, 1.0
     for batch in read_pcap(path, report, open_file):
         count = min(len(batch), left)
-        parts.append((batch, count))
+        parts.append(batch.take(slice(count)))
         left -= count
-        if not left:
-            bytes_read += int(batch.start[count - 1] + batch.length[count - 1])
+        if not left or bytes_read > _HEAD_BYTES:
+            bytes_read += int(batch.start[count - 1] + batch.length[count - 1]) if count else 0
             read_ratio = min(1.0, bytes_read / path.stat().st_size)
             break
         bytes_read += len(batch.buffer)
@@ -230,104 +230,49 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
         raise EmptyRecording(
             f"{path.name}: no UDP datagram in it; found: {unread_text(report) or 'nothing'}"
         )
-    return _Head(
-        t_ns=np.concatenate([batch.t_ns[:n] for batch, n in parts]),
-        source=np.concatenate([batch.source[:n] for batch, n in parts]),
-        port=np.concatenate([batch.port[:n] for batch, n in parts]),
-        length=np.concatenate([batch.length[:n] for batch, n in parts]),
-        payloads=np.concatenate([b.payloads(np.arange(n), DATA_SIZE) for b, n in parts]),
-        read_ratio=read_ratio,
-    )
+    return _Head(path, join_datagrams(parts), read_ratio)
 
 
-def _stream(path: Path, head: _Head, mine: NDArray[np.bool_]) -> PacketStream:
-    t_ns, length = head.t_ns[mine], head.length[mine]
-    first, last = int(t_ns[0]), int(t_ns[-1])
+def _stream(head: _Head, mine: NDArray[np.bool_], companions: Sequence[Companion]) -> PacketStream:
+    datagrams = head.datagrams.take(mine)
+    first, last = int(datagrams.t_ns[0]), int(datagrams.t_ns[-1])
     whole = head.read_ratio > 0.999
-    facts: dict[str, object]
-    if (length == DATA_SIZE).sum() > len(length) // 2:
-        rows = length == DATA_SIZE
-        facts = _data_facts(t_ns[rows], head.payloads[mine][rows])
-    elif (length == POSITION_SIZE).sum() > len(length) // 2:
-        rows = length == POSITION_SIZE
-        positions = head.payloads[mine][rows][:, :POSITION_SIZE]
-        facts = {"kind": "position", "utc_offset_ns": utc_offset_ns(t_ns[rows], positions)}
-    else:
-        first_rows = np.flatnonzero(mine)[:_SAMPLES_TRIED]
-        texts = [head.payloads[k, : head.length[k]].tobytes() for k in first_rows]
-        imu, gnss = SampleDecoder(ImportReport()).push(head.t_ns[first_rows].tolist(), texts)
-        kind = "IMU" if imu is not None else "GNSS" if gnss is not None else "other"
-        facts = {"kind": kind, "refused": _lengths_text(length) if kind == "other" else ""}
-    return PacketStream(
-        file=path,
-        source=address_text(int(head.source[mine][0])),
-        port=int(head.port[mine][0]),
-        packets=len(t_ns),
+    stream = PacketStream(
+        file=head.file,
+        source=address_text(int(datagrams.source[0])),
+        port=int(datagrams.port[0]),
+        kind="other",
+        packets=len(datagrams),
         t_first_ns=first,
         t_last_ns=last,
         t_end_ns=last if whole else first + round((last - first) / head.read_ratio),
         whole=whole,
-        **facts,  # type: ignore[arg-type]
+        head=datagrams.take(slice(_KEPT_PACKETS)),
+    )
+    found = recognized(datagrams, companions)
+    if found is None:
+        kind = _samples_kind(datagrams.take(slice(_SAMPLES_TRIED)))
+        return replace(
+            stream, kind=kind, refused=_lengths_text(datagrams.length) if kind == "other" else ""
+        )
+    refused = "; ".join(found.remarks) if found.kind == "other" else ""
+    return replace(
+        stream, kind=found.kind, found=found, utc_offset_ns=found.utc_offset_ns, refused=refused
     )
 
 
-def _data_facts(t_ns: Times, payloads: Payloads) -> dict[str, object]:
-    flags = as_packets(payloads)["blocks"]["flag"]
-    if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() > 0.3:
-        return {"kind": "data", "model": "HDL-64E"}
-    report = ImportReport()
-    rows = np.flatnonzero(sound_packets(payloads, report))
-    if len(rows) < len(payloads) // 2 or not len(rows):
-        return {"kind": "other", "refused": "; ".join(report.lost())}
-    packets = as_packets(payloads[rows])
-    product = int(np.bincount(packets["product"]).argmax())
-    return_mode = int(np.bincount(packets["return_mode"]).argmax())
-    stamp_ns = packets["time_us"].astype(np.int64) * 1000
-    interval_s = _usual_step_s(stamp_ns)
-    model, remarks = _model(product, return_mode, interval_s)
-    rotation = Rotation()
-    if model in MODELS:
-        sorted_ns, place = np.unique(stamp_ns, return_index=True)
-        rotation.push(sorted_ns, payloads[rows][place], MODELS[model].packet_s(return_mode))
-    ahead = nearest_hour(packets["time_us"], t_ns[rows]) - t_ns[rows]
-    return {
-        "kind": "data",
-        "model": model,
-        "product": product,
-        "return_mode": return_mode,
-        "rotation_hz": rotation.hz,
-        "clock_offset_s": float(np.median(ahead)) / SECOND_NS,
-        "remarks": remarks,
-    }
+def _samples_kind(datagrams: Datagrams) -> str:
+    """Whether datagrams are samples of an IMU or a GNSS receiver, as text."""
+    texts = [datagrams.payload(row) for row in range(len(datagrams))]
+    imu, gnss = SampleDecoder(ImportReport()).push(datagrams.t_ns.tolist(), texts)
+    return "IMU" if imu is not None else "GNSS" if gnss is not None else "other"
 
 
 def _lengths_text(length: NDArray[np.int64]) -> str:
     sizes, numbers = np.unique(length, return_counts=True)
     usual = [f"{size} bytes" for size in sizes[np.argsort(-numbers)][:_SIZES_NAMED].tolist()]
     more = " and others" * (len(sizes) > _SIZES_NAMED)
-    return f"of {', '.join(usual)}{more}; a data packet has {DATA_SIZE}"
-
-
-def _usual_step_s(stamp_ns: Times) -> float:
-    steps = np.diff(np.unique(stamp_ns))
-    return float(np.median(steps)) / SECOND_NS if len(steps) > 4 else float("nan")
-
-
-def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[str, ...]]:
-    """Name of the model and a warning; the firing pattern overrules the product byte."""
-    model = likely_model(product, interval_s, return_mode)
-    stated = PRODUCTS.get(product)
-    remarks = []
-    if return_mode not in RETURN_MODES:
-        remarks.append(f"unknown return mode byte {return_mode:#04x}, read as single return")
-    if model and stated != model:
-        remarks.append(
-            f"its packets say {product_text(product)}, but they come every {1e3 * interval_s:.3f} "
-            f"ms as those of a {model}: taken for a {model}"
-        )
-    elif not model:
-        remarks.append(f"unknown product byte {product:#04x}; give a rig that names the model")
-    return model or "", tuple(remarks)
+    return f"of {', '.join(usual)}{more}: not those of a known LiDAR"
 
 
 def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:

@@ -38,8 +38,9 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.sensor_clock import SensorClock
-from recon4.recording.packets.velodyne.data_packets import PacketDecoder
 from recon4.recording.packets.velodyne.encode import encode_position, rmc_sentence
 from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder
@@ -136,7 +137,11 @@ def _packets(path: Path) -> Reading:
     count = len(data) // DATA_SIZE
     payloads = data[: count * DATA_SIZE].reshape(count, DATA_SIZE)
     report = ImportReport()
-    decoder = PacketDecoder(0, tables.rig().sensors[0], settings=IngestSettings(), report=report)
+    decoder = open_decoder(
+        PacketSensor(
+            row=0, sensor=tables.rig().sensors[0], settings=IngestSettings(), report=report
+        )
+    )
     arrival = T0_NS + np.arange(count, dtype=np.int64) * PACKET_NS
     shots = [decoder.push(arrival[k : k + 7], payloads[k : k + 7]) for k in range(0, count, 7)]
     found = sum(map(len, (*shots, decoder.flush())))

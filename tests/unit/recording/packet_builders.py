@@ -6,7 +6,8 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
-from recon4.recording.packets.velodyne.data_packets import PacketDecoder
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets
 from recon4.recording.packets.velodyne.models import DUAL, MODELS, STRONGEST
 from recon4.recording.report import ImportReport
@@ -74,7 +75,9 @@ def decode_all(
 ) -> tuple[dict[str, np.ndarray], ImportReport]:
     """Columns of all shots, pushed in batches, and what the report says."""
     report = ImportReport()
-    decoder = PacketDecoder(0, sensor(model=model), settings=settings, report=report)
+    decoder = open_decoder(
+        PacketSensor(row=0, sensor=sensor(model=model), settings=settings, report=report)
+    )
     parts = [
         decoder.push(t_ns[at : at + batch], payloads[at : at + batch])
         for at in range(0, len(t_ns), batch)

@@ -11,7 +11,7 @@ from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_recording import BagRecording
-from recon4.recording.formats.bags import CLOUD, SCAN, Bag
+from recon4.recording.formats.bags import CLOUD, Bag
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS, bag_path, room_cloud, room_packets, storage_file, write_room_bag
@@ -229,7 +229,7 @@ def test_raw_packets_win_over_clouds(tmp_path):
 
     assert recording.rig.sensors[0].topic == "/velodyne_packets"
     assert any("not /velodyne_points" in text for text in report.derived)
-    assert {t.type for t in recording.topics} == {SCAN, CLOUD}
+    assert {t.type for t in recording.topics} == {"velodyne_msgs/msg/VelodyneScan", CLOUD}
 
 
 # -- two sensors

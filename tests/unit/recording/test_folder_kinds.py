@@ -32,7 +32,7 @@ def test_a_folder_with_recordings_of_two_kinds_is_refused_and_both_are_named(tmp
         recognize(folder)
 
     assert "model.pcd (frames" in str(caught.value)
-    assert "recording.pcap (Velodyne pcap)" in str(caught.value)
+    assert "recording.pcap (packets of LiDARs (pcap))" in str(caught.value)
 
 
 def test_a_mesh_beside_a_recording_is_passed_over_and_said(tmp_path, pcap):

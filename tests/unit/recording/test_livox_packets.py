@@ -15,6 +15,7 @@ from recon4.recording.packets.livox.encode import ShotReturns, encode_imu, encod
 from recon4.recording.packets.livox.family import LIVOX
 from recon4.recording.packets.livox.models import LAYOUTS, MODELS
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, WIDE, sensor
 
@@ -206,12 +207,16 @@ def test_the_imu_is_in_meters_per_second_squared_on_the_clock_of_the_points(sdk)
     damaged[0, -4:] = np.array([np.nan], "<f4").view(np.uint8)
     device = opened(layout, datagrams(payloads))
 
-    found = device.samples(datagrams(imu, damaged, payloads), 1000).imu
+    clock = SensorClock("livox", packet_s=0.0, report=ImportReport())
+    clock.past_hour = False
+    clock.push_ns(t_ns, t_ns)
 
-    np.testing.assert_array_equal(found.t_ns, t_ns + 1000)
+    found = device.samples(datagrams(imu, damaged, payloads), clock).imu
+
+    np.testing.assert_array_equal(found.t_ns, t_ns)
     np.testing.assert_allclose(found.gyro_rad_s, gyro, atol=1e-6)
     np.testing.assert_allclose(found.accel_m_s2, accel, atol=1e-5)
-    assert device.samples(datagrams(payloads), 0) is None
+    assert device.samples(datagrams(payloads), clock) is None
 
 
 @pytest.mark.parametrize(

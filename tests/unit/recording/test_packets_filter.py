@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.packet_order import PacketOrder
 from recon4.recording.packets.sensor_clock import SECOND_NS
-from recon4.recording.packets.velodyne.data_packets import PacketDecoder
 from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
@@ -156,7 +157,9 @@ def test_a_loss_of_every_other_packet_is_no_field_of_view(clean):
 
 def test_packets_of_another_length_are_dropped_and_counted():
     report = ImportReport()
-    decoder = PacketDecoder(0, sensor(), settings=IngestSettings(), report=report)
+    decoder = open_decoder(
+        PacketSensor(row=0, sensor=sensor(), settings=IngestSettings(), report=report)
+    )
 
     shots = decoder.push(np.arange(5), np.zeros((5, 1248), np.uint8))
 

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from recon4.errors import EmptyRecording, UnknownFormat
-from recon4.recording.formats.pcap import address_text, is_pcap, read_pcap
+from recon4.recording.formats.datagrams import address_text
+from recon4.recording.formats.pcap import is_pcap, read_pcap
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import spin

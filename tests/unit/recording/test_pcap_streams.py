@@ -7,7 +7,7 @@ from recon4.errors import ConfigError, EmptyRecording
 from recon4.model.rig import parse_rig
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
-from recon4.recording.packets.capture import VelodynePcap
+from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.streams import scan_pcap
 from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position, rmc_sentence
 from recon4.recording.report import ImportReport
@@ -31,7 +31,7 @@ def capture(path, *parts):
 
 def read(paths, rig_given=None, settings=WIDE):
     report = ImportReport()
-    recording = VelodynePcap(paths, rig_given, settings=settings, report=report)
+    recording = PacketCapture(paths, rig_given, settings=settings, report=report)
     points: dict[int, int] = {}
     samples = []
     for part in recording.read():
@@ -65,12 +65,12 @@ def test_the_streams_of_a_file_are_named_with_what_they_carry(tmp_path):
     assert [(s.kind, s.source, s.port, s.packets, s.model) for s in streams] == [
         ("data", FIRST, 2368, 700, "VLP-16"),
         ("data", SECOND, 2369, 1200, "HDL-32E"),
-        ("position", FIRST, 8308, 200, ""),
+        ("samples", FIRST, 8308, 200, ""),
         ("other", FIRST, 5353, 1, ""),
     ]
-    assert streams[0].rotation_hz == pytest.approx(10.0, rel=1e-3)
-    assert streams[1].rotation_hz == pytest.approx(12.5, rel=1e-3)
-    assert (streams[0].return_mode, streams[0].whole) == (0x37, True)
+    assert streams[0].found.rotation_hz == pytest.approx(10.0, rel=1e-3)
+    assert streams[1].found.rotation_hz == pytest.approx(12.5, rel=1e-3)
+    assert (streams[0].found.mode, streams[0].whole) == ("strongest", True)
     assert streams[0].utc_offset_ns == streams[2].utc_offset_ns == -400_000
     assert streams[1].utc_offset_ns is None
 
@@ -91,7 +91,7 @@ def test_the_firing_pattern_outweighs_a_wrong_product_byte(tmp_path):
     (stream,) = scan_pcap(path)
     _, points, _, report = read([path])
 
-    assert (stream.model, stream.product) == ("VLP-16", 0x21)
+    assert stream.model == "VLP-16"
     assert points == {0: 200 * 384}
     assert any("taken for a VLP-16" in text for text in report.warnings)
 
@@ -219,7 +219,7 @@ def test_a_capture_of_something_else_is_refused(tmp_path):
 
     with pytest.raises(
         EmptyRecording,
-        match=r"no Velodyne data packets; found: 1 packets from .* to port 53 \(of 60 bytes",
+        match=r"no data packets of a LiDAR .*: 1 packets from .* to port 53 \(of 60 bytes",
     ):
         read([path])
 
@@ -243,7 +243,7 @@ def test_both_sensors_are_on_one_clock_though_neither_has_gps(tmp_path):
     )
     report = ImportReport()
     firsts = {}
-    for part in VelodynePcap([path], None, settings=WIDE, report=report).read():
+    for part in PacketCapture([path], None, settings=WIDE, report=report).read():
         if isinstance(part, Shots) and len(part):
             firsts.setdefault(part.sensor, part.t_ns[0])
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.velodyne.data_packets import (
-    PacketDecoder,
     PacketSource,
     decode_packets,
 )
@@ -237,7 +238,9 @@ def test_an_azimuth_of_exactly_360_degrees_is_zero():
 
 
 def test_no_packets_give_no_shots():
-    decoder = PacketDecoder(0, sensor(), settings=WIDE, report=ImportReport())
+    decoder = open_decoder(
+        PacketSensor(row=0, sensor=sensor(), settings=WIDE, report=ImportReport())
+    )
 
     shots = decoder.push(np.zeros(0, np.int64), np.zeros((0, 1206), np.uint8))
 
@@ -249,13 +252,15 @@ def test_no_packets_give_no_shots():
 @pytest.mark.parametrize("model", ["HDL-64E", "generic"])
 def test_a_model_without_tables_is_refused_in_words(model):
     with pytest.raises(ConfigError, match="decoded: VLP-16, VLP-16 Hi-Res, VLP-32C, HDL-32E"):
-        PacketDecoder(0, sensor(model=model), settings=WIDE, report=ImportReport())
+        open_decoder(
+            PacketSensor(row=0, sensor=sensor(model=model), settings=WIDE, report=ImportReport())
+        )
 
 
 @pytest.mark.parametrize("hz", [5.0, 10.0, 20.0])
 def test_the_rotation_rate_is_measured(hz):
     report = ImportReport()
-    decoder = PacketDecoder(0, sensor(), settings=WIDE, report=report)
+    decoder = open_decoder(PacketSensor(row=0, sensor=sensor(), settings=WIDE, report=report))
 
     decoder.push(*spin(300, hz=hz))
 
@@ -264,7 +269,9 @@ def test_the_rotation_rate_is_measured(hz):
 
 def test_times_are_those_of_the_sensor_plus_the_offset_of_the_rig():
     report = ImportReport()
-    decoder = PacketDecoder(0, sensor(time_offset_s=0.25), settings=WIDE, report=report)
+    decoder = open_decoder(
+        PacketSensor(row=0, sensor=sensor(time_offset_s=0.25), settings=WIDE, report=report)
+    )
 
     t_ns, payloads = spin(50)
     decoder.push(t_ns, payloads)

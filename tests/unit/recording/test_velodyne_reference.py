@@ -24,9 +24,10 @@ from scipy.spatial import cKDTree
 
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.pcap import read_pcap
-from recon4.recording.packets.capture import VelodynePcap
+from recon4.recording.packets.capture import PacketCapture
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.velodyne.data_packets import (
-    PacketDecoder,
     PacketSource,
     decode_packets,
 )
@@ -242,7 +243,7 @@ def test_velodyne_decoder_gives_the_same_points(data, name, model):
 
 def test_the_recordings_of_veloview_are_read_with_what_they_say(data):
     report = ImportReport()
-    recording = VelodynePcap(
+    recording = PacketCapture(
         [data("packets/veloview/vlp-16-test-90deg-1-50-frames.pcap")],
         rig(sensor("pucks", model="VLP-16")),
         settings=WIDE,
@@ -260,7 +261,7 @@ def test_the_recordings_of_veloview_are_read_with_what_they_say(data):
 
 def test_monterey_is_on_gps_time_with_positions_and_inertial_samples(data):
     report = ImportReport()
-    recording = VelodynePcap(
+    recording = PacketCapture(
         [data("packets/veloview/monterey-first-100-packets.pcap")],
         None,
         settings=WIDE,
@@ -296,7 +297,7 @@ def test_ninety_percent_of_a_real_recording_survive_ten_percent_of_garbage(data)
 
     clean, _ = decoded(payloads[~hit], "VLP-16")
     report = ImportReport()
-    decoder = PacketDecoder(0, sensor(), settings=WIDE, report=report)
+    decoder = open_decoder(PacketSensor(row=0, sensor=sensor(), settings=WIDE, report=report))
     parts = [decoder.push(batch.t_ns[rows], spoiled), decoder.flush()]
 
     assert sum(len(part) for part in parts) == len(clean)

@@ -7,7 +7,7 @@ import pytest
 
 from recon4.errors import EmptyRecording
 from recon4.recording.info import describe
-from recon4.recording.packets.capture import VelodynePcap
+from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
 from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture, read
@@ -89,7 +89,9 @@ def test_packets_of_another_make_are_named_by_their_length(tmp_path):
 
     text = why(capture(tmp_path / "other.pcap", (FIRST, 6699, other)))
 
-    assert f"90 packets from {FIRST} to port 6699 (of 1248 bytes; a data packet has 1206)" in text
+    assert (
+        f"90 packets from {FIRST} to port 6699 (of 1248 bytes: not those of a known LiDAR)" in text
+    )
 
 
 def test_a_second_lidar_of_another_make_is_a_warning(tmp_path):
@@ -161,6 +163,6 @@ def test_counts_of_the_head_are_not_counted_twice(tmp_path):
     path = cut_to(capture(tmp_path / "cut.pcap", (FIRST, 2368, spin(700))), 1300)
     report = ImportReport()
 
-    list(VelodynePcap([path], None, settings=WIDE, report=report).read())
+    list(PacketCapture([path], None, settings=WIDE, report=report).read())
 
     assert report.counts["records"] == report.counts["packets"] == 700

@@ -12,7 +12,7 @@ from recon4.errors import ConfigError
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.formats.pcap import Datagrams
+from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import (
     Companion,
     MessagePackets,
@@ -44,6 +44,7 @@ from recon4.recording.packets.livox.sound import (
     sound_points,
     stamps_ns,
 )
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 
 _MODES = {1: "single", 2: "dual", 3: "triple"}
@@ -57,7 +58,7 @@ class LivoxFormat:
     Points are in the frame of Livox's drivers: x forward, y left, z up, origin as in the manual.
     """
 
-    clock_period_ns = 0
+    stamps_past_hour = False
 
     def __init__(self, sensor: PacketSensor, layout: PointLayout, model: LivoxModel) -> None:
         """Prepare.
@@ -68,6 +69,7 @@ class LivoxFormat:
             model: Its lines and the rate of its shots.
         """
         self.size = layout.size
+        self.sample_sizes = frozenset({SDK1_IMU_SIZE if layout.sdk == 1 else SDK2_IMU_SIZE})
         self.packet_s = layout.shots * model.shot_s
         self._layout, self._report = layout, sensor.report
         self._source = LivoxSource(sensor.row, model, layout, sensor.settings)
@@ -93,22 +95,15 @@ class LivoxFormat:
         """Models whose packets of this layout come at this interval [s]."""
         return likely_models(self._layout, usual_s)
 
-    def samples(self, datagrams: Datagrams, ahead_ns: int) -> PacketSamples | None:
+    def samples(self, datagrams: Datagrams, clock: SensorClock) -> PacketSamples | None:
         """Samples of the IMU, in the axes of the points; None if there are none."""
-        sdk = self._layout.sdk
-        size = SDK1_IMU_SIZE if sdk == 1 else SDK2_IMU_SIZE
-        rows = np.flatnonzero(datagrams.length == size)
-        payloads = datagrams.payloads(rows, size)
-        sound = has_header(payloads, sdk, SDK1_IMU_TYPE if sdk == 1 else SDK2_IMU_TYPE) & has_stamp(
-            payloads, sdk
-        )
-        payloads = payloads[sound]
-        if not len(payloads):
-            return None
-        t_ns = stamps_ns(payloads, sdk) + ahead_ns
-        gyro, accel = imu_values(payloads, sdk)
-        kept = np.isfinite(gyro).all(axis=1) & np.isfinite(accel).all(axis=1)
+        payloads, arrival_ns = imu_packets(datagrams, self._layout.sdk)
+        t_ns, timed = clock.at_ns(arrival_ns, stamps_ns(payloads, self._layout.sdk))
+        gyro, accel = imu_values(payloads, self._layout.sdk)
+        kept = timed & np.isfinite(gyro).all(axis=1) & np.isfinite(accel).all(axis=1)
         self._report.count("imu_samples", int(np.count_nonzero(kept)))
+        if not kept.any():
+            return None
         return PacketSamples(imu=ImuSamples(t_ns[kept], gyro[kept], accel[kept]))
 
     def _sums_are_right(self, head: Datagrams) -> bool:

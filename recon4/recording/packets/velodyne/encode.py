@@ -11,13 +11,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.packets.sensor_clock import HOUR_US
 from recon4.recording.packets.velodyne.models import (
     BLOCK_FLAG,
     BLOCKS,
     CHANNELS,
     DATA_PACKET,
     DATA_SIZE,
-    HOUR_US,
     MODELS,
     POSITION_SIZE,
     STRONGEST,

@@ -38,7 +38,6 @@ BLOCK_FLAG = 0xEEFF
 """First two bytes of a block (FF EE on the wire)."""
 LOWER_BLOCK_FLAG = 0xDDFF
 """The same in blocks of the lower lasers of an HDL-64E."""
-HOUR_US = 3_600_000_000
 
 STRONGEST, LAST, DUAL = 0x37, 0x38, 0x39
 RETURN_MODES = {STRONGEST: "strongest", LAST: "last", DUAL: "dual"}

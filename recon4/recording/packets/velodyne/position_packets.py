@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from recon4.model.rig import Sensor
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock, nearest_hour
-from recon4.recording.packets.velodyne.models import HOUR_US, POSITION_SIZE
+from recon4.recording.packets.family import PacketSamples
+from recon4.recording.packets.sensor_clock import HOUR_US, SECOND_NS, SensorClock, nearest_hour
+from recon4.recording.packets.velodyne.models import POSITION_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import height_of_gga
 
@@ -38,14 +39,6 @@ class NmeaFix:
     height_m: float
     """Ellipsoidal height, above sea level without a geoid separation; NaN = not given."""
     quality: GnssQuality
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class PositionSamples:
-    """Contents of position packets; None where they have no value."""
-
-    imu: ImuSamples | None
-    gnss: GnssSamples | None
 
 
 def nmea_text(payload: NDArray[np.uint8]) -> bytes:
@@ -160,7 +153,7 @@ class PositionDecoder:
         self._sentence = b""
         self._imu_ns = self._gnss_ns = np.iinfo(np.int64).min
 
-    def push(self, t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> PositionSamples:
+    def push(self, t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> PacketSamples:
         """Samples of position packets, in order; a repeated sentence counts once.
 
         Counts ``positions``, ``positions_wrong_time``, ``positions_out_of_order``, ``imu_samples``,
@@ -175,7 +168,7 @@ class PositionDecoder:
         t_ns, timed = self._clock.at(np.asarray(t_arrival_ns), _stamps(payloads))
         self._report.count("positions_wrong_time", int((~timed).sum()))
         t_ns, payloads = t_ns[timed], payloads[timed]
-        return PositionSamples(self._imu(t_ns, payloads), self._gnss(t_ns, payloads))
+        return PacketSamples(self._imu(t_ns, payloads), self._gnss(t_ns, payloads))
 
     def _imu(self, t_ns: Times, payloads: NDArray[np.uint8]) -> ImuSamples | None:
         """Inertial samples: three chips, each a gyroscope and two accelerometers.

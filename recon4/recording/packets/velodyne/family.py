@@ -1,0 +1,234 @@
+"""Velodyne as a family of LiDARs: heads of streams, and the packets of one sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.packets.family import (
+    Companion,
+    MessagePackets,
+    PacketFormat,
+    PacketSamples,
+    PacketSensor,
+    Payloads,
+    Recognized,
+)
+from recon4.recording.packets.packet_rotation import Rotation
+from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.velodyne.data_packets import PacketSource, decode_packets
+from recon4.recording.packets.velodyne.models import (
+    BLOCK_FLAG,
+    DATA_SIZE,
+    LOWER_BLOCK_FLAG,
+    MODELS,
+    POSITION_SIZE,
+    PRODUCTS,
+    RETURN_MODES,
+    STRONGEST,
+    likely_model,
+    models_of_interval,
+    product_text,
+    velodyne_model,
+)
+from recon4.recording.packets.velodyne.position_packets import PositionDecoder, utc_offset_ns
+from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
+from recon4.recording.report import ImportReport
+
+NAME = "Velodyne"
+SCAN = "velodyne_msgs/msg/VelodyneScan"
+
+
+class VelodyneFamily:
+    """Packets of 1206 bytes with 12 blocks, and of 512 bytes with positions."""
+
+    name = NAME
+    messages: Mapping[str, MessagePackets] = MappingProxyType(
+        {
+            SCAN: MessagePackets(
+                definitions={
+                    SCAN: "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n",
+                    "velodyne_msgs/msg/VelodynePacket": (
+                        "builtin_interfaces/Time stamp\nuint8[1206] data\n"
+                    ),
+                },
+                packets=lambda scan: [_packet(packet) for packet in scan.packets],
+            )
+        }
+    )
+
+    def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+        """Data packets or position packets of a Velodyne; None = neither."""
+        usual = int(np.median(head.length)) if len(head) else 0
+        if usual not in (DATA_SIZE, POSITION_SIZE):
+            return None
+        rows = np.flatnonzero(head.length == usual)
+        if 2 * len(rows) <= len(head):
+            return None
+        payloads = head.payloads(rows, usual)
+        if usual == POSITION_SIZE:
+            return Recognized(
+                family=NAME, kind="samples", utc_offset_ns=utc_offset_ns(head.t_ns[rows], payloads)
+            )
+        return _recognized_data(payloads)
+
+    def open(self, sensor: PacketSensor) -> PacketFormat:
+        """The packets of one sensor.
+
+        Raises:
+            ConfigError: If those of its model are not decoded.
+        """
+        return VelodyneFormat(sensor)
+
+
+VELODYNE = VelodyneFamily()
+
+
+def _packet(packet: Any) -> tuple[int, bytes]:
+    return int(packet.stamp.sec) * SECOND_NS + int(packet.stamp.nanosec), packet.data.tobytes()
+
+
+class VelodyneFormat:
+    """The packets of one Velodyne.
+
+    The frame of the points is that of the sensor: x forward (azimuth 0), y left, z up, as in
+    ``velodyne-decoder`` and the ROS driver. Azimuth grows clockwise seen from above.
+    """
+
+    size = DATA_SIZE
+    sample_sizes = frozenset({POSITION_SIZE})
+    stamps_past_hour = True
+
+    def __init__(self, of: PacketSensor) -> None:
+        """Prepare.
+
+        Raises:
+            ConfigError: If packets of its model are not decoded.
+        """
+        self._of, self._report = of, of.report
+        self._model = velodyne_model(of.sensor.model)
+        self._mode = _first_mode(of.head)
+        self._product: int | None = None
+        self._positions: PositionDecoder | None = None
+
+    @property
+    def packet_s(self) -> float:
+        """Time from one data packet to the next [s]."""
+        return self._model.packet_s(self._mode)
+
+    def sound(self, payloads: Payloads) -> NDArray[np.bool_]:
+        """Data packets with the product byte of the first ones."""
+        kept = sound_packets(payloads, self._report)
+        rows = np.flatnonzero(kept)
+        if not len(rows):
+            return kept
+        products = payloads[rows, -1]
+        self._mode = int(payloads[rows[0], -2])
+        if self._product is None:
+            self._product = int(np.bincount(products).argmax())
+            self._compare(int(np.bincount(payloads[rows, -2]).argmax()))
+        same = products == self._product
+        self._report.count("packets_other_product", int((~same).sum()))
+        kept[rows[~same]] = False
+        return kept
+
+    def stamps_ns(self, payloads: Payloads) -> Times:
+        """Microseconds past the hour, as ns."""
+        return as_packets(payloads)["time_us"].astype(np.int64) * 1000
+
+    def azimuth_cdeg(self, payloads: Payloads) -> NDArray[np.int64]:
+        """Of the first block of each packet."""
+        return as_packets(payloads)["blocks"]["azimuth_cdeg"][:, 0].astype(np.int64)
+
+    def decode(self, t_ns: Times, payloads: Payloads) -> Shots:
+        """Points in firing order."""
+        source = PacketSource(self._of.row, self._model, self._of.settings)
+        return decode_packets(t_ns, payloads, source, report=self._report)
+
+    def likely_models(self, usual_s: float) -> tuple[str, ...]:
+        """The firing sequence sets the interval."""
+        return models_of_interval(usual_s, self._mode)
+
+    def samples(self, datagrams: Datagrams, clock: SensorClock) -> PacketSamples | None:
+        """Positions, and the inertial unit of an HDL-32E."""
+        if self._positions is None:
+            self._positions = PositionDecoder(self._of.sensor, clock=clock, report=self._report)
+        rows = np.arange(len(datagrams))
+        return self._positions.push(datagrams.t_ns, datagrams.payloads(rows, POSITION_SIZE))
+
+    def _compare(self, return_mode: int) -> None:
+        name = self._of.sensor.name
+        if return_mode not in RETURN_MODES:
+            self._report.warn(
+                f"{name}: unknown return mode byte {return_mode:#04x}: read as single return"
+            )
+        if self._product is not None and self._product != self._model.product:
+            self._report.warn(
+                f"{name}: its packets say {product_text(self._product)}; "
+                f"decoded as {self._model.name}"
+            )
+
+
+def _first_mode(head: Datagrams) -> int:
+    rows = np.flatnonzero(head.length == DATA_SIZE)[:1]
+    return int(head.payloads(rows, DATA_SIZE)[0, -2]) if len(rows) else STRONGEST
+
+
+def _recognized_data(payloads: Payloads) -> Recognized | None:
+    flags = as_packets(payloads)["blocks"]["flag"]
+    found = Recognized(family=NAME, kind="data", size=DATA_SIZE)
+    if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() > 0.3:
+        return replace(found, model="HDL-64E")
+    report = ImportReport()
+    rows = np.flatnonzero(sound_packets(payloads, report))
+    if len(rows) < len(payloads) // 2 or not len(rows):
+        return replace(found, kind="other", remarks=("; ".join(report.lost()),))
+    packets = as_packets(payloads[rows])
+    product = int(np.bincount(packets["product"]).argmax())
+    return_mode = int(np.bincount(packets["return_mode"]).argmax())
+    stamp_ns = packets["time_us"].astype(np.int64) * 1000
+    model, remarks = _model(product, return_mode, _usual_step_s(stamp_ns))
+    rotation, packet_s = Rotation(), float("nan")
+    if model in MODELS:
+        packet_s = MODELS[model].packet_s(return_mode)
+        sorted_ns, place = np.unique(stamp_ns, return_index=True)
+        azimuth = packets["blocks"]["azimuth_cdeg"][place, 0].astype(np.int64)
+        rotation.push(sorted_ns, azimuth, packet_s)
+    return replace(
+        found,
+        model=model,
+        mode=RETURN_MODES.get(return_mode, f"return mode {return_mode:#04x}"),
+        packet_s=packet_s,
+        rotation_hz=rotation.hz,
+        remarks=remarks,
+    )
+
+
+def _usual_step_s(stamp_ns: Times) -> float:
+    steps = np.diff(np.unique(stamp_ns))
+    return float(np.median(steps)) / SECOND_NS if len(steps) > 4 else float("nan")
+
+
+def _model(product: int, return_mode: int, interval_s: float) -> tuple[str, tuple[str, ...]]:
+    """Name of the model and a warning; the firing pattern overrules the product byte."""
+    model = likely_model(product, interval_s, return_mode)
+    stated = PRODUCTS.get(product)
+    remarks = []
+    if return_mode not in RETURN_MODES:
+        remarks.append(f"unknown return mode byte {return_mode:#04x}, read as single return")
+    if model and stated != model:
+        remarks.append(
+            f"its packets say {product_text(product)}, but they come every {1e3 * interval_s:.3f} "
+            f"ms as those of a {model}: taken for a {model}"
+        )
+    elif not model:
+        remarks.append(f"unknown product byte {product:#04x}; give a rig that names the model")
+    return model or "", tuple(remarks)
