@@ -181,6 +181,7 @@ _SAMPLES = {
     ),
     "imu_accel_scaled": _repaired("imu_kept", "accelerations in another unit, stored in m/s²"),
     "imu_gyro_scaled": _repaired("imu_kept", "angular rates in deg/s, stored in rad/s"),
+    "imu_gyro_assumed": _usual("imu_kept", "angular rates that may be in deg/s, taken as rad/s"),
     "gnss_samples": _read("GNSS positions received"),
     "gnss_kept": _read("GNSS positions used", noun="GNSS positions"),
     "gnss_nan": _lost("gnss_kept", "no place on earth, dropped", apart=True),

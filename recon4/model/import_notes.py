@@ -16,6 +16,10 @@ CLOUDS_UNTIMED = "clouds_untimed"
 """Count of clouds whose points have no times: these follow from the stamp, which may be that of the
 start, the middle or the end of a cloud, so nothing says how a clock lies to that of the points."""
 
+GYRO_UNIT_ASSUMED = "imu_gyro_assumed"
+"""Count of angular rates that are taken as rad/s although they are large, and the accelerations do
+not say whether they are in deg/s."""
+
 
 class ImportNotes(msgspec.Struct, frozen=True):
     """Outcome, warnings and counts of reading a recording."""

@@ -282,10 +282,10 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
     return save_findings(context.out, check_walk(read_walk(artifacts), context.settings))
 
 
-FRAMES = Stage("frames", 29, ImportReads, _frames, FrameFigures)
+FRAMES = Stage("frames", 30, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    39,
+    40,
     OdometryReads,
     _odometry,
     OdometryFigures,

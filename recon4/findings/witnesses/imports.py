@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from recon4.findings.finding import Finding, Level
+from msgspec.structs import replace
+
+from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
-from recon4.model.import_notes import import_notes
+from recon4.model.import_notes import GYRO_UNIT_ASSUMED, ImportNotes, import_notes
+from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.unused import unused_parts
 
 
@@ -22,10 +25,27 @@ class Import:
             yield finding(FindingKind.IMPORT_INCOMPLETE, Level.CHECK, {"outcome": notes.outcome})
         for text in notes.warnings:
             yield finding(FindingKind.IMPORT_REMARK, Level.CHECK, {"text": text})
+        # In the other unit the LiDARs would see the same turns 57 times as fast, or as slow.
+        agrees = _lidars_agree(walk.odometry_figures)
+        yield from gyro_unit_assumed(notes, Level.NOTE if agrees else Level.CHECK)
         for part in unused_parts(notes.counts):
             if part.is_severe or part.is_scattered:
                 level = Level.DO_NOT_USE if part.is_severe else Level.CHECK
                 yield finding(FindingKind.IMPORT_UNUSED, level, {"text": part.text})
+
+
+def gyro_unit_assumed(notes: ImportNotes, level: Level) -> Iterator[Finding]:
+    """A unit of the gyroscope that its samples alone leave open, if it is."""
+    if notes.counts.get(GYRO_UNIT_ASSUMED, 0):
+        values: dict[str, Value] = {"fault": "gyroscope_assumed"}
+        yield replace(finding(FindingKind.IMU_UNIT, level, values), sensor="IMU")
+
+
+def _lidars_agree(figures: OdometryFigures | None) -> bool:
+    """Whether the odometry of LiDARs used the gyroscope as it was recorded."""
+    if figures is None or not figures.imu or figures.lines is not None:
+        return False
+    return figures.imu_choice is None or figures.imu_choice.outcome != "not used"
 
 
 class Earlier:

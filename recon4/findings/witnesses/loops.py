@@ -12,7 +12,7 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
-from recon4.findings.witnesses.uncertainty import known_to
+from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.model.pose_graph import EdgeKind, Verdict
 
 _SMALL_M = 1.0
@@ -37,7 +37,8 @@ class Loops:
             yield finding(FindingKind.LOOPS_NONE, Level.NOTE if known else Level.CHECK, known)
         if unverified > accepted:
             values = {"unverified": unverified, "accepted": accepted}
-            yield finding(FindingKind.LOOPS_UNVERIFIED, Level.CHECK, values)
+            level = Level.NOTE if is_known(walk) else Level.CHECK
+            yield finding(FindingKind.LOOPS_UNVERIFIED, level, values)
         broken = sum(e.kind is EdgeKind.ODOMETRY and not e.in_graph for e in walk.graph.edges)
         if broken:
             yield finding(FindingKind.CHAIN_BROKEN, Level.DO_NOT_USE, {"edges": broken})

@@ -11,6 +11,7 @@ from msgspec.structs import replace
 from recon4.findings.finding import Finding, Level, Value, worst_first
 from recon4.findings.kinds import FindingKind
 from recon4.findings.witnesses.base import finding, placed
+from recon4.findings.witnesses.imports import gyro_unit_assumed
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
@@ -106,6 +107,7 @@ def longest_loss_s(steps: Steps2d) -> float:
 
 
 def _imported(notes: ImportNotes, doubts: tuple[str, ...]) -> Iterator[Finding]:
+    yield from gyro_unit_assumed(notes, Level.NOTE)
     if notes.outcome != "complete":
         yield finding(FindingKind.IMPORT_INCOMPLETE, Level.CHECK, {"outcome": notes.outcome})
     for text in (one for one in notes.warnings if one not in doubts):

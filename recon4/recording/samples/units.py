@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.geometry.se3 import Array, so3_exp
+from recon4.model.import_notes import GYRO_UNIT_ASSUMED
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.recording.report import ImportReport
 
@@ -37,7 +38,7 @@ def in_rad_s(imu: ImuSamples, unit: GyroUnit, report: ImportReport) -> ImuSample
     Args:
         imu: In order of time.
         unit: As a setting names it, or ``auto`` = by content.
-        report: Gets the count ``imu_gyro_scaled`` and what was found.
+        report: Gets the counts ``imu_gyro_scaled`` or ``imu_gyro_assumed`` and what was found.
     """
     high = float(np.percentile(np.linalg.norm(imu.gyro_rad_s, axis=1), 90))
     if unit == "rad_s" or (unit == "auto" and high <= _FAST_RAD_S):
@@ -53,10 +54,9 @@ def in_rad_s(imu: ImuSamples, unit: GyroUnit, report: ImportReport) -> ImuSample
         )
         return None
     if unit == "auto" and high <= FASTEST_RAD_S and not by_gravity:
-        report.warn(
-            f"{text}: taken as rad/s ({np.rad2deg(high):.0f} deg/s); if they are in deg/s, give "
-            "the setting ingest.imu_gyro_unit=deg_s"
-        )
+        # The LiDARs decide: `recon4.findings.witnesses.imu` names it if they do not agree.
+        report.count(GYRO_UNIT_ASSUMED, len(imu))
+        report.derive(f"{text}: taken as rad/s ({np.rad2deg(high):.0f} deg/s)")
         return imu
     report.count("imu_gyro_scaled", len(imu))
     found = f"; against it: ingest.imu_gyro_unit=rad_s ({text})" if unit == "auto" else ""

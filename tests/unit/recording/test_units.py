@@ -54,10 +54,11 @@ def test_rates_in_radians_are_left_and_not_accused(fastest_rad_s):
     assert (report.warnings, report.derived) == ([], [])
 
 
-def test_where_nothing_decides_the_setting_is_named():
+def test_where_nothing_decides_the_unit_is_assumed_and_counted():
     found, report = cleaned(swaying(6.0, axis=(0.0, 0.0, 1.0)))
 
-    assert "ingest.imu_gyro_unit=deg_s" in report.warnings[0]
+    assert report.counts["imu_gyro_assumed"] == len(found)
+    assert "taken as rad/s" in report.derived[0] and not report.warnings
     assert float(np.abs(found.gyro_rad_s).max()) > 5.0
 
 

@@ -115,6 +115,22 @@ def test_odometry_between_imu_and_lidar_contradicts_the_imu() -> None:
     assert any(is_severe(one) for one in found)
 
 
+@pytest.mark.parametrize(("speed_m_s", "found"), [(0.23, 1), (0.05, 0)])
+def test_a_vertical_speed_that_changes_at_once_contradicts_an_imu_that_did_not_feel_it(
+    speed_m_s: float, found: int
+) -> None:
+    """Measured: an odometry that follows a lift for 2.2 m of 3.4 m, then comes to rest at once."""
+    trajectory, imu = walked("office", seconds=20.0)
+    t_s = (trajectory.t_ns - trajectory.t_ns[0]) * 1e-9
+    sinks = np.outer(np.maximum(t_s - 9.0, 0.0), [0.0, 0.0, -speed_m_s])
+    bent = Trajectory(trajectory.t_ns, SE3(trajectory.T_a_b.R, trajectory.T_a_b.t + sinks))
+
+    contradictions = unseen_rides(bent, imu, RIG, lost_ns=NOTHING_LOST)
+
+    assert [type(one) for one in contradictions] == found * [HeightContradiction]
+    assert all(abs(one.start_s - 9.0) < 0.6 for one in contradictions)
+
+
 def test_a_step_of_a_lift_is_announced_but_forbids_nothing() -> None:
     platform = UnseenRide(3.0, 6.0, 0.4, 0.3)
 

@@ -1,0 +1,51 @@
+"""What is no fault of a map: kinds that accused maps that were right."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from recon4.findings.audit import check_walk
+from recon4.findings.finding import Level
+from recon4.findings.kinds import FindingKind
+from recon4.findings.walk import WalkRecord
+from recon4.findings.wording import text_of
+from recon4.model.odometry_figures import ImuChoice, OdometryFigures
+from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict, known_history
+from recon4.settings import preset
+from tests.unit.findings.test_known_shape import FLAT, stated
+from tests.unit.pose_graph.test_uncertainty import chain, edge
+
+
+def only(walked, kind):
+    (found,) = (one for one in check_walk(walked, preset("indoor")) if one.kind is kind)
+    return found
+
+
+def unverified() -> PoseGraph:
+    graph = chain(20)
+    open_loop = edge(graph.T_map_body, 0, 19, EdgeKind.LOOP, 0.01 * np.ones(6))
+    loop = replace(open_loop, judgments=known_history(Verdict.UNVERIFIED))
+    return replace(graph, edges=(*graph.edges, loop))
+
+
+@pytest.mark.parametrize(("sd", "level"), [(FLAT, Level.NOTE), (10 * FLAT, Level.CHECK)])
+def test_an_unverified_loop_is_a_fault_only_where_the_map_is_not_known_without_it(sd, level):
+    walked = replace(stated(sd, 0.1, on_earth=False), graph=unverified())
+
+    assert only(walked, FindingKind.LOOPS_UNVERIFIED).level is level
+
+
+@pytest.mark.parametrize(
+    ("outcome", "level"),
+    [("as recorded", Level.NOTE), ("not used", Level.CHECK), (None, Level.CHECK)],
+    ids=["LiDARs see the same turns", "LiDARs contradict it", "no LiDAR was compared"],
+)
+def test_a_unit_of_the_gyroscope_that_its_samples_leave_open_is_settled_by_lidars(outcome, level):
+    choice = None if outcome is None else ImuChoice(outcome=outcome)
+    figures = OdometryFigures(multiframes=9, lost=0, imu=outcome is not None, imu_choice=choice)
+    walked = WalkRecord(imported={"counts": {"imu_gyro_assumed": 9}}, odometry_figures=figures)
+
+    found = only(walked, FindingKind.IMU_UNIT)
+    assert found.level is level
+    assert "ingest.imu_gyro_unit=deg_s" in text_of(found)
