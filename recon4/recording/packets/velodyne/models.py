@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.kernels.spinning import Layout
 
 RETURN = np.dtype([("distance", "<u2"), ("intensity", "u1")])
 BLOCK = np.dtype([("flag", "<u2"), ("azimuth_cdeg", "<u2"), ("returns", RETURN, 32)])
@@ -38,6 +39,21 @@ BLOCK_FLAG = 0xEEFF
 """First two bytes of a block (FF EE on the wire)."""
 LOWER_BLOCK_FLAG = 0xDDFF
 """The same in blocks of the lower lasers of an HDL-64E."""
+
+LAYOUT = Layout(
+    blocks=BLOCKS,
+    channels=CHANNELS,
+    first=0,
+    block=BLOCK.itemsize,
+    azimuth=2,
+    channel_first=4,
+    channel=RETURN.itemsize,
+    intensity=2,
+    big_endian=False,
+    min_step_cdeg=0,
+    max_step_cdeg=1000,
+)
+"""A data packet for the kernel."""
 
 STRONGEST, LAST, DUAL = 0x37, 0x38, 0x39
 RETURN_MODES = {STRONGEST: "strongest", LAST: "last", DUAL: "dual"}
