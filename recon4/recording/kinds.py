@@ -23,7 +23,7 @@ from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
 from recon4.recording.laser_tables import LASER_COLUMNS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
-from recon4.recording.packets.companions import COMPANION_SUFFIXES, MAX_COMPANION_BYTES
+from recon4.recording.packets.companions import companion_paths, is_companion
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.sources import Sources
 
@@ -180,7 +180,7 @@ def _file_kind(path: Path) -> RecordingKind:
             return kind
     if pose_format(path):
         return RecordingKind.POSES
-    if path.suffix.lower() in COMPANION_SUFFIXES and path.stat().st_size <= MAX_COMPANION_BYTES:
+    if is_companion(path):
         return RecordingKind.LIDAR_FILE
     what = next((text for magic, text in _OTHERS.items() if head.startswith(magic)), "")
     looks = f"looks like {what}" if what else f"first bytes {head[:8].hex(' ')}"
@@ -230,11 +230,22 @@ def _located(contents: FolderContents) -> Path:
 def located_sources(sources: Sources) -> Sources:
     """The sources with each folder replaced by the only recording in its subfolders, if it is so.
 
+    Files beside packets that describe their LiDARs are sources, too.
+
     Raises:
         RecordingError: If no recording is given, or a file or folder does not exist.
     """
     sources.require()
-    return replace(sources, recordings=tuple(map(located, sources.recordings)))
+    recordings = [located(path) for path in sources.recordings]
+    beside = [file for path in recordings if _has_packets(path) for file in companion_paths(path)]
+    return replace(sources, recordings=tuple(dict.fromkeys([*recordings, *beside])))
+
+
+def _has_packets(path: Path) -> bool:
+    try:
+        return recognize(path) in (RecordingKind.PCAP, *BAGS)
+    except RecordingError:  # it is said when the recording is opened
+        return False
 
 
 def located_elsewhere(sources: Sources) -> list[str]:

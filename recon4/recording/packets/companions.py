@@ -1,47 +1,50 @@
-"""Small files beside a recording that may describe its LiDARs: metadata, tables of angles."""
+"""Small files beside a recording that describe its LiDARs: metadata, tables of angles."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion
 
 COMPANION_SUFFIXES = frozenset({".json", ".csv", ".yaml", ".yml", ".xml", ".dat", ".cal"})
 MAX_COMPANION_BYTES = 1 << 20
 _MOST_FILES = 100
-_NOT_CALIBRATION = frozenset({"metadata.yaml", "recording.json", "info.json"})
+
+
+def is_companion(path: Path) -> bool:
+    """Whether a file describes a LiDAR, by its contents."""
+    return bool(_read([path]))
+
+
+def companion_paths(recording: Path) -> list[Path]:
+    """The files in the folder of a recording that describe a LiDAR."""
+    folder = recording if recording.is_dir() else recording.parent
+    try:
+        files = sorted(file for file in folder.iterdir() if not file.is_symlink())
+    except OSError:  # a confined process may not list it; what it may read was given
+        return []
+    return [path for path in files if path != recording and is_companion(path)]
 
 
 def companions_of(paths: Sequence[Path]) -> list[Companion]:
-    """The files given, and those beside a recording or in its folder; large ones are none.
+    """The files among the sources that describe a LiDAR, and those beside them.
 
     Args:
-        paths: Recordings: files or folders.
+        paths: Recordings, files or folders, and such files.
     """
-    given = [path for path in paths if path.is_file() and path.suffix.lower() in COMPANION_SUFFIXES]
-    folders = dict.fromkeys(path if path.is_dir() else path.parent for path in paths)
-    beside = [file for folder in folders for file in _files_in(folder)]
+    beside = [file for path in paths for file in companion_paths(path)]
+    return _read(dict.fromkeys([*paths, *beside]))
+
+
+def _read(paths: Iterable[Path]) -> list[Companion]:
+    small = [path for path in paths if path.suffix.lower() in COMPANION_SUFFIXES]
     found = []
-    for file in list(dict.fromkeys([*given, *beside]))[:_MOST_FILES]:
+    for path in small[:_MOST_FILES]:
         try:
-            if file.stat().st_size <= MAX_COMPANION_BYTES:
-                found.append(Companion(file.name, file.read_bytes()))
-        except OSError:  # not readable for a confined process, or gone: not of this recording
+            if path.is_file() and path.stat().st_size <= MAX_COMPANION_BYTES:
+                found.append(Companion(path.name, path.read_bytes()))
+        except OSError:
             continue
-    return found
-
-
-def _files_in(folder: Path) -> list[Path]:
-    try:
-        files = sorted(folder.iterdir())
-    except OSError:
-        return []
-    return [
-        file
-        for file in files
-        if file.suffix.lower() in COMPANION_SUFFIXES
-        and file.name not in _NOT_CALIBRATION
-        and file.is_file()
-        and not file.is_symlink()
-    ]
+    return [one for one in found if any(family.describes(one) for family in FAMILIES)]

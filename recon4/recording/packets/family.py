@@ -177,6 +177,12 @@ class PacketFamily(Protocol):
         """Type of a message in a bag (``pandar_msgs/msg/PandarScan``) -> how to get its packets."""
         ...
 
+    def describes(self, companion: Companion) -> bool:
+        """Whether a small file is one that `open` can use; other files beside a recording are not
+        inputs of the map.
+        """
+        ...
+
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """What the datagrams of one sender to one port are; None = not of this family.
 

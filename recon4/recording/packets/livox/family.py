@@ -124,6 +124,11 @@ class LivoxFamily:
     messages: Mapping[str, MessagePackets] = {}
     """Livox's drivers publish points, no packets."""
 
+    def describes(self, companion: Companion) -> bool:
+        """None does: the data sheets are enough."""
+        del companion
+        return False
+
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """What the datagrams of one sender to one port are; None = not of this family."""
         del companions

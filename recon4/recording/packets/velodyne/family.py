@@ -65,6 +65,11 @@ class VelodyneFamily:
         }
     )
 
+    def describes(self, companion: Companion) -> bool:
+        """None does: the data sheets are enough."""
+        del companion
+        return False
+
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """Data packets or position packets of a Velodyne; None = neither."""
         usual = int(np.median(head.length)) if len(head) else 0
