@@ -120,6 +120,62 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
         range_m=150.0,
     ),
 )
+_OS1 = LidarFacts(
+    name="OS1",
+    maker="Ouster",
+    beams=64,
+    elevation_deg=(-21.2, 21.2),
+    min_range_m=0.5,
+    range_m=90.0,
+    accuracy_m=0.015,
+    divergence_rad=0.0031,
+)
+_OUSTER_KINDS = (  # data sheets of revision 7, firmware 3.0: precision in the middle of its range
+    replace(
+        _OS1,
+        name="OS0",
+        elevation_deg=(-45.0, 45.0),
+        range_m=35.0,
+        accuracy_m=0.02,
+        divergence_rad=0.0061,
+    ),
+    _OS1,
+    replace(
+        _OS1,
+        name="OS2",
+        elevation_deg=(-11.25, 11.25),
+        min_range_m=0.8,
+        range_m=200.0,
+        accuracy_m=0.04,
+        divergence_rad=0.0016,
+    ),
+    replace(
+        _OS1,
+        name="OSDome",
+        elevation_deg=(0.0, 90.0),
+        range_m=20.0,
+        accuracy_m=0.02,
+        divergence_rad=0.0061,
+    ),
+)
+_OUSTER = (
+    replace(_OUSTER_KINDS[0], name="Ouster", beams=0),  # of a kind that is not known
+    *(
+        replace(kind, name=f"{kind.name}-{beams}", beams=beams)
+        for kind in _OUSTER_KINDS
+        for beams in (32, 64, 128)
+    ),
+    replace(  # of the first generation, software user guide 1.12
+        _OS1,
+        name="OS1-16",
+        beams=16,
+        elevation_deg=(-16.6, 16.6),
+        min_range_m=0.8,
+        range_m=40.0,
+        accuracy_m=0.03,
+        divergence_rad=0.0023,
+    ),
+)
 
 _GENERIC = LidarFacts(
     name="generic",
@@ -132,7 +188,9 @@ _GENERIC = LidarFacts(
     divergence_rad=0.003,
 )
 
-LIDARS: dict[str, LidarFacts] = {model.name: model for model in (*_VELODYNE, *_LIVOX, _GENERIC)}
+LIDARS: dict[str, LidarFacts] = {
+    model.name: model for model in (*_VELODYNE, *_LIVOX, *_OUSTER, _GENERIC)
+}
 """All models by name; ``generic`` is any LiDAR whose points come as clouds."""
 
 

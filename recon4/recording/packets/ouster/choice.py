@@ -1,0 +1,157 @@
+"""Which metadata file belongs to which sender."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError, CorruptFile
+from recon4.model.rig import Sensor
+from recon4.recording.formats.datagrams import Datagrams, address_text
+from recon4.recording.packets.family import Companion, Payloads
+from recon4.recording.packets.ouster.columns import sound_columns
+from recon4.recording.packets.ouster.layouts import PacketLayout, numbers
+from recon4.recording.packets.ouster.metadata import OusterMetadata, read_metadata
+
+_TRIED = 200
+"""Packets at the head that are compared."""
+NEEDED = (
+    "packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor "
+    "beside the recording (the driver and ouster-cli write it; http://SENSOR/api/v1/sensor/metadata)"
+)
+
+
+@dataclass(frozen=True, slots=True)
+class MetadataFiles:
+    """The metadata files beside a recording."""
+
+    metadata: tuple[OusterMetadata, ...]
+    damaged: tuple[str, ...]
+    """Why others cannot be read."""
+
+
+@dataclass(frozen=True, slots=True)
+class ChosenMetadata:
+    """The metadata of a sender."""
+
+    metadata: OusterMetadata
+    doubts: tuple[str, ...]
+    """How the packets contradict it."""
+
+
+def find_metadata(companions: Sequence[Companion]) -> MetadataFiles:
+    """Read all metadata files among some files."""
+    found, damaged = list[OusterMetadata](), list[str]()
+    for companion in companions:
+        try:
+            metadata = read_metadata(companion)
+        except CorruptFile as error:
+            damaged.append(str(error))
+        else:
+            found += [metadata] if metadata else []
+    return MetadataFiles(tuple(found), tuple(damaged))
+
+
+def sound_head(head: Datagrams, layout: PacketLayout) -> Payloads:
+    """The first datagrams that are data packets of a layout, (N, size)."""
+    rows = np.flatnonzero(head.length == layout.size)[:_TRIED]
+    payloads = head.payloads(rows, layout.size)
+    return payloads[sound_columns(layout, payloads)] if len(rows) else payloads
+
+
+def layout_fits(head: Datagrams, layout: PacketLayout) -> bool:
+    """Whether most datagrams of the size of a layout are data packets of it; not without any."""
+    of_size = int((head.length == layout.size).sum())
+    return of_size > 0 and 2 * len(sound_head(head, layout)) > min(of_size, _TRIED)
+
+
+def usual_serial(layout: PacketLayout, payloads: Payloads) -> str:
+    """Serial number of most packets; empty if they have none."""
+    return str(_usual(layout, payloads, "serial") or "")
+
+
+def serials(layout: PacketLayout, payloads: Payloads) -> NDArray[np.int64]:
+    """Serial numbers in the headers, (P,)."""
+    return numbers(layout.records(payloads)["header"]["serial"])
+
+
+def _usual(layout: PacketLayout, payloads: Payloads, field: str) -> int:
+    """The most frequent value in the headers; 0 if they have none."""
+    if not layout.profile.has_header or not len(payloads):
+        return 0
+    values, count = np.unique(
+        numbers(layout.records(payloads)["header"][field]), return_counts=True
+    )
+    return int(values[np.argmax(count)])
+
+
+def choose(
+    head: Datagrams, found: MetadataFiles, sensor: Sensor | None = None
+) -> ChosenMetadata | None:
+    """The metadata of the sender of some datagrams; None if there is none that fits.
+
+    Size and contents of its packets decide, then serial number, start of the sensor
+    (``init_id``), port, and whether the name of the file holds the address or the sensor's name.
+
+    Raises:
+        ConfigError: If several fit equally and give other points.
+    """
+    fitting = [item for item in found.metadata if not len(head) or layout_fits(head, item.layout)]
+    if not fitting:
+        return None
+    ranks = [_rank(head, item, sensor) for item in fitting]
+    best = [item for item, rank in zip(fitting, ranks, strict=True) if rank == max(ranks)]
+    if not all(best[0].same_geometry(item) for item in best[1:]):
+        names = ", ".join(item.name for item in best)
+        raise ConfigError(
+            f"the packets of {_sender(head, sensor)} may be of the sensors of several metadata "
+            f"files: {names}; put the address of the sensor into the name of its file"
+        )
+    return ChosenMetadata(best[0], _doubts(head, best[0]))
+
+
+def _rank(head: Datagrams, item: OusterMetadata, sensor: Sensor | None) -> tuple[bool, ...]:
+    """Better fits are larger."""
+    payloads = sound_head(head, item.layout)
+    serial = usual_serial(item.layout, payloads) or (sensor.serial if sensor else "")
+    init_id = _usual(item.layout, payloads, "init_id")
+    ports = set(head.port[:1].tolist()) or ({sensor.port} if sensor else set())
+    names = [address_text(int(source)) for source in head.source[:1]]
+    names += [sensor.name, sensor.address] if sensor else []
+    return (
+        bool(serial) and serial == item.serial,
+        bool(init_id) and init_id == item.init_id,
+        item.port in ports,
+        any(name and name in item.name for name in names),
+    )
+
+
+def _doubts(head: Datagrams, item: OusterMetadata) -> tuple[str, ...]:
+    serial = usual_serial(item.layout, sound_head(head, item.layout))
+    if serial and item.serial and serial != item.serial:
+        return (
+            f"{item.name} is of the sensor {item.serial}, but the packets are of {serial}: the "
+            "angles of its beams are those of another sensor; give the metadata of the right one",
+        )
+    return ()
+
+
+def missing_text(head: Datagrams, found: MetadataFiles, sensor: Sensor) -> str:
+    """Why there is no metadata for a sensor, for a message."""
+    sizes = np.unique(head.length).tolist()
+    seen = [
+        f"{item.name} is of packets of {item.layout.size} bytes ({item.layout.profile.name}, "
+        f"{item.layout.beams} beams, {item.layout.columns} columns), those here have "
+        f"{', '.join(map(str, sizes[:4]))}"
+        for item in found.metadata
+    ]
+    return "; ".join([f"{_sender(head, sensor)}: {NEEDED}", *seen, *found.damaged])
+
+
+def _sender(head: Datagrams, sensor: Sensor | None) -> str:
+    if sensor is not None:
+        return sensor.name
+    return address_text(int(head.source[0])) if len(head) else "a sensor"

@@ -1,0 +1,164 @@
+"""Ouster: OS0, OS1, OS2 and OSDome."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from recon4.errors import ConfigError
+from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.packets.family import (
+    Companion,
+    MessagePackets,
+    PacketFormat,
+    PacketSensor,
+    Recognized,
+)
+from recon4.recording.packets.ouster.choice import (
+    NEEDED,
+    ChosenMetadata,
+    MetadataFiles,
+    choose,
+    find_metadata,
+    layout_fits,
+    missing_text,
+    sound_head,
+    usual_serial,
+)
+from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
+from recon4.recording.packets.ouster.data_packets import OusterPackets, turning_of
+from recon4.recording.packets.ouster.imu_packets import is_known_packet
+from recon4.recording.packets.ouster.layouts import USUAL_LAYOUTS
+
+_NAME = "Ouster"
+UNKNOWN = _NAME
+"""Model of a sensor of which nothing states what it is."""
+_TRIED = 200
+
+
+def packets_of_message(message: Any) -> list[tuple[int, bytes]]:
+    """The packet in a message; LEGACY drivers send one spare byte, and all sizes are even."""
+    packet = bytes(message.buf)
+    return [(0, packet[: len(packet) & ~1])]
+
+
+_MESSAGES = {
+    name: MessagePackets({name: "uint8[] buf\n"}, packets_of_message)
+    for name in ("ouster_ros/msg/PacketMsg", "ouster_sensor_msgs/msg/PacketMsg")
+}
+
+
+class OusterFamily:
+    """Packets that need the metadata of their sensor."""
+
+    name = _NAME
+    messages: Mapping[str, MessagePackets] = _MESSAGES
+
+    def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+        """What the datagrams of one sender to one port are; None = not of an Ouster."""
+        if not len(head):
+            return None
+        found = find_metadata(companions)
+        try:
+            fit = choose(head, found)
+        except ConfigError as error:
+            return _unknown(head, str(error))
+        if fit is not None and _most_are_known(head, fit.metadata.layout.size):
+            return _recognized(head, fit)
+        return _unknown(head, "; ".join([NEEDED, *found.damaged]))
+
+    def open(self, sensor: PacketSensor) -> PacketFormat:
+        """Prepare to decode the packets of one sensor.
+
+        Raises:
+            ConfigError: If no metadata file fits, or several do.
+        """
+        found = find_metadata(sensor.companions)
+        fit = choose(sensor.head, found, sensor.sensor)
+        if fit is None:
+            raise ConfigError(missing_text(sensor.head, found, sensor.sensor))
+        turning = turning_of(fit.metadata, sensor.head)
+        if not turning.columns:
+            raise ConfigError(
+                f"{fit.metadata.name}: neither lidar_mode nor columns_per_frame, and the packets "
+                "do not show how many columns a revolution has"
+            )
+        _say(sensor, fit, found, columns=turning.columns)
+        return OusterPackets(sensor, fit.metadata, turning)
+
+
+def _recognized(head: Datagrams, fit: ChosenMetadata) -> Recognized:
+    metadata = fit.metadata
+    turning = turning_of(metadata, head)
+    payloads = sound_head(head, metadata.layout)
+    return Recognized(
+        family=_NAME,
+        kind="data",
+        model=metadata.model or UNKNOWN,
+        mode="dual" if len(metadata.layout.profile.echoes) == 2 else "single",
+        packet_s=metadata.layout.columns * turning.column_s,
+        rotation_hz=turning.rotation_hz,
+        serial=usual_serial(metadata.layout, payloads) or metadata.serial,
+        size=metadata.layout.size,
+        remarks=fit.doubts,
+    )
+
+
+def _unknown(head: Datagrams, remark: str) -> Recognized | None:
+    """Packets of a sensor whose metadata is not there, or other packets of an Ouster."""
+    for layout in USUAL_LAYOUTS:
+        if layout_fits(head, layout) and _most_are_known(head, layout.size):
+            payloads = sound_head(head, layout)
+            step_s = 1e-9 * column_step_ns(columns_of(layout, payloads))
+            return Recognized(
+                family=_NAME,
+                kind="data",
+                model=UNKNOWN,
+                packet_s=layout.columns * step_s,
+                serial=usual_serial(layout, payloads),
+                size=layout.size,
+                remarks=(remark,),
+            )
+    return Recognized(family=_NAME, kind="samples") if _most_are_known(head, 0) else None
+
+
+def _most_are_known(head: Datagrams, size: int) -> bool:
+    """Whether more than half of the first datagrams are packets of an Ouster.
+
+    Args:
+        head: First datagrams.
+        size: Bytes of those that have been found to be data packets; 0 = none were.
+    """
+    length = head.length[:_TRIED]
+    known = int((length == size).sum())
+    for other in np.unique(length[length != size]).tolist():
+        rows = np.flatnonzero(length == other)
+        known += int(is_known_packet(head.payloads(rows, other)).sum())
+    return 2 * known > len(length)
+
+
+def _say(sensor: PacketSensor, fit: ChosenMetadata, found: MetadataFiles, *, columns: int) -> None:
+    """Report what the files say and what contradicts it."""
+    name, metadata, report = sensor.sensor.name, fit.metadata, sensor.report
+    for text in (*fit.doubts, *found.damaged):
+        report.warn(f"{name}: {text}")
+    if metadata.columns_per_turn not in (0, columns):
+        report.warn(
+            f"{name}: {metadata.name} says {metadata.columns_per_turn} columns in a revolution, "
+            f"its packets have {columns}: read so"
+        )
+    if metadata.model and sensor.sensor.model not in (UNKNOWN, metadata.model):
+        report.warn(
+            f"{name}: the rig says {sensor.sensor.model}, {metadata.name} {metadata.product}: "
+            "decoded by this file"
+        )
+    if metadata.assumed:
+        report.derive(
+            f"{name}: {metadata.name} does not tell {' and '.join(metadata.assumed)}: "
+            "those of most sensors are taken"
+        )
+
+
+OUSTER = OusterFamily()
