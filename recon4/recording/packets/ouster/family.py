@@ -31,6 +31,7 @@ from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
 from recon4.recording.packets.ouster.data_packets import OusterPackets, turning_of
 from recon4.recording.packets.ouster.imu_packets import is_known_packet
 from recon4.recording.packets.ouster.layouts import USUAL_LAYOUTS
+from recon4.recording.packets.ouster.metadata import is_metadata
 
 _NAME = "Ouster"
 UNKNOWN = _NAME
@@ -68,6 +69,10 @@ class OusterFamily:
         if fit is not None and _most_are_known(head, fit.metadata.layout.size):
             return _recognized(head, fit)
         return _unknown(head, "; ".join([NEEDED, *found.damaged]))
+
+    def describes(self, companion: Companion) -> bool:
+        """Whether a file is the metadata of a sensor, sound or not."""
+        return is_metadata(companion)
 
     def open(self, sensor: PacketSensor) -> PacketFormat:
         """Prepare to decode the packets of one sensor.

@@ -99,6 +99,11 @@ class OusterMetadata:
         )
 
 
+def is_metadata(companion: Companion) -> bool:
+    """Whether a file names the angles of beams as the metadata of an Ouster does."""
+    return len(companion.content) <= MAX_METADATA_BYTES and _ANGLES.encode() in companion.content
+
+
 def read_metadata(companion: Companion) -> OusterMetadata | None:
     """The metadata in a file; None if it is something else.
 
@@ -106,7 +111,7 @@ def read_metadata(companion: Companion) -> OusterMetadata | None:
         CorruptFile: If it has angles of beams and is damaged or contradicts itself.
     """
     content, name = companion.content, companion.name
-    if len(content) > MAX_METADATA_BYTES or _ANGLES.encode() not in content:
+    if not is_metadata(companion):
         return None
     found = parse_json(content.strip(b"\0 \r\n\t"), name, finite=True)
     if not isinstance(found, dict):
