@@ -37,6 +37,10 @@ from recon4.untrusted.bounded import read_json_object
 _MAX_JSON_BYTES = 64 << 20
 
 
+_MAX_S = 1e9
+"""Later times are not in nanoseconds of 64 bits [s]."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class WalkRecord:
     """The artifacts of a run in memory, without points. None or empty = missing."""
@@ -102,7 +106,7 @@ def read_walk(artifacts: Mapping[str, Path]) -> WalkRecord:
         calibration=_calibration(artifacts),
         graph=_latest_graph(artifacts, ("level", "review", "verification", "graph")),
         verification=_json(artifacts, "verification", "verification.json"),
-        final=_latest_trajectory(artifacts, ("level", "refine")),
+        final=final_trajectory(artifacts),
         refine=_json(artifacts, "refine", "refine.json"),
         support=_support(artifacts),
         georeference=_json(artifacts, "level", "georeference.json"),
@@ -118,6 +122,33 @@ def read_walk(artifacts: Mapping[str, Path]) -> WalkRecord:
         recorded_ns=int(store.index["t_ns"][0]) if store and len(store) else 0,
         earlier_warnings=_earlier_warnings(artifacts),
     )
+
+
+def final_trajectory(artifacts: Mapping[str, Path]) -> Trajectory | None:
+    """The trajectory that the map was made with; None if there is none.
+
+    Raises:
+        StoreError: If the file is damaged.
+    """
+    return _latest_trajectory(artifacts, ("level", "refine"))
+
+
+def positions_along(walk: Trajectory, span_s: tuple[float, float], *, most: int) -> Array:
+    """Positions of a stretch of a walk [m], (N, 3); none if the walk ends before it.
+
+    Args:
+        walk: Its poses.
+        span_s: First and last time of the stretch, after the first pose [s].
+        most: Between the ends every n-th pose, so that about as many remain.
+    """
+    offsets_s = np.clip(span_s, 0.0, _MAX_S)
+    ends_ns = walk.t_ns[0] + np.rint(1e9 * offsets_s).astype(np.int64)
+    if ends_ns[0] > walk.t_ns[-1]:
+        return np.empty((0, 3))
+    ends_ns = np.minimum(ends_ns, walk.t_ns[-1])
+    between = walk.T_a_b.t[(walk.t_ns > ends_ns[0]) & (walk.t_ns < ends_ns[1])]
+    first, last = walk.at(ends_ns).t
+    return np.concatenate([[first], between[:: max(1, -(-len(between) // most))], [last]])
 
 
 def path_length_m(trajectory: Trajectory) -> Array:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from markupsafe import Markup
 
 from recon4.findings.drift import DriftClosed
+from recon4.findings.finding import Finding
 from recon4.findings.walk import WalkRecord
 from recon4.report import charts
 from recon4.report.beams import beam_charts
@@ -46,9 +48,13 @@ def map_figures(rasters: list[Raster]) -> list[ChartFigure]:
 
 
 def trajectory_figures(
-    results: WalkRecord, drift: DriftClosed | None, rasters: list[Raster]
+    results: WalkRecord,
+    drift: DriftClosed | None,
+    rasters: list[Raster],
+    *,
+    findings: Sequence[Finding],
 ) -> list[ChartFigure]:
-    """The trajectory over the map, and charts along it."""
+    """The trajectory over the map, and charts along it, on which findings mark their stretches."""
     final = results.final or results.odometry
     out: list[ChartFigure] = []
     if final is None or len(final) < 2:
@@ -75,7 +81,9 @@ def trajectory_figures(
         svg = plan_svg(None, ABOVE, frame_around(final.T_a_b.t, ABOVE), overlay=overlay)
         out.append(ChartFigure(Markup(svg), "Trajectory from above.", tuple(legend)))
     return out + framed(
-        charts.walk_charts(final, results.steps, drift, uncertainty=results.uncertainty)
+        charts.walk_charts(
+            final, results.steps, drift, uncertainty=results.uncertainty, findings=findings
+        )
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 from recon4.evaluation.evaluate import Evaluation
 from recon4.evaluation.slices import HISTOGRAM_STEP_M
 from recon4.findings.drift import DriftClosed
+from recon4.findings.finding import Finding
 from recon4.findings.placement import GnssFacts
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import PoseGraph, Verdict
@@ -18,6 +20,7 @@ from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.report.edges import by_verdict, spanning
 from recon4.report.figures import BLUE, GRAY, GREEN, ORANGE, PINK, cumulative, histogram, lines
 from recon4.report.intensity import Dependency
+from recon4.report.stretches import marked_times
 
 Charts = list[tuple[str, str]]
 """SVG and caption of each chart."""
@@ -30,14 +33,18 @@ def walk_charts(
     drift: DriftClosed | None,
     *,
     uncertainty: PoseUncertainty | None = None,
+    findings: Sequence[Finding] = (),
 ) -> Charts:
-    """Drift, uncertainty, height and tracking over time."""
-    out: Charts = []
+    """Findings, drift, uncertainty, height and tracking over time."""
     t_s = (final.t_ns - final.t_ns[0]) / 1e9
+    marked = marked_times(findings, float(t_s[-1]))
+    shaded = marked.shaded
+    out: Charts = marked.chart()
     time = "time from the start [s]"
     if drift is not None:
         series = [("", drift.t_s, 100.0 * drift.moved_m, BLUE)]
-        svg = lines("drift", series, labels=(time, "final − odometry [cm]"), least=1.0)
+        labels = (time, "final − odometry [cm]")
+        svg = lines("drift", series, labels=labels, least=1.0, shaded=shaded)
         out.append((svg, "Distance between the final trajectory and the odometry."))
     if drift is not None and len(drift.loop_before_m):
         groups = [
@@ -51,13 +58,14 @@ def walk_charts(
     if uncertainty is not None:
         at_s = (uncertainty.t_ns - final.t_ns[0]) / 1e9
         series = [("", at_s, 200.0 * uncertainty.sd_m, BLUE)]
-        svg = lines("uncertainty", series, labels=(time, "2σ [cm]"), least=1.0)
+        labels = (time, "2σ [cm]")
+        svg = lines("uncertainty", series, labels=labels, least=1.0, shaded=shaded)
         where = "on the earth" if uncertainty.on_earth else "relative to the first pose"
         out.append((svg, f"Uncertainty of the position along its worst axis, {where}."))
     series = [("", t_s, final.T_a_b.t[:, 2], BLUE)]
-    svg = lines("height", series, labels=(time, "height [m]"), least=0.1)
+    svg = lines("height", series, labels=(time, "height [m]"), least=0.1, shaded=shaded)
     out.append((svg, "Height of the body."))
-    out += _tracking_charts(steps, time)
+    out += _tracking_charts(steps, time, shaded)
     return out
 
 
@@ -167,7 +175,9 @@ def _same_surface_chart(curve: Dependency) -> Charts:
     return [(svg, caption)]
 
 
-def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
+def _tracking_charts(
+    steps: dict[str, NDArray[Any]], time: str, shaded: Sequence[tuple[float, float, str]]
+) -> Charts:
     t_ns = steps.get("t_mid_ns")
     if t_ns is None or len(t_ns) < 2:
         return []
@@ -175,13 +185,14 @@ def _tracking_charts(steps: dict[str, NDArray[Any]], time: str) -> Charts:
     out: Charts = []
     if "error_m" in steps:
         series = [("", t_s, 100.0 * steps["error_m"].astype(np.float64), PINK)]
-        svg = lines("tracking-error", series, labels=(time, "registration error [cm]"))
+        labels = (time, "registration error [cm]")
+        svg = lines("tracking-error", series, labels=labels, shaded=shaded)
         out.append((svg, "Odometry: mean distance of matched segments from the local map."))
     if "match_ratio" in steps:
         matched = 100.0 * steps["match_ratio"].astype(np.float64)
         matched[0] = np.nan  # the first has nothing to match
         series = [("", t_s, matched, GREEN)]
-        svg = lines("match-ratio", series, labels=(time, "match ratio [%]"))
+        svg = lines("match-ratio", series, labels=(time, "match ratio [%]"), shaded=shaded)
         out.append((svg, "Odometry: match ratio, the segments with a partner in the local map."))
     return out
 

@@ -100,12 +100,16 @@ def lines(
     *,
     labels: tuple[str, str],
     least: float = 0.0,
+    shaded: Sequence[tuple[float, float, str]] = (),
 ) -> str:
     """Curves ``(label, x, y, color)`` with axes named ``labels``.
 
-    The vertical axis spans at least ``least``, so that negligible values look small.
+    The vertical axis spans at least ``least``, so that negligible values look small. Parts of the
+    horizontal axis ``(from, to, color)`` are shaded.
     """
     chart = Chart(name, numbers=True)
+    for begin, end, color in shaded:
+        chart.axes.axvspan(begin, end, color=color, alpha=0.25, lw=0, zorder=0)
     for label, x, y, color in series:
         few = thinned(len(x))
         at, shown = broken_at_holes(x[few], y[few])
@@ -119,6 +123,23 @@ def lines(
         low, high = (0.0, least) if low == 0.0 else (middle - 0.5 * least, middle + 0.5 * least)
     chart.axes.set_ylim(low, high)
     return chart.svg()
+
+
+def bars(
+    name: str,
+    rows: Sequence[tuple[str, Sequence[tuple[float, float, str]]]],
+    *,
+    label: str,
+    until: float,
+) -> str:
+    """Rows of bars ``(caption, [(from, to, color), …])`` over an axis named ``label`` from 0 on."""
+    chart = Chart(name, height=0.7 + 0.25 * len(rows))
+    for at, (_, parts) in enumerate(rows):
+        spans = [(begin, end - begin) for begin, end, _ in parts]
+        chart.axes.broken_barh(spans, (at - 0.35, 0.7), color=[color for *_, color in parts])
+    chart.axes.set_yticks(range(len(rows)), [caption for caption, _ in rows], fontsize=7)
+    chart.axes.set(xlabel=label, xlim=(0.0, until), ylim=(len(rows) - 0.5, -0.5))
+    return chart.svg(legend=False)
 
 
 def histogram(

@@ -66,7 +66,9 @@ def render(assessed: Assessment) -> str:
             verdict=headline(usability),
             key_figures=_key_figures(facts, results, drift, tiles=tiles),
             maps=chart_groups.map_figures(rasters),
-            walk=chart_groups.trajectory_figures(results, drift, rasters),
+            walk=chart_groups.trajectory_figures(
+                results, drift, rasters, findings=assessed.findings
+            ),
             edges=chart_groups.edge_figures(results, rasters),
             edge_kinds=[str(kind) for kind in EdgeKind],
             edge_rows=_edge_rows(facts, results),

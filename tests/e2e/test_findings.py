@@ -1,6 +1,7 @@
 """Findings on the pages: each leads to its place in the viewer, which marks its stretch."""
 
 import json
+import re
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -109,6 +110,11 @@ def test_a_finding_flies_to_its_stretch_in_the_viewer_and_marks_it(found, page, 
     for finding, times in ((WEAK, "40.0 s to 44.0 s"), (LOST, "20.0 s to 25.0 s")):
         entry(page, finding).get_by_role("link", name=f"Show in the map: {times}").click()
         looks_at(page.frames[1], finding)
+    if page.viewport_size["width"] > 1000:  # on a phone the panel is folded
+        slider = page.frames[1].locator(".mantine-Slider-markLabel", has_text="20.0 s to 25.0 s")
+        slider.scroll_into_view_if_needed()
+    expect(page.locator(".walk-axis i")).to_have_count(3)
+    expect(page.locator(".walk-axis i.chosen")).to_have_attribute("title", re.compile("20.0 s to"))
     screenshot(page, "finding-in-the-viewer")
 
     assert kept_stretch(page.frames[1]) == [20.0, 25.0]
@@ -214,3 +220,8 @@ def test_a_finding_is_cut_and_marked_in_the_slices(found, page, screenshot):
     cut = [float(query[name][0]) for name in ("u", "v", "z")]
     np.testing.assert_allclose(cut, middle, atol=1e-3)
     screenshot(page, "slices-finding")
+
+    page.keyboard.press("v")
+    page.wait_for_url("**/slices/?kind=vertical*")
+    expect(page.locator("body.drawing")).to_have_count(0)
+    assert page.evaluate(MARKED_PIXELS) > 50

@@ -15,7 +15,13 @@ import pytest
 from PIL import Image
 
 from tests.deadlines import HANG_S
-from tests.project_builder import ROOM_M, approve_project, build_project, write_summary
+from tests.project_builder import (
+    ROOM_M,
+    approve_project,
+    build_project,
+    loop_walk,
+    write_summary,
+)
 from tests.served import served
 from tests.service.running import server_thread
 
@@ -127,6 +133,18 @@ def test_a_picked_point_is_one_of_the_map(server):
     assert found["found"] and found["p_map"][0] == pytest.approx(0.0, abs=1e-6)
     assert abs(found["p_map"][2] - 1.5) <= 0.1
     assert found["p_crs"] is None
+
+
+def test_a_stretch_of_the_walk_has_its_positions_in_the_map(server):
+    def walk(**asked):
+        return server.get(f"{BASE}/walk", params=asked)
+
+    walked, expected = loop_walk(), loop_walk().T_a_b.t
+    found = walk(start_s=2.0, end_s=4.0).json()["positions_m"]
+    np.testing.assert_allclose(found, expected[20:41], atol=1e-3)
+    assert len(walk(start_s=0.0, end_s=1e9).json()["positions_m"]) <= 502 < len(walked)
+    assert walk(start_s=1e6, end_s=1e6).json()["positions_m"] == []
+    assert {walk(start_s=a, end_s=1.0).status_code for a in (-1.0, "nan", "x", 1e300)} == {422}
 
 
 def test_nothing_is_picked_where_nothing_is(server):

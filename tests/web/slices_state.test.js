@@ -13,7 +13,7 @@ import {
   normalOf,
   parse,
 } from "../../web/slices/state.js";
-import { stretchMark } from "../../web/slices/stretch_mark.js";
+import { endsOf, stretchMarks, timesOf } from "../../web/slices/stretch_mark.js";
 import { sliceOf } from "../../web/shared/verdict.js";
 
 test("an image has the pixels of the screen, but no more than the server draws", () => {
@@ -91,16 +91,40 @@ test("the slice at a finding is at its height, in the middle of its stretch, and
     [1, 2, 1.2],
     [31, 2, 1.4],
   ]);
-  const state = parse(sliceOf({ place_m }));
+  const state = parse(sliceOf({ place_m, span_s: [40, 44.5] }));
 
   assert.deepEqual(planeOf(state), { kind: "horizontal", z_m: 1.3, thickness_m: 0.1 });
   assert.deepEqual([state.u, state.v, state.m], [16, 2, 0.09]);
-  assert.deepEqual(stretchMark(state).points, [
-    [1, 2],
-    [31, 2],
+  assert.deepEqual([endsOf(state.mark), timesOf(state.span)], [place_m, [40, 44.5]]);
+  const again = parse(format(state));
+  assert.deepEqual([again.mark, again.span], [state.mark, state.span]);
+  assert.deepEqual(parse(sliceOf({ place_m })).span, "");
+});
+
+test("a mark that is none of ours marks nothing", () => {
+  assert.deepEqual(["", "1,2,x", "1,2,3", "1,2,3,4,5,6,7"].map(endsOf), [[], [], [], []]);
+  assert.deepEqual(["", "4", "4,", "4,x", "1,2,3"].map(timesOf), [null, null, null, null, null]);
+});
+
+test("the walk is marked in any slice, where it is near", () => {
+  const walk = [
+    [0, 0, 1],
+    [1, 0, 1],
+    [5, 0, 1],
+    [1, 1, 1],
+  ];
+  const level = { origin_m: [0, 0, 2], u: [1, 0, 0], v: [0, 1, 0] };
+  const across = { origin_m: [0, 0, 0], u: [0, 1, 0], v: [0, 0, 1] };
+  const points = (/** @type {any} */ plane) => stretchMarks(walk, plane).map((one) => one.points);
+
+  assert.deepEqual(points(level), [walk.map((p) => p.slice(0, 2))]);
+  assert.deepEqual(points({ ...level, origin_m: [0, 0, 4] }), []); // of another storey
+  assert.deepEqual(points(across), [
+    [
+      [0, 1],
+      [0, 1],
+    ],
+    [[1, 1]],
   ]);
-  assert.deepEqual(stretchMark(parse(format(state))), stretchMark(state));
-  assert.deepEqual(stretchMark({ ...state, kind: "vertical" }).points, []);
-  assert.deepEqual(stretchMark(parse("mark=1,2,x")).points, []);
-  assert.deepEqual(stretchMark(parse("")).points, []);
+  assert.deepEqual(stretchMarks(walk, /** @type {any} */ (level))[0]?.dots?.length, 2);
 });

@@ -5,12 +5,14 @@ import {
   factsIn,
   firstText,
   isReason,
+  spanIn,
   stretchOf,
   stretchText,
   unobservedText,
   verdictLists,
   verdictState,
 } from "../../web/shared/verdict.js";
+import { rowsOf, ticksOf } from "../../web/shared/walk_rows.js";
 
 const LOST = "Tracking was lost in 314 of 545 multiframes.";
 const CORRIDOR = {
@@ -54,7 +56,12 @@ test("what is not observable has time, direction and place", () => {
 test("a project before its first map has no facts of one", () => {
   assert.equal(factsIn({}), null);
   assert.equal(factsIn(undefined), null);
-  assert.deepEqual(factsIn({ points: 3 }), { verdict: null, notes: [], findings: null });
+  assert.deepEqual(factsIn({ points: 3 }), {
+    verdict: null,
+    notes: [],
+    findings: null,
+    figures: { duration_s: undefined },
+  });
   assert.deepEqual(factsIn({ points: 3, warnings: ["no IMU"] }).notes, ["no IMU"]);
   const findings = [
     { level: "good", text: "Tracking was not lost." },
@@ -89,4 +96,37 @@ test("blanks are no reason", () => {
   assert.equal(isReason("         checked          ", map), false);
   assert.equal(isReason("checked with tape", map), true);
   assert.equal(isReason("", { ...map, reason_needed: "" }), true);
+});
+
+test("each stretch has its place on the time axis, and none covers another", () => {
+  const of = (/** @type {any} */ ...span_s) => /** @type {any} */ ({ span_s, kind: span_s[0] });
+  const rows = rowsOf(
+    [of(20, 40), of(10, 30), of(50, 50), { kind: "no stretch" }, of(95, 300)],
+    100,
+  );
+
+  assert.deepEqual(
+    rows.map((row) => row.map(({ finding, left, width }) => [finding.kind, left, width])),
+    [
+      [
+        [10, 10, 20],
+        [50, 50, 0.8],
+        [95, 95, 5],
+      ],
+      [[20, 20, 20]],
+    ],
+  );
+  assert.deepEqual(rowsOf([of(100, 100)], 100)[0]?.[0]?.left, 99.2);
+});
+
+test("the ticks of a time axis are few and round", () => {
+  assert.deepEqual(ticksOf(60), [0, 10, 20, 30, 40, 50, 60]);
+  assert.deepEqual(ticksOf(59.9), [0, 10, 20, 30, 40, 50]);
+  assert.deepEqual(ticksOf(1000), [0, 200, 400, 600, 800, 1000]);
+});
+
+test("an address marks a span in its fragment or its query", () => {
+  assert.equal(spanIn({ hash: "#span=40,44&place=1", search: "" }), "40,44");
+  assert.equal(spanIn({ hash: "", search: "?kind=free&span=1,2" }), "1,2");
+  assert.equal(spanIn({ hash: "", search: "" }), "");
 });

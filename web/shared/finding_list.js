@@ -1,6 +1,6 @@
-// <finding-list>: what is known of a map, each finding with its level, code, text, remedy and a
-// link to its place in the viewer, with the notes of reviewers and a field for one, and a filter;
-// of a map of an earlier version its sentences.
+// <finding-list>: what is known of a map, with the time axis of the walk; each finding with its
+// level, code, text, remedy and a link to its place in the viewer, with the notes of reviewers and
+// a field for one, and a filter; of a map of an earlier version its sentences.
 
 import { idHere } from "./address.js";
 import {
@@ -13,7 +13,16 @@ import {
 } from "./api.js";
 import { attempt, html, messagePlace, nothing, render, targetOf, within } from "./dom.js";
 import { when } from "./format.js";
-import { LEVELS, sliceOf, stretchOf, stretchText, verdictLists } from "./verdict.js";
+import {
+  LEVELS,
+  durationOf,
+  sliceOf,
+  spanIn,
+  stretchOf,
+  stretchText,
+  verdictLists,
+} from "./verdict.js";
+import { walkAxis } from "./walk_axis.js";
 
 /**
  * @import {Acknowledgment, AcknowledgmentsView} from "./http_types"
@@ -31,6 +40,7 @@ export class FindingList extends HTMLElement {
     shown: "", // the facts as text
     /** @type {MapFinding[]} */
     findings: [],
+    duration_s: 0,
     notes: NO_NOTES,
     filter: { level: "", kind: "" },
   };
@@ -39,13 +49,19 @@ export class FindingList extends HTMLElement {
 
   connectedCallback() {
     this.classList.add("verdict-lists");
+    addEventListener("hashchange", this.#redraw);
+  }
+
+  disconnectedCallback() {
+    removeEventListener("hashchange", this.#redraw);
   }
 
   /** What is known of the map; the same again changes nothing: focus and selection stay. */
   set facts(/** @type {MapFacts} */ facts) {
     const shown = JSON.stringify(facts);
     if (shown === this.#state.shown) return;
-    Object.assign(this.#state, { shown, findings: facts.findings ?? [] });
+    const duration_s = durationOf(facts);
+    Object.assign(this.#state, { shown, findings: facts.findings ?? [], duration_s });
     render(nothing, this); // a note that is being written is not moved to another finding
     if (facts.findings) {
       this.#draw();
@@ -53,14 +69,21 @@ export class FindingList extends HTMLElement {
     } else render(sentences(facts), this);
   }
 
+  /** Another stretch is marked. */
+  #redraw = () => {
+    if (this.#state.findings.length) this.#draw();
+  };
+
   async #readNotes() {
     this.#state.notes = await readAcknowledgments(idHere()).catch(() => NO_NOTES);
     if (this.#state.notes.may_acknowledge || this.#state.notes.notes.length) this.#draw();
   }
 
   #draw() {
-    const { findings, filter, notes: all } = this.#state;
+    const { findings, duration_s, filter, notes: all } = this.#state;
     const { notes, may_acknowledge } = all;
+    const span = spanIn(location);
+    const isMarked = (/** @type {MapFinding} */ { span_s }) => span_s?.join(",") === span;
     const items = findings.map((finding, at) => {
       const fits =
         (!filter.level || finding.level === filter.level) &&
@@ -74,7 +97,8 @@ export class FindingList extends HTMLElement {
     });
     const outdated = notes.filter((note) => note.finding === null);
     render(
-      html`${findings.length > MANY ? this.#filters() : nothing}
+      html`${walkAxis(findings, duration_s, isMarked)}
+        ${findings.length > MANY ? this.#filters() : nothing}
         <ul class="findings">
           ${items}
         </ul>

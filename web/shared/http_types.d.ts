@@ -1210,6 +1210,10 @@ export type Usability = "good" | "check" | "do not use";
 
 export type Verdict = "accepted" | "rejected" | "unverified";
 
+export interface WalkStretch {
+  positions_m: Array<[number, number, number]>;
+}
+
 export interface WindowSpec {
   left: number;
   bottom: number;
@@ -1427,6 +1431,11 @@ export interface Operations {
   "GET /api/projects/{project_id}/slices/references/{reference_id}/points": {
     path: { project_id: string; reference_id: string };
     response: AlignPoints;
+  };
+  "GET /api/projects/{project_id}/slices/walk": {
+    path: { project_id: string };
+    query: { start_s: number; end_s: number };
+    response: WalkStretch;
   };
   "GET /api/projects/{project_id}/thumbnail": {
     path: { project_id: string };

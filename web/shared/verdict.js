@@ -7,6 +7,7 @@
  * @property {MapVerdict | null} verdict null = none was worked out
  * @property {string[]} notes what does not change the verdict
  * @property {MapFinding[] | null} findings worst first; null = an earlier version made the map
+ * @property {Record<string, any>} [figures] those of the run, with `duration_s`
  */
 
 /** Captions of the levels of findings, the worst first. */
@@ -26,6 +27,7 @@ export const factsIn = (/** @type {Record<string, any> | null | undefined} */ su
         verdict: summary.verdict ?? null,
         notes: notesIn(summary),
         findings: summary.findings ?? null,
+        figures: { duration_s: summary.duration_s },
       };
 
 /** Texts of notes; before format 3 the run wrote warnings. */
@@ -82,17 +84,25 @@ export const stretchOf = (/** @type {Partial<MapFinding>} */ { span_s, place_m }
     .filter(Boolean)
     .join("&");
 
+/** Duration of the walk [s]; 0 = unknown. */
+export const durationOf = (/** @type {MapFacts} */ { figures }) => Number(figures?.duration_s) || 0;
+
+/** The span that an address marks, as in a fragment or query of ours; empty = none. */
+export const spanIn = (/** @type {{hash: string, search: string}} */ { hash, search }) =>
+  new URLSearchParams(hash.slice(1)).get("span") ?? new URLSearchParams(search).get("span") ?? "";
+
 const LEAST_VIEW_M = 10;
 const VIEW_PX = 500;
 
 /** The query of the slices page: a horizontal slice at the place of a finding, which it marks. */
-export function sliceOf(/** @type {Partial<MapFinding>} */ { place_m }) {
+export function sliceOf(/** @type {Partial<MapFinding>} */ { place_m, span_s }) {
   if (!place_m) return "";
   const [[x0, y0, z0], [x1, y1, z1]] = place_m;
   const view_m = Math.max(LEAST_VIEW_M, 1.5 * Math.hypot(x1 - x0, y1 - y0));
   const numbers = { z: (z0 + z1) / 2, u: (x0 + x1) / 2, v: (y0 + y1) / 2, m: view_m / VIEW_PX };
   const fields = Object.entries(numbers).map(([name, value]) => `${name}=${value.toFixed(3)}`);
-  return `kind=horizontal&${fields.join("&")}&mark=${place_m.flat().join(",")}`;
+  const times = span_s ? `&span=${span_s.join(",")}` : "";
+  return `kind=horizontal&${fields.join("&")}&mark=${place_m.flat().join(",")}${times}`;
 }
 
 /** When or where the stretch of a finding is. */

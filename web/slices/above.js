@@ -1,5 +1,5 @@
-// <slice-above>: the map from above with the slice on it. Drag the line or its ends; drag beside it
-// for a new slice.
+// <slice-above>: the map from above with the slice and the marked stretch of the walk on it. Drag
+// the line or its ends; drag beside it for a new slice.
 //
 // Event: "slice" with detail {a, b} [m].
 
@@ -26,6 +26,8 @@ export class SliceAbove extends HTMLElement {
   #state = null;
   /** @type {number[] | null} */
   #place = null;
+  /** @type {number[][]} */
+  #walk = [];
   /** @type {Drag | null} */
   #drag = null;
 
@@ -69,6 +71,12 @@ export class SliceAbove extends HTMLElement {
     this.draw();
   }
 
+  /** Positions of the walk to mark [m]. */
+  set walk(/** @type {number[][]} */ positions) {
+    this.#walk = positions;
+    this.draw();
+  }
+
   #fit() {
     const { width, height } = this.getBoundingClientRect();
     const w = this.#map?.window ?? { left: 0, right: 1, bottom: 0, top: 1 };
@@ -105,6 +113,7 @@ export class SliceAbove extends HTMLElement {
     pen.drawImage(image, x0, y0, x1 - x0, y1 - y0);
     const ends = traceOf(this.#state, w);
     if (ends) this.#line(pen, ends, color);
+    this.#stretch(pen, color);
     if (this.#place) {
       const [x, y] = this.#toPx(this.#place);
       pen.strokeStyle = color("--bad");
@@ -119,6 +128,21 @@ export class SliceAbove extends HTMLElement {
       ink: color("--quiet"),
       halo: color("--panel"),
     });
+  }
+
+  /**
+   * @param {Pen} pen
+   * @param {ColorOf} color
+   */
+  #stretch(pen, color) {
+    pen.strokeStyle = color("--bad");
+    pen.lineWidth = 4;
+    pen.lineCap = "round"; // one position is a dot
+    pen.beginPath();
+    for (const position of this.#walk) pen.lineTo(...this.#toPx(position));
+    if (this.#walk[0]) pen.lineTo(...this.#toPx(this.#walk.at(-1) ?? this.#walk[0]));
+    pen.stroke();
+    pen.lineCap = "butt";
   }
 
   /**

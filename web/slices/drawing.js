@@ -26,6 +26,7 @@ export const page = {
   caption: "", // of the first slice
   secondCaption: "",
   sequence: 0, // number of the newest request of an image
+  stretch: /** @type {number[][]} */ ([]), // positions of the walk that are marked [m]
   measuring: false,
   measured: /** @type {PickView[]} */ ([]), // at most two points
   picked: /** @type {PickView | null} */ (null),

@@ -9,6 +9,7 @@ import {
   readProject,
   readSlice,
   readSliceFacts,
+  readStretch,
 } from "../shared/api.js";
 import { attempt, byId, detailOf, only, say, showError, targetOf } from "../shared/dom.js";
 import { count } from "../shared/format.js";
@@ -16,7 +17,7 @@ import { distanceText, imageText, lengthText, pointText } from "./captions.js";
 import { findings } from "./findings.js";
 import { help } from "./help.js";
 import { isPlan, showPlan } from "./plan.js";
-import { stretchMark } from "./stretch_mark.js";
+import { endsOf, stretchMarks, timesOf } from "./stretch_mark.js";
 import { COLORS, SURFACES, format, moved, planeOf, startOf, parse, unframed } from "./state.js";
 import { factsIn } from "../shared/verdict.js";
 import "../shared/map_verdict.js";
@@ -167,11 +168,12 @@ function read(/** @type {string} */ text) {
 }
 
 function mark() {
-  const { measured, measuring, picked, state } = page;
+  const { measured, measuring, picked, shown, stretch } = page;
   const [from, to] = measured;
   const text = from && to ? lengthText(from, to) : "";
   const points = measuring || measured.length ? measured : picked ? [picked] : [];
-  const marks = [stretchMark(state), { points: points.map((one) => one.uv), text }];
+  const along = shown ? stretchMarks(stretch, shown) : [];
+  const marks = [...along, { points: points.map((one) => one.uv), text }];
   first.marks = marks;
   second.marks = marks;
 }
@@ -294,6 +296,13 @@ async function reload() {
   found.facts(page.facts);
 }
 
+/** Where the marked stretch of the walk is; without its times its ends. */
+async function stretchOf({ mark: ends, span } = page.state) {
+  const times = timesOf(span);
+  const walk = times ? await readStretch(id, times).catch(() => null) : null;
+  return walk?.positions_m.length ? walk.positions_m : endsOf(ends);
+}
+
 async function begin() {
   second.className = "second";
   byId("above").append(above);
@@ -314,6 +323,7 @@ async function begin() {
     document.title = `Slices · ${project.name} · recon4`;
     if (isPlan(project)) return showPlan(id, project);
     await reload();
+    above.walk = page.stretch = await stretchOf();
     const { facts, state } = page;
     if (!facts) return;
     if (!state.given)

@@ -23,7 +23,8 @@
  * @property {Color | ""} besideColor
  * @property {string} source map of the first slice
  * @property {Surface} surface
- * @property {string} mark stretch of a finding, x,y,z,x,y,z
+ * @property {string} mark both ends of the stretch of a finding, x,y,z,x,y,z
+ * @property {string} span its times, from,to [s]
  * @property {number | null} lo low end of the colors
  * @property {number | null} hi
  * @property {number | null} u middle of the view
@@ -46,6 +47,7 @@ const WORDS = {
   source: "",
   surface: "fitted",
   mark: "",
+  span: "",
 };
 const MAYBE = ["lo", "hi", "u", "v", "m"];
 
@@ -138,6 +140,14 @@ export function normalOf(/** @type {SliceState} */ state) {
   return state.n.map((x) => x / length);
 }
 
+/** A point of the plane of the slice. */
+const originOf = (/** @type {SliceState} */ state) =>
+  ({
+    horizontal: () => [0, 0, state.z],
+    vertical: () => [...state.a, 0],
+    free: () => state.o,
+  })[state.kind]();
+
 /**
  * How far a point lies from the plane of the slice [m].
  * @param {SliceState} state
@@ -145,11 +155,7 @@ export function normalOf(/** @type {SliceState} */ state) {
  */
 export function distanceFrom(state, p) {
   const n = normalOf(state);
-  const on = {
-    horizontal: () => [0, 0, state.z],
-    vertical: () => [...state.a, 0],
-    free: () => state.o,
-  }[state.kind]();
+  const on = originOf(state);
   return Math.abs(p.reduce((sum, x, k) => sum + (x - on[k]) * n[k], 0));
 }
 

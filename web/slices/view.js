@@ -15,7 +15,8 @@ const CLICK_PX = 5; // a pointer that moves farther drags
 
 /**
  * @import {SliceImageView, WindowSpec} from "../shared/http_types"
- * @typedef {{points: number[][], text?: string, tone?: string}} Mark points of the plane to mark
+ * @typedef {{points: number[][], dots?: number[][], text?: string, tone?: string}} Mark a line on
+ *   the plane, its dots (else each point), its caption and its color
  * @typedef {{u: number, v: number, m: number}} Frame middle [m] and meters per pixel
  * @typedef {{u: number, v: number, reach: number}} Place of a click, and how far around it [m]
  * @typedef {CanvasRenderingContext2D} Pen
@@ -259,7 +260,7 @@ export class SliceView extends HTMLElement {
    * @param {Mark} given
    * @param {ColorOf} color
    */
-  #mark(pen, { points, text, tone }, color) {
+  #mark(pen, { points, dots = points, text, tone }, color) {
     if (!points.length) return;
     const places = points.map((point) => this.#toPx(point));
     /** @type {Array<[string, number]>} */
@@ -272,7 +273,7 @@ export class SliceView extends HTMLElement {
       pen.lineWidth = width;
       pen.beginPath();
       places.forEach(([x, y], k) => (k ? pen.lineTo(x, y) : pen.moveTo(x, y)));
-      for (const [x, y] of places) {
+      for (const [x, y] of dots.map((point) => this.#toPx(point))) {
         pen.moveTo(x + 6, y);
         pen.arc(x, y, 6, 0, 2 * Math.PI);
       }

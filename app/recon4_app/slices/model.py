@@ -133,6 +133,13 @@ class SliceImageView(BaseModel):
     seconds: float
 
 
+class WalkStretch(BaseModel):
+    """Where the walk was during a stretch."""
+
+    positions_m: list[Xyz]
+    """In the map [m], in order; empty if the walk is shorter."""
+
+
 class PickRequest(Strict):
     """Request for the map point at a position on a slice."""
 

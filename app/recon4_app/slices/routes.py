@@ -6,9 +6,9 @@ import base64
 import binascii
 from dataclasses import replace
 from pathlib import Path
-from typing import Literal
+from typing import Annotated, Literal
 
-from fastapi import APIRouter, Depends, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse
 from starlette.concurrency import run_in_threadpool
 
@@ -39,11 +39,14 @@ from recon4_app.slices.model import (
     SliceImageRequest,
     SliceImageView,
     SurfacePoint,
+    WalkStretch,
     WindowSpec,
     Xyz,
 )
 from recon4_app.slices.store import Asking
 
+Second = Annotated[float, Query(ge=0.0, le=1e9, allow_inf_nan=False)]
+"""Time after the start of the walk [s]."""
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
 SURFACES = "surfaces.json"
@@ -126,6 +129,19 @@ async def overview_window(
     """Left, bottom, right and top in the map [m]."""
     image = await _overview(project_id, server, caller, source=source)
     return await run_in_threadpool(readers.read_window, image.with_suffix(".json"))
+
+
+@router.get("/walk", summary="Where the walk was during a stretch")
+async def walk(
+    project_id: str, server: Server, caller: CalledBy, *, start_s: Second, end_s: Second
+) -> WalkStretch:
+    """Positions in the latest map, to mark the stretch of a finding."""
+    artifacts = await run_in_threadpool(server.slices.artifacts, project_id)
+    terms = server.slices.terms(project_id, caller.name)
+    span_s = (start_s, end_s)
+    return await caller.wait(
+        server.slices.run_interactive(terms, slice_work.walk_stretch, artifacts, span_s)
+    )
 
 
 @router.post("/pick", summary="The point of the map at a position on a slice")

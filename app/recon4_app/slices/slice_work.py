@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
+from recon4.findings.walk import final_trajectory, positions_along
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import to_plain
 from recon4.review.approval_state import ApprovalState
@@ -48,12 +49,14 @@ from recon4_app.slices.model import (
     SliceImageView,
     SliceView,
     SurfacePoint,
+    WalkStretch,
     WindowSpec,
     Xyz,
 )
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
+_MOST_POSITIONS = 500
 
 
 @lru_cache(maxsize=4)
@@ -93,6 +96,15 @@ def reference_of(folder: str, method: Method) -> Reference | None:
     facts = Path(folder) / "reference.json"
     changed_ns = facts.stat().st_mtime_ns if facts.exists() else 0
     return _reference(folder, method, changed_ns)
+
+
+def walk_stretch(artifacts: Artifacts, span_s: tuple[float, float]) -> WalkStretch:
+    """Positions of the walk during a stretch, at most about `_MOST_POSITIONS`."""
+    walk = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
+    if walk is None or not len(walk):
+        return WalkStretch(positions_m=[])
+    p_map = positions_along(walk, span_s, most=_MOST_POSITIONS)
+    return WalkStretch(positions_m=[_xyz(p) for p in np.round(p_map, 3)])
 
 
 def facts(

@@ -5,14 +5,25 @@ import pytest
 
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
+from recon4.store.frames import FrameStore
+from recon4.store.project import read_artifacts
 from recon4_app.viewer.client.view import Stretch
+from recon4_app.viewer.cloud.multiframes import Multiframes
 from recon4_app.viewer.scene.build import Content
-from recon4_app.viewer.scene.mark import stretch_nodes, stretch_positions
+from recon4_app.viewer.scene.mark import stretch_marks, stretch_nodes, stretch_positions
 from recon4_app.viewer.scene.nodes import LabelNode, LinesNode
-from tests.project_builder import loop_walk
+from tests.project_builder import add_multiframes, build_project, loop_walk
 
 WALK = loop_walk()
 """600 poses at 10 Hz."""
+
+
+@pytest.fixture(scope="module")
+def multiframes(tmp_path_factory):
+    root = tmp_path_factory.mktemp("project") / "office"
+    build_project(root, points=100)
+    add_multiframes(root)
+    return Multiframes(FrameStore.open(read_artifacts(root)["frames"]))
 
 
 def test_a_stretch_follows_the_newest_trajectory_and_not_the_stated_places():
@@ -62,3 +73,22 @@ def test_a_stretch_that_the_walk_does_not_have_is_not_marked():
     assert not len(stretch_positions(content, Stretch(span_s=(60.5, 61.0))))
     assert list(stretch_nodes(content, Stretch(span_s=(60.5, 61.0)))) == []
     assert list(stretch_nodes(content, None)) == []
+
+
+@pytest.mark.parametrize(
+    ("span_s", "expected"),
+    [
+        ((20.0, 30.0), ((200, "20.0 s to 30.0 s"), (300, ""))),
+        ((7.0, 7.0), ((70, "7.0 s"),)),
+        ((-5.0, 1e12), ((0, "-5.0 s to 1000000000000.0 s"), (598, ""))),
+        ((60.5, 61.0), ()),
+        (None, ()),
+    ],
+)
+def test_the_slider_of_the_multiframes_marks_the_ends_of_the_stretch(multiframes, span_s, expected):
+    content = Content(trajectory=WALK, multiframes=multiframes)
+    stretch = Stretch(span_s=span_s, places=((0.0, 0.0, 0.0),))
+
+    assert stretch_marks(content, stretch) == expected
+    assert stretch_marks(content, None) == ()
+    assert stretch_marks(Content(), stretch) == ()

@@ -8,6 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.image import imread
 
+from recon4.findings.finding import Finding, Level
+from recon4.findings.kinds import FindingKind
 from recon4.geometry.se3 import SE3
 from recon4.model.calibration_figures import (
     CalibrationFigures,
@@ -15,12 +17,15 @@ from recon4.model.calibration_figures import (
     ParameterStatus,
 )
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
+from recon4.model.trajectory import Trajectory
 from recon4.report.beams import beam_charts
+from recon4.report.charts import walk_charts
 from recon4.report.edges import edge_paths
 from recon4.report.figures import Chart, add_bars, histogram, lines, thinned
 from recon4.report.maps import ABOVE, SIDE, MapChunk, ink_png, intensity_png, rasterize
 from recon4.report.plan import PlanOverlay, PlanPath, frame_around, nice_step, plan_svg
 from recon4.report.rig import rig_charts
+from recon4.report.stretches import marked_times
 
 NAMED = {"labels": ("x", "y")}
 
@@ -247,3 +252,46 @@ def test_a_long_curve_is_thinned_but_keeps_its_ends() -> None:
     few = thinned(100_000, 100)
 
     assert (few[0], few[-1], len(few)) == (0, 99_999, 100)
+
+
+def walk_of_60_s() -> Trajectory:
+    t_ns = np.arange(601, dtype=np.int64) * 100_000_000
+    return Trajectory(t_ns, SE3.identity(601))
+
+
+def shades(svg: str) -> int:
+    """How many translucent areas a chart has."""
+    return svg.count("opacity: 0.25")
+
+
+def test_findings_mark_their_stretches_on_every_time_axis() -> None:
+    findings = [
+        Finding(kind=FindingKind.TRACKING_LOST, level=Level.DO_NOT_USE, span_s=(20.0, 25.0)),
+        Finding(kind=FindingKind.TOO_FAST, level=Level.NOTE, span_s=(40.0, 40.0)),
+        Finding(kind=FindingKind.TOO_FAST, level=Level.NOTE, span_s=(50.0, 52.0)),
+        Finding(kind=FindingKind.RIG_AGREES, level=Level.GOOD, span_s=(1.0, 2.0)),
+        Finding(kind=FindingKind.RIG_NOT_COMPARED, level=Level.CHECK),
+        Finding(kind=FindingKind.TOO_FAST, level=Level.NOTE, span_s=(70.0, 71.0)),  # never walked
+    ]
+    marked = marked_times(findings, 60.0)
+    charts = dict(
+        zip(
+            ("findings", "height"),
+            (svg for svg, _ in walk_charts(walk_of_60_s(), {}, None, findings=findings)),
+            strict=True,
+        )
+    )
+
+    assert [(begin, round(end, 2)) for begin, end, _ in marked.shaded] == [
+        (50.0, 52.0),
+        (40.0, 40.24),
+        (20.0, 25.0),
+    ]
+    assert charts["findings"].index("TRACKING-LOST") < charts["findings"].index("TOO-FAST")
+    assert shades(charts["height"]) == 3 + shades(lines("h", [], **NAMED))
+
+
+def test_a_walk_without_stretches_of_findings_has_no_chart_of_them() -> None:
+    (height,) = walk_charts(walk_of_60_s(), {}, None)
+
+    assert "Height" in height[1] and shades(height[0]) == shades(lines("h", [], **NAMED))

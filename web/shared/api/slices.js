@@ -34,6 +34,15 @@ export const readAboveWindow = (/** @type {string} */ project_id) =>
  */
 export const pickOnSlice = (project_id, pick) =>
   request("POST /api/projects/{project_id}/slices/pick", { path: { project_id }, body: pick });
+/** Positions of the walk between two times [s]. */
+export const readStretch = (
+  /** @type {string} */ project_id,
+  /** @type {[number, number]} */ [start_s, end_s],
+) =>
+  request("GET /api/projects/{project_id}/slices/walk", {
+    path: { project_id },
+    query: { start_s, end_s },
+  });
 export const readDoubleWalls = (/** @type {string} */ project_id, source = "") =>
   request("GET /api/projects/{project_id}/slices/doubles", {
     path: { project_id },

@@ -119,10 +119,11 @@ class ClientSession:
             self._wake.set()
 
     def _show(self, content: Content, view: ViewState) -> None:
-        if content is not self._content:
+        is_new = content is not self._content
+        if is_new or view.stretch != self._shown.stretch:
             self._panel.offer(content, view, self._most)
-            if content.cloud is not None or content.trajectory is not None:
-                self._screen.follow(bounds(content))
+        if is_new and (content.cloud is not None or content.trajectory is not None):
+            self._screen.follow(bounds(content))
         self._shown, self._content = view, content
         points = [*_preview(content, view), *_window(content, view)]
         marked = stretch_nodes(content, view.stretch)

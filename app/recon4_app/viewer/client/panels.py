@@ -21,6 +21,7 @@ from recon4_app.viewer.cloud.palette import Palette, Range
 from recon4_app.viewer.hotkeys import HOTKEYS
 from recon4_app.viewer.scene.build import Content
 from recon4_app.viewer.scene.layers import Layer
+from recon4_app.viewer.scene.mark import stretch_marks
 
 Update = Callable[[ViewState], ViewState]
 
@@ -66,7 +67,8 @@ class Panel:
             self._fold("points", offered, lambda: self._point_folder(content, view, max_points))
         if content.multiframes is not None:
             frames = len(content.multiframes)
-            self._fold("time", frames, lambda: self._time_folder(frames, view))
+            marks = stretch_marks(content, view.stretch)
+            self._fold("time", (frames, marks), lambda: self._time_folder(frames, view, marks))
         layers = content.layers
         keys = tuple(layer.key for layer in layers)
         self._fold("layers", keys, lambda: self._layer_folder(layers, view))
@@ -189,7 +191,9 @@ class Panel:
     def _high(self, view: ViewState, value: float) -> ViewState:
         return view.with_range(Range(float(self._widgets["low"].value), float(value)))
 
-    def _time_folder(self, multiframes: int, view: ViewState) -> viser.GuiFolderHandle:
+    def _time_folder(
+        self, multiframes: int, view: ViewState, marks: tuple[tuple[int, str], ...]
+    ) -> viser.GuiFolderHandle:
         gui, last = self._gui, max(multiframes - 1, 1)
         folder = gui.add_folder("Multiframes", order=2.0)
         with folder:
@@ -200,7 +204,9 @@ class Panel:
             )
             self._bind(
                 "moment",
-                gui.add_slider("Multiframe", 0, last, 1, min(view.moment, last)),
+                gui.add_slider(
+                    "Multiframe", 0, last, 1, min(view.moment, last), marks=marks or None
+                ),
                 lambda view, value: replace(view, moment=int(value)),
             )
             self._bind(

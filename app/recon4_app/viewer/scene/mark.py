@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from recon4.findings.walk import positions_along
 from recon4.geometry.se3 import Array
 from recon4_app.viewer.client.view import Stretch
 from recon4_app.viewer.cloud.palette import Rgb
@@ -15,8 +16,6 @@ from recon4_app.viewer.scene.nodes import LabelNode, LinesNode, Node
 MARK_COLOR: Rgb = (255, 64, 160)
 MARK_WIDTH_PX = 7.0
 """Of the stretch, over the line of the trajectory."""
-_MAX_S = 1e9
-"""Later times are not in nanoseconds of 64 bits [s]."""
 
 
 def stretch_positions(content: Content, stretch: Stretch) -> Array:
@@ -27,14 +26,7 @@ def stretch_positions(content: Content, stretch: Stretch) -> Array:
     line = content.trajectory
     if stretch.span_s is None or line is None or not len(line):
         return np.array(stretch.places).reshape(-1, 3)
-    offsets_s = np.clip(stretch.span_s, 0.0, _MAX_S)
-    ends_ns = line.t_ns[0] + np.rint(1e9 * offsets_s).astype(np.int64)
-    if ends_ns[0] > line.t_ns[-1]:
-        return np.empty((0, 3))
-    ends_ns = np.minimum(ends_ns, line.t_ns[-1])
-    between = line.T_a_b.t[(line.t_ns > ends_ns[0]) & (line.t_ns < ends_ns[1])]
-    first, last = line.at(ends_ns).t
-    return np.concatenate([[first], between[:: max(1, -(-len(between) // MAX_POSES))], [last]])
+    return positions_along(line, stretch.span_s, most=MAX_POSES)
 
 
 def stretch_nodes(content: Content, stretch: Stretch | None) -> Iterator[Node]:
@@ -56,6 +48,19 @@ def stretch_nodes(content: Content, stretch: Stretch | None) -> Iterator[Node]:
     )
     middle = p_map[len(p_map) // 2]
     yield LabelNode(path="/labels/stretch", position_m=middle, text=stretch.text)
+
+
+def stretch_marks(content: Content, stretch: Stretch | None) -> tuple[tuple[int, str], ...]:
+    """Multiframes at both ends of a stretch, with their captions: the marks of the slider."""
+    frames = content.multiframes
+    if stretch is None or stretch.span_s is None or frames is None:
+        return ()
+    start_s, end_s = stretch.span_s
+    duration_s = (frames.t_mid_ns[-1] - frames.t_mid_ns[0]) / 1e9
+    if start_s > duration_s:
+        return ()
+    first, last = (frames.at_time(min(max(s, 0.0), duration_s)) for s in (start_s, end_s))
+    return ((first, stretch.text),) if first == last else ((first, stretch.text), (last, ""))
 
 
 def stretch_bounds(p_map: Array) -> Bounds:
