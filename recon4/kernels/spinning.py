@@ -87,6 +87,8 @@ class Channels(NamedTuple):
     """Added to the azimuth of the block: whole 0.01°, 0 to 35999, (T, C)."""
     ring: NDArray[np.uint8]
     """Ring, 0 = lowest elevation, (T, C)."""
+    order: NDArray[np.int64]
+    """The channels in the order in which they fire, (T, C)."""
 
 
 class Distances(NamedTuple):
@@ -150,6 +152,7 @@ def decode(
     channels: Channels,
     distances: Distances,
     circle: NDArray[np.float32],
+    turn_rad: NDArray[np.float32],
 ) -> Decoded:
     """Decode packets that passed the filter to points.
 
@@ -164,6 +167,8 @@ def decode(
         channels: Beams.
         distances: Unit and limits.
         circle: `CIRCLE`.
+        turn_rad: Turn from a firing to the next in each packet [rad], (P,); empty = the steps of
+            the azimuth in the packet tell.
 
     Returns:
         ``t_ns, xyz, intensity, ring, echo`` of the N points in firing order, and counts of
@@ -178,6 +183,7 @@ def decode(
     counts = np.zeros(4, np.int64)
     steps = np.zeros(64, np.int32)
     n = 0
+    is_told = turn_rad.shape[0] > 0
     for p in range(payloads.shape[0]):
         payload, start_ns, v = payloads[p], t_ns[p], variant[p]
         counts[3] += _steps(payload, layout, roles.group[v], steps)
@@ -190,12 +196,14 @@ def decode(
             beams = channels.beam[roles.table[v, k]]
             offset_cdeg = channels.offset_cdeg[roles.table[v, k]]
             ring = channels.ring[roles.table[v, k]]
+            order = channels.order[roles.table[v, k]]
             base = layout.first + b * layout.block
             azimuth = _word(payload, base + layout.azimuth, layout.big_endian) % 36000
-            step_rad = np.float32(steps[b]) * np.float32(_CDEG)
+            step_rad = turn_rad[p] if is_told else np.float32(steps[b]) * np.float32(_CDEG)
             base += layout.channel_first
             to_twin = (twin - b) * layout.block
-            for c in range(layout.channels):
+            for i in range(layout.channels):
+                c = order[i]
                 at = base + layout.channel * c
                 distance = _word(payload, at, layout.big_endian)
                 intensity = payload[at + layout.intensity]

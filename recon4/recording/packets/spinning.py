@@ -14,6 +14,7 @@ from recon4.kernels.spinning import (
     CIRCLE,
     BlockRoles,
     Channels,
+    Decoded,
     Distances,
     Layout,
     decode,
@@ -53,8 +54,10 @@ class SpinningTables:
         for blocks in (roles.block, roles.twin):
             assert (blocks >= -1).all()
             assert (blocks < layout.blocks).all()
-        for shape in (channels.beam.shape[:2], channels.offset_cdeg.shape, channels.ring.shape):
+        beam, order = channels.beam.shape[:2], channels.order
+        for shape in (beam, channels.offset_cdeg.shape, channels.ring.shape, order.shape):
             assert shape == (len(channels.ring), layout.channels)
+        assert (np.sort(order, axis=1) == np.arange(layout.channels)).all()
         assert ((roles.table >= 0) & (roles.table < len(channels.ring))).all()
         assert ((channels.offset_cdeg >= 0) & (channels.offset_cdeg < 36000)).all()
 
@@ -75,7 +78,7 @@ def beams(
         azimuth_cdeg: Added to the azimuth of the block, clockwise [0.01°].
         origin_m: Where the beam begins: along it, to its right, above the center [m].
         range_m: Added to every distance [m].
-        fraction: Firing time as a fraction of the time from a firing to the next.
+        fraction: Firing time as a fraction of the time from a firing to the next; sets the order.
     """
     elevation = np.atleast_2d(np.asarray(elevation_rad, dtype=np.float64))
     offset = np.broadcast_to(np.asarray(azimuth_cdeg, dtype=np.float64), elevation.shape)
@@ -83,12 +86,14 @@ def beams(
     _, ring = np.unique(elevation, return_inverse=True)
 
     rest_rad = np.deg2rad(0.01) * (offset - whole)
+    order = np.argsort(np.broadcast_to(fraction, elevation.shape), axis=1, kind="stable")
     numbers = (np.cos(elevation), np.sin(elevation), *origin_m, range_m, fraction, rest_rad)
     beam = np.stack([np.broadcast_to(column, elevation.shape) for column in numbers], axis=-1)
     return Channels(
         beam.astype(np.float32),
         np.ascontiguousarray(whole % 36000, dtype=np.int64),
         ring.reshape(elevation.shape).astype(np.uint8),
+        order.astype(np.int64),
     )
 
 
@@ -150,6 +155,7 @@ def spinning_points(
     *,
     tables: SpinningTables,
     report: ImportReport,
+    turn_rad: NDArray[np.float32] | None = None,
 ) -> Columns:
     """Points of packets that passed the filter and are in order; columns of `Shots`.
 
@@ -162,9 +168,12 @@ def spinning_points(
         variant: Row of ``tables.roles`` of each, (P,).
         tables: The sensor.
         report: Takes the counts.
+        turn_rad: Turn from a firing to the next in each packet [rad], (P,); None = the steps of the
+            azimuth in the packet tell.
     """
     layout = tables.layout
     assert not len(t_ns) or layout.first + layout.blocks * layout.block <= payloads.shape[1]
+    assert turn_rad is None or turn_rad.shape == t_ns.shape
     assert not len(variant) or variant.max() < len(tables.roles.group)
     decoded = decode(
         np.ascontiguousarray(payloads),
@@ -175,7 +184,13 @@ def spinning_points(
         tables.channels,
         tables.distances,
         CIRCLE,
+        np.zeros(0, dtype=np.float32) if turn_rad is None else turn_rad,
     )
+    return count_points(decoded, report)
+
+
+def count_points(decoded: Decoded, report: ImportReport) -> Columns:
+    """The columns of what a kernel decoded; its counts go into the report."""
     columns, counts = decoded[:5], decoded[5]
     for name, count in zip(_COUNTS, counts.tolist(), strict=True):
         report.count(name, count)
