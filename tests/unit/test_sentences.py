@@ -22,7 +22,7 @@ LEFT = {
     "how-to/live.md": 12,
     "how-to/review.md": 7,
     "how-to/server.md": 8,
-    "how-to/slices.md": 9,
+    "how-to/slices.md": 8,
     "how-to/viewer.md": 3,
     "reference/findings.md": 5,
     "reference/packets.md": 3,
