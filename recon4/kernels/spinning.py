@@ -183,7 +183,7 @@ def decode(
     counts = np.zeros(4, np.int64)
     steps = np.zeros(64, np.int32)
     n = 0
-    is_told = turn_rad.shape[0] > 0
+    is_given = turn_rad.shape[0] > 0
     for p in range(payloads.shape[0]):
         payload, start_ns, v = payloads[p], t_ns[p], variant[p]
         counts[3] += _steps(payload, layout, roles.group[v], steps)
@@ -199,7 +199,7 @@ def decode(
             order = channels.order[roles.table[v, k]]
             base = layout.first + b * layout.block
             azimuth = _word(payload, base + layout.azimuth, layout.big_endian) % 36000
-            step_rad = turn_rad[p] if is_told else np.float32(steps[b]) * np.float32(_CDEG)
+            step_rad = turn_rad[p] if is_given else np.float32(steps[b]) * np.float32(_CDEG)
             base += layout.channel_first
             to_twin = (twin - b) * layout.block
             for i in range(layout.channels):

@@ -148,6 +148,21 @@ def distances(unit_m: float, settings: IngestSettings) -> Distances:
     return Distances(np.float32(unit_m), least, most)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class SpinningPackets:
+    """Data packets that passed the filter and are in order."""
+
+    t_ns: Times
+    """Time of the first shot of each packet [ns], non-decreasing, (P,)."""
+    payloads: Payloads
+    """The packets, (P, size)."""
+    variant: NDArray[np.uint8]
+    """Row of ``tables.roles`` of each, (P,)."""
+    turn_rad: NDArray[np.float32]
+    """Turn from a firing to the next in each packet [rad], (P,); empty = the steps of the azimuth
+    in the packet tell."""
+
+
 def spinning_points(
     t_ns: Times,
     payloads: Payloads,
@@ -155,25 +170,27 @@ def spinning_points(
     *,
     tables: SpinningTables,
     report: ImportReport,
-    turn_rad: NDArray[np.float32] | None = None,
 ) -> Columns:
+    """Points of packets whose azimuths tell how fast the sensor spins; see `points_of`."""
+    packets = SpinningPackets(t_ns, payloads, variant, np.zeros(0, dtype=np.float32))
+    return points_of(packets, tables=tables, report=report)
+
+
+def points_of(packets: SpinningPackets, *, tables: SpinningTables, report: ImportReport) -> Columns:
     """Points of packets that passed the filter and are in order; columns of `Shots`.
 
     Counts ``points``, ``points_no_return`` (shots without an echo, no fault), ``points_near`` and
     ``points_far`` (outside the range limits) and ``azimuth_jumps``.
 
     Args:
-        t_ns: Time of the first shot of each packet [ns], non-decreasing, (P,).
-        payloads: Data packets, (P, size).
-        variant: Row of ``tables.roles`` of each, (P,).
+        packets: The packets, and what holds for each of them.
         tables: The sensor.
         report: Takes the counts.
-        turn_rad: Turn from a firing to the next in each packet [rad], (P,); None = the steps of the
-            azimuth in the packet tell.
     """
-    layout = tables.layout
+    layout, t_ns, variant = tables.layout, packets.t_ns, packets.variant
+    payloads, turn_rad = packets.payloads, packets.turn_rad
     assert not len(t_ns) or layout.first + layout.blocks * layout.block <= payloads.shape[1]
-    assert turn_rad is None or turn_rad.shape == t_ns.shape
+    assert turn_rad.shape in ((0,), t_ns.shape)
     assert not len(variant) or variant.max() < len(tables.roles.group)
     decoded = decode(
         np.ascontiguousarray(payloads),
@@ -184,7 +201,7 @@ def spinning_points(
         tables.channels,
         tables.distances,
         CIRCLE,
-        np.zeros(0, dtype=np.float32) if turn_rad is None else turn_rad,
+        turn_rad,
     )
     return count_points(decoded, report)
 
