@@ -13,6 +13,8 @@ from recon4.errors import StoreError
 WEAK_SD_M = 0.05
 """With a larger standard deviation of its LiDAR measurement a multiframe hardly observes a
 direction [m]."""
+OBSERVED_SD_M = 0.02
+"""With a smaller one it observes the direction [m]."""
 WEAK_SECONDS = 2.0
 """Shorter stretches of such multiframes are bridged by the motion before them [s]."""
 UNOBSERVED_SECONDS = 10.0

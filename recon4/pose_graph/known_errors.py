@@ -88,5 +88,5 @@ def load_known_errors(*, audit: Path | None = None, odometry: Path | None = None
         rig=rig,
         heights=figures.heights,
         turns=figures.turns,
-        carried=load_carried_motion(odometry) if figures.imu and figures.lines is None else None,
+        carried=load_carried_motion(odometry) if figures.lines is None else None,
     )

@@ -206,11 +206,7 @@ def _chain(
     """Join nodes to at most `_MAX_KNOTS` knots."""
     stride = -(-len(graph) // _MAX_KNOTS)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
-    of_carried = np.zeros((len(graph) - 1, 3, 3))
-    if carried is not None:
-        R = graph.T_map_body.R[1:]
-        of_carried = R @ carried.between(graph.frame_ids) @ np.swapaxes(R, 1, 2)
-    step_cov, rate, usual = _steps(graph, model, agrees, carried=of_carried)
+    step_cov, rate, usual = _steps(graph, model, agrees, carried=carried)
     step_s = _step_seconds(graph.t_ns)
     covs, rhos = [], []
     for first, last in pairwise(rows.tolist()):
@@ -240,7 +236,7 @@ def _transport(arm_m: Array) -> Array:
 
 
 def _steps(
-    graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement, *, carried: Array
+    graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement, *, carried: CarriedMotion | None
 ) -> tuple[Array, Array, Array]:
     """Covariance of the odometry edge to each node but the first, and rates of decorrelation.
 
@@ -248,8 +244,7 @@ def _steps(
         graph: Solved.
         model: Factors on the covariances.
         agrees: What its residuals say.
-        carried: Covariance of the shifts that only an accelerometer carries, in axes of the map,
-            (N - 1, 3, 3).
+        carried: What the points observe of each step; None = only the size of its covariance tells.
 
     Returns:
         Covariances and symmetric matrices with the inverse correlation times as eigenvalues
@@ -269,8 +264,9 @@ def _steps(
         limit = min(max(weak_at, model.weak_ratio * usual[row]), surely)
         ratio = half_s * np.sqrt(values) / limit
         weak = ratio**4 / (1.0 + ratio**4)
-        if part is TRANSLATION:
-            weak = np.maximum(weak, _ratio_along(V, carried, values))
+        if part is TRANSLATION and carried is not None:
+            weak[carried.observed_between(graph.frame_ids)] = 0.0
+            weak = np.maximum(weak, _ratio_along(V, _carried_cov(graph, carried), values))
         observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
         observed *= agrees.ratio[row] ** 2
         # Bounded, so that a walk that was lost leaves numbers that can be worked with.
@@ -289,6 +285,12 @@ def _stated(graph: PoseGraph) -> Array:
             into_map = np.kron(np.eye(2), graph.T_map_body.R[edge.j])
             stated[edge.i] = into_map @ np.linalg.inv(edge.information) @ into_map.T
     return stated
+
+
+def _carried_cov(graph: PoseGraph, carried: CarriedMotion) -> Array:
+    """Covariance of shifts that an accelerometer alone carries, in the map's axes, (N - 1, 3, 3)."""
+    R = graph.T_map_body.R[1:]
+    return np.asarray(R @ carried.between(graph.frame_ids) @ np.swapaxes(R, 1, 2))
 
 
 def _ratio_along(directions: Array, cov: Array, values: Array) -> Array:

@@ -26,10 +26,10 @@ from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.model.usability import OBSERVED_SD_M
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.motion import imu_in_body
 from recon4.registration.step import OdometryStep
-from recon4.registration.weak_motion import OBSERVED_SD_M
 
 _SHIFT_SD_M = 0.003
 """Standard deviation of the shift over a multiframe along observed directions [m] …"""

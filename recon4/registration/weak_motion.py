@@ -12,14 +12,13 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import TRANSLATION, Array
+from recon4.model.usability import OBSERVED_SD_M
 from recon4.registration.frame_fit import FrameFit
 
 _WEAK_SD_M = 0.06
 """Deviation of a position by the points of one multiframe at which half of the error remains [m].
 Measured on walks with known truth: up to 2 cm the motion of half a second is wrong by 2 mm, at 5 cm
 by 0.1 m, above 10 cm by 0.25 m (``docs/studies/covariances.md``)."""
-OBSERVED_SD_M = 0.02
-"""Below this a direction is observed, and nothing is added [m]."""
 _SPEED_M_S = 0.6
 """Standard deviation of the speed along a direction that nothing but the IMU knows [m/s]."""
 _FREE_SPEED_M_S = 2.0

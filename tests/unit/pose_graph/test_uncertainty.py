@@ -12,7 +12,7 @@ from recon4.geometry.se3 import SE3, TRANSLATION, Array, so3_log
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Verdict, known_history
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph import uncertainty
-from recon4.pose_graph.carried_motion import CarriedMotion
+from recon4.pose_graph.carried_motion import CarriedMotion, load_carried_motion
 from recon4.pose_graph.error_model import ErrorModel
 from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import KnownErrors
@@ -282,7 +282,7 @@ def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> No
     R = graph.T_map_body.R
     shift = np.zeros((14, 3, 3))
     shift[6:11, 0, 0] = 0.005**2
-    carried = CarriedMotion(shift, R)
+    carried = CarriedMotion(shift, R, np.ones(14, bool))
     cov = np.diag(STEP_SD**2)
     with_shift = np.tile(cov, (13, 1, 1))
     with_shift[:, TRANSLATION, TRANSLATION] += carried.between(graph.frame_ids)
@@ -297,3 +297,40 @@ def test_a_motion_that_an_accelerometer_carries_is_as_wrong_as_it_states() -> No
     assert grown == pytest.approx(5 * 0.005, rel=0.35)
     assert np.sqrt(plain.cov[10, 3, 3] - plain.cov[5, 3, 3]) < 0.3 * grown
     assert known.cov[10, 4, 4] == pytest.approx(plain.cov[10, 4, 4], rel=0.2)
+
+
+@pytest.mark.parametrize(
+    ("observed", "least_m", "most_m"), [(True, 0.0, 0.004), (False, 0.03, 0.3)]
+)
+def test_a_step_that_points_observe_is_known_however_large_its_covariance(
+    observed: bool, least_m: float, most_m: float
+) -> None:
+    """As through a door without an IMU: 16 cm were stated, 2 cm are usual, and it was right."""
+    graph = chain(14, sd=np.repeat([1e-3, 0.02], 3))
+    wide = np.diag(np.repeat([1e3, 0.16], 3) ** np.repeat([2.0, -2.0], 3))
+    edges = [replace(e, information=wide) if e.i == 8 else e for e in graph.edges]
+    points = np.ones(14, bool)
+    points[9] = observed
+    carried = CarriedMotion(np.zeros((14, 3, 3)), graph.T_map_body.R, points)
+
+    found = pose_uncertainty(replace(graph, edges=tuple(edges)), known=KnownErrors(carried=carried))
+
+    assert found is not None
+    assert least_m <= np.sqrt(found.cov[9, 3, 3] - found.cov[8, 3, 3]) <= most_m
+
+
+def test_points_observe_what_is_tracked_converged_and_not_weak(tmp_path: Path) -> None:
+    columns = {
+        name: np.zeros(8, bool) for name in ("lost", "bridged", "stationary")
+    } | {"converged": np.ones(8, bool), "weak_sd_m": np.full(8, 0.004)}  # fmt: skip
+    columns["weak_sd_m"][[0, 1]] = np.nan, 0.021
+    columns["stationary"][1], columns["converged"][3] = True, False
+    columns["lost"][4] = columns["bridged"][5] = True
+    columns |= {"piece": np.array([0] * 7 + [1]), "weak_motion_sd_m": np.zeros(8)}
+    columns |= {"weak_direction": np.zeros((8, 3)), "quat_xyzw": np.tile([0.0, 0, 0, 1], (8, 1))}
+    np.savez(tmp_path / "steps.npz", **columns)
+
+    found = load_carried_motion(tmp_path)
+
+    assert found.observed.tolist() == [False, True, True, False, False, False, True, False]
+    assert found.observed_between(np.array([0, 2, 3, 6, 7])).tolist() == [True, False, False, False]
