@@ -288,7 +288,7 @@ def _stated(graph: PoseGraph) -> Array:
 
 
 def _carried_cov(graph: PoseGraph, carried: CarriedMotion) -> Array:
-    """Covariance of shifts that an accelerometer alone carries, in the map's axes, (N - 1, 3, 3)."""
+    """Covariance of shifts that an accelerometer alone carries, in map axes, (N - 1, 3, 3)."""
     R = graph.T_map_body.R[1:]
     return np.asarray(R @ carried.between(graph.frame_ids) @ np.swapaxes(R, 1, 2))
 
