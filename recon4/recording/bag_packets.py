@@ -16,7 +16,7 @@ from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
 from recon4.recording.packets.companions import companions_of
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
-from recon4.recording.packets.family import Companion, PacketSensor
+from recon4.recording.packets.family import Companion, PacketSensor, same_start
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.streams import recognized
 from recon4.recording.report import ImportReport
@@ -60,7 +60,7 @@ class PacketTopics:
     def _samples_of(self, sensor: Sensor) -> list[str]:
         """Topics with other packets, each of the sensor whose topic is most alike."""
         lidars = [other.topic for other in self._rig.sensors if other.topic]
-        beside = [t.name for t in self._bag.topics if _is_beside(t)]
+        beside = [t.name for t in self._bag.topics if has_samples(self._bag, t)]
         return [name for name in beside if _most_alike(name, lidars) == sensor.topic]
 
 
@@ -126,6 +126,15 @@ def model_of_packets(bag: Bag, topic: BagTopic) -> str:
     return found.model if found is not None and found.model else "generic"
 
 
+def has_samples(bag: Bag, topic: BagTopic) -> bool:
+    """Whether a topic has packets of a LiDAR without points: some drivers send all in one type."""
+    row = PACKET_MESSAGES.get(topic.type)
+    if row is None or not topic.messages:
+        return False
+    found = None if row.samples else recognized(head_of(bag, topic.name))
+    return row.samples or (found is not None and found.kind == "samples")
+
+
 def bag_companions(bag: Bag) -> list[Companion]:
     """Files beside a bag, and the texts of its drivers, as the metadata of an Ouster."""
     texts = [topic for topic in bag.topics if topic.type == _STRING and topic.messages]
@@ -138,16 +147,5 @@ def bag_companions(bag: Bag) -> list[Companion]:
     return [*found, *companions_of(bag.paths)]
 
 
-def _is_beside(topic: BagTopic) -> bool:
-    row = PACKET_MESSAGES.get(topic.type)
-    return row is not None and topic.messages > 0 and (row.samples or "imu" in topic.name.lower())
-
-
 def _most_alike(name: str, others: list[str]) -> str:
-    return max(others, key=lambda other: _same_start(name, other), default="")
-
-
-def _same_start(one: str, other: str) -> int:
-    """How many characters two names have in common at their beginning."""
-    pairs = zip(one, other, strict=False)
-    return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
+    return max(others, key=lambda other: same_start(name, other), default="")

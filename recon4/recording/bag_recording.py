@@ -27,7 +27,7 @@ from recon4.recording.bag_messages import (
     stamp_clock,
     stamp_ns,
 )
-from recon4.recording.bag_packets import PacketTopics, model_of_packets
+from recon4.recording.bag_packets import PacketTopics, has_samples, model_of_packets
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.driver_topics import no_lidar_text, unread_text
@@ -185,7 +185,8 @@ def lidar_streams(
     Raises:
         ConfigError: If the settings name a topic that is not there.
     """
-    scans = [t for t in bag.topics if t.type in DATA_MESSAGES and t.messages]
+    packets = [t for t in bag.topics if t.type in DATA_MESSAGES and t.messages]
+    scans = [t for t in packets if not has_samples(bag, t)]
     clouds = [t for t in bag.topics if is_cloud(t)]
     if settings.lidar_topic:
         there = [t.name for t in (*scans, *clouds)]

@@ -79,8 +79,9 @@ def read_mounts(bag: Bag, topics: Sequence[str], report: ImportReport) -> Mounts
 def _frame_of(bag: Bag, topic: str) -> str:
     for message in islice(bag.messages([topic]), _PROBED_MESSAGES):
         content = bag.decode(message)
-        if content is not None:
-            return frame_name(content.header.frame_id)
+        if content is not None:  # packets of an Ouster come without a header
+            header = getattr(content, "header", None)
+            return frame_name(header.frame_id) if header is not None else ""
     return ""
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from recon4.recording.packets.families import FAMILIES
-from recon4.recording.packets.family import Companion
+from recon4.recording.packets.family import Companion, same_start
 
 COMPANION_SUFFIXES = frozenset({".json", ".csv", ".yaml", ".yml", ".xml", ".dat", ".cal"})
 MAX_COMPANION_BYTES = 1 << 20
@@ -35,16 +35,18 @@ def companions_of(paths: Sequence[Path]) -> list[Companion]:
         paths: Recordings, files or folders, and such files.
     """
     beside = [file for path in paths for file in companion_paths(path)]
-    return _read(dict.fromkeys([*paths, *beside]))
+    recordings = [path.stem for path in paths if path.suffix.lower() not in COMPANION_SUFFIXES]
+    return _read(dict.fromkeys([*paths, *beside]), recordings)
 
 
-def _read(paths: Iterable[Path]) -> list[Companion]:
+def _read(paths: Iterable[Path], recordings: Sequence[str] = ()) -> list[Companion]:
     small = [path for path in paths if path.suffix.lower() in COMPANION_SUFFIXES]
     found = []
     for path in small[:_MOST_FILES]:
         try:
             if path.is_file() and path.stat().st_size <= MAX_COMPANION_BYTES:
-                found.append(Companion(path.name, path.read_bytes()))
+                alike = (same_start(path.stem, name) for name in recordings)
+                found.append(Companion(path.name, path.read_bytes(), max(alike, default=0)))
         except OSError:
             continue
     return [one for one in found if any(family.describes(one) for family in FAMILIES)]

@@ -38,6 +38,14 @@ class Companion:
     name: str
     """Display name: file name, or topic."""
     content: bytes
+    likeness: int = 0
+    """At how many characters its name begins like that of the recording (`same_start`)."""
+
+
+def same_start(one: str, other: str) -> int:
+    """How many characters two names have in common at their beginning."""
+    pairs = zip(one, other, strict=False)
+    return next((k for k, (a, b) in enumerate(pairs) if a != b), min(len(one), len(other)))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import Sensor
 from recon4.recording.formats.datagrams import Datagrams, address_text
-from recon4.recording.packets.family import Companion, Payloads
+from recon4.recording.packets.family import Companion, Payloads, same_start
 from recon4.recording.packets.ouster.columns import sound_columns
 from recon4.recording.packets.ouster.layouts import PacketLayout, numbers
 from recon4.recording.packets.ouster.metadata import OusterMetadata, read_metadata
@@ -40,6 +41,8 @@ class ChosenMetadata:
     metadata: OusterMetadata
     doubts: tuple[str, ...]
     """How the packets contradict it."""
+    passed_over: str
+    """Files that only their names have ruled out."""
 
 
 def find_metadata(companions: Sequence[Companion]) -> MetadataFiles:
@@ -93,8 +96,10 @@ def choose(
 ) -> ChosenMetadata | None:
     """The metadata of the sender of some datagrams; None if there is none that fits.
 
-    Size and contents of its packets decide, then serial number, start of the sensor
-    (``init_id``), port, and whether the name of the file holds the address or the sensor's name.
+    Size and contents of its packets decide, then serial number, start of the sensor (``init_id``),
+    and whether the name of the file holds the address or the sensor's name. A file that states
+    another port is out if one is left that does not: many sensors send to the same port. At last
+    the name counts that begins most like that of the recording or topic.
 
     Raises:
         ConfigError: If several fit equally and give other points.
@@ -102,15 +107,34 @@ def choose(
     fitting = [item for item in found.metadata if not len(head) or layout_fits(head, item.layout)]
     if not fitting:
         return None
-    ranks = [_rank(head, item, sensor) for item in fitting]
-    best = [item for item, rank in zip(fitting, ranks, strict=True) if rank == max(ranks)]
-    if not all(best[0].same_geometry(item) for item in best[1:]):
+    likeness = [_likeness(item, sensor) for item in fitting]
+    known = _best(fitting, [_rank(head, item, sensor) for item in fitting])
+    best = _best(known, [likeness[fitting.index(item)] for item in known])
+    if not _same_points(best):
         names = ", ".join(item.name for item in best)
         raise ConfigError(
             f"the packets of {_sender(head, sensor)} may be of the sensors of several metadata "
-            f"files: {names}; put the address of the sensor into the name of its file"
+            f"files: {names}; leave the right one beside the recording, or put the address of the "
+            "sensor into the name of its file"
         )
-    return ChosenMetadata(best[0], _doubts(head, best[0]))
+    by_name = "" if _same_points(known) else ", ".join(k.name for k in known if k is not best[0])
+    return ChosenMetadata(best[0], _doubts(head, best[0]), by_name)
+
+
+_Rank = TypeVar("_Rank", tuple[bool, ...], int)
+
+
+def _best(items: list[OusterMetadata], ranks: list[_Rank]) -> list[OusterMetadata]:
+    return [item for item, rank in zip(items, ranks, strict=True) if rank == max(ranks)]
+
+
+def _same_points(items: Sequence[OusterMetadata]) -> bool:
+    return all(items[0].same_geometry(item) for item in items[1:])
+
+
+def _likeness(item: OusterMetadata, sensor: Sensor | None) -> int:
+    topic = sensor.topic if sensor else ""
+    return max(item.likeness, same_start(topic, item.name))
 
 
 def _rank(head: Datagrams, item: OusterMetadata, sensor: Sensor | None) -> tuple[bool, ...]:
@@ -119,13 +143,13 @@ def _rank(head: Datagrams, item: OusterMetadata, sensor: Sensor | None) -> tuple
     serial = usual_serial(item.layout, payloads) or (sensor.serial if sensor else "")
     init_id = _usual(item.layout, payloads, "init_id")
     ports = set(head.port[:1].tolist()) or ({sensor.port} if sensor else set())
-    names = [address_text(int(source)) for source in head.source[:1]]
+    names = [address_text(int(source)) for source in head.source[:1] if source]
     names += [sensor.name, sensor.address] if sensor else []
     return (
         bool(serial) and serial == item.serial,
         bool(init_id) and init_id == item.init_id,
-        item.port in ports,
         any(name and name in item.name for name in names),
+        ports == {0} or item.port in {0, *ports},
     )
 
 

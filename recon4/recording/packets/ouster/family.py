@@ -159,6 +159,8 @@ def _say(sensor: PacketSensor, fit: ChosenMetadata, found: MetadataFiles, *, col
             f"{name}: the rig says {sensor.sensor.model}, {metadata.name} {metadata.product}: "
             "decoded by this file"
         )
+    if fit.passed_over:
+        report.derive(f"{name}: {metadata.name} is its metadata by its name, not {fit.passed_over}")
     if metadata.assumed:
         report.derive(
             f"{name}: {metadata.name} does not tell {' and '.join(metadata.assumed)}: "

@@ -50,6 +50,8 @@ class OusterMetadata:
 
     name: str
     """Display name of the file or topic."""
+    likeness: int
+    """At how many characters its name begins like that of the recording."""
     product: str
     """As ``OS-1-128``; empty = not stated."""
     serial: str
@@ -83,10 +85,11 @@ class OusterMetadata:
     def model(self) -> str:
         """Name in `recon4.model.lidars.LIDARS`; empty = not known."""
         found = _PRODUCT.match(self.product)
-        if not found:
-            return ""
-        kind = "Dome" if found[1].upper() == "DOME" else found[1]
-        name = f"OS{kind}-{int(found[2])}"
+        if found:
+            kind = "Dome" if found[1].upper() == "DOME" else found[1]
+            name = f"OS{kind}-{int(found[2])}"
+        else:
+            name = _likely_model(np.rad2deg(self.elevation_rad)) if not self.product else ""
         return name if name in LIDARS else ""
 
     def same_geometry(self, other: OusterMetadata) -> bool:
@@ -97,6 +100,16 @@ class OusterMetadata:
             and self.columns_per_turn == other.columns_per_turn
             and all(np.array_equal(getattr(self, name), getattr(other, name)) for name in names)
         )
+
+
+def _likely_model(elevation_deg: Array) -> str:
+    """The model with such a field of view."""
+    span_deg = float(np.ptp(elevation_deg))
+    if elevation_deg.min() > -10.0 and elevation_deg.max() > 60.0:
+        kind = "Dome"
+    else:
+        kind = "0" if span_deg > 60.0 else "1" if span_deg > 27.0 else "2"
+    return f"OS{kind}-{len(elevation_deg)}"
 
 
 def is_metadata(companion: Companion) -> bool:
@@ -117,7 +130,7 @@ def read_metadata(companion: Companion) -> OusterMetadata | None:
     if not isinstance(found, dict):
         raise CorruptFile(f"{name}: expected a JSON object, got {type(found).__name__}")
     try:
-        return _metadata(_Values(name, _flat(found)))
+        return _metadata(_Values(name, _flat(found)), companion.likeness)
     except (TypeError, OverflowError) as error:
         raise CorruptFile(f"{name}: a value of the wrong kind: {error}") from error
 
@@ -191,7 +204,7 @@ def _all_within(found: list[object], limit: float) -> bool:
     return all(isinstance(value, int | float) and abs(value) <= limit for value in found)
 
 
-def _metadata(values: _Values) -> OusterMetadata:
+def _metadata(values: _Values, likeness: int) -> OusterMetadata:
     beams = values.count(_ANGLES)
     if not 1 <= beams <= MAX_BEAMS:
         raise CorruptFile(
@@ -214,6 +227,7 @@ def _metadata(values: _Values) -> OusterMetadata:
     }
     return OusterMetadata(
         name=values.name,
+        likeness=likeness,
         product=product[:40],
         serial=serial.lstrip("0") if serial.isdigit() else "",
         init_id=values.integer("initialization_id", 0, (0, (1 << 24) - 1)),
