@@ -160,7 +160,7 @@ class PacketCapture:
         from_sensor = datagrams.source == address_number(stream.source)
         to_data = from_sensor & (datagrams.port == stream.port)
         whole = to_data & (datagrams.length == decoder.size)
-        beside = from_sensor & ~whole & np.isin(datagrams.length, list(decoder.sample_sizes))
+        beside = from_sensor & np.isin(datagrams.length, list(decoder.sample_sizes))
         self._report.count("packets_wrong_length", int((to_data & ~whole & ~beside).sum()))
         rows = np.flatnonzero(whole)
         if len(rows):  # first: they tell the clock best

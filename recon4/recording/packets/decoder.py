@@ -120,7 +120,7 @@ class PacketDecoder:
 
     @property
     def sample_sizes(self) -> frozenset[int]:
-        """Bytes of the other packets that `samples` reads."""
+        """Bytes of the packets that `samples` reads, maybe of the data packets too."""
         return self._layout.sample_sizes
 
     def samples(self, datagrams: Datagrams) -> PacketSamples | None:

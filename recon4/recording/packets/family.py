@@ -115,7 +115,9 @@ class PacketFormat(Protocol):
 
     @property
     def sample_sizes(self) -> frozenset[int]:
-        """Bytes of the other packets of the sensor: IMU, positions, device data."""
+        """Bytes of the packets that `samples` reads: IMU, positions, device data; also those of the
+        data packets if they carry samples.
+        """
         ...
 
     @property
