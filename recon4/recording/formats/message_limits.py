@@ -6,6 +6,7 @@ import struct
 from collections.abc import Sequence
 
 from recon4.errors import CorruptFile
+from recon4.recording.packets.messages import DATA_MESSAGES
 
 MAX_SAMPLE_BYTES = 64 << 10
 """One message of an IMU, a GNSS receiver or a pose has less than 1 kB."""
@@ -20,7 +21,7 @@ MAX_CLOUD_POINTS = 5_000_000
 """128 beams x 4096 columns are 524 288."""
 _CLOUD = "sensor_msgs/msg/PointCloud2"
 _MOST_BYTES = {
-    "velodyne_msgs/msg/VelodyneScan": MAX_SCAN_BYTES,
+    **dict.fromkeys(DATA_MESSAGES, MAX_SCAN_BYTES),
     "tf2_msgs/msg/TFMessage": MAX_TRANSFORMS_BYTES,
     "tf/msg/tfMessage": MAX_TRANSFORMS_BYTES,
     "std_msgs/msg/String": MAX_TEXT_BYTES,
