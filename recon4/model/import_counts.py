@@ -92,6 +92,9 @@ _PACKETS = {
         "packets", "a version, type or length of another packet, dropped"
     ),
     "packets_wrong_stamp": _lost("packets", "a time stamp that is none, dropped"),
+    "packets_wrong_speed": _lost(
+        "packets", "a motor faster than 3600 revolutions a minute, dropped"
+    ),
     "packets_wrong_crc": _lost("packets", "damaged by their CRC, dropped"),
     "packets_of_another_sensor": _lost("packets", "another serial number, dropped", stated=True),
     "packets_wrong_columns": _lost("packets", "columns that do not follow each other, dropped"),

@@ -57,6 +57,58 @@ _VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3)
     replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), accuracy_m=0.02),
 )
 
+_XT32 = LidarFacts(
+    name="XT32",
+    maker="Hesai",
+    beams=32,
+    elevation_deg=(-16.0, 15.0),
+    min_range_m=0.05,
+    range_m=80.0,
+    accuracy_m=0.01,
+    divergence_rad=0.002,
+)
+_PANDAR40P = replace(
+    _XT32,
+    name="Pandar40P",
+    beams=40,
+    elevation_deg=(-25.0, 15.0),
+    min_range_m=0.3,
+    range_m=200.0,
+    accuracy_m=0.02,
+)
+_QT64 = replace(
+    _XT32,
+    name="QT64",
+    beams=64,
+    elevation_deg=(-52.1, 52.1),
+    min_range_m=0.1,
+    range_m=20.0,
+    accuracy_m=0.02,
+    divergence_rad=0.005,
+)
+_HESAI = (  # user manuals of Hesai, chapter "Specifications"; not all state a divergence
+    replace(_XT32, name="XT16", beams=16, elevation_deg=(-15.0, 15.0)),
+    _XT32,
+    replace(_XT32, name="XT32M2X", elevation_deg=(-20.8, 19.5), min_range_m=0.5),
+    _PANDAR40P,
+    replace(_PANDAR40P, name="Pandar64", beams=64),
+    replace(_PANDAR40P, name="Pandar128", beams=128),
+    replace(_PANDAR40P, name="OT128", beams=128),
+    _QT64,
+    replace(_QT64, name="QT128", beams=128, elevation_deg=(-52.6, 52.6), min_range_m=0.05),
+    replace(
+        _PANDAR40P,
+        name="AT128",
+        beams=128,
+        scanning="solid-state",
+        elevation_deg=(-12.5, 12.9),
+        azimuth_deg=120.0,
+        min_range_m=0.5,
+    ),
+    replace(_QT64, name="JT16", beams=16, elevation_deg=(0.6, 40.7), range_m=30.0),
+    replace(_QT64, name="JT128", beams=128, elevation_deg=(-5.0, 90.0), range_m=30.0),
+)
+
 _AVIA = LidarFacts(
     name="Avia",
     maker="Livox",
@@ -189,7 +241,7 @@ _GENERIC = LidarFacts(
 )
 
 LIDARS: dict[str, LidarFacts] = {
-    model.name: model for model in (*_VELODYNE, *_LIVOX, *_OUSTER, _GENERIC)
+    model.name: model for model in (*_VELODYNE, *_HESAI, *_LIVOX, *_OUSTER, _GENERIC)
 }
 """All models by name; ``generic`` is any LiDAR whose points come as clouds."""
 

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from recon4.recording.packets.family import PacketFamily
+from recon4.recording.packets.hesai.family import HESAI
 from recon4.recording.packets.livox.family import LIVOX
 from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.velodyne.family import VELODYNE
 
 FAMILIES: tuple[PacketFamily, ...] = (
+    HESAI,
     LIVOX,
     OUSTER,
     VELODYNE,

@@ -1,0 +1,153 @@
+"""The angles of the beams of one unit: the correction file that Hesai delivers with each sensor.
+
+A table of text (``Channel,Elevation,Azimuth`` in degrees, one row a channel), found among the files
+beside the recording. Which table belongs to which sensor follows from its number of rows, from its
+elevations (two models with as many channels look in other directions) and, between several units
+of one model, from the name of the file.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from recon4.geometry.se3 import Array
+from recon4.recording.packets.family import Companion, PacketSensor
+
+_LARGEST = 1 << 20
+"""Longer files are no tables of angles [bytes]."""
+_SAME_MODEL_RAD = np.deg2rad(2.5)
+"""Elevations of two units of one model differ by less [rad]."""
+_LIMITS_DEG = (90.0, 360.0)
+_MOST_HEAD = 3
+"""Lines up to and with the names of the columns: ``eeff,1,1`` and the number of channels may
+precede them."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Angles:
+    """Directions of the beams when the rotor is at azimuth 0."""
+
+    elevation_rad: Array
+    """Above the horizontal plane [rad], (C,)."""
+    azimuth_rad: Array
+    """Clockwise as seen from above [rad], (C,)."""
+
+    def is_like(self, typical: Angles) -> bool:
+        """Whether both are of one model."""
+        if len(self.elevation_rad) != len(typical.elevation_rad):
+            return False
+        off = np.abs(self.elevation_rad - typical.elevation_rad)
+        return bool(off.max() < _SAME_MODEL_RAD)
+
+
+class NotAngles(ValueError):
+    """The table has a bad row: says which, and why."""
+
+
+def is_table(companion: Companion) -> bool:
+    """Whether a file is a table of angles, sound or not."""
+    return bool(_lines(companion))
+
+
+def read_angles(companion: Companion) -> Angles | None:
+    """The table of angles in a file; None = it is another file.
+
+    Raises:
+        NotAngles: If it is one with a damaged row, or without rows.
+    """
+    lines = _lines(companion)
+    if not lines:
+        return None
+    rows = [line.split(",") for line in lines if re.match(r"\s*\d{1,3}\s*,", line)]
+    if not rows:
+        raise NotAngles("there is no row channel,elevation,azimuth")
+    values = np.deg2rad([_row(number, row) for number, row in enumerate(rows, start=1)])
+    return Angles(values[:, 0], values[:, 1])
+
+
+def _lines(companion: Companion) -> list[str]:
+    """The lines behind the head of a table of angles; none = it is another file."""
+    if len(companion.content) > _LARGEST:
+        return []
+    try:
+        lines = companion.content.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:
+        return []
+    for number, line in enumerate(lines[:_MOST_HEAD], start=1):
+        cells = [cell.strip().lower() for cell in line.split(",")]
+        if cells[1:3] == ["elevation", "azimuth"]:
+            return lines[number:] or [""]
+    return []
+
+
+def _row(number: int, cells: Sequence[str]) -> tuple[float, float]:
+    """Elevation and azimuth of one row [°]."""
+    try:
+        channel, elevation, azimuth = int(cells[0]), float(cells[1]), float(cells[2])
+    except (ValueError, IndexError):
+        raise NotAngles(f"row {number}: expected channel,elevation,azimuth, got {cells}") from None
+    if channel != number:
+        raise NotAngles(f"row {number}: is of channel {channel}")
+    inside = abs(elevation) <= _LIMITS_DEG[0] and abs(azimuth) <= _LIMITS_DEG[1]
+    if not inside:
+        raise NotAngles(f"row {number}: elevation {elevation} or azimuth {azimuth} is no angle")
+    return elevation, azimuth
+
+
+def angles_of(sensor: PacketSensor, channels: int, typical: Angles | None) -> Angles | None:
+    """The angles of a sensor; None = no table fits, and none is typical of its model.
+
+    What is not from a table of this unit is derived or a warning in the report.
+    """
+    report, name = sensor.report, sensor.sensor.name
+    tables: dict[str, Angles] = {}
+    for companion in sensor.companions:
+        try:
+            table = read_angles(companion)
+        except NotAngles as error:
+            report.warn(f"{companion.name}: not used as a table of angles: {error}")
+            continue
+        if table is not None and len(table.elevation_rad) == channels:
+            tables[companion.name] = table
+    fitting = {
+        key: table for key, table in tables.items() if typical is None or table.is_like(typical)
+    }
+    chosen = _choose(fitting, (name, sensor.sensor.model))
+    if chosen is not None:
+        report.derive(f"{name}: angles of its beams from {chosen}")
+        return fitting[chosen]
+    if typical is not None:
+        report.warn(
+            f"{name}: angles of a typical {sensor.sensor.model} (off by up to 0.3°): "
+            + _why_none(channels, sorted(fitting))
+        )
+    return typical
+
+
+def _why_none(channels: int, fitting: Sequence[str]) -> str:
+    if fitting:
+        return f"{', '.join(fitting)} fit: give the one of this sensor the name of the sensor"
+    return (
+        f"no correction file with {channels} rows (Channel,Elevation,Azimuth) is beside the "
+        "recording"
+    )
+
+
+def _choose(tables: dict[str, Angles], words: Sequence[str]) -> str | None:
+    """The only table, or the only one whose name has one of the words, in this order."""
+    if len(tables) == 1:
+        return next(iter(tables))
+    for word in words:
+        named = [key for key in tables if _plain(word) in _plain(key)]
+        if len(named) == 1:
+            return named[0]
+    return None
+
+
+def _plain(text: str) -> str:
+    """Lower case, letters and digits only."""
+    return re.sub(r"[^a-z0-9]", "", text.lower())

@@ -1,0 +1,55 @@
+"""Checksums of Hesai packets: CRC-32/MPEG-2 (polynomial 04c11db7, not reflected).
+
+Checked is the sum of the tail, which holds time and return mode; summing up the body too would
+take longer than decoding it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.hesai.layouts import HesaiLayout
+
+_POLYNOMIAL = 0x04C11DB7
+
+
+def _table() -> NDArray[np.uint32]:
+    """What each byte adds to the sum, (256,)."""
+    rest = np.arange(256, dtype=np.uint64) << 24
+    for _ in range(8):
+        rest = (rest << 1) ^ np.where(rest & 0x80000000, _POLYNOMIAL, 0).astype(np.uint64)
+    return rest.astype(np.uint32)
+
+
+_TABLE = _table()
+
+
+def crc32(rows: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    """Checksum of each row, (N,).
+
+    Args:
+        rows: Bytes, (N, K).
+    """
+    total = np.full(len(rows), 0xFFFFFFFF, dtype=np.uint32)
+    for column in np.ascontiguousarray(rows.T):
+        total = (total << np.uint32(8)) ^ _TABLE[(total >> np.uint32(24)) ^ column]
+    return total
+
+
+def are_right(payloads: Payloads, layout: HesaiLayout) -> NDArray[np.bool_]:
+    """Whether the checksum of the tail fits, (N,); True where packets have none."""
+    at = layout.crc_at
+    if at < 0:
+        return np.ones(len(payloads), dtype=np.bool_)
+    stated = np.ascontiguousarray(payloads[:, at : at + 4]).view("<u4")[:, 0]
+    return np.asarray(crc32(payloads[:, layout.crc_from : at]) == stated)
+
+
+def write(payloads: Payloads, layout: HesaiLayout) -> None:
+    """Put the checksum of the tail into packets that have one."""
+    at = layout.crc_at
+    if at >= 0:
+        total = crc32(payloads[:, layout.crc_from : at])
+        payloads[:, at : at + 4] = total.astype("<u4").view(np.uint8).reshape(-1, 4)

@@ -1,0 +1,203 @@
+"""Hesai: the family of its LiDARs for `recon4.recording.packets.families`."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.packets.family import (
+    Companion,
+    MessagePackets,
+    PacketFormat,
+    PacketSensor,
+    Payloads,
+    Recognized,
+)
+from recon4.recording.packets.hesai.angles import Angles, angles_of, is_table
+from recon4.recording.packets.hesai.data_packets import HesaiFormat, HesaiPackets
+from recon4.recording.packets.hesai.fields import Fields, sound_packets
+from recon4.recording.packets.hesai.layouts import (
+    HEADER,
+    JT16_IMU_SIZE,
+    START,
+    read_layout,
+)
+from recon4.recording.packets.hesai.mirrors import MirrorTable, mirrors_of, read_mirrors
+from recon4.recording.packets.hesai.models import MODELS, RETURN_MODES, HesaiModel, model_of
+from recon4.recording.report import ImportReport
+
+_PROBED = 200
+_LONGEST = 1500
+_JT16_IMU = START + bytes((1, 8))
+
+_PANDAR_TYPES = {
+    "pandar_msgs/msg/PandarPacket": (
+        "builtin_interfaces/Time stamp\nuint8[1500] data\nuint32 size\n"
+    ),
+    "pandar_msgs/msg/PandarScan": ("std_msgs/Header header\npandar_msgs/PandarPacket[] packets\n"),
+}
+_UDP_TYPES = {
+    "hesai_ros_driver/msg/UdpPacket": (
+        "builtin_interfaces/Time stamp\nuint8[] data\nuint32 size\n"
+    ),
+    "hesai_ros_driver/msg/UdpFrame": (
+        "std_msgs/Header header\nhesai_ros_driver/UdpPacket[] packets\n"
+    ),
+}
+
+
+def _packets(message: Any) -> list[tuple[int, bytes]]:
+    """Arrival times [ns] and payloads of a message."""
+    return [
+        (
+            int(packet.stamp.sec) * 1_000_000_000 + int(packet.stamp.nanosec),
+            bytes(packet.data[: int(packet.size)]),
+        )
+        for packet in message.packets
+    ]
+
+
+class Hesai:
+    """A `recon4.recording.packets.family.PacketFamily`."""
+
+    name = "Hesai"
+    messages: Mapping[str, MessagePackets] = {
+        "pandar_msgs/msg/PandarScan": MessagePackets(_PANDAR_TYPES, _packets),
+        "hesai_ros_driver/msg/UdpFrame": MessagePackets(_UDP_TYPES, _packets),
+    }
+
+    def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+        """What the datagrams are, by the header of the most frequent size; None = not Hesai's."""
+        payloads = _most_frequent(head)
+        if payloads is None:
+            return None
+        found = _data_packets(payloads)
+        if found is None:
+            return self._samples(payloads)
+        sound = _sound(payloads, found)
+        if not sound.mean() * np.mean(head.length == found.layout.size) > 0.5:
+            return None
+        model, fields = found.model, Fields(payloads[sound], found.layout)
+        mode = int(np.bincount(fields.mode).argmax())
+        speed = float(np.median(fields.speed)) * model.speed_rpm / 60.0
+        return Recognized(
+            family=self.name,
+            kind="data",
+            model=model.name,
+            mode=RETURN_MODES.get(mode, ("", 1))[0],
+            packet_s=model.packet_s(found.layout.blocks, found.returns),
+            rotation_hz=speed if speed > 0 and model.name != "AT128" else float("nan"),
+            size=found.layout.size,
+            remarks=_remarks(mode),
+        )
+
+    def describes(self, companion: Companion) -> bool:
+        """Whether a file is a table of angles, sound or not."""
+        return is_table(companion) or read_mirrors(companion) is not None
+
+    def open(self, sensor: PacketSensor) -> PacketFormat:
+        """Prepare to decode the packets of one sensor.
+
+        Raises:
+            ConfigError: If its packets are of another shape than its model's, or there is no table
+                of angles where one is needed.
+        """
+        name = sensor.sensor.name
+        model = MODELS.get(sensor.sensor.model)
+        if model is None:
+            known = ", ".join(MODELS)
+            raise ConfigError(
+                f"{name}: no packet decoder for model {sensor.sensor.model!r}; decoded: {known}"
+            )
+        payloads = _most_frequent(sensor.head)
+        found = _data_packets(payloads) if payloads is not None else None
+        packets = _usual(model) if found is None else found
+        if packets.layout.channels != model.channels:
+            raise ConfigError(
+                f"{name}: its packets hold {packets.layout.channels} channels "
+                f"({packets.model.name}), a {model.name} has {model.channels}"
+            )
+        if packets.model is not model:
+            sensor.report.warn(
+                f"{name}: its packets are those of a {packets.model.name}; decoded as {model.name}"
+            )
+            packets = HesaiPackets(model, packets.layout, packets.header, packets.returns)
+        return HesaiFormat(packets, _directions(model, sensor), sensor)
+
+    def _samples(self, payloads: Payloads) -> Recognized | None:
+        """Packets of a JT16 that hold no points."""
+        if payloads.shape[1] != JT16_IMU_SIZE:
+            return None
+        start = np.frombuffer(_JT16_IMU, np.uint8)
+        if not (payloads[:, : len(start)] == start).all(axis=1).mean() > 0.5:
+            return None
+        return Recognized(family=self.name, kind="samples", model="JT16")
+
+
+HESAI = Hesai()
+
+
+def _most_frequent(head: Datagrams) -> Payloads | None:
+    """The first payloads of the most frequent size; None = there are none of a packet's size."""
+    if not len(head):
+        return None
+    sizes, counts = np.unique(head.length, return_counts=True)
+    size = int(sizes[counts.argmax()])
+    if not HEADER <= size <= _LONGEST:
+        return None
+    return head.payloads(np.flatnonzero(head.length == size)[:_PROBED], size)
+
+
+def _data_packets(payloads: Payloads) -> HesaiPackets | None:
+    """What payloads of one size are, by the most frequent header among them."""
+    heads, counts = np.unique(payloads[:, :HEADER], axis=0, return_counts=True)
+    for head in heads[np.argsort(-counts, kind="stable")][:8]:
+        row = int(np.flatnonzero((payloads[:, :HEADER] == head).all(axis=1))[0])
+        layout = read_layout(payloads[row])
+        model = model_of(payloads[row], layout) if layout else None
+        if layout is not None and model is not None:
+            returns = int(np.median(Fields(payloads, layout).returns))
+            return HesaiPackets(model, layout, head.tobytes(), returns)
+    return None
+
+
+def _sound(payloads: Payloads, found: HesaiPackets) -> NDArray[np.bool_]:
+    fields, speed_rpm = Fields(payloads, found.layout), found.model.speed_rpm
+    return sound_packets(fields, found.header, speed_rpm, report=ImportReport())
+
+
+def _usual(model: HesaiModel) -> HesaiPackets:
+    """What a sensor sends that has not sent anything yet."""
+    return HesaiPackets(model, model.layout, model.header.ljust(HEADER, b"\0"), 1)
+
+
+def _remarks(mode: int) -> tuple[str, ...]:
+    if mode in RETURN_MODES or mode == 0:
+        return ()
+    return (f"unknown return mode byte {mode:#04x}: read as single return",)
+
+
+def _directions(model: HesaiModel, sensor: PacketSensor) -> Angles | MirrorTable:
+    """Directions of the beams of a sensor."""
+    name = sensor.sensor.name
+    if model.name == "AT128":
+        found = mirrors_of(sensor.companions)
+        if found is None:
+            raise ConfigError(
+                f"{name}: an AT128 needs its angle correction file (.dat, version 1.5) beside the "
+                "recording; a table of text (.csv) has no positions of its mirrors"
+            )
+        sensor.report.derive(f"{name}: angles of its mirrors and beams from {found[0]}")
+        return found[1]
+    angles = angles_of(sensor, model.channels, model.angles)
+    if angles is None:
+        raise ConfigError(
+            f"{name}: a {model.name} needs its angle correction file beside the recording: a table "
+            f"Channel,Elevation,Azimuth with {model.channels} rows"
+        )
+    return angles

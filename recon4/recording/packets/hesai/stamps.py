@@ -1,0 +1,65 @@
+"""Times in Hesai packets: a date of the clock of the sensor and microseconds of its second."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+
+SECOND_NS = 1_000_000_000
+_MICROS = 1_000_000
+_FIRST, _LAST = (1, 1, 0, 0, 0), (12, 31, 23, 59, 60)
+"""Least and largest month, day, hour, minute and second."""
+_LATEST_S = 1 << 33
+"""Seconds since 1970 beyond the year 2242 are none."""
+
+
+def is_date(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> NDArray[np.bool_]:
+    """Which times can be true, (N,).
+
+    Args:
+        date: Year, month, day, hour, minute, second; or 0 and seconds in big endian, (N, 6).
+        micros: Microseconds, (N,).
+    """
+    calendar = ((date[:, 1:] >= _FIRST) & (date[:, 1:] <= _LAST)).all(axis=1)
+    counted = _seconds(date) < _LATEST_S
+    dated = np.where(date[:, 0] == 0, counted, calendar)
+    return np.asarray(dated & (micros < _MICROS))
+
+
+def time_ns(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> Times:
+    """Nanoseconds since 1970 of times that can be true, (N,).
+
+    The year counts from 1900, or from 2000 if it is below 70 (Pandar40P, Pandar64).
+    """
+    field = date.astype(np.int64).T
+    year = field[0] + np.where(field[0] < 70, 2000, 1900)
+    month = ((year - 1970) * 12 + field[1] - 1).astype("datetime64[M]")
+    day = month.astype("datetime64[D]").astype(np.int64) + field[2] - 1
+    calendar = ((day * 24 + field[3]) * 60 + field[4]) * 60 + field[5]
+    seconds = np.where(field[0] == 0, _seconds(date), calendar)
+    return np.asarray(seconds * SECOND_NS + micros.astype(np.int64) * 1000)
+
+
+def date_of(seconds: NDArray[np.int64]) -> NDArray[np.uint8]:
+    """The six bytes of times in seconds since 1970: the inverse of `time_ns`, (N, 6)."""
+    day, rest = np.divmod(np.asarray(seconds, dtype=np.int64), 86400)
+    month = day.astype("datetime64[D]").astype("datetime64[M]")
+    first = month.astype("datetime64[D]").astype(np.int64)
+    months = month.astype(np.int64)
+    columns = (
+        months // 12 + 70,
+        months % 12 + 1,
+        day - first + 1,
+        rest // 3600,
+        rest // 60 % 60,
+        rest % 60,
+    )
+    return np.column_stack(columns).astype(np.uint8)
+
+
+def _seconds(date: NDArray[np.uint8]) -> NDArray[np.int64]:
+    """Seconds since 1970 in the last five bytes, (N,)."""
+    powers = 256 ** np.arange(4, -1, -1, dtype=np.int64)
+    return np.asarray(date[:, 1:].astype(np.int64) @ powers)
