@@ -29,8 +29,8 @@ with a note ([review](../how-to/review.md#acknowledging-a-finding)). More than f
 by level and kind. `recon4 export PROJECT FILE.csv`
 (or `.geojson`, also on the page of the project) writes all of them. CSV is a table with both ends
 of each stretch in the CRS of the map, GeoJSON has lines along the walk in longitude and latitude.
-If the map is not georeferenced, both are in its local frame, and the file says so. A finding about the
-whole map has no place there.
+If the map is not georeferenced, both are in its local frame, and the file says so. A finding about
+the whole map has no place there.
 
 *Measured* counts the alarms (*check* or *do not use*) in runs with known truth. An alarm is true in
 a run whose trajectory is wrong, or whose fault it names; wrong runs without it may have others.
