@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
-from recon4.model.rig import Rig
+from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.rotation import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.extent import extent_text
@@ -61,6 +62,11 @@ class _Stream:
     late: int = 0
 
 
+def _spins(sensor: Sensor) -> bool:
+    """Whether a sensor has revolutions; the pattern of a Livox never repeats."""
+    return sensor.kind == "lidar" and lidar_model(sensor.model).scanning == "spinning"
+
+
 class Assembler:
     """Assembles shots into multiframes, each as soon as all sensors have passed its end.
 
@@ -93,8 +99,7 @@ class Assembler:
         self._beams = [sensor.beams for sensor in rig.sensors]
         self._wait_ns = int(wait_s * 1e9)
         self._streams = [
-            _Stream(s.name, delivers=s.kind != "laser2d", spins=s.kind == "lidar")
-            for s in rig.sensors
+            _Stream(s.name, delivers=s.kind != "laser2d", spins=_spins(s)) for s in rig.sensors
         ]
         self._expected = sum(stream.delivers for stream in self._streams)
         self._start_ns: int | None = None

@@ -56,5 +56,5 @@ def _strongest(azimuth: Array, t_s: Array, rates_hz: Array) -> tuple[float, floa
     k = int(np.clip(np.argmax(length), 1, len(length) - 2))
     left, middle, right = length[k - 1 : k + 2]
     bend = left - 2.0 * middle + right
-    shift = 0.5 * (left - right) / bend if bend < 0.0 else 0.0
+    shift = float(np.clip(0.5 * (left - right) / bend, -1.0, 1.0)) if bend < 0.0 else 0.0
     return float(rates_hz[k] + shift * (rates_hz[1] - rates_hz[0])), float(length[k])

@@ -250,5 +250,25 @@ def test_a_sensor_that_does_not_turn_has_no_rate():
     assert np.isnan(rotation_rate(t_ns, rng.normal(size=(5000, 3)).astype(np.float32)))
 
 
+@pytest.mark.parametrize("seconds", [0.031, 0.04, 0.08])
+def test_a_wall_in_front_for_a_moment_gives_no_rate_out_of_range(seconds):
+    t_ns = np.linspace(0, seconds * 1e9, 801).astype(np.int64)
+    y = np.random.default_rng(3).uniform(-4.0, 4.0, 801)
+    rate_hz = rotation_rate(t_ns, np.column_stack([np.full(801, 6.0), y, 0 * y]).astype(np.float32))
+
+    assert np.isnan(rate_hz) or 1.0 < rate_hz < 31.0
+
+
+def test_a_pattern_that_does_not_repeat_is_cut_by_time():
+    turning = spin(seconds=1.0, rate_hz=7.0)
+    pattern = load_rig("single-vlp16")
+    pattern = replace(pattern, sensors=(replace(pattern.sensors[0], model="Mid-360"),))
+    assembler = Assembler(pattern, settings=SETTINGS, report=ImportReport())
+    assembler.push(turning)
+    assembler.flush()
+
+    assert assembler.duration_ns == 100_000_000
+
+
 def test_a_rate_near_a_whole_number_is_that_number():
     assert (nominal(9.98), nominal(11.775)) == (10.0, 11.775)
