@@ -26,7 +26,7 @@ from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
 from recon4.recording.formats.datagrams import address_text
 from recon4.recording.formats.pcap import read_pcap
-from recon4.recording.kinds import pcap_files
+from recon4.recording.kinds import capture_files
 from recon4.recording.packets.sensor_clock import HOUR_US
 from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.report import ImportReport
@@ -129,7 +129,7 @@ def datagrams_of(recording: Path, rig: Rig | None = None) -> Iterator[ReplayData
 
 def _captured(recording: Path) -> Iterator[ReplayDatagram]:
     """Datagrams of capture files, and samples of the CSV files beside them."""
-    files = pcap_files(recording)
+    files = capture_files(recording)
     folder = recording if recording.is_dir() else recording.parent
     parts = [_datagrams(file) for file in files]
     for name, port in (("imu.csv", IMU_PORT), ("gnss.csv", GNSS_PORT)):

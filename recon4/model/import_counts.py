@@ -78,6 +78,10 @@ _CAPTURES = {
     "records_cut": _lost(
         "records", "cut when they were captured (snap length): capture again with tcpdump -s 0"
     ),
+    "records_damaged": _lost(
+        "records", "of no known type, with the rest of their frame", apart=True
+    ),
+    "records_of_unknown_device": _lost("records", "of devices that are not listed", apart=True),
     "records_without_time": _lost("records", "without a time of capture, dropped", apart=True),
     "files_cut": _stated("end inside a packet, or are damaged: read up to there", noun="files"),
 }

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from recon4.recording.info_records import RecordingInfo, SensorInfo
-from recon4.recording.kinds import pcap_files
+from recon4.recording.kinds import capture_files
 from recon4.recording.packets.companions import companions_of
 from recon4.recording.packets.streams import PacketStream, require_one_capture, scan_pcap
 from recon4.recording.scan_capture import ScanStreams, scan_streams
@@ -27,7 +27,7 @@ def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
     Raises:
         RecordingError: If they cannot be read.
     """
-    files = pcap_files(path)
+    files = capture_files(path)
     require_one_capture(files)
     most = _WHOLE_PACKETS if info.bytes <= WHOLE_BYTES else _HEAD_PACKETS
     beside = companions_of([path])

@@ -25,6 +25,7 @@ from recon4.recording.info_head import RecordingHead, judge_samples, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
     BAGS,
+    CAPTURES,
     PLANAR,
     RecordingKind,
     bag_paths,
@@ -70,7 +71,7 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     report = ImportReport()
     if kind is RecordingKind.LINE_TABLES:
         return describe_line_tables(info, path)
-    if kind is RecordingKind.PCAP:
+    if kind in CAPTURES:
         info = describe_capture(info, path)
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)

@@ -24,6 +24,8 @@ from recon4.recording.formats.poses import pose_format
 from recon4.recording.laser_tables import LASER_COLUMNS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
 from recon4.recording.packets.companions import companion_paths, is_companion
+from recon4.recording.packets.datagram_files import is_datagram_file
+from recon4.recording.packets.livox.lvx import is_lvx
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.sources import Sources
 
@@ -32,6 +34,7 @@ class RecordingKind(StrEnum):
     """Kinds of recordings; the value is shown to users."""
 
     PCAP = "packets of LiDARs (pcap)"
+    LVX = "packets of Livox LiDARs (LVX)"
     BAG1 = "rosbag1"
     BAG2 = "rosbag2"
     FRAMES = f"frames ({CLOUD_FORMATS})"
@@ -44,6 +47,8 @@ class RecordingKind(StrEnum):
     LIDAR_FILE = "description of a LiDAR (JSON, CSV, YAML, XML or DAT)"
 
 
+CAPTURES = (RecordingKind.PCAP, RecordingKind.LVX)
+"""Kinds of files with datagrams."""
 PLANAR = (RecordingKind.CARMEN, RecordingKind.LASER_TABLE)
 """Kinds with nothing but scans of a 2-D laser."""
 BAGS = (RecordingKind.BAG1, RecordingKind.BAG2)
@@ -57,6 +62,7 @@ _KIND_OF_SUFFIX = {
     **dict.fromkeys(STORAGE_SUFFIXES, RecordingKind.BAG2),
     **dict.fromkeys(CLOUD_SUFFIXES, RecordingKind.FRAMES),
     ".bag": RecordingKind.BAG1,
+    **dict.fromkeys((".lvx", ".lvx2"), RecordingKind.LVX),
 }
 """In folders, where not every file is opened."""
 
@@ -151,7 +157,7 @@ def bag_paths(path: Path) -> list[Path]:
     return sorted(path.glob("*.bag"), key=natural)
 
 
-def pcap_files(path: Path) -> list[Path]:
+def capture_files(path: Path) -> list[Path]:
     """The file itself, or the capture files of a folder.
 
     Raises:
@@ -161,7 +167,7 @@ def pcap_files(path: Path) -> list[Path]:
         return [path]
     if not path.is_dir():
         raise RecordingError(f"{path} does not exist")
-    return sorted(filter(_is_pcap_file, path.iterdir()), key=natural)
+    return sorted(filter(_is_capture_file, path.iterdir()), key=natural)
 
 
 def _file_kind(path: Path) -> RecordingKind:
@@ -197,6 +203,7 @@ def _begins(*magic: bytes) -> Callable[[Path], bool]:
 
 _BY_CONTENT = (
     (is_pcap, RecordingKind.PCAP),
+    (is_lvx, RecordingKind.LVX),
     (_begins(b"#ROSBAG V"), RecordingKind.BAG1),
     (_begins(b"SQLite format 3\0", b"\x89MCAP"), RecordingKind.BAG2),
     (is_cloud_file, RecordingKind.FRAMES),
@@ -328,6 +335,10 @@ def _kinds_in(path: Path) -> tuple[dict[RecordingKind, list[str]], list[str]]:
 
 def _is_pcap_file(path: Path) -> bool:
     return path.is_file() and is_pcap(path)
+
+
+def _is_capture_file(path: Path) -> bool:
+    return path.is_file() and is_datagram_file(path)
 
 
 def _known() -> str:

@@ -17,7 +17,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row, stamp_clock
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
-from recon4.recording.kinds import RecordingKind, bag_paths, pcap_files, recognize
+from recon4.recording.kinds import RecordingKind, bag_paths, capture_files, recognize
 from recon4.recording.laser_mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.laser_tables import is_laser_table, read_laser_table
 from recon4.recording.line_recording import profiler_rig
@@ -53,7 +53,7 @@ def is_laser2d(path: Path, kind: RecordingKind | None = None) -> bool:
         return True
     kind = kind or recognize(path)
     if kind is RecordingKind.PCAP:
-        return is_scan_capture(pcap_files(path))
+        return is_scan_capture(capture_files(path))
     if kind not in (RecordingKind.BAG1, RecordingKind.BAG2):
         return False
     report = ImportReport()
@@ -99,7 +99,7 @@ def read_laser_recording(
             raise UnknownFormat(f"one table of a 2-D laser expected, got {len(paths)} files")
         return LaserRecording(in_meters(read_laser_table(paths[0], report), report))
     if recognize(paths[0]) is RecordingKind.PCAP:
-        files = [file for path in paths for file in pcap_files(path)]
+        files = [file for path in paths for file in capture_files(path)]
         require_one_capture(files)
         return LaserRecording(in_meters(read_scan_captures(files, report), report))
     settings = settings or IngestSettings()

@@ -9,7 +9,7 @@ from pathlib import Path
 from recon4.errors import ConfigError, UnknownFormat
 from recon4.recording.kinds import PLANAR, RecordingKind, contents_of, recognize
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
-from recon4.recording.openers.captures import open_lidar_capture, open_scan_capture
+from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
 from recon4.recording.openers.frames import open_frames
 from recon4.recording.openers.request import Opener, OpenRequest, Recording
 from recon4.recording.openers.tables import open_line_tables
@@ -31,6 +31,7 @@ _BAG = KindRow((open_line_bag, open_lidar_bag), _LIDAR_FILES)
 Kinds = Mapping[RecordingKind, KindRow]
 KINDS: Kinds = {
     RecordingKind.PCAP: KindRow((open_scan_capture, open_lidar_capture), _LIDAR_FILES),
+    RecordingKind.LVX: KindRow((open_lvx,)),
     RecordingKind.BAG1: _BAG,
     RecordingKind.BAG2: _BAG,
     RecordingKind.FRAMES: KindRow((open_frames,)),

@@ -18,9 +18,10 @@ from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.datagrams import Datagrams, address_number, address_text
-from recon4.recording.formats.pcap import OpenFile, open_plain, read_pcap
+from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.head_angles import HeadAngles
 from recon4.recording.line_recording import LineAssembly, LineItem
+from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.slots import in_slots
 from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.range_units import LaserUnit
@@ -71,7 +72,7 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
     heads: Counter[tuple[str, int]] = Counter()
     for file in files:
         left = _PROBED
-        for batch in islice(read_pcap(file, ImportReport()), _PROBED_BATCHES):
+        for batch in islice(read_datagrams(file, ImportReport()), _PROBED_BATCHES):
             rows = np.arange(min(len(batch), left))
             if np.any(batch.length[rows] == DATA_SIZE):
                 return ScanStreams(scans, heads, has_lidar=True)
@@ -164,7 +165,7 @@ class ScanCapture:
     def read(self) -> Iterator[LineItem | GnssSamples]:
         """Stream all files once: samples first, then lines, then scans of each slot."""
         for file in self._files:
-            for slot in in_slots(read_pcap(file, self._report, self._open)):
+            for slot in in_slots(read_datagrams(file, self._report, self._open)):
                 yield from self._decode_samples(slot)
                 if self._profiler:
                     yield from self._profiler.push(slot)

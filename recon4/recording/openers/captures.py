@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
 from recon4.model.rig import Rig, load_rig
-from recon4.recording.kinds import pcap_files
+from recon4.recording.formats.datagrams import address_text
+from recon4.recording.kinds import capture_files
 from recon4.recording.line_recording import WUERZBURG
 from recon4.recording.openers.request import Item, OpenRequest, Recording
 from recon4.recording.packets.capture import WAIT_S, PacketCapture
 from recon4.recording.packets.companions import COMPANION_SUFFIXES
 from recon4.recording.packets.family import PacketSamples
+from recon4.recording.packets.livox.lvx import read_lvx_head
 from recon4.recording.packets.streams import PacketStream, require_one_capture
+from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.scan_capture import ScanCapture, scan_streams
 
@@ -48,9 +52,38 @@ def open_lidar_capture(request: OpenRequest) -> Recording:
     return Recording(pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=WAIT_S)
 
 
+def open_lvx(request: OpenRequest) -> Recording:
+    """Files of Livox Viewer; several devices are mounted as the file says."""
+    if request.rig is None:
+        request = replace(request, rig=_rig_of_devices(request))
+    return open_lidar_capture(request)
+
+
+def _rig_of_devices(request: OpenRequest) -> Rig | None:
+    """The devices of LVX files with the mounts in them; None = one device, or no mounts."""
+    files = _files(request)
+    devices = {
+        address_text(device.address): device
+        for file in files
+        for device in read_lvx_head(file).devices
+    }
+    heads = PacketCapture(files, None, settings=request.settings, report=ImportReport())
+    found = [(sensor, devices[sensor.address]) for sensor in heads.rig.sensors]
+    mounted = [
+        replace(sensor, T_body_sensor=device.mount, serial=device.serial)
+        for sensor, device in found
+        if device.mount is not None
+    ]
+    if len(found) < 2 or len(mounted) < len(found):
+        return None
+    names = ", ".join(f"{s.name} ({s.model}, {s.serial})" for s in mounted)
+    request.report.derive(f"no rig given: {names} are mounted as the file says")
+    return replace(heads.rig, sensors=tuple(mounted))
+
+
 def _files(request: OpenRequest) -> list[Path]:
     captures = [p for p in request.paths if p.suffix.lower() not in COMPANION_SUFFIXES]
-    files = [file for path in captures for file in pcap_files(path)]
+    files = [file for path in captures for file in capture_files(path)]
     require_one_capture(files)
     return files
 

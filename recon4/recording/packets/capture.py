@@ -15,8 +15,9 @@ from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.datagrams import Datagrams, address_number
-from recon4.recording.formats.pcap import OpenFile, open_plain, read_pcap
+from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_of
+from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import PacketSamples, PacketSensor
 from recon4.recording.packets.slots import in_slots
@@ -127,7 +128,7 @@ class PacketCapture:
         return {channel.sensor.name: channel.decoder.rotation_hz for channel in self._channels}
 
     def _batches(self, path: Path) -> Iterator[tuple[Path, Datagrams]]:
-        return ((path, slot) for slot in in_slots(read_pcap(path, self._report, self._open)))
+        return ((path, slot) for slot in in_slots(read_datagrams(path, self._report, self._open)))
 
     def _find_late(self, datagrams: Datagrams) -> None:
         """Start to read sensors that were silent in the heads of the files."""

@@ -19,7 +19,8 @@ from recon4.recording.formats.datagrams import (
     join_datagrams,
 )
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
-from recon4.recording.formats.pcap import OpenFile, open_plain, read_pcap
+from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, Recognized
 from recon4.recording.report import ImportReport
@@ -107,7 +108,7 @@ def scan_pcap(
     """Scan the head of a capture file: data streams first, in order of appearance.
 
     Args:
-        path: A pcap or pcapng file.
+        path: A pcap, pcapng or LVX file.
         max_packets: Largest number of datagrams to read.
         open_file: Opens the file.
         report: Receives the counts of captured packets up to there; None = not wanted.
@@ -217,7 +218,7 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
     """Exactly the first ``max_packets`` datagrams, independent of the size of the reads."""
     parts: list[Datagrams] = []
     left, bytes_read, read_ratio = max_packets, 0, 1.0
-    for batch in read_pcap(path, report, open_file):
+    for batch in read_datagrams(path, report, open_file):
         count = min(len(batch), left)
         parts.append(batch.take(slice(count)))
         left -= count

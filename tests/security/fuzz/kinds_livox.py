@@ -1,4 +1,4 @@
-"""Packets of Livox LiDARs, of every way to write points."""
+"""Packets of Livox LiDARs, of every way to write points, and files of their viewer."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.builders import T0_NS
 from tests.security.fuzz.kind import Kind, Reading
+from tests.security.fuzz.seeds_recordings import read_recording
+from tests.unit.recording.lvx_files import lvx
 
 _PACKETS = 12
 _TYPES = tuple(LAYOUTS[row] for row in (1, 4, 7, 8, 9))
@@ -61,6 +63,24 @@ def _read(layout: PointLayout, path: Path) -> Reading:
     return Reading(len(shots), salvaged=damaged)
 
 
+@cache
+def _file_seeds(version: tuple[int, int]) -> tuple[bytes, ...]:
+    layout = next(
+        one
+        for one in LAYOUTS
+        if (one.sdk, one.data_type) == ((2, 1) if version[0] == 2 else (1, 2))
+    )
+    packets = packets_of(layout)
+    frames = [[(0, packet) for packet in packets[k : k + 4]] for k in range(0, _PACKETS, 4)]
+    return (lvx(frames, version=version),)
+
+
+def _read_file(path: Path) -> Reading:
+    found = read_recording(path)
+    return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.warnings))
+
+
+_FILES = {"lvx1.0": (1, 0), "lvx1.1": (1, 1), "lvx2": (2, 0)}
 LIVOX_KINDS = tuple(
     Kind(
         name=f"livox-sdk{layout.sdk}-{layout.data_type}",
@@ -71,5 +91,15 @@ LIVOX_KINDS = tuple(
         knows_end=False,
     )
     for layout in _TYPES
+) + tuple(
+    Kind(
+        name=name,
+        file_name=f"a.{name[:3]}",
+        seeds=partial(_file_seeds, version),
+        read=_read_file,
+        # A file of whole frames is a whole file.
+        knows_end=False,
+    )
+    for name, version in _FILES.items()
 )
-"""Data packets."""
+"""Data packets, and the files of the maker's viewer."""

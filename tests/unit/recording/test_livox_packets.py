@@ -187,13 +187,14 @@ def test_damaged_packets_are_dropped_with_the_reason():
     }
 
 
-def test_sums_that_are_never_right_are_not_checked_and_that_is_said():
+def test_sums_that_are_never_right_are_not_checked_and_wrong_ones_are_announced():
     _, payloads = packets(MID360, walls(MID360, 20))
-    payloads[:, 24:28] = 0
-    report = ImportReport()
+    for value, said in ((0, 0), (7, 1)):
+        payloads[:, 24:28] = value
+        report = ImportReport()
 
-    assert opened(MID360, datagrams(payloads), report=report).sound(payloads).all()
-    assert "CRC" in report.derived[0]
+        assert opened(MID360, datagrams(payloads), report=report).sound(payloads).all()
+        assert ["CRC" in text for text in report.derived] == [True] * said
 
 
 @pytest.mark.parametrize("sdk", [1, 2])
