@@ -22,6 +22,20 @@ PARAMETERS = "more than 5 parameters"
 POSITIONAL = "more than 3 positional parameters"
 FUNCTIONS = "functions over 50 lines"
 FILES = "files over 400 lines"
+NUMBERS = "numeric constants of modules"
+
+FOREIGN = (
+    "recon4/recording/formats/",
+    "recon4/recording/packets/velodyne/models.py",
+    "recon4/sandbox/kernel.py",
+    "recon4/sandbox/namespaces.py",
+    "recon4/sandbox/seccomp.py",
+)
+"""Layouts of files, packets and system calls that others defined: their numbers do not count."""
+UNITS = "recon4/units.py"
+"""Physics and units: its numbers do not count."""
+TUNING = "tuning"
+"""Numbers in modules whose name begins so do not count: they hold the records of tuning."""
 
 MAX_PARAMETERS = 5
 MAX_POSITIONAL = 3
@@ -60,7 +74,7 @@ def places_in(source: str, file: str) -> list[Place]:
         file: Its path from the root of the project, with slashes.
     """
     tree = ast.parse(source)
-    found = [*_long_file(source, file), *_dicts(tree, file)]
+    found = [*_long_file(source, file), *_dicts(tree, file), *_numbers(tree, file)]
     if not file.startswith(KERNELS):
         found += _functions(tree, file)
     return found
@@ -84,6 +98,51 @@ def _dicts(tree: ast.Module, file: str) -> Iterator[Place]:
 
 
 _ANONYMOUS = {"dict[str, Any]", "Mapping[str, Any]", "MutableMapping[str, Any]"}
+
+
+def _numbers(tree: ast.Module, file: str) -> Iterator[Place]:
+    """Names of a module that are bound to a number, or to a tuple or array of numbers.
+
+    Fields of records (tuning) and members of enums are in classes and do not count.
+    """
+    if file.startswith(FOREIGN) or file == UNITS or Path(file).name.startswith(TUNING):
+        return
+    for node in tree.body:
+        match node:
+            case ast.Assign(targets=[ast.Name(id=name)], value=value):
+                pass
+            case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
+                pass
+            case _:
+                continue
+        if _is_number(value):
+            yield Place(NUMBERS, file, node.lineno, f"{name} = {ast.unparse(value):.60}")
+
+
+def _is_number(node: ast.expr) -> bool:
+    match node:
+        case ast.Constant(value=value):
+            return isinstance(value, int | float) and not isinstance(value, bool)
+        case ast.UnaryOp(operand=operand):
+            return _is_number(operand)
+        case ast.BinOp(left=left, right=right):
+            texts = (ast.Constant, ast.JoinedStr)
+            both = (left, right)
+            return any(map(_is_number, both)) and not any(
+                isinstance(one, texts) and not _is_number(one) for one in both
+            )
+        case ast.Tuple(elts=parts) | ast.List(elts=parts):
+            return bool(parts) and all(map(_is_number, parts))
+        case ast.Starred(value=value):
+            return _is_number(value)
+        case ast.Call(func=function, args=given):
+            made_of_numbers = ast.unparse(function).split(".")[0] in _MAKE_NUMBERS
+            return made_of_numbers and any(map(_is_number, given))
+    return False
+
+
+_MAKE_NUMBERS = {"float", "int", "round", "range", "np", "math", "degrees", "radians", "timedelta"}
+"""Functions, or packages of functions, whose result is a number."""
 
 
 def _functions(tree: ast.Module, file: str) -> Iterator[Place]:
@@ -119,7 +178,7 @@ def main() -> None:
     for place in found:
         if not chosen or any(word in place.kind for word in chosen):
             print(f"{place.file}:{place.line}: {place.kind}: {place.what}")
-    for kind in (DICTS, PARAMETERS, POSITIONAL, FUNCTIONS, FILES):
+    for kind in (DICTS, PARAMETERS, POSITIONAL, FUNCTIONS, FILES, NUMBERS):
         print(f"{counts(found)[kind]:4d} {kind}")
 
 
