@@ -108,15 +108,22 @@ def _numbers(tree: ast.Module, file: str) -> Iterator[Place]:
     if file.startswith(FOREIGN) or file == UNITS or Path(file).name.startswith(TUNING):
         return
     for node in tree.body:
-        match node:
-            case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                pass
-            case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
-                pass
-            case _:
-                continue
-        if _is_number(value):
-            yield Place(NUMBERS, file, node.lineno, f"{name} = {ast.unparse(value):.60}")
+        for name, value in _bound(node):
+            if _is_number(value):
+                yield Place(NUMBERS, file, node.lineno, f"{name} = {ast.unparse(value):.60}")
+
+
+def _bound(node: ast.stmt) -> Iterator[tuple[str, ast.expr]]:
+    """Names that a statement binds, each with its value."""
+    match node:
+        case ast.Assign(targets=[ast.Tuple(elts=names)], value=ast.Tuple(elts=values)):
+            yield from (
+                (ast.unparse(name), value) for name, value in zip(names, values, strict=True)
+            )
+        case ast.Assign(targets=[ast.Name(id=name)], value=value):
+            yield name, value
+        case ast.AnnAssign(target=ast.Name(id=name), value=ast.expr() as value):
+            yield name, value
 
 
 def _is_number(node: ast.expr) -> bool:

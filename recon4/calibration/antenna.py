@@ -8,6 +8,7 @@ import msgspec
 
 from recon4.calibration.note import with_antenna_note
 from recon4.calibration.result import CalibrationResult
+from recon4.calibration.tuning_joint import ANTENNA_STAGE
 from recon4.calibration.walk import RecordedWalk
 from recon4.georeference.antenna_calibration import (
     AntennaCalibration,
@@ -22,9 +23,6 @@ from recon4.model.calibration_figures import (
 )
 from recon4.progress import Progress
 from recon4.settings.reads import CalibrationReads
-
-_AIDED_SD_FACTOR = 3.0
-"""True errors against stated ones, of an estimate from a trajectory that the fixes pulled."""
 
 
 def with_antenna(
@@ -75,7 +73,8 @@ def _estimate(walk: RecordedWalk, settings: CalibrationReads) -> AntennaCalibrat
 def _doubted(antenna: AntennaCalibration) -> AntennaCalibration:
     """With the standard deviations of a trajectory that the fixes pulled."""
     rows = tuple(
-        msgspec.structs.replace(row, sd=_AIDED_SD_FACTOR * (row.sd or 0.0)) for row in antenna.rows
+        msgspec.structs.replace(row, sd=ANTENNA_STAGE.aided_sd_factor * (row.sd or 0.0))
+        for row in antenna.rows
     )
     return replace(antenna, rows=rows)
 

@@ -5,15 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_joint import BEAMS
 from recon4.model.beams import BEAMS_OF_MODEL
 from recon4.model.frames import RecordedFrames
-
-_MOST = 64
-"""Beams of a LiDAR; more unknowns need more memory than a window has."""
-_SAMPLED = 5
-"""Multiframes in which the rings are looked at."""
-_MAX_SPREAD_RAD = float(np.deg2rad(0.15))
-"""Median deviation of the elevations of a ring: a ring that is no beam has a larger one."""
 
 
 def beam_counts(frames: RecordedFrames, rows: tuple[int, ...]) -> dict[int, int]:
@@ -25,7 +19,7 @@ def beam_counts(frames: RecordedFrames, rows: tuple[int, ...]) -> dict[int, int]
         frames: The multiframes.
         rows: LiDARs that are looked at.
     """
-    sampled = np.unique(np.linspace(0, len(frames) - 1, _SAMPLED).astype(int)).tolist()
+    sampled = np.unique(np.linspace(0, len(frames) - 1, BEAMS.sampled).astype(int)).tolist()
     found = {}
     for row in rows:
         parts = [(frames[k].xyz, frames[k].ring, frames[k].sensor == row) for k in sampled]
@@ -34,7 +28,7 @@ def beam_counts(frames: RecordedFrames, rows: tuple[int, ...]) -> dict[int, int]
         if not len(ring):
             continue
         count = BEAMS_OF_MODEL.get(frames.rig.sensors[row].model, int(ring.max()) + 1)
-        if count <= _MOST and ring.max() < count and _are_cones(xyz, ring):
+        if count <= BEAMS.most and ring.max() < count and _are_cones(xyz, ring):
             found[row] = count
     return found
 
@@ -43,4 +37,4 @@ def _are_cones(xyz: NDArray[np.float32], ring: NDArray[np.uint8]) -> bool:
     elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
     parts = (elevation[ring == one] for one in np.unique(ring))
     spread = [np.median(np.abs(part - np.median(part))) for part in parts]
-    return bool(np.median(spread) < _MAX_SPREAD_RAD)
+    return bool(np.median(spread) < BEAMS.max_spread_rad)

@@ -18,11 +18,9 @@ from recon4.calibration.held_out import (
     with_known_errors,
 )
 from recon4.calibration.joint import (
-    DENSE_ROUNDS,
     LAST_ROUNDS,
     NEAR_ROUNDS,
     ROUNDS,
-    SIGMAS,
     JointEstimate,
     calibrate_jointly,
     explain,
@@ -32,6 +30,7 @@ from recon4.calibration.judgment import judge
 from recon4.calibration.mount_search import search_mounts, without_others
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.tuning import CalibrationTuning
+from recon4.calibration.tuning_joint import AUDIT, JOINT
 from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, few_points, thinning
 from recon4.errors import ConfigError
@@ -42,13 +41,6 @@ from recon4.progress import Progress, track
 from recon4.settings import CalibrationSettings
 from recon4.settings.reads import CalibrationReads
 from recon4.settings.tuning import tuned
-
-_MIN_WINDOWS = 3
-_FAR_RAD, _FAR_M, _FAR_S = float(np.deg2rad(2.5)), 0.1, 0.05
-"""With a larger change from the rig file other mounts are tried too."""
-_SEARCH_WINDOWS, _SEARCH_WINDOW_S = 3, 3.0
-_CLEARLY = 1.2
-"""How many times the points another mount must put on planes that two LiDARs see."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -142,7 +134,7 @@ def audit(
         return _counted_from(found, walk.frames.rig)
     others = _from_other_mounts(walk, start, parameters, settings=settings, progress=progress)
     best = max([found, *others], key=_shared_points)
-    if best is None or _shared_points(best) < _CLEARLY * _shared_points(found):
+    if best is None or _shared_points(best) < AUDIT.clearly * _shared_points(found):
         best = found
     return best and _counted_from(best, walk.frames.rig)
 
@@ -206,7 +198,7 @@ def _is_near(found: JointEstimate, recorded: Rig) -> bool:
     turns about the vertical hardly shows its position.
     """
     change = np.abs(found.parameters.between(recorded, found.rig))
-    noise = SIGMAS * np.where(np.isfinite(found.sd), found.sd, 0.0)
+    noise = JOINT.sigmas * np.where(np.isfinite(found.sd), found.sd, 0.0)
     of_lidars = np.array([parameter.sensor != IMU for parameter in found.parameters.listed])
     near = change < np.maximum(_far(found.parameters), noise)
     return bool(np.all(near[of_lidars]))
@@ -214,7 +206,7 @@ def _is_near(found: JointEstimate, recorded: Rig) -> bool:
 
 def _far(parameters: Parameters) -> Array:
     """Changes from which on other mounts are tried too, (P,)."""
-    far = {"rad": _FAR_RAD, "m": _FAR_M, "s": _FAR_S}
+    far = {"rad": AUDIT.far_rad, "m": AUDIT.far_m, "s": AUDIT.far_s}
     return np.array([far[parameter.unit] for parameter in parameters.listed])
 
 
@@ -232,7 +224,7 @@ def _from_other_mounts(
 ) -> list[JointEstimate]:
     """Estimates that begin with exchanged axes or mounts, from windows of one LiDAR alone."""
     reference = parameters.reference
-    rows = walk.rows(_SEARCH_WINDOWS, _SEARCH_WINDOW_S, with_lost=True)
+    rows = walk.rows(AUDIT.search_windows, AUDIT.search_window_s, with_lost=True)
     alone = without_others(start, reference)
     windows = walk.tracked_windows(rows, alone, settings, imu=None)
     found = [
@@ -259,7 +251,7 @@ class _Estimator:
     @property
     def of_half(self) -> Sequence[RoundBounds]:
         """Rounds of one half of the windows: only beams need all points for a comparison."""
-        dense = DENSE_ROUNDS if self.settings.calibration.beams else 0
+        dense = JOINT.dense_rounds if self.settings.calibration.beams else 0
         return thinned_rounds(NEAR_ROUNDS, self.every, dense=dense)
 
     def estimate(
@@ -279,7 +271,7 @@ class _Estimator:
 
     def second(self, windows: Sequence[Window], first: JointEstimate) -> JointEstimate | None:
         """From other windows, begun with known errors; None if there are too few."""
-        if len(windows) < _MIN_WINDOWS:
+        if len(windows) < AUDIT.min_windows:
             return None
         wrong = with_known_errors(first.rig, first.parameters)
         return self.estimate(windows, wrong, first.parameters, rounds=self.of_half)
@@ -298,7 +290,7 @@ class _Estimator:
         the others and then keeps the value of the rig file: held at a wrong value, it would pull
         the others away from theirs (20 cm along a straight walk).
         """
-        rounds = thinned_rounds(LAST_ROUNDS, self.every, dense=DENSE_ROUNDS)
+        rounds = thinned_rounds(LAST_ROUNDS, self.every, dense=JOINT.dense_rounds)
         found = self.estimate(windows, first.rig, first.parameters, rounds=rounds) or first
         table = judge(_counted_from(found, recorded), not_observable=unknown)
         kept = np.array([row.status == "not observable" for row in table])

@@ -11,6 +11,7 @@ from recon4.calibration.imu_rows import BIASES, WindowBiases, imu_rows
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.purity import distance_sd_m, only_own_points
 from recon4.calibration.surfaces import SharedSurfaces, find_surfaces
+from recon4.calibration.tuning_joint import EQUATIONS
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import Array
 from recon4.kernels.calibration import (
@@ -23,20 +24,6 @@ from recon4.kernels.calibration import (
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.tuning import OdometryTuning
-
-_POINT_SD_M = 0.015
-_GRAZING = 0.15
-"""Cosine of the incidence below which a range hardly tells the distance from a plane."""
-_KNOT_SD = np.repeat([0.05, 0.3], 3)
-"""Of a knot's step in one round: rotation [rad], position [m]."""
-_CHAIN_SD = np.repeat([3e-4, 1e-3], 3)
-"""Without an IMU: change of the correction from knot to knot, rotation [rad], position [m]."""
-_BIAS_SD = np.repeat([0.1, 0.3, 2.0], 3)
-"""Biases of gyroscope [rad/s] and accelerometer [m/s²], gravity [m/s²]."""
-_GRAVITY_SD_M_S2 = 0.02
-_FIXED = 1e8
-"""Information of the first knot: a window floats freely, so one pose is fixed."""
-_PLANE_PRIOR = 1e-3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -178,7 +165,7 @@ def _add_points(
 ) -> tuple[Array, Array]:
     """Add the points, the planes eliminated; returns their distances and weights, (M,) each."""
     H, g = equations.H, equations.g
-    sd_m = np.full(len(surfaces.point), _POINT_SD_M)
+    sd_m = np.full(len(surfaces.point), EQUATIONS.point_sd_m)
     if bounds.pure:
         sd_m = distance_sd_m(surfaces, placed.beam_odom)
     mixed = np.zeros((len(surfaces), 3, len(H)))
@@ -191,10 +178,10 @@ def _add_points(
         ),
         _columns(equations, window),
         PointSums(H, g, mixed, of_planes, pull),
-        sd_m, bounds.kernel_m, _GRAZING,
+        sd_m, bounds.kernel_m, EQUATIONS.grazing,
     )  # fmt: skip
     H += np.triu(H, 1).T
-    inverse = np.linalg.inv(of_planes + _PLANE_PRIOR * np.eye(3))
+    inverse = np.linalg.inv(of_planes + EQUATIONS.plane_prior * np.eye(3))
     flat, solved = mixed.reshape(-1, len(H)), inverse @ mixed
     H -= flat.T @ solved.reshape(-1, len(H))
     g -= flat.T @ (inverse @ pull[:, :, None]).ravel()
@@ -239,9 +226,9 @@ def _add_motion(
     H, g, parameters = equations.H, equations.g, equations.parameters
     knots, own = state.window.knots, state.unknowns
     diagonal = np.einsum("ii->i", H)
-    diagonal[: 6 * knots] += np.tile(_KNOT_SD**-2.0, knots)
-    diagonal[:6] += _FIXED
-    diagonal[6 * knots : own] += _BIAS_SD**-2.0
+    diagonal[: 6 * knots] += np.tile(np.repeat(EQUATIONS.knot_sd, 3) ** -2.0, knots)
+    diagonal[:6] += EQUATIONS.fixed
+    diagonal[6 * knots : own] += np.repeat(EQUATIONS.bias_sd, 3) ** -2.0
     found = imu_rows(state.window, rig, state.biases, settings=settings)
     if found is None:
         _add_chain(H, knots)
@@ -260,15 +247,15 @@ def _add_motion(
 def _add_gravity(H: Array, g: Array, biases: WindowBiases, *, first: int) -> None:
     """The length of gravity is known; its direction is not."""
     length = float(np.linalg.norm(biases.gravity_m_s2))
-    direction = biases.gravity_m_s2 / length / _GRAVITY_SD_M_S2
+    direction = biases.gravity_m_s2 / length / EQUATIONS.gravity_sd_m_s2
     rows = slice(first, first + 3)
     H[rows, rows] += np.outer(direction, direction)
-    g[rows] += direction * (length - STANDARD_GRAVITY_M_S2) / _GRAVITY_SD_M_S2
+    g[rows] += direction * (length - STANDARD_GRAVITY_M_S2) / EQUATIONS.gravity_sd_m_s2
 
 
 def _add_chain(H: Array, knots: int) -> None:
     """Without an IMU neighboring knots are corrected alike."""
-    weight = np.diag(_CHAIN_SD**-2.0)
+    weight = np.diag(np.repeat(EQUATIONS.chain_sd, 3) ** -2.0)
     for k in range(knots - 1):
         a, b = slice(6 * k, 6 * k + 6), slice(6 * k + 6, 6 * k + 12)
         H[a, a] += weight

@@ -8,23 +8,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_methods import RESTS
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.frames import RecordedFrames
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.untrusted.bounded import read_text_limited
-
-_MAX_BYTES = 4 << 20
-_REST_RAD_S, _REST_M_S2 = 0.05, 0.1
-"""Largest standard deviations of turn rate and force while the backpack rests."""
-_BELOW_M, _FLAT = 0.3, 0.8
-"""A floor is farther below the body than this, and its normal is that near to the body's z."""
-_THICKNESS_M = 0.03
-_ROUNDS = 6
-_MIN_POINTS = 200
-_MIN_FRAMES = 5
-"""Multiframes of a rest."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -61,7 +51,7 @@ def read_inclinations(path: Path) -> Inclinations:
         CorruptFile: If a line has another number of values.
     """
     rows = []
-    text = read_text_limited(path, _MAX_BYTES, failure=CorruptFile)
+    text = read_text_limited(path, RESTS.max_bytes, failure=CorruptFile)
     for number, line in enumerate(text.splitlines(), 1):
         words = line.partition("#")[0].replace(",", " ").split()
         if not words:
@@ -85,17 +75,19 @@ def _rests(frames: RecordedFrames) -> list[tuple[int, int]]:
     still = np.array([_is_at_rest(frames, k) for k in range(len(frames))])
     edges = np.flatnonzero(np.diff(np.concatenate([[False], still, [False]]).astype(int)))
     pairs = zip(edges[::2], edges[1::2] - 1, strict=True)
-    return [(int(a), int(b)) for a, b in pairs if b - a + 1 >= _MIN_FRAMES]
+    return [(int(a), int(b)) for a, b in pairs if b - a + 1 >= RESTS.min_frames]
 
 
 def _is_at_rest(frames: RecordedFrames, k: int) -> bool:
     imu, frame = frames.imu, frames[k]
     assert imu is not None
     first, last = np.searchsorted(imu.t_ns, [frame.t_ns, frame.t_ns + frame.duration_ns])
-    if last - first < _MIN_FRAMES:
+    if last - first < RESTS.min_frames:
         return False
     turn, force = imu.gyro_rad_s[first:last], imu.accel_m_s2[first:last]
-    return bool(turn.std(axis=0).max() < _REST_RAD_S and force.std(axis=0).max() < _REST_M_S2)
+    return bool(
+        turn.std(axis=0).max() < RESTS.rest_rad_s and force.std(axis=0).max() < RESTS.rest_m_s2
+    )
 
 
 def _floor_normal(frame: Multiframe, rig: Rig) -> Array | None:
@@ -107,17 +99,17 @@ def _floor_normal(frame: Multiframe, rig: Rig) -> Array | None:
             if sensor.enabled
         ]
     )
-    p = p[p[:, 2] < -_BELOW_M]
-    if len(p) < _MIN_POINTS:
+    p = p[p[:, 2] < -RESTS.below_m]
+    if len(p) < RESTS.min_points:
         return None
     counts, edges = np.histogram(p[:, 2], bins=np.arange(p[:, 2].min(), 0.1, 0.1))
     lowest = edges[int(np.argmax(counts))]
     kept: NDArray[np.bool_] = np.abs(p[:, 2] - lowest) < 0.3
-    for _ in range(_ROUNDS):
-        if np.count_nonzero(kept) < _MIN_POINTS:
+    for _ in range(RESTS.rounds):
+        if np.count_nonzero(kept) < RESTS.min_points:
             return None
         center = p[kept].mean(axis=0)
         normal: Array = np.linalg.svd(p[kept] - center, full_matrices=False)[2][-1]
-        kept = np.abs((p - center) @ normal) < _THICKNESS_M
+        kept = np.abs((p - center) @ normal) < RESTS.thickness_m
     normal = normal * np.sign(normal[2])
-    return normal if normal[2] > _FLAT else None
+    return normal if normal[2] > RESTS.flat else None

@@ -11,13 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from recon4.calibration.tuning_methods import GRAVITY_ALIGNMENT
 from recon4.errors import CalibrationError
 from recon4.geometry.se3 import Array
-
-_MIN_PAIRS = 2
-_MIN_SPREAD = 1e-3
-"""Smallest second singular value of the mean of ``n g^T``: of less the heading is not observable
-(inclinations of about 2°)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +31,7 @@ class GravityAlignment:
     @property
     def heading_observable(self) -> bool:
         """Whether the inclinations differ enough to observe the rotation about gravity."""
-        return bool(self.singular[1] > _MIN_SPREAD)
+        return bool(self.singular[1] > GRAVITY_ALIGNMENT.min_spread)
 
 
 def align_gravity(normal_body: Array, force_imu: Array) -> GravityAlignment:
@@ -49,10 +45,10 @@ def align_gravity(normal_body: Array, force_imu: Array) -> GravityAlignment:
         CalibrationError: If there are fewer than two pairs, or a vector has no direction.
     """
     n, g = (_unit(v) for v in (normal_body, force_imu))
-    if len(n) != len(g) or len(n) < _MIN_PAIRS:
+    if len(n) != len(g) or len(n) < GRAVITY_ALIGNMENT.min_pairs:
         raise CalibrationError(
-            f"expected a floor normal and a gravity for each of at least {_MIN_PAIRS} "
-            f"inclinations, got {len(n)} and {len(g)}"
+            "expected a floor normal and a gravity for each of at least "
+            f"{GRAVITY_ALIGNMENT.min_pairs} inclinations, got {len(n)} and {len(g)}"
         )
     n = n * np.where(n[:, 2:] < 0.0, -1.0, 1.0)  # a floor's normal points up
     U, singular, Vt = np.linalg.svd(n.T @ g / len(n))

@@ -11,17 +11,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_methods import GYRO_ALIGNMENT
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.imu_saturation import saturated_samples
-
-_LARGEST_CLOCK_S, _CLOCK_STEP_S = 0.5, 0.005
-_MIN_INTERVALS = 20
-_MIN_RATE_RAD_S = 0.03
-"""A body that turns less shows nothing."""
-_SURE = 0.97
-"""Left-handed axes must explain this part: any noise makes a sign likely."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,21 +46,23 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
         None with too few samples, or where the body hardly turns.
     """
     # Without the ends every clock offset compares the same intervals.
-    margin_ns = int(_LARGEST_CLOCK_S * 1e9)
+    margin_ns = int(GYRO_ALIGNMENT.largest_clock_s * 1e9)
     inside = (t_ns > imu.t_ns[0] + margin_ns) & (t_ns < imu.t_ns[-1] - margin_ns)
     t_ns = t_ns[inside]
-    if len(t_ns) <= _MIN_INTERVALS:
+    if len(t_ns) <= GYRO_ALIGNMENT.min_intervals:
         return None
     measured = ~_saturated(t_ns, imu)
-    if measured.sum() < _MIN_INTERVALS:
+    if measured.sum() < GYRO_ALIGNMENT.min_intervals:
         return None
     R = trajectory.at(t_ns, slack_ns=margin_ns).R
     of_body = _centered(so3_log(np.swapaxes(R[:-1], -1, -2) @ R[1:])[measured])
     t_s, known_s = (t_ns - t_ns[0]) * 1e-9, (imu.t_ns - t_ns[0]) * 1e-9
-    if np.sqrt(np.mean(of_body**2)) < _MIN_RATE_RAD_S * np.median(np.diff(t_s)):
+    if np.sqrt(np.mean(of_body**2)) < GYRO_ALIGNMENT.min_rate_rad_s * np.median(np.diff(t_s)):
         return None
     turned = _integral(known_s, imu.gyro_rad_s)
-    clocks = np.arange(-_LARGEST_CLOCK_S, _LARGEST_CLOCK_S, _CLOCK_STEP_S)
+    clocks = np.arange(
+        -GYRO_ALIGNMENT.largest_clock_s, GYRO_ALIGNMENT.largest_clock_s, GYRO_ALIGNMENT.clock_step_s
+    )
     fits = [
         _fit(of_body, _centered(np.diff(of_imu, axis=0)[measured]))
         for of_imu in (_interpolated(t_s - clock, known_s, turned) for clock in clocks)
@@ -76,7 +72,7 @@ def align_gyro(trajectory: Trajectory, t_ns: Times, imu: ImuSamples) -> GyroAlig
     R_body_imu, _, scale, mirrored = fits[best]
     return GyroAlignment(
         R_body_imu=R_body_imu,
-        clock_s=float(clocks[best]) + _vertex(explained, best) * _CLOCK_STEP_S,
+        clock_s=float(clocks[best]) + _vertex(explained, best) * GYRO_ALIGNMENT.clock_step_s,
         scale=scale,
         explained=float(explained[best]),
         mirrored=mirrored,
@@ -101,7 +97,9 @@ def _fit(of_body: Array, of_imu: Array) -> tuple[Array, float, float, bool]:
     energy, energy_imu = float(np.sum(of_body**2)), float(np.sum(of_imu**2))
     explained = float(proper.sum()) ** 2 / max(energy * energy_imu, 1e-12)
     any_handed = float(singular.sum()) ** 2 / max(energy * energy_imu, 1e-12)
-    mirrored = sign < 0 and any_handed > _SURE and 1.0 - any_handed < 0.5 * (1.0 - explained)
+    mirrored = (
+        sign < 0 and any_handed > GYRO_ALIGNMENT.sure and 1.0 - any_handed < 0.5 * (1.0 - explained)
+    )
     scale = energy_imu / max(float(proper.sum()), 1e-12)
     return U @ np.diag([1.0, 1.0, sign]) @ Vt, explained, scale, mirrored
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.calibration.equations import Fit
-from recon4.calibration.joint import SIGMAS, JointEstimate
+from recon4.calibration.joint import JointEstimate
 from recon4.calibration.parameters import Parameters, Unit
+from recon4.calibration.tuning_joint import HELD_OUT, JOINT
 from recon4.geometry.se3 import Array
 from recon4.model.calibration_figures import CalibrationOutcome, ParameterFigures, RigOutcome
 from recon4.model.rig import Rig
@@ -19,10 +20,6 @@ _KNOWN_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.2)), "m": 0.01, "s"
 """Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
 _KNOWN_BEAM_ERROR: dict[Unit, float] = {"rad": float(np.deg2rad(0.03)), "m": 0.004}
 """The same of single beams."""
-_FEW_BEAMS = 0.1
-"""Part of the parameters of beams that may contradict another part of the walk."""
-_NOT_WORSE, _BETTER = 1.01, 0.99
-"""Ratio of figures of fit, after against before."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -73,9 +70,9 @@ def not_observable(first: JointEstimate, second: JointEstimate | None) -> NDArra
     if second is None:
         return np.zeros(len(first.parameters), dtype=bool)
     limit = np.abs(_known_errors(first.parameters))
-    undetected = SIGMAS * np.hypot(first.sd, second.sd) > limit
+    undetected = JOINT.sigmas * np.hypot(first.sd, second.sd) > limit
     vague = np.maximum(first.sd, second.sd) > limit
-    return np.asarray(vague | (undetected & (np.abs(first.change) <= SIGMAS * first.sd)))
+    return np.asarray(vague | (undetected & (np.abs(first.change) <= JOINT.sigmas * first.sd)))
 
 
 def contradicted_beams(first: JointEstimate, second: JointEstimate | None) -> NDArray[np.bool_]:
@@ -89,14 +86,14 @@ def contradicted_beams(first: JointEstimate, second: JointEstimate | None) -> ND
     if second is None:
         return np.zeros(len(listed), dtype=bool)
     contradicted = of_beams & _contradicted(first, second)
-    few = contradicted.sum() <= _FEW_BEAMS * of_beams.sum()
+    few = contradicted.sum() <= HELD_OUT.few_beams * of_beams.sum()
     return np.asarray(contradicted & few)
 
 
 def _contradicted(first: JointEstimate, second: JointEstimate) -> NDArray[np.bool_]:
     """Parameters that two estimates from different windows contradict each other about, (P,)."""
     apart = np.abs(first.parameters.between(first.rig, second.rig))
-    scatter = SIGMAS * np.hypot(first.sd, second.sd)
+    scatter = JOINT.sigmas * np.hypot(first.sd, second.sd)
     return np.asarray(apart > np.maximum(scatter, 0.5 * np.abs(_known_errors(first.parameters))))
 
 
@@ -136,12 +133,12 @@ def unexplained(before: Agreement, after: Agreement) -> CalibrationOutcome | Non
             ("planes", before.rms_m, after.rms_m),
             ("IMU", before.imu_rms, after.imu_rms),
         )
-        if new > _NOT_WORSE * old
+        if new > HELD_OUT.not_worse * old
     ]
     if worse:
         return CalibrationOutcome(rig=RigOutcome.EXPLAINED_WORSE, names=tuple(worse))
     gains = [after.rms_m / before.rms_m, after.imu_rms / before.imu_rms]
-    if not np.nanmin(gains) < _BETTER:
+    if not np.nanmin(gains) < HELD_OUT.better:
         return CalibrationOutcome(rig=RigOutcome.NO_BETTER)
     return None
 

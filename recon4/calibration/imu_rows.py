@@ -12,22 +12,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from recon4.calibration.window import KNOT_S, Window
+from recon4.calibration.tuning_joint import IMU_ROWS, WINDOWS
+from recon4.calibration.window import Window
 from recon4.geometry.se3 import Array, skew, so3_exp, so3_log
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.tuning import OdometryTuning
 
-_FINE = 10
-"""Samples are integrated this many times between two knots."""
-_EPS_RAD, _EPS_S = 1e-4, 1e-4
 _FOURTH = 70.0
 """Variance of a difference of the fourth order of white noise of variance 1."""
-_SAFETY = 1.5
-_LEAST_GYRO, _LEAST_ACCEL = 3e-5, 3e-4
-"""No IMU on a backpack is better [rad/s/sqrt(Hz), m/s²/sqrt(Hz)]."""
-_MIN_SAMPLES = 50
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,15 +56,15 @@ def measured_noise(samples: Sequence[ImuSamples], settings: OdometryTuning) -> O
         samples: Of some windows.
         settings: Upper bounds.
     """
-    usable = [part for part in samples if len(part) > _MIN_SAMPLES]
+    usable = [part for part in samples if len(part) > IMU_ROWS.min_samples]
     if not usable:
         return settings
-    gyro = _SAFETY * max(_density(part.t_ns, part.gyro_rad_s) for part in usable)
-    accel = _SAFETY * max(_density(part.t_ns, part.accel_m_s2) for part in usable)
+    gyro = IMU_ROWS.safety * max(_density(part.t_ns, part.gyro_rad_s) for part in usable)
+    accel = IMU_ROWS.safety * max(_density(part.t_ns, part.accel_m_s2) for part in usable)
     return replace(
         settings,
-        gyro_noise=float(np.clip(gyro, _LEAST_GYRO, settings.gyro_noise)),
-        accel_noise=float(np.clip(accel, _LEAST_ACCEL, settings.accel_noise)),
+        gyro_noise=float(np.clip(gyro, IMU_ROWS.least_gyro, settings.gyro_noise)),
+        accel_noise=float(np.clip(accel, IMU_ROWS.least_accel, settings.accel_noise)),
     )
 
 
@@ -107,11 +101,11 @@ def imu_rows(
     if imu is None or len(imu) < 2:
         return None
     J_gyro, r_gyro = _gyro_rows(window, rig, biases)
-    J_gyro, r_gyro = (v / (settings.gyro_noise * np.sqrt(KNOT_S)) for v in (J_gyro, r_gyro))
+    J_gyro, r_gyro = (v / (settings.gyro_noise * np.sqrt(WINDOWS.knot_s)) for v in (J_gyro, r_gyro))
     if not np.isfinite(imu.accel_m_s2).all():
         return ImuRows(J_gyro, r_gyro)
     J_accel, r_accel = _accel_rows(window, rig, biases)
-    sd = settings.accel_noise * np.sqrt(2.0 / 3.0 * KNOT_S)
+    sd = settings.accel_noise * np.sqrt(2.0 / 3.0 * WINDOWS.knot_s)
     return ImuRows(np.concatenate([J_gyro, J_accel / sd]), np.concatenate([r_gyro, r_accel / sd]))
 
 
@@ -127,13 +121,13 @@ def _gyro_rows(window: Window, rig: Rig, biases: WindowBiases) -> tuple[Array, A
         for j in range(3):
             J[k, i, 6 * (k + 1) + j] = R[1:, j, i]
             J[k, i, 6 * k + j] = -R[1:, j, i]
-        J[:, i, 6 * knots + i] = KNOT_S
+        J[:, i, 6 * knots + i] = WINDOWS.knot_s
     first = 6 * knots + BIASES
     for j, axis in enumerate(np.eye(3)):
-        turned = _rotated(rig, _EPS_RAD * axis)
-        J[:, :, first + j] = -(_integrated(window, turned, biases) - turn) / _EPS_RAD
-    later = replace(rig, imu_time_offset_s=rig.imu_time_offset_s + _EPS_S)
-    J[:, :, first + 6] = -(_integrated(window, later, biases) - turn) / _EPS_S
+        turned = _rotated(rig, IMU_ROWS.eps_rad * axis)
+        J[:, :, first + j] = -(_integrated(window, turned, biases) - turn) / IMU_ROWS.eps_rad
+    later = replace(rig, imu_time_offset_s=rig.imu_time_offset_s + IMU_ROWS.eps_s)
+    J[:, :, first + 6] = -(_integrated(window, later, biases) - turn) / IMU_ROWS.eps_s
     return J.reshape(-1, J.shape[2]), r.ravel()
 
 
@@ -143,13 +137,13 @@ def _integrated(window: Window, rig: Rig, biases: WindowBiases) -> Array:
     rate = _sampled(window, rig, fine_s, accel=False) - biases.gyro_rad_s
     middle = 0.5 * (rate[:-1] + rate[1:]) * np.diff(fine_s)[:, None]
     R = np.broadcast_to(np.eye(3), (window.knots - 1, 3, 3))
-    for step in middle.reshape(window.knots - 1, _FINE, 3).swapaxes(0, 1):
+    for step in middle.reshape(window.knots - 1, IMU_ROWS.fine, 3).swapaxes(0, 1):
         R = R @ so3_exp(step)
     return so3_log(R)
 
 
 def _accel_rows(window: Window, rig: Rig, biases: WindowBiases) -> tuple[Array, Array]:
-    knots, h, lever = window.knots, KNOT_S, rig.T_body_imu.t
+    knots, h, lever = window.knots, WINDOWS.knot_s, rig.T_body_imu.t
     T = window.trajectory.at(window.knot_ns, slack_ns=10**8)
     fine_s = _fine_times(window)
     fine_ns = window.start_ns + np.rint(fine_s * 1e9).astype(np.int64)
@@ -184,20 +178,22 @@ def _weighted(values: Array, side: int | None = None) -> Array:
 
     With a ``side`` also times the hat function of the knot before (-1), at (0) or after (1) it.
     """
-    offset = np.arange(-_FINE, _FINE + 1) / _FINE
-    weight = (1.0 - np.abs(offset)) * (KNOT_S / _FINE)
+    offset = np.arange(-IMU_ROWS.fine, IMU_ROWS.fine + 1) / IMU_ROWS.fine
+    weight = (1.0 - np.abs(offset)) * (WINDOWS.knot_s / IMU_ROWS.fine)
     if side is not None:
         weight = weight * np.maximum(0.0, 1.0 - np.abs(offset - side))
     shape = values.shape[1:]
     flat = values.reshape(len(values), -1)
-    around = np.lib.stride_tricks.sliding_window_view(flat, 2 * _FINE + 1, axis=0)[::_FINE]
+    around = np.lib.stride_tricks.sliding_window_view(flat, 2 * IMU_ROWS.fine + 1, axis=0)[
+        :: IMU_ROWS.fine
+    ]
     return (around @ weight).reshape(-1, *shape)
 
 
 def _fine_times(window: Window) -> Array:
     """Times on the fine grid [s], ((K - 1) n + 1,)."""
-    count = (window.knots - 1) * _FINE + 1
-    times: Array = np.linspace(0.0, (window.knots - 1) * KNOT_S, count)
+    count = (window.knots - 1) * IMU_ROWS.fine + 1
+    times: Array = np.linspace(0.0, (window.knots - 1) * WINDOWS.knot_s, count)
     return times
 
 

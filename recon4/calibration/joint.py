@@ -18,6 +18,7 @@ from scipy.special import ndtr, stdtrit
 from recon4.calibration.equations import Fit, Reduced, RoundBounds, WindowState, reduce_window
 from recon4.calibration.imu_rows import WindowBiases, measured_noise
 from recon4.calibration.parameters import Parameters, Unit
+from recon4.calibration.tuning_joint import JOINT
 from recon4.calibration.window import Window, with_trajectory
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
@@ -43,8 +44,6 @@ NEAR_ROUNDS = (*ROUNDS[2:], _PURE)
 of flights of stairs, and a window that is bent so far does not come back."""
 LAST_ROUNDS = (_PURE,) * 4
 """The same at a rig that others confirm."""
-DENSE_ROUNDS = 2
-"""Number of the last rounds that use all points; before them a part leads near the solution."""
 EXPLAIN = (
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),
@@ -52,14 +51,7 @@ EXPLAIN = (
 """Wide bounds that are the same for a good and a bad rig, to compare how well they explain."""
 _VAGUE: dict[Unit, float] = {"rad": float(np.deg2rad(0.5)), "m": 0.05, "s": 5e-3}
 """With a larger formal standard deviation a direction counts as not shown by the walk."""
-_MIN_WINDOWS = 3
-"""Fewer windows do not show how much their estimates scatter."""
-_CHANGED = 50.0
-"""Larger disagreements than errors of beams explain: 120 to 340 with a mount that slips by 2° or a
-clock that jumps by 50 ms in the middle of the walk."""
-SIGMAS = 3.0
-"""A change of more standard deviations is no noise."""
-_QUANTILE = float(ndtr(SIGMAS))
+_QUANTILE = float(ndtr(JOINT.sigmas))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +75,7 @@ class JointEstimate:
     @property
     def changes(self) -> bool:
         """Whether windows disagree so much that the rig cannot be the same in all of them."""
-        return self.disagreement > _CHANGED and len(self.fits) >= _MIN_WINDOWS
+        return self.disagreement > JOINT.changed and len(self.fits) >= JOINT.min_windows
 
     @property
     def sd(self) -> Array:
@@ -97,10 +89,10 @@ class JointEstimate:
         How much a few windows scatter is itself uncertain: four of them show a standard deviation
         whose true value may well be three times as large (Student's t).
         """
-        if len(self.fits) < _MIN_WINDOWS:
+        if len(self.fits) < JOINT.min_windows:
             return np.full(len(self.change), np.inf)
         of_scatter = float(stdtrit(len(self.fits) - 1, _QUANTILE))
-        return np.maximum(SIGMAS * self.formal_sd, of_scatter * self.scatter_sd)
+        return np.maximum(JOINT.sigmas * self.formal_sd, of_scatter * self.scatter_sd)
 
     @property
     def rms_m(self) -> float:
@@ -247,7 +239,7 @@ def _disagreement(found: Sequence[Reduced], prior: Array) -> float:
 def _scatter(found: Sequence[Reduced], prior: Array) -> Array:
     """Standard deviation by leaving out one window after the other (jackknife), (P,)."""
     count = len(found)
-    if count < _MIN_WINDOWS:
+    if count < JOINT.min_windows:
         return np.full(len(prior), np.inf)
     H, g = _total(found, len(prior))
     without = np.stack([-np.linalg.solve(H - part.H + prior, g - part.g) for part in found])

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.calibration.joint import SIGMAS, JointEstimate
+from recon4.calibration.joint import JointEstimate
 from recon4.calibration.parameters import Parameter, Unit
+from recon4.calibration.tuning_joint import JOINT
 from recon4.model.calibration_figures import ParameterFigures, ParameterStatus, RigScatter
 from recon4.model.plain import finite_or_none
 
@@ -67,7 +68,7 @@ def _status(change: float, parameter: Parameter, *, sd: float, noise: float) -> 
     limits = (_BEAM_LIMITS if parameter.of_beam else _LIMITS)[parameter.unit]
     if abs(change) > max(noise, limits.tolerance):
         return "off"
-    agrees = sd <= limits.observable_sd and abs(change) <= max(SIGMAS * sd, limits.tolerance)
+    agrees = sd <= limits.observable_sd and abs(change) <= max(JOINT.sigmas * sd, limits.tolerance)
     return "consistent" if agrees else "not observable"
 
 

@@ -15,6 +15,7 @@ from scipy.optimize import minimize
 
 from recon4.calibration.entropy import EntropyEstimate
 from recon4.calibration.parameters import Parameters
+from recon4.calibration.tuning_methods import LINE_ENTROPY
 from recon4.geometry.cubes import count_cubes
 from recon4.geometry.se3 import Array, so3_exp
 from recon4.kernels.imu import place_points
@@ -22,16 +23,10 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
 from recon4.store.frames import FrameStore
 
-_CUBES_M = (0.2, 0.08, 0.05)
-"""Edges of the cubes, coarse first [m]."""
 _UNIT = {"rad": np.deg2rad(0.25), "m": 0.01, "s": 0.003}
 """What Powell's method counts as one, for each kind of parameter."""
-_EVALUATIONS = 250
-_POINTS = 100_000
-_CARRIER_M = 1.5
 _SKEW = so3_exp(np.array([0.4, 0.7, 0.3]))
 """Turns the cubes: a tilt would bring a floor along their faces into one layer of them."""
-_MARGIN_S = 0.3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,12 +48,12 @@ def profiler_walk(frames: FrameStore, trajectory: Trajectory) -> ProfilerWalk:
     rig = frames.rig
     row = rig.row_of("profiler")
     assert row is not None
-    every = max(1, frames.points // _POINTS)
+    every = max(1, frames.points // LINE_ENTROPY.points)
     times, points = [], []
     for frame in frames:
         rows = np.flatnonzero(frame.sensor == row)[frame.frame_id % every :: every]
         xyz = frame.xyz[rows].astype(np.float64)
-        away = np.linalg.norm(xyz, axis=1) > _CARRIER_M
+        away = np.linalg.norm(xyz, axis=1) > LINE_ENTROPY.carrier_m
         times.append(frame.t_ns + frame.dt_ns[rows[away]].astype(np.int64))
         points.append(xyz[away])
     return ProfilerWalk(np.concatenate(times), np.concatenate(points), trajectory, rig)
@@ -96,7 +91,7 @@ def calibrate_profiler(
         change[free] = x * unit
         return change
 
-    for cube_m in _CUBES_M:
+    for cube_m in LINE_ENTROPY.cubes_m:
         before = occupied(walk, walk.recorded, cube_m=cube_m)
 
         def cost(x: Array, cube_m: float = cube_m, before: int = before) -> float:
@@ -110,7 +105,7 @@ def calibrate_profiler(
             cost,
             found,
             method="Powell",
-            options={"ftol": 1e-4, "xtol": 0.02, "maxfev": _EVALUATIONS},
+            options={"ftol": 1e-4, "xtol": 0.02, "maxfev": LINE_ENTROPY.evaluations},
         )
         found, converged = np.asarray(result.x, np.float64), bool(result.success)
     change = change_of(found)
@@ -127,7 +122,7 @@ def occupied(walk: ProfilerWalk, rig: Rig, *, cube_m: float) -> int:
     zero = int(walk.trajectory.t_ns[0])
     t_s = (walk.trajectory.t_ns - zero).astype(np.float64) * 1e-9
     at_s = (walk.t_ns - zero).astype(np.float64) * 1e-9
-    inside = (at_s > _MARGIN_S) & (at_s < t_s[-1] - _MARGIN_S)
+    inside = (at_s > LINE_ENTROPY.margin_s) & (at_s < t_s[-1] - LINE_ENTROPY.margin_s)
     T = walk.trajectory.T_a_b
     p_body = sensor.T_body_sensor @ walk.p_sensor[inside]
     p = place_points(t_s, T.R, T.t, at_s[inside] + later_s, np.ascontiguousarray(p_body))

@@ -11,16 +11,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from recon4.calibration.mount_search import without_others
+from recon4.calibration.tuning_methods import MAP_ALIGNMENT
 from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import SE3, Array, mean_rotation
 from recon4.model.rig import Rig
 from recon4.registration.scans import make_scan, register_scans
 from recon4.settings.reads import CalibrationReads
-
-_WINDOWS, _WINDOW_S = 6, 8.0
-_SCATTER_RAD, _SCATTER_M = float(np.deg2rad(1.5)), 0.1
-"""Windows that differ more do not agree."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +35,10 @@ class MapAlignment:
     @property
     def agrees(self) -> bool:
         """Whether several windows give nearly the same mount."""
-        return self.scatter_rad < _SCATTER_RAD and self.scatter_m < _SCATTER_M
+        return (
+            self.scatter_rad < MAP_ALIGNMENT.scatter_rad
+            and self.scatter_m < MAP_ALIGNMENT.scatter_m
+        )
 
 
 def align_maps(
@@ -54,7 +54,7 @@ def align_maps(
         settings: Of the odometry of each LiDAR alone and of the registration.
     """
     found = []
-    for part in walk.rows(_WINDOWS, _WINDOW_S):
+    for part in walk.rows(MAP_ALIGNMENT.windows, MAP_ALIGNMENT.window_s):
         maps = [
             walk.tracked_windows([part], without_others(rig, alone), settings, imu=None)
             for alone in (reference, row)

@@ -15,18 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from recon4.calibration.tuning_methods import MOUNT_SEARCH
 from recon4.calibration.window import Window
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
 from recon4.kernels.scans import neighbor_normals
 from recon4.model.rig import Rig
-
-_VOXEL_M = 0.2
-_NEIGHBORS = 12
-_SOURCE_POINTS = 2000
-_GATES_M = (1.0, 1.0, 0.6, 0.6, 0.4, 0.4, 0.3, 0.2, 0.2, 0.15)
-_INLIER_M = 0.08
-_RANKED = 6
-"""Number of mounts that are returned: in a small room several seem possible."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +51,7 @@ def search_mounts(windows: Sequence[Window], rig: Rig, *, reference: int) -> lis
             if clouds:
                 ranked[row] = _ranked(clouds, _candidates(rig, row, reference))
     return [_with_mounts(rig, {row: mounts[k] for row, mounts in ranked.items()})
-            for k in range(_RANKED if ranked else 0)]  # fmt: skip
+            for k in range(MOUNT_SEARCH.ranked if ranked else 0)]  # fmt: skip
 
 
 def without_others(rig: Rig, reference: int) -> Rig:
@@ -106,16 +99,18 @@ def exchanged_mount(rig: Rig, row: int, reference: int) -> SE3:
 def _window_clouds(window: Window, reference: int, row: int) -> _WindowClouds | None:
     T_body = window.recorded_rig.sensors[reference].T_body_sensor
     of_map, of_other = window.sensor == reference, window.sensor == row
-    if of_map.sum() < _SOURCE_POINTS or of_other.sum() < _NEIGHBORS:
+    if of_map.sum() < MOUNT_SEARCH.source_points or of_other.sum() < MOUNT_SEARCH.neighbors:
         return None
     p_map = _poses(window, of_map) @ (T_body @ window.p_sensor[of_map])
-    _, first = np.unique(np.floor(p_map / _VOXEL_M).astype(np.int64), axis=0, return_index=True)
+    _, first = np.unique(
+        np.floor(p_map / MOUNT_SEARCH.voxel_m).astype(np.int64), axis=0, return_index=True
+    )
     p_map = np.ascontiguousarray(p_map[np.sort(first)])
     tree = cKDTree(p_map)
     normals = np.zeros_like(p_map)
-    neighbor_normals(p_map, tree.query(p_map, _NEIGHBORS)[1], normals)
+    neighbor_normals(p_map, tree.query(p_map, MOUNT_SEARCH.neighbors)[1], normals)
     rows = np.flatnonzero(of_other)
-    rows = rows[:: max(1, len(rows) // _SOURCE_POINTS)]
+    rows = rows[:: max(1, len(rows) // MOUNT_SEARCH.source_points)]
     return _WindowClouds(tree, normals, window.p_sensor[rows], _poses(window, rows))
 
 
@@ -128,13 +123,13 @@ def _ranked(clouds: Sequence[_WindowClouds], candidates: Sequence[SE3]) -> list[
     """The registered candidates with the largest inlier ratios, best first."""
     found = [_register(clouds, candidate) for candidate in candidates]
     order = np.argsort([-ratio for _, ratio in found], kind="stable")
-    return [found[k][0] for k in order[:_RANKED]]
+    return [found[k][0] for k in order[: MOUNT_SEARCH.ranked]]
 
 
 def _register(clouds: Sequence[_WindowClouds], T_body_sensor: SE3) -> tuple[SE3, float]:
     """Point-to-plane registration of a mount, and the ratio of points on the map afterwards."""
     T, inliers, total = T_body_sensor, 0, 0
-    for gate_m in _GATES_M:
+    for gate_m in MOUNT_SEARCH.gates_m:
         H, g, inliers, total = np.zeros((6, 6)), np.zeros(6), 0, 0
         for cloud in clouds:
             arm = cloud.p_sensor @ T.R.T
@@ -148,7 +143,7 @@ def _register(clouds: Sequence[_WindowClouds], T_body_sensor: SE3) -> tuple[SE3,
             w = 1.0 / (1.0 + (r / (0.3 * gate_m)) ** 2)
             H += (J * w[:, None]).T @ J
             g += J.T @ (w * r)
-            inliers += int(np.count_nonzero(np.abs(r) < _INLIER_M))
+            inliers += int(np.count_nonzero(np.abs(r) < MOUNT_SEARCH.inlier_m))
             total += len(q)
         step = -np.linalg.solve(H + 1e-6 * (1.0 + np.trace(H)) * np.eye(6), g)
         T = SE3(proper(so3_exp(step[ROTATION]) @ T.R), T.t + step[TRANSLATION])

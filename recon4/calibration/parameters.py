@@ -9,6 +9,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_joint import PARAMETERS
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, proper, so3_exp
 from recon4.model.beams import BeamCorrections
 from recon4.model.calibration_figures import IMU
@@ -20,12 +21,6 @@ _PRIOR_SD: dict[Unit, float] = {"rad": 0.2, "m": 0.3, "s": 0.1}
 """Standard deviation of each parameter before the walk is looked at: hardly any knowledge."""
 _BEAM_PRIOR_SD: dict[Unit, float] = {"rad": float(np.deg2rad(0.05)), "m": 0.03}
 """The same of a beam: assemblies are exact to some hundredths of a degree."""
-_MEAN_AZIMUTH_SD_RAD = 1e-6
-"""Of a mean that nothing observes."""
-_MEAN_RANGE_SD_M = 1e-3
-"""Of the mean of all beams: of 32 that are wrong by 5 mm."""
-_KNOWN_SD = 1e-9
-"""Of a parameter that keeps its value, in its unit."""
 _AXES = ("x", "y", "z")
 
 
@@ -123,9 +118,9 @@ class Parameters:
             ranges[self.of_beams(row)][:count] = 1.0
             azimuth = np.zeros(len(self))
             azimuth[self.of_beams(row)][2 * count :] = 1.0 / count
-            information += np.outer(azimuth, azimuth) / _MEAN_AZIMUTH_SD_RAD**2
+            information += np.outer(azimuth, azimuth) / PARAMETERS.mean_azimuth_sd_rad**2
         mean = ranges / max(ranges.sum(), 1.0)
-        return np.asarray(information + np.outer(mean, mean) / _MEAN_RANGE_SD_M**2)
+        return np.asarray(information + np.outer(mean, mean) / PARAMETERS.mean_range_sd_m**2)
 
     def of_beams(self, row: int) -> slice:
         """Columns of the beams of a LiDAR: all ranges, elevations, azimuths."""
@@ -150,11 +145,11 @@ class Parameters:
     @property
     def fixed(self) -> NDArray[np.bool_]:
         """Parameters that keep their values, (P,)."""
-        return np.asarray(self.prior_sd <= _KNOWN_SD)
+        return np.asarray(self.prior_sd <= PARAMETERS.known_sd)
 
     def fixing(self, known: NDArray[np.bool_]) -> Parameters:
         """The same parameters, of which some, (P,) bool, keep their values."""
-        return replace(self, prior_sd=np.where(known, _KNOWN_SD, self.prior_sd))
+        return replace(self, prior_sd=np.where(known, PARAMETERS.known_sd, self.prior_sd))
 
     def keeping(self, known: NDArray[np.bool_], recorded: Rig, found: Rig) -> Rig:
         """The rig that was found, but with the recorded values of some parameters, (P,) bool."""

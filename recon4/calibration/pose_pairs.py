@@ -11,19 +11,12 @@ from pathlib import Path
 
 import numpy as np
 
+from recon4.calibration.tuning_methods import POSE_PAIRS
 from recon4.errors import CalibrationError, CorruptFile
 from recon4.geometry.se3 import SE3, Array, so3_log
 from recon4.untrusted.bounded import read_text_limited
 
-_MAX_BYTES = 16 << 20
 _COLUMNS = 14
-_UNIT_TOLERANCE = 0.01
-_OUTLIER_RAD, _OUTLIER_M = 0.1, 0.2
-_MIN_AXES = 2e-3
-"""Of the mean of rotations: the second singular value, 1 if all are alike."""
-_LEAST_NOISE_RAD, _VAGUE_RAD = float(np.deg2rad(0.05)), float(np.deg2rad(0.5))
-_LEAST_NOISE_M, _VAGUE_M = 0.001, 0.01
-"""No tracking is better; a rotation that is known no better is refused."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +49,8 @@ class PairAlignment:
     def contradictory(self) -> bool:
         """Whether the pairs contradict each other."""
         return bool(
-            np.median(self.residual_rad) > _OUTLIER_RAD or np.median(self.residual_m) > _OUTLIER_M
+            np.median(self.residual_rad) > POSE_PAIRS.outlier_rad
+            or np.median(self.residual_m) > POSE_PAIRS.outlier_m
         )
 
 
@@ -68,7 +62,7 @@ def read_pose_pairs(path: Path) -> MarkerPosePairs:
     Raises:
         CorruptFile: If a line has another number of values, or a quaternion has not length 1.
     """
-    text = read_text_limited(path, _MAX_BYTES, failure=CorruptFile)
+    text = read_text_limited(path, POSE_PAIRS.max_bytes, failure=CorruptFile)
     rows = []
     for number, line in enumerate(text.splitlines(), 1):
         words = line.partition("#")[0].replace(",", " ").split()
@@ -89,7 +83,7 @@ def read_pose_pairs(path: Path) -> MarkerPosePairs:
     table = np.array(rows)
     for first in (3, 10):
         length = np.linalg.norm(table[:, first : first + 4], axis=1)
-        wrong = np.flatnonzero(np.abs(length - 1.0) > _UNIT_TOLERANCE)
+        wrong = np.flatnonzero(np.abs(length - 1.0) > POSE_PAIRS.unit_tolerance)
         if len(wrong):
             raise CorruptFile(
                 f"{path.name}: pair {wrong[0] + 1}: expected a quaternion of length 1, "
@@ -109,7 +103,7 @@ def average_pairs(pairs: MarkerPosePairs) -> PairAlignment:
     if not len(each.t):
         raise CalibrationError("expected at least one pair of poses, got none")
     U, singular, Vt = np.linalg.svd(each.R.mean(axis=0))
-    if singular[1] < _MIN_AXES:
+    if singular[1] < POSE_PAIRS.min_axes:
         raise CalibrationError("the pairs contradict each other: their rotations have no mean")
     R = U @ np.diag([1.0, 1.0, np.linalg.det(U @ Vt)]) @ Vt
     return _with_residuals(SE3(R, each.t.mean(axis=0)), each)
@@ -141,14 +135,14 @@ def hand_eye(pairs: MarkerPosePairs, *, before_m: Array) -> PairAlignment:
     residual_rad, residual_m = np.asarray(apart.angle()), np.linalg.norm(apart.t, axis=1)
     sd_rad = _rotation_sd_rad(b, residual_rad)
     # Whole distances in place of components: errors of the rotation move many pairs alike.
-    noise_m = max(_LEAST_NOISE_M, float(np.sqrt(np.mean(residual_m**2))))
+    noise_m = max(POSE_PAIRS.least_noise_m, float(np.sqrt(np.mean(residual_m**2))))
     weight, axes = np.linalg.eigh(left.T @ left)
     sd_along_m = noise_m / np.sqrt(np.maximum(weight, 1e-300))
-    unknown = axes.T[sd_along_m > _VAGUE_M]
+    unknown = axes.T[sd_along_m > POSE_PAIRS.vague_m]
     t_m = t_m + unknown.T @ (unknown @ (before_m - t_m))
     sd_m = np.sqrt(axes**2 @ np.minimum(sd_along_m, 1e3) ** 2)
     found = PairAlignment(SE3(R, t_m), residual_rad, residual_m, sd_rad, sd_m, unknown)
-    if not found.contradictory and not sd_rad < _VAGUE_RAD:
+    if not found.contradictory and not sd_rad < POSE_PAIRS.vague_rad:
         raise CalibrationError(
             "hand-eye: expected motions that turn about two different axes, got fewer"
         )
@@ -157,7 +151,7 @@ def hand_eye(pairs: MarkerPosePairs, *, before_m: Array) -> PairAlignment:
 
 def _rotation_sd_rad(turns: Array, residual_rad: Array) -> float:
     """Standard deviation of the rotation about its least known axis, from turns (N, 3) [rad]."""
-    noise_rad = max(_LEAST_NOISE_RAD, float(np.sqrt(np.mean(residual_rad**2))))
+    noise_rad = max(POSE_PAIRS.least_noise_rad, float(np.sqrt(np.mean(residual_rad**2))))
     least = np.linalg.eigvalsh(np.sum(turns**2) * np.eye(3) - turns.T @ turns)[0]
     return noise_rad / float(np.sqrt(max(least, 1e-300)))
 

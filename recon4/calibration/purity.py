@@ -12,20 +12,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.calibration.surfaces import MIN_POINTS, SharedSurfaces
+from recon4.calibration.surfaces import SharedSurfaces
+from recon4.calibration.tuning_joint import COMMON_PLANES, PURITY
 from recon4.geometry.se3 import Array
 from recon4.kernels.own_points import along_normal, plane_equations, planes_met
 
-_RANGE_SD_M = 0.015
-_ACROSS_SD_M = 0.003
-"""Of a point across its plane, however oblique: of poses, and of surfaces that are not flat [m]."""
-_REFITS = 3
-_MOST_SDS = 3.0
-"""A point farther from a plane than this many standard deviations is not on it."""
-_LEAST_EXPLAINED = 0.9
-"""Part of the points of a cube that must be on a plane."""
-_NEAR_FACE_M = 0.05
-"""A point so near to the face of a cube may be beyond it by its noise."""
 _PRIOR = np.diag([1e-9, 1.0, 1.0])
 """Information on shift [1/m²] and slopes: only planes whose points lie on a line feel it."""
 
@@ -38,7 +29,7 @@ def distance_sd_m(surfaces: SharedSurfaces, beam: Array) -> Array:
         beam: Unit vectors from the sensors to all points, (N, 3).
     """
     cosine = along_normal(beam, surfaces.point, surfaces.plane, surfaces.normal)
-    return np.hypot(_RANGE_SD_M * cosine, _ACROSS_SD_M)
+    return np.hypot(PURITY.range_sd_m * cosine, PURITY.across_sd_m)
 
 
 def only_own_points(
@@ -66,7 +57,9 @@ def only_own_points(
     total = np.bincount(before.plane, minlength=len(own))
     known = np.bincount(before.plane, explained[before.point], len(own))
     count = np.bincount(own.plane, minlength=len(own))
-    return _only(own, (count >= MIN_POINTS) & (known >= _LEAST_EXPLAINED * total))
+    return _only(
+        own, (count >= COMMON_PLANES.min_points) & (known >= PURITY.least_explained * total)
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,10 +83,16 @@ class _PointsOfWindow:
     def refitted(self, surfaces: SharedSurfaces) -> SharedSurfaces:
         """The planes moved to where most of their points are."""
         sd_m = distance_sd_m(surfaces, self.beam)
-        for _ in range(_REFITS):
+        for _ in range(PURITY.refits):
             frames = _frames(surfaces.normal)
             H, g = plane_equations(
-                self.p, surfaces.point, surfaces.plane, frames, surfaces.center, sd_m, _MOST_SDS
+                self.p,
+                surfaces.point,
+                surfaces.plane,
+                frames,
+                surfaces.center,
+                sd_m,
+                PURITY.most_sds,
             )
             step = np.linalg.solve(H + _PRIOR, g[:, :, None])
             lean = np.concatenate([np.ones((len(step), 1, 1)), -step[:, 1:]], axis=1)
@@ -116,7 +115,7 @@ class _PointsOfWindow:
             surfaces.normal,
             np.bincount(surfaces.plane, minlength=len(surfaces)).astype(np.float64),
             self.cube_m,
-            np.array([_RANGE_SD_M, _ACROSS_SD_M, _MOST_SDS, _NEAR_FACE_M]),
+            np.array([PURITY.range_sd_m, PURITY.across_sd_m, PURITY.most_sds, PURITY.near_face_m]),
         )
         point = np.flatnonzero(plane >= 0)
         return replace(surfaces, point=point, plane=plane[point])

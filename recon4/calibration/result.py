@@ -6,7 +6,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.calibration.held_out import Agreement
-from recon4.calibration.slices import THICKNESS_M, LidarSlices
+from recon4.calibration.slices import LidarSlices
+from recon4.calibration.tuning_methods import SLICES
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.plain import to_plain
 from recon4.model.rig import Rig, format_rig
@@ -38,6 +39,6 @@ class CalibrationResult:
             (out / CALIBRATED_RIG).write_text(format_rig(self.rig), "utf-8")
             write_json(
                 out / CALIBRATION_SLICES,
-                {"thickness_m": THICKNESS_M, "lidars": to_plain(self.slices)},
+                {"thickness_m": SLICES.thickness_m, "lidars": to_plain(self.slices)},
             )
         return self.figures

@@ -7,19 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_methods import SLICES
 from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import Array
 from recon4.mapping.place import place
 from recon4.model.rig import Rig
-
-THICKNESS_M = 0.2
-"""Of the slices that the stage keeps [m]."""
-_SECONDS = 6.0
-_MAX_POINTS = 12_000
-"""Drawn of each LiDAR."""
-_MAX_KEPT = 3000
-"""Kept of each LiDAR for the page of the project."""
-_REACH_M = 6.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -45,7 +37,7 @@ def slice_points(walk: RecordedWalk, rig: Rig, *, thickness_m: float) -> list[tu
     Returns:
         Name of each LiDAR and its points around the body, x and y [m], (N, 2).
     """
-    rows = walk.rows(1, _SECONDS)
+    rows = walk.rows(1, SLICES.seconds)
     if not rows:
         return []
     frames = walk.with_rig(rig).frames
@@ -54,7 +46,9 @@ def slice_points(walk: RecordedWalk, rig: Rig, *, thickness_m: float) -> list[tu
     for row in rows[0]:
         frame = frames[row]
         p = place(frame, walk.trajectory, rig) - middle
-        near = (np.abs(p[:, 2]) < thickness_m / 2.0) & (np.abs(p[:, :2]).max(axis=1) < _REACH_M)
+        near = (np.abs(p[:, 2]) < thickness_m / 2.0) & (
+            np.abs(p[:, :2]).max(axis=1) < SLICES.reach_m
+        )
         for sensor, parts in enumerate(found):
             parts.append(p[near & (frame.sensor == sensor), :2])
     named = zip(rig.sensors, found, strict=True)
@@ -65,13 +59,13 @@ def lidar_slices(walk: RecordedWalk, calibrated: Rig) -> tuple[LidarSlices, ...]
     """The same slice by the rig of a walk and by a calibrated one, to the centimeter."""
     before, after = (
         {
-            name: np.round(_some(p, _MAX_KEPT), 2).tolist()
-            for name, p in slice_points(walk, rig, thickness_m=THICKNESS_M)
+            name: np.round(_some(p, SLICES.max_kept), 2).tolist()
+            for name, p in slice_points(walk, rig, thickness_m=SLICES.thickness_m)
         }
         for rig in (walk.frames.rig, calibrated)
     )
     return tuple(LidarSlices(name=name, before=p, after=after[name]) for name, p in before.items())
 
 
-def _some(p: NDArray[np.float64], most: int = _MAX_POINTS) -> Array:
+def _some(p: NDArray[np.float64], most: int = SLICES.max_points) -> Array:
     return p[:: max(1, -(-len(p) // most))]

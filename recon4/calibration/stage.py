@@ -26,6 +26,7 @@ from recon4.calibration.parameters import Parameters
 from recon4.calibration.result import CalibrationResult
 from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
+from recon4.calibration.tuning_methods import CALIBRATION_STAGE
 from recon4.calibration.walk import RecordedWalk
 from recon4.model.calibration_figures import (
     CalibrationFigures,
@@ -38,9 +39,6 @@ from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.settings.reads import CalibrationReads
 from recon4.store.frames import FrameStore
-
-_SAME_RAD, _SAME_M = 0.1, 0.1
-"""Two mounts are the same within this."""
 
 
 def run_calibration(
@@ -141,7 +139,10 @@ def _exchanged(rig: Rig, found: JointEstimate) -> tuple[tuple[str, str], ...]:
         there = found.rig.sensors[row].T_body_sensor
         apart = exchanged_mount(rig, row, reference).inverse() @ there
         moved = rig.sensors[row].T_body_sensor.inverse() @ there
-        if apart.angle() < _SAME_RAD < moved.angle() and np.linalg.norm(apart.t) < _SAME_M:
+        if (
+            apart.angle() < CALIBRATION_STAGE.same_rad < moved.angle()
+            and np.linalg.norm(apart.t) < CALIBRATION_STAGE.same_m
+        ):
             pairs.append((rig.sensors[reference].name, rig.sensors[row].name))
     return tuple(pairs)
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from recon4.calibration.gyro_alignment import GyroAlignment, align_gyro
 from recon4.calibration.mount_search import without_others
+from recon4.calibration.tuning_methods import START
 from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.odometry_figures import ImuFault
@@ -15,17 +16,6 @@ from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.settings.reads import CalibrationReads
 
-_MIN_EXPLAINED = 0.9
-"""Part of the turning that an IMU explains if it is the right one and only its mount is wrong."""
-_FAR_RAD, _FAR_S = float(np.deg2rad(5.0)), 0.05
-"""Smaller errors are found by the joint calibration from the rig file."""
-_SCALE_TOLERANCE, _FORCE_TOLERANCE = 0.02, 0.04
-"""A usual accelerometer has a bias of 1 % of gravity along each axis."""
-_UNIT_TOLERANCE = 0.1
-_MIN_SECONDS = 6.0
-"""In a shorter walk the accelerations do not cancel out."""
-_ALONE_S = 10.0
-"""Length of the window that is tracked with the reference LiDAR alone [s]."""
 _DEG_PER_RAD = float(np.rad2deg(1.0))
 
 
@@ -52,11 +42,11 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: CalibrationReads
     if imu is None or len(imu) < 2:
         return Start(rig, False, ())
     found = align_gyro(walk.trajectory, walk.frames.t_mid_ns, imu)
-    if found is not None and (found.mirrored or found.explained < _MIN_EXPLAINED):
+    if found is not None and (found.mirrored or found.explained < START.min_explained):
         found = _align_alone(walk, imu, reference, settings=settings) or found
     if found is not None and found.mirrored:
         return Start(rig, False, (ImuFault(kind="left-handed"),))
-    if found is not None and found.explained < _MIN_EXPLAINED:
+    if found is not None and found.explained < START.min_explained:
         return Start(rig, False, (ImuFault(kind="foreign", value=float(found.explained)),))
     if found is not None:
         rig = _turned(rig, found)
@@ -68,7 +58,7 @@ def _align_alone(
     walk: RecordedWalk, imu: ImuSamples, reference: int, *, settings: CalibrationReads
 ) -> GyroAlignment | None:
     """Alignment to a trajectory of the reference LiDAR alone, where all together contradict."""
-    rows = walk.rows(1, _ALONE_S, with_lost=True)
+    rows = walk.rows(1, START.alone_s, with_lost=True)
     alone = without_others(walk.frames.rig, reference)
     windows = walk.tracked_windows(rows, alone, settings, imu=None)
     if not windows:
@@ -80,8 +70,8 @@ def _align_alone(
 def _turned(rig: Rig, found: GyroAlignment) -> Rig:
     """The rig with the IMU as found, if that is far from the rig file."""
     turn = float(np.linalg.norm(so3_log(found.R_body_imu @ rig.T_body_imu.R.T)))
-    R = found.R_body_imu if turn > _FAR_RAD else rig.T_body_imu.R
-    clock_s = found.clock_s if abs(found.clock_s) > _FAR_S else 0.0
+    R = found.R_body_imu if turn > START.far_rad else rig.T_body_imu.R
+    clock_s = found.clock_s if abs(found.clock_s) > START.far_s else 0.0
     return replace(
         rig,
         T_body_imu=SE3(R, rig.T_body_imu.t),
@@ -95,22 +85,22 @@ def _force_faults(imu: ImuSamples, walk: RecordedWalk, rig: Rig) -> tuple[ImuFau
     inside = (imu.t_ns >= line.t_ns[0]) & (imu.t_ns <= line.t_ns[-1])
     force = imu.accel_m_s2[inside] @ rig.T_body_imu.R.T
     seconds = float(line.t_ns[-1] - line.t_ns[0]) * 1e-9
-    if seconds < _MIN_SECONDS or not inside.any() or not np.isfinite(force).all():
+    if seconds < START.min_seconds or not inside.any() or not np.isfinite(force).all():
         return ()
     of_odom = np.einsum("nij,nj->ni", line.at(imu.t_ns[inside]).R, force)
     mean = float(np.linalg.norm(of_odom.mean(axis=0)))
     ratio = mean / STANDARD_GRAVITY_M_S2
-    if abs(ratio - 1.0) <= _FORCE_TOLERANCE:
+    if abs(ratio - 1.0) <= START.force_tolerance:
         return ()
-    if abs(mean - 1.0) < _UNIT_TOLERANCE:
+    if abs(mean - 1.0) < START.unit_tolerance:
         return (ImuFault(kind="accelerometer unit", value=ratio),)
     return (ImuFault(kind="accelerometer scale", value=ratio - 1.0),)
 
 
 def _scale_faults(found: GyroAlignment) -> tuple[ImuFault, ...]:
-    if abs(found.scale - 1.0) <= _SCALE_TOLERANCE:
+    if abs(found.scale - 1.0) <= START.scale_tolerance:
         return ()
     ratios = (found.scale / _DEG_PER_RAD, found.scale * _DEG_PER_RAD)
-    if any(abs(ratio - 1.0) < _UNIT_TOLERANCE for ratio in ratios):
+    if any(abs(ratio - 1.0) < START.unit_tolerance for ratio in ratios):
         return (ImuFault(kind="gyroscope unit", value=float(found.scale)),)
     return (ImuFault(kind="gyroscope scale", value=float(found.scale) - 1.0),)

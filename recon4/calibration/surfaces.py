@@ -7,14 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_joint import COMMON_PLANES
 from recon4.geometry.se3 import Array
-
-MIN_POINTS = 12
-"""Of one LiDAR in a cube."""
-_MIN_EXTENT_M = 0.08
-"""Smallest standard deviation of the points along the plane, in the narrower direction [m]."""
-_MIN_FACING = 0.97
-"""Cosine of the largest angle between the normals that two LiDARs see in a cube."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,9 +95,9 @@ def _fit(p: Array, group: NDArray[np.intp], groups: int, *, max_sd_m: float) -> 
     cov = (_sums(group, products, groups) / count[:, None]).reshape(-1, 3, 3)
     values, vectors = np.linalg.eigh(cov)
     is_plane = (
-        (count >= MIN_POINTS)
+        (count >= COMMON_PLANES.min_points)
         & (values[:, 0] < max_sd_m**2)
-        & (values[:, 1] > _MIN_EXTENT_M**2)
+        & (values[:, 1] > COMMON_PLANES.min_extent_m**2)
         & (values[:, 0] < 0.2 * values[:, 1])
     )
     return _Groups(count, mean, vectors[:, :, 0], is_plane)
@@ -116,7 +110,7 @@ def _agreeing(groups: _Groups, cube: NDArray[np.int64], gate_m: float) -> NDArra
     leader = rows[_leaders(place, groups.count[rows], int(place.max(initial=-1)) + 1)][place]
     facing = np.abs(np.sum(groups.normal[rows] * groups.normal[leader], axis=1))
     apart = np.sum((groups.mean[rows] - groups.mean[leader]) * groups.normal[leader], axis=1)
-    return rows[(facing > _MIN_FACING) & (np.abs(apart) < gate_m)]
+    return rows[(facing > COMMON_PLANES.min_facing) & (np.abs(apart) < gate_m)]
 
 
 def _leaders(place: NDArray[np.intp], weight: Array, places: int) -> NDArray[np.intp]:

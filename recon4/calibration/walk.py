@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.calibration.selection import choose_windows
-from recon4.calibration.window import POINTS_OF_FRAME, Window, cut_window
+from recon4.calibration.tuning_joint import WINDOWS
+from recon4.calibration.window import Window, cut_window
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -96,7 +97,7 @@ class RecordedWalk:
         settings: OdometryReads,
         *,
         imu: ImuSamples | None,
-        points: int = POINTS_OF_FRAME,
+        points: int = WINDOWS.points_of_frame,
     ) -> list[Window]:
         """Windows tracked by themselves with another rig, except where tracking is lost.
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.calibration.tuning_joint import WINDOWS
 from recon4.geometry.se3 import Array
 from recon4.kernels.calibration import PlacedPoints, place_with_velocity
 from recon4.model.beams import beam_change
@@ -17,17 +18,7 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.imu_saturation import saturated_samples
 
-KNOT_S = 0.05
-"""Distance in time of the knots of the trajectory's correction [s]."""
-_KNOT_NS = round(1e9 * KNOT_S)
-POINTS_OF_FRAME = 600
-"""Points of one sensor in one multiframe that lead near the solution."""
-_MOST, _ENOUGH_WINDOWS = 1200, 24
-"""The same where there are few windows; from how many windows on the fewest are enough."""
-_MARGIN_NS = 100_000_000
-"""Samples of the IMU are kept this much longer than the window on both sides [ns]."""
-_VELOCITY_S = 1e-3
-_NEAREST_M = 1e-3
+_KNOT_NS = round(1e9 * WINDOWS.knot_s)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +30,7 @@ class Window:
 
     start_ns: int
     knot_ns: Times
-    """Knots of the correction [ns], `KNOT_S` apart, (K,)."""
+    """Knots of the correction [ns], `WINDOWS.knot_s` apart, (K,)."""
     p_sensor: Array
     """Points in the frames of their sensors [m], (N, 3)."""
     sensor: NDArray[np.uint8]
@@ -71,7 +62,11 @@ class Window:
 
 
 def cut_window(
-    frames: RecordedFrames, trajectory: Trajectory, rows: range, *, points: int = POINTS_OF_FRAME
+    frames: RecordedFrames,
+    trajectory: Trajectory,
+    rows: range,
+    *,
+    points: int = WINDOWS.points_of_frame,
 ) -> Window:
     """Collect the measurements of the multiframes ``rows``, thinned evenly.
 
@@ -102,7 +97,13 @@ def cut_window(
 
 def few_points(windows: int) -> int:
     """Points of one sensor in one multiframe that lead near the solution: more of few windows."""
-    return min(max(POINTS_OF_FRAME * _ENOUGH_WINDOWS // max(windows, 1), POINTS_OF_FRAME), _MOST)
+    return min(
+        max(
+            WINDOWS.points_of_frame * WINDOWS.enough_windows // max(windows, 1),
+            WINDOWS.points_of_frame,
+        ),
+        WINDOWS.most,
+    )
 
 
 def thinning(windows: Sequence[Window], wanted: int) -> int:
@@ -124,11 +125,11 @@ def place(window: Window, rig: Rig) -> PlacedPoints:
     part = window.trajectory
     dense_s = np.asarray((part.t_ns - window.start_ns) * 1e-9, np.float64)
     odom, R_odom_body, velocity_odom = place_with_velocity(
-        dense_s, part.T_a_b.R, part.T_a_b.t, t_s, p_body, _VELOCITY_S
+        dense_s, part.T_a_b.R, part.T_a_b.t, t_s, p_body, WINDOWS.velocity_s
     )
-    at = t_s / KNOT_S
+    at = t_s / WINDOWS.knot_s
     knot = np.clip(np.floor(at).astype(np.int64), 0, window.knots - 2)
-    length = np.maximum(np.linalg.norm(arm_body, axis=1), _NEAREST_M)
+    length = np.maximum(np.linalg.norm(arm_body, axis=1), WINDOWS.nearest_m)
     return PlacedPoints(
         odom=odom,
         arm_odom=np.einsum("nij,nj->ni", R_odom_body, p_body),
@@ -190,7 +191,7 @@ def _samples(imu: ImuSamples | None, start_ns: int, end_ns: int) -> ImuSamples |
     """The samples of a window; None where faster motions than the IMU measures are missing."""
     if imu is None:
         return None
-    kept = (imu.t_ns >= start_ns - _MARGIN_NS) & (imu.t_ns <= end_ns + _MARGIN_NS)
+    kept = (imu.t_ns >= start_ns - WINDOWS.margin_ns) & (imu.t_ns <= end_ns + WINDOWS.margin_ns)
     # Of all samples: the fastest turn of a window alone may look like the end of a range.
     if saturated_samples(imu)[kept].any():
         return None

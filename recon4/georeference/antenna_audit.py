@@ -19,36 +19,11 @@ from recon4.georeference.drift_fit import DriftFit, DriftRows, fit_drift
 from recon4.georeference.fix_clock import coarse_clock_s
 from recon4.georeference.gnss_priors import positioned
 from recon4.georeference.ins_attitudes import attitudes
+from recon4.georeference.tuning_clocks import ANTENNA_AUDIT
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times, Trajectory
-
-_DRIFT_M = 0.01
-"""Random walk of the drift [m/sqrt(s)]: of the trajectory and of the slow error of GNSS."""
-_DRIFT_RAD = 5e-4
-"""The same of attitudes [rad/sqrt(s)]."""
-_MIN_SD_M = 0.008
-"""No fix has a smaller white error [m]."""
-_SD_RAD = 7e-4
-"""White error of the attitudes of an INS [rad]; residuals that are larger raise it."""
-_MAX_SD_M = 0.1
-"""Fixes with a larger stated standard deviation are not used [m]."""
-_SPEED_NS = 50_000_000
-"""Rates are measured over this time before and after a fix [ns]."""
-_CREDIBLE_S = 1.0
-"""A larger error of the clock than the shape of the walk shows is one of the trajectory: nothing
-can be compared [s]."""
-_RELINEARIZED = 3
-"""How many times the fixes are shifted by the clock: a body sways within 100 ms."""
-_MIN_FIXES = 50
-_LEVER_ARM_M, _CLOCK_S = 0.05, 0.02
-"""Smaller errors are not announced."""
-_SIGMAS = 4.5
-_SD_FACTOR = 1.5
-"""True errors of the estimate against the stated ones, on 32 walks with a drift of 5 mm/sqrt(s)."""
-_UNKNOWN_M = 0.05
-"""With a larger standard deviation the walk says nothing of a lever arm [m]."""
 
 
 def audit_antenna(
@@ -68,17 +43,17 @@ def audit_antenna(
     """
     coarse_s = clock_s = _coarse_clock_s(trajectory, gnss, origin=origin)
     found = None
-    for _ in range(1 + _RELINEARIZED):
+    for _ in range(1 + ANTENNA_AUDIT.relinearized):
         rows = _positions(trajectory, gnss, rig, origin=origin, clock_s=clock_s)
         if rows is None:
             break
-        position = fit_drift(rows, drift=_DRIFT_M)
+        position = fit_drift(rows, drift=ANTENNA_AUDIT.drift_m)
         turned = _attitudes(trajectory, gnss, clock_s=clock_s)
-        attitude = None if turned is None else fit_drift(turned, drift=_DRIFT_RAD)
+        attitude = None if turned is None else fit_drift(turned, drift=ANTENNA_AUDIT.drift_rad)
         x, cov = _together(position, attitude)
         clock_s += float(x[3])
         found = x, cov, len(rows.t_s)
-    if found is None or abs(clock_s - coarse_s) > _CREDIBLE_S:
+    if found is None or abs(clock_s - coarse_s) > ANTENNA_AUDIT.credible_s:
         return None
     x, cov, fixes = found
     sd = np.sqrt(np.diag(cov))
@@ -104,7 +79,7 @@ def unexplained(
         origin: Of the local frame.
     """
     rows = _positions(trajectory, gnss, rig, origin=origin, clock_s=0.0)
-    return np.inf if rows is None else fit_drift(rows, drift=_DRIFT_M, fixed=True).rms
+    return np.inf if rows is None else fit_drift(rows, drift=ANTENNA_AUDIT.drift_m, fixed=True).rms
 
 
 def turn_by_antenna(trajectory: Trajectory, found: AntennaFigures) -> float:
@@ -137,11 +112,11 @@ def antenna_doubts(found: AntennaFigures) -> tuple[AntennaDoubt, ...]:
     """
     doubts: list[AntennaDoubt] = []
     arm, sd = np.array(found.arm_m), np.array(found.arm_sd_m)
-    if found.arm_sigmas > _SIGMAS and np.linalg.norm(arm) > _LEVER_ARM_M:
+    if found.arm_sigmas > ANTENNA_AUDIT.sigmas and np.linalg.norm(arm) > ANTENNA_AUDIT.lever_arm_m:
         doubts.append("offset")
-    elif sd[:2].max() > _UNKNOWN_M:
+    elif sd[:2].max() > ANTENNA_AUDIT.unknown_m:
         doubts.append("unchecked")
-    if abs(found.clock_s) > max(_SIGMAS * found.clock_sd_s, _CLOCK_S):
+    if abs(found.clock_s) > max(ANTENNA_AUDIT.sigmas * found.clock_sd_s, ANTENNA_AUDIT.clock_s):
         doubts.append("clock")
     return tuple(doubts)
 
@@ -165,11 +140,11 @@ def _together(position: DriftFit, attitude: DriftFit | None) -> tuple[Array, Arr
 
     Attitudes that contradict the positions have another latency in the receiver: they are left out.
     """
-    x, cov = position.x, _SD_FACTOR**2 * position.cov
+    x, cov = position.x, ANTENNA_AUDIT.sd_factor**2 * position.cov
     if attitude is None:
         return x, cov
-    clock_s, variance = float(attitude.x[3]), _SD_FACTOR**2 * float(attitude.cov[3, 3])
-    if abs(clock_s - x[3]) > _SIGMAS * np.sqrt(variance + cov[3, 3]):
+    clock_s, variance = float(attitude.x[3]), ANTENNA_AUDIT.sd_factor**2 * float(attitude.cov[3, 3])
+    if abs(clock_s - x[3]) > ANTENNA_AUDIT.sigmas * np.sqrt(variance + cov[3, 3]):
         return x, cov
     gain = cov[:, 3] / (cov[3, 3] + variance)
     return x + gain * (clock_s - x[3]), cov - np.outer(gain, cov[3])
@@ -177,11 +152,11 @@ def _together(position: DriftFit, attitude: DriftFit | None) -> tuple[Array, Arr
 
 def _used(trajectory: Trajectory, gnss: GnssSamples, t_ns: Times) -> NDArray[np.bool_]:
     """Fixes with decimeters or better during the walk, (N,)."""
-    sd_m = np.nan_to_num(gnss.sd_enu_m, nan=_MIN_SD_M)
-    good = (gnss.quality == GnssQuality.RTK_FIXED) & (sd_m.max(axis=1) <= _MAX_SD_M)
+    sd_m = np.nan_to_num(gnss.sd_enu_m, nan=ANTENNA_AUDIT.min_sd_m)
+    good = (gnss.quality == GnssQuality.RTK_FIXED) & (sd_m.max(axis=1) <= ANTENNA_AUDIT.max_sd_m)
     good &= positioned(gnss)
-    good &= t_ns - _SPEED_NS >= trajectory.t_ns[0]
-    return np.asarray(good & (t_ns + _SPEED_NS <= trajectory.t_ns[-1]))
+    good &= t_ns - ANTENNA_AUDIT.speed_ns >= trajectory.t_ns[0]
+    return np.asarray(good & (t_ns + ANTENNA_AUDIT.speed_ns <= trajectory.t_ns[-1]))
 
 
 def _positions(
@@ -194,20 +169,25 @@ def _positions(
 ) -> DriftRows | None:
     t_ns = gnss.t_ns + round(1e9 * clock_s)
     good = _used(trajectory, gnss, t_ns)
-    if good.sum() < _MIN_FIXES:
+    if good.sum() < ANTENNA_AUDIT.min_fixes:
         return None
     t_ns = t_ns[good]
     p_fix = to_enu(
         origin, gnss.lat_rad[good], gnss.lon_rad[good], ellipsoidal_height_m=gnss.height_m[good]
     )
     T_enu_body = trajectory.at(t_ns)
-    before, after = (_antenna(trajectory.at(t_ns + d), rig) for d in (-_SPEED_NS, _SPEED_NS))
+    before, after = (
+        _antenna(trajectory.at(t_ns + d), rig)
+        for d in (-ANTENNA_AUDIT.speed_ns, ANTENNA_AUDIT.speed_ns)
+    )
     return DriftRows(
         t_s=(t_ns - t_ns[0]) / 1e9,
         offset=p_fix - _antenna(T_enu_body, rig),
         R_enu_body=T_enu_body.R,
-        rate=(after - before) / (2e-9 * _SPEED_NS),
-        sd=np.fmax(np.nan_to_num(gnss.sd_enu_m[good], nan=_MIN_SD_M), _MIN_SD_M),
+        rate=(after - before) / (2e-9 * ANTENNA_AUDIT.speed_ns),
+        sd=np.fmax(
+            np.nan_to_num(gnss.sd_enu_m[good], nan=ANTENNA_AUDIT.min_sd_m), ANTENNA_AUDIT.min_sd_m
+        ),
     )
 
 
@@ -215,18 +195,20 @@ def _attitudes(trajectory: Trajectory, gnss: GnssSamples, *, clock_s: float) -> 
     """Attitudes of the INS beside those of the trajectory, whatever its mount; None = too few."""
     t_ns = gnss.t_ns + round(1e9 * clock_s)
     good = _used(trajectory, gnss, t_ns) & np.isfinite(gnss.rpy_ned_rad).all(axis=1)
-    if good.sum() < _MIN_FIXES:
+    if good.sum() < ANTENNA_AUDIT.min_fixes:
         return None
     t_ns = t_ns[good]
     R_enu_body, R_enu_ins = trajectory.at(t_ns).R, attitudes(gnss.rpy_ned_rad[good])
     R_body_ins = mean_rotation(np.swapaxes(R_enu_body, 1, 2) @ R_enu_ins)
-    before, after = (trajectory.at(t_ns + d).R for d in (-_SPEED_NS, _SPEED_NS))
+    before, after = (
+        trajectory.at(t_ns + d).R for d in (-ANTENNA_AUDIT.speed_ns, ANTENNA_AUDIT.speed_ns)
+    )
     return DriftRows(
         t_s=(t_ns - t_ns[0]) / 1e9,
         offset=so3_log(R_enu_ins @ np.swapaxes(R_enu_body @ R_body_ins, 1, 2)),
         R_enu_body=R_enu_body,
-        rate=so3_log(after @ np.swapaxes(before, 1, 2)) / (2e-9 * _SPEED_NS),
-        sd=np.full((len(t_ns), 3), _SD_RAD),
+        rate=so3_log(after @ np.swapaxes(before, 1, 2)) / (2e-9 * ANTENNA_AUDIT.speed_ns),
+        sd=np.full((len(t_ns), 3), ANTENNA_AUDIT.sd_rad),
     )
 
 

@@ -14,6 +14,7 @@ from recon4.georeference.gnss import align_heading
 from recon4.georeference.gnss_priors import GnssPriors, positioned
 from recon4.georeference.level import level
 from recon4.georeference.tuning import GnssTuning
+from recon4.georeference.tuning_clocks import ANTENNA_CALIBRATION
 from recon4.model.calibration_figures import GNSS, GnssOutcome, ParameterFigures, ParameterStatus
 from recon4.model.figures import AntennaFigures
 from recon4.model.rig import Rig
@@ -22,17 +23,6 @@ from recon4.model.trajectory import Trajectory
 from recon4.settings import GnssSettings
 from recon4.settings.tuning import tuned
 
-_BLOCK_NS = 8_000_000_000
-"""Every second stretch of this length is not used by the first estimate, but checks it [ns]."""
-_TOLERANCE = np.array([0.02, 0.02, 0.02, 0.002])
-"""Smaller changes of lever arm [m] and clock [s] are no reason to calibrate, (4,)."""
-_OBSERVABLE_SD = np.array([0.01, 0.01, 0.01, 0.001])
-"""With a larger standard deviation a parameter counts as not observable, (4,)."""
-_KNOWN_ERROR = np.array([0.05, -0.05, 0.05, 0.02])
-"""Wrong values that are put in on purpose; an estimate that does not find them proves nothing."""
-_SIGMAS, _CERTAIN_SIGMAS = 3.0, 4.5
-_BETTER = 0.99
-"""Ratio of what is not explained, after against before."""
 _AXES = ("x", "y", "z", "")
 
 
@@ -115,7 +105,7 @@ def calibrate_antenna(
             unit="m" if axis else "s",
             change=float(change[k]),
             sd=float(sd[k]),
-            status=_status(bool(off[k]), bool(sd[k] > _OBSERVABLE_SD[k])),
+            status=_status(bool(off[k]), bool(sd[k] > ANTENNA_CALIBRATION.observable_sd[k])),
         )
         for k, axis in enumerate(_AXES)
     )
@@ -141,8 +131,11 @@ def _off(found: AntennaFigures) -> NDArray[np.bool_]:
     change, sd = np.abs(_change(found)), _deviation(found)
     sigmas = np.array([found.arm_sigmas] * 3 + [change[3] / sd[3]])
     size = np.array([float(np.linalg.norm(change[:3]))] * 3 + [change[3]])
-    certain = (sigmas > _CERTAIN_SIGMAS) & (size > _TOLERANCE)
-    return np.asarray(certain & (change > np.maximum(_SIGMAS * sd, 0.5 * _TOLERANCE)))
+    tolerance = np.array(ANTENNA_CALIBRATION.tolerance)
+    certain = (sigmas > ANTENNA_CALIBRATION.certain_sigmas) & (size > tolerance)
+    return np.asarray(
+        certain & (change > np.maximum(ANTENNA_CALIBRATION.sigmas * sd, 0.5 * tolerance))
+    )
 
 
 def _refusal(
@@ -151,22 +144,23 @@ def _refusal(
     """Why the corrected rig must not be used; None = it may."""
     if not off.any():
         return None
-    odd = (gnss.t_ns - gnss.t_ns[0]) // _BLOCK_NS % 2 == 1
+    odd = (gnss.t_ns - gnss.t_ns[0]) // ANTENNA_CALIBRATION.block_ns % 2 == 1
     used, others = gnss.take(~odd), gnss.take(odd)
     first = placed.audit(used, rig)
-    second = placed.audit(_later(others, _KNOWN_ERROR[3]), _corrected(rig, _KNOWN_ERROR))
+    error = np.array(ANTENNA_CALIBRATION.known_error)
+    second = placed.audit(_later(others, error[3]), _corrected(rig, error))
     if first is None or second is None:
         return GnssRefusal(GnssOutcome.TOO_SHORT)
-    apart = np.abs(_change(first) - _change(second) - _KNOWN_ERROR)
-    scatter = _SIGMAS * np.hypot(_deviation(first), _deviation(second))
-    wrong = off & (apart > np.maximum(scatter, 0.5 * np.abs(_KNOWN_ERROR)))
+    apart = np.abs(_change(first) - _change(second) - error)
+    scatter = ANTENNA_CALIBRATION.sigmas * np.hypot(_deviation(first), _deviation(second))
+    wrong = off & (apart > np.maximum(scatter, 0.5 * np.abs(error)))
     if wrong.any():
         named = (f"position {axis}" if axis else "clock" for axis in _AXES)
         names = tuple(name for name, bad in zip(named, wrong, strict=True) if bad)
         return GnssRefusal(GnssOutcome.OTHER_VALUES, names)
     change = np.where(off, _change(first), 0.0)
     after = placed.unexplained(_later(others, change[3]), _corrected(rig, change))
-    if not after < _BETTER * placed.unexplained(others, rig):
+    if not after < ANTENNA_CALIBRATION.better * placed.unexplained(others, rig):
         return GnssRefusal(GnssOutcome.NO_BETTER)
     return None
 

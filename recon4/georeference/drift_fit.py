@@ -20,17 +20,10 @@ from scipy.sparse import csr_array, diags_array, eye_array, kron
 from scipy.sparse.linalg import splu
 
 from recon4.geometry.se3 import Array
+from recon4.georeference.tuning_clocks import DRIFT_FIT
 
-_KNOT_S = 2.0
-"""The drift is linear between knots this far apart [s]."""
-_CAUCHY_SD = 3.0
-_ROUNDS = 8
-_LAGS = 30
-"""Longest lag of the residuals' correlation, in measurements."""
 UNKNOWNS = 4
 """Constant (3) and clock."""
-_PRIOR = 1e-6
-"""Information of every unknown, so that all are determined."""
 _MEDIAN_CHI2_3 = 2.37
 """Median of chi-square with 3 degrees of freedom."""
 
@@ -76,17 +69,17 @@ def fit_drift(rows: DriftRows, *, drift: float, fixed: bool = False) -> DriftFit
         J = np.zeros_like(J)
     y = (rows.offset / rows.sd).ravel()
     weight = np.ones(len(y))
-    for _ in range(_ROUNDS):
+    for _ in range(DRIFT_FIT.rounds):
         weighted = J_drift.multiply(weight[:, None]).tocsc()
         solver = splu((J_drift.T @ weighted + walk).tocsc())
         cross, of_y = weighted.T @ J, weighted.T @ y
         eliminated = solver.solve(cross)
-        H = (J * weight[:, None]).T @ J + _PRIOR * np.eye(UNKNOWNS) - cross.T @ eliminated
+        H = (J * weight[:, None]).T @ J + DRIFT_FIT.prior * np.eye(UNKNOWNS) - cross.T @ eliminated
         x = np.linalg.solve(H, J.T @ (weight * y) - eliminated.T @ of_y)
         residual = y - J @ x - J_drift @ solver.solve(of_y - cross @ x)
         z2 = np.repeat((residual.reshape(-1, 3) ** 2).sum(axis=1), 3)
         scale2 = max(float(np.median(z2)) / _MEDIAN_CHI2_3, 1.0)
-        weight = 1.0 / (1.0 + z2 / (scale2 * _CAUCHY_SD**2))
+        weight = 1.0 / (1.0 + z2 / (scale2 * DRIFT_FIT.cauchy_sd**2))
     used = np.sqrt(weight) * residual
     inflated = scale2 * _correlation(used.reshape(-1, 3))
     return DriftFit(np.asarray(x), inflated * np.linalg.inv(H), float(np.sqrt(np.mean(used**2))))
@@ -99,7 +92,7 @@ def _design(rows: DriftRows, drift: float) -> tuple[Array, csr_array, csr_array]
         Of constant and clock, (3 N, 4); of the drift at its knots, (3 N, 3 K); (3 K, 3 K).
     """
     count = len(rows.t_s)
-    at = rows.t_s / _KNOT_S
+    at = rows.t_s / DRIFT_FIT.knot_s
     knots = int(at[-1]) + 2
     left = np.minimum(at.astype(np.int64), knots - 2)
     s = at - left
@@ -112,8 +105,8 @@ def _design(rows: DriftRows, drift: float) -> tuple[Array, csr_array, csr_array]
     )
     J_drift = kron(between, np.eye(3), format="csr").multiply(1.0 / rows.sd.reshape(-1, 1)).tocsr()
     change = diags_array([-1.0, 1.0], offsets=[0, 1], shape=(knots - 1, knots))
-    walk = kron(change.T @ change, np.eye(3)) / (drift**2 * _KNOT_S)
-    return J, J_drift, (walk + _PRIOR * eye_array(3 * knots)).tocsr()
+    walk = kron(change.T @ change, np.eye(3)) / (drift**2 * DRIFT_FIT.knot_s)
+    return J, J_drift, (walk + DRIFT_FIT.prior * eye_array(3 * knots)).tocsr()
 
 
 def _correlation(residual: NDArray[np.float64]) -> float:
@@ -124,7 +117,7 @@ def _correlation(residual: NDArray[np.float64]) -> float:
         return 1.0
     lags = [
         float((centered[lag:] * centered[:-lag]).sum()) / power
-        for lag in range(1, min(_LAGS, len(centered) - 1))
+        for lag in range(1, min(DRIFT_FIT.lags, len(centered) - 1))
     ]
     first_negative = next((k for k, rho in enumerate(lags) if rho <= 0.0), len(lags))
     return 1.0 + 2.0 * float(sum(lags[:first_negative]))

@@ -15,19 +15,16 @@ from recon4.georeference.gnss_priors import (
     one_prior_per_node,
     usable_gnss_priors,
 )
-from recon4.georeference.tuning import GnssTuning
+from recon4.georeference.tuning import ALIGN, GnssTuning
 from recon4.model.local_frame import LocalReason
 from recon4.model.pose_graph import AUTOMATIC, Judge, Judgment, PoseGraph
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.pose_graph.robust import LOOP_NODES, optimize_gnc
+from recon4.pose_graph.robust import optimize_gnc
 from recon4.pose_graph.solve import PosePriors, PositionPriors, Priors, optimize
+from recon4.pose_graph.tuning_solve import ROBUST
 from recon4.pose_graph.verification import outlier_judgments, with_judgments
-
-_DRAWS = 400
-_MIN_PRIORS = 5
-_OUTLIER_SD = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -169,7 +166,7 @@ def georeference(
         why = LocalReason.NO_GNSS if gnss is None else LocalReason.SWITCHED_OFF
         return _local(graph, LocalRecord(reason=why))
     gnss_priors, origin = usable_gnss_priors(graph, trajectory, gnss, rig=rig, settings=settings)
-    if origin is None or len(gnss_priors) < _MIN_PRIORS:
+    if origin is None or len(gnss_priors) < ALIGN.min_priors:
         usable, few = len(gnss_priors), LocalReason.FEW_FIXES
         return _local(graph, LocalRecord(reason=few, fixes=len(gnss), fixes_usable=usable))
     return _place_by_priors(graph, gnss_priors, origin, samples=len(gnss), settings=settings)
@@ -187,7 +184,7 @@ def _place_by_priors(
     p_map = graph.T_map_body[gnss_priors.node] @ gnss_priors.p_node_antenna
     T_enu_map, near = align_heading(p_map, gnss_priors, settings=settings)
     extent = float(np.linalg.norm(np.ptp(p_map[near, :2], axis=0))) if near.any() else 0.0
-    if near.sum() < _MIN_PRIORS or extent < settings.min_extent_m:
+    if near.sum() < ALIGN.min_priors or extent < settings.min_extent_m:
         local = LocalRecord(
             reason=LocalReason.NO_AGREEMENT,
             fixes=samples,
@@ -247,7 +244,7 @@ def align_heading(
     )
     far_enough = max(settings.min_extent_m, 0.3 * float(np.linalg.norm(np.ptp(p_map, axis=0))))
     best = (SE3.identity(), np.zeros(len(gnss_priors), dtype=np.bool_))
-    for _ in range(_DRAWS):
+    for _ in range(ALIGN.draws):
         a, b = rng.integers(0, len(gnss_priors), 2)
         if np.linalg.norm(p_map[a, :2] - p_map[b, :2]) < far_enough:
             continue
@@ -292,7 +289,7 @@ def _solve(
         graph = graph.with_poses(solution.T_map_body)
         off = np.abs(_residuals(graph, gnss_priors)) / gnss_priors.sd_m
         scale = np.maximum(1.4826 * np.median(off[used], axis=0), 1.0)
-        used = near & np.all(off < _OUTLIER_SD * scale, axis=1)
+        used = near & np.all(off < ALIGN.outlier_sd * scale, axis=1)
     return graph, used
 
 
@@ -307,7 +304,7 @@ def _contradicting(
     if not settings.judge_edges:
         return {}
     short = tuple(
-        e for e in graph.edges if e.decided_by != AUTOMATIC or abs(e.j - e.i) < LOOP_NODES
+        e for e in graph.edges if e.decided_by != AUTOMATIC or abs(e.j - e.i) < ROBUST.loop_nodes
     )
     walk, used = _solve(graph.with_edges(short), gnss_priors, near, settings=settings)
     tilt = _tilt_priors(graph, sd_rad=settings.tilt_sd_rad)

@@ -10,6 +10,7 @@ from recon4.geometry.se3 import Array
 from recon4.georeference.crs import GeodeticOrigin, to_enu
 from recon4.georeference.ins_attitudes import attitudes, ins_mount
 from recon4.georeference.receiver_clock import receiver_clock_s
+from recon4.georeference.tuning import JUMPS
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
@@ -17,11 +18,6 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
-
-_AROUND = 11
-"""Fixes whose median shows that the one in their middle jumps."""
-_JUMP_M, _TURN_S = 0.2, 0.06
-"""Distance of such a fix from the median [m], and what turns and starts add at a speed [s]."""
 
 
 def make_gnss_aiding(
@@ -75,12 +71,12 @@ def jumping(p_enu: Array, t_ns: Times) -> NDArray[np.bool_]:
         p_enu: Positions [m], (N, 3).
         t_ns: Their times [ns], increasing, (N,).
     """
-    if len(t_ns) < _AROUND:
+    if len(t_ns) < JUMPS.around:
         return np.zeros(len(t_ns), np.bool_)
-    median = median_filter(p_enu, size=(_AROUND, 1), mode="nearest")
-    half = _AROUND // 2
+    median = median_filter(p_enu, size=(JUMPS.around, 1), mode="nearest")
+    half = JUMPS.around // 2
     moved_m = np.linalg.norm(median[half:] - median[:-half], axis=1)
     speed_m_s = float(np.median(moved_m / (1e-9 * (t_ns[half:] - t_ns[:-half]))))
     beside_m = np.linalg.norm(p_enu - median, axis=1)
     beside_m[:half] = beside_m[-half:] = 0.0  # half a window is no median
-    return np.asarray(beside_m > _JUMP_M + _TURN_S * speed_m_s)
+    return np.asarray(beside_m > JUMPS.jump_m + JUMPS.turn_s * speed_m_s)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import GeodeticOrigin, to_enu
-from recon4.georeference.tuning import GnssTuning
+from recon4.georeference.tuning import FIXES, GnssTuning
 from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples
@@ -24,11 +24,6 @@ _RANKS: dict[int, int] = {
 }
 """Rank of each fix quality; others (invalid, dead reckoning) are never used."""
 _ASKED = {"single": 1, "differential": 2, "float": 3, "fixed": 4}
-_DEFAULT_SD_M = np.array(
-    [[np.nan] * 3, [3.0, 3.0, 6.0], [1.0, 1.0, 2.0], [0.3, 0.3, 0.6], [0.02, 0.02, 0.03]]
-)
-"""Standard deviations by rank, if the receiver reports none [m]."""
-_FROZEN_M = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +86,9 @@ def usable_gnss_priors(
     node = _nearest(graph.t_ns, t_ns[rows])
     T_odom_node = trajectory.at(np.clip(graph.t_ns, trajectory.t_ns[0], trajectory.t_ns[-1]))[node]
     sd_m = np.where(
-        np.isfinite(gnss.sd_enu_m[rows]), gnss.sd_enu_m[rows], _DEFAULT_SD_M[rank[rows]]
+        np.isfinite(gnss.sd_enu_m[rows]),
+        gnss.sd_enu_m[rows],
+        np.array(FIXES.default_sd_m)[rank[rows]],
     )
     return (
         GnssPriors(
@@ -142,7 +139,7 @@ def _frozen(gnss: GnssSamples, rows: Rows, p_antenna: Array) -> NDArray[np.bool_
         same = gnss.lat_rad[a] == gnss.lat_rad[b] and gnss.lon_rad[a] == gnss.lon_rad[b]
         if not same:
             since = k
-        elif np.linalg.norm(p_antenna[k] - p_antenna[since]) > _FROZEN_M:
+        elif np.linalg.norm(p_antenna[k] - p_antenna[since]) > FIXES.frozen_m:
             frozen[k] = True
     return frozen
 

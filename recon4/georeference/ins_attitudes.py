@@ -9,15 +9,13 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import Array, so3_exp
+from recon4.georeference.tuning import ATTITUDES
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 
 _R_ENU_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 _R_DOWN_UP = np.diag([1.0, -1.0, -1.0])
 """Rotation from a body frame with z up to one with x forward and z down."""
-_MIN_SAMPLES = 50
-_TURNED_RAD = float(np.deg2rad(10.0))
-"""Bias and mount of an accelerometer may be wrong by some degrees."""
 
 
 def attitudes(rpy_ned_rad: Array) -> Array:
@@ -42,10 +40,10 @@ def ins_mount(gnss: GnssSamples, rig: Rig, *, imu: ImuSamples | None, usual: Arr
     """
     known = np.isfinite(gnss.rpy_ned_rad[:, :2]).all(axis=1)
     t_ns = gnss.t_ns[known]
-    if imu is None or len(t_ns) < 2 or rig.T_body_imu.angle() < _TURNED_RAD:
+    if imu is None or len(t_ns) < 2 or rig.T_body_imu.angle() < ATTITUDES.turned_rad:
         return usual
     inside = (imu.t_ns >= t_ns[0]) & (imu.t_ns <= t_ns[-1]) & np.isfinite(imu.accel_m_s2).all(1)
-    if inside.sum() < _MIN_SAMPLES:
+    if inside.sum() < ATTITUDES.min_samples:
         return usual
     # A heading does not change what is vertical. Samples meet the next attitude.
     vertical = attitudes(gnss.rpy_ned_rad[known] * [1.0, 1.0, 0.0])[:, 2]

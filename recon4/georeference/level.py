@@ -9,20 +9,10 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, mean_rotation, so3_exp
 from recon4.georeference.ins_attitudes import ins_mount
+from recon4.georeference.tuning_leveling import LEVELING
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
-
-_WINDOW_NS = 1_000_000_000
-"""Window over which accelerations are averaged [ns]: half a dozen steps of a walk."""
-_SPEED_NS = 200_000_000
-"""Speed at the border of a window is measured over this time before and after [ns]."""
-_WINDOW_SD_M_S2 = 0.1
-_BIAS_SD_M_S2 = 0.1
-"""Standard deviation of an accelerometer's bias [m/s²]."""
-_TRIM = 4.0
-"""Residual in robust standard deviations above which a pair is an outlier."""
-_MIN_PAIRS = 3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -91,11 +81,11 @@ def level(
     """
     if gnss is not None:
         leveling = level_by_attitude(trajectory, gnss, rig, imu=imu)
-        if leveling.pairs >= _MIN_PAIRS:
+        if leveling.pairs >= LEVELING.min_pairs:
             return leveling
     if imu is not None:
         leveling = level_by_gravity(trajectory, imu, rig)
-        if leveling.pairs >= _MIN_PAIRS:
+        if leveling.pairs >= LEVELING.min_pairs:
             return leveling
     return NOT_LEVELED
 
@@ -118,7 +108,7 @@ def level_by_attitude(
     """
     t_ns = gnss.t_ns
     rows = _covered(trajectory, t_ns) & np.isfinite(gnss.rpy_ned_rad[:, :2]).all(1)
-    if rows.sum() < _MIN_PAIRS:
+    if rows.sum() < LEVELING.min_pairs:
         return NOT_LEVELED
     R_body_ins = ins_mount(gnss, rig, imu=imu, usual=rig.T_body_imu.R)
     R_odom_ins = trajectory.at(t_ns[rows]).R @ R_body_ins
@@ -157,7 +147,7 @@ def level_by_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> Level
     for _ in range(10):
         off = np.linalg.norm(force - R_mean @ bias - gravity, axis=1)
         # The length of a three-dimensional normal error has its median at 1.54 deviations.
-        before, kept = kept, off <= np.maximum(_TRIM * np.median(off) / 1.538, 1e-9)
+        before, kept = kept, off <= np.maximum(LEVELING.trim * np.median(off) / 1.538, 1e-9)
         if np.array_equal(before, kept):
             break
         gravity, bias = _fit_gravity(force[kept], R_mean[kept])
@@ -171,25 +161,25 @@ def _windows(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> tuple[Array, 
     rows = np.flatnonzero(_covered(trajectory, t_ns) & np.isfinite(imu.accel_m_s2).all(1))
     if len(rows) == 0:
         return None
-    edges = np.arange(t_ns[rows[0]], t_ns[rows[-1]] + 1, _WINDOW_NS)
+    edges = np.arange(t_ns[rows[0]], t_ns[rows[-1]] + 1, LEVELING.window_ns)
     R_odom_imu = trajectory.at(t_ns[rows]).R @ rig.T_body_imu.R
     force = np.einsum("nij,nj->ni", R_odom_imu, imu.accel_m_s2[rows])
     at = np.searchsorted(t_ns[rows], edges)
     count = np.diff(at)
     full = count >= 0.8 * np.median(count) if len(count) else np.zeros(0, dtype=np.bool_)
-    if full.sum() < _MIN_PAIRS:
+    if full.sum() < LEVELING.min_pairs:
         return None
     mean_force = np.add.reduceat(force, at[:-1])[full] / count[full, None]
     R_mean = np.add.reduceat(R_odom_imu, at[:-1])[full] / count[full, None, None]
     speed = _speed(trajectory, rig, edges)
-    return mean_force - (np.diff(speed, axis=0) / (_WINDOW_NS / 1e9))[full], R_mean
+    return mean_force - (np.diff(speed, axis=0) / (LEVELING.window_ns / 1e9))[full], R_mean
 
 
 def _speed(trajectory: Trajectory, rig: Rig, t_ns: Times) -> Array:
     """Velocity of the IMU in the odometry's frame [m/s], (M, 3)."""
     first, last = trajectory.t_ns[0], trajectory.t_ns[-1]
-    before = np.clip(t_ns - _SPEED_NS, first, last)
-    after = np.clip(t_ns + _SPEED_NS, first, last)
+    before = np.clip(t_ns - LEVELING.speed_ns, first, last)
+    after = np.clip(t_ns + LEVELING.speed_ns, first, last)
     p_imu = rig.T_body_imu.t
     moved = trajectory.at(after) @ p_imu - trajectory.at(before) @ p_imu
     return moved / ((after - before) / 1e9)[:, None]
@@ -197,9 +187,9 @@ def _speed(trajectory: Trajectory, rig: Rig, t_ns: Times) -> Array:
 
 def _fit_gravity(force: Array, R_mean: Array) -> tuple[Array, Array]:
     J = np.concatenate([np.broadcast_to(np.eye(3), R_mean.shape), R_mean], axis=2).reshape(-1, 6)
-    H = J.T @ J / _WINDOW_SD_M_S2**2
-    H[3:, 3:] += np.eye(3) / _BIAS_SD_M_S2**2
-    x = np.linalg.solve(H, J.T @ force.reshape(-1) / _WINDOW_SD_M_S2**2)
+    H = J.T @ J / LEVELING.window_sd_m_s2**2
+    H[3:, 3:] += np.eye(3) / LEVELING.bias_sd_m_s2**2
+    x = np.linalg.solve(H, J.T @ force.reshape(-1) / LEVELING.window_sd_m_s2**2)
     return x[:3], x[3:]
 
 
@@ -221,7 +211,7 @@ def _angles(directions: Array, axis: Array) -> Array:
 
 def _trimmed(angles: Array) -> NDArray[np.bool_]:
     # The angle of a two-dimensional normal error has its median at 1.18 standard deviations.
-    return angles <= np.maximum(_TRIM * np.median(angles) / 1.1774, 1e-9)
+    return angles <= np.maximum(LEVELING.trim * np.median(angles) / 1.1774, 1e-9)
 
 
 def _result(T_level_odom: SE3, source: str, angles: Array, *, kept: NDArray[np.bool_]) -> Leveling:

@@ -10,19 +10,10 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import Array, so3_log
+from recon4.georeference.tuning_clocks import RECEIVER_CLOCK
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
-
-_LARGEST_S = 0.5
-_GRID_S = 0.005
-_LEAST_S = 0.03
-"""A smaller error of the clock does not bend the odometry, and the IMU has one, too."""
-_MAX_GAP_NS = 300_000_000
-"""Turns between attitudes farther apart are not compared [ns]."""
-_MIN_TURNS, _MAX_TURNS = 50, 3000
-_CLEARLY = 0.5
-"""The turns at the clock that is found differ by less than this ratio of those at the stamps."""
 
 
 def receiver_clock_s(t_ns: Times, R_enu_body: Array, *, imu: ImuSamples, rig: Rig) -> float:
@@ -37,13 +28,13 @@ def receiver_clock_s(t_ns: Times, R_enu_body: Array, *, imu: ImuSamples, rig: Ri
     if len(imu) < 2:
         return 0.0
     start_ns, end_ns = imu.t_ns[[0, -1]]
-    reach_ns = round(1e9 * _LARGEST_S)
+    reach_ns = round(1e9 * RECEIVER_CLOCK.largest_s)
     rows = np.flatnonzero(
-        (np.diff(t_ns) <= _MAX_GAP_NS)
+        (np.diff(t_ns) <= RECEIVER_CLOCK.max_gap_ns)
         & (t_ns[:-1] - reach_ns >= start_ns)
         & (t_ns[1:] + reach_ns <= end_ns)
-    )[:_MAX_TURNS]
-    if len(rows) < _MIN_TURNS:
+    )[: RECEIVER_CLOCK.max_turns]
+    if len(rows) < RECEIVER_CLOCK.min_turns:
         return 0.0
     seen = so3_log(np.swapaxes(R_enu_body[rows], 1, 2) @ R_enu_body[rows + 1])
     at_s = (imu.t_ns - start_ns) / 1e9
@@ -63,10 +54,14 @@ def receiver_clock_s(t_ns: Times, R_enu_body: Array, *, imu: ImuSamples, rig: Ri
         off = seen - felt
         return float(np.linalg.norm(off - np.median(off, axis=0), axis=1).mean())
 
-    grid_s = np.arange(-_LARGEST_S, _LARGEST_S + 0.5 * _GRID_S, _GRID_S)
+    grid_s = np.arange(
+        -RECEIVER_CLOCK.largest_s,
+        RECEIVER_CLOCK.largest_s + 0.5 * RECEIVER_CLOCK.grid_s,
+        RECEIVER_CLOCK.grid_s,
+    )
     errors = np.array([differ(float(clock_s)) for clock_s in grid_s])
     best = int(errors.argmin())
     clock_s = float(grid_s[best])
     inside = 0 < best < len(grid_s) - 1
-    clear = errors[best] < _CLEARLY * differ(0.0)
-    return clock_s if inside and clear and abs(clock_s) >= _LEAST_S else 0.0
+    clear = errors[best] < RECEIVER_CLOCK.clearly * differ(0.0)
+    return clock_s if inside and clear and abs(clock_s) >= RECEIVER_CLOCK.least_s else 0.0

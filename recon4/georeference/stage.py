@@ -17,7 +17,7 @@ from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.georeference.floor import level_by_floor
 from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
-from recon4.georeference.tuning import GnssTuning
+from recon4.georeference.tuning import LEVEL_STAGE, GnssTuning
 from recon4.mapping.mirrors import Sight, find_mirrors
 from recon4.mapping.place import place_with_origins
 from recon4.model.corrections import apply_corrections
@@ -42,13 +42,6 @@ from recon4.settings.tuning import tuned
 from recon4.store.arrays import save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.frames import FrameStore
-
-_SAMPLE_FRAMES = 200
-_SAMPLE_POINTS = 2000
-"""Numbers of multiframes, and of points of each, that are sampled to find floor and mirrors."""
-
-_WALK_M_S = 1.3
-"""Speed by which an error of the receiver's clock becomes one of the position [m/s]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -193,7 +186,7 @@ def _uncertainty(
     disputed = disputed_m(runs, fixes=len(placed.t_ns))
     model = replace(CALIBRATED, gnss_m=float(np.hypot(CALIBRATED.gnss_m, disputed)))
     if antenna is not None and antenna_doubts(antenna):
-        known_m = float(np.linalg.norm(antenna.arm_m)) + _WALK_M_S * abs(antenna.clock_s)
+        known_m = float(np.linalg.norm(antenna.arm_m)) + LEVEL_STAGE.walk_m_s * abs(antenna.clock_s)
         nodes = Trajectory(graph.t_ns, graph.T_map_body)
         model = replace(
             model,
@@ -250,11 +243,11 @@ def _describe_crs(origin: GeodeticOrigin, name: str) -> CrsRecord:
 
 def _sample_points(frames: FrameStore, trajectory: Trajectory) -> tuple[Array, Array]:
     """A sample of the map's points and the sensor positions [m], (N, 3) each."""
-    rows = np.unique(np.linspace(0, len(frames) - 1, _SAMPLE_FRAMES).astype(int))
+    rows = np.unique(np.linspace(0, len(frames) - 1, LEVEL_STAGE.sample_frames).astype(int))
     points, origins = [], []
     for k in rows.tolist():
         frame = frames[k]
-        few = frame.take(slice(None, None, 1 + len(frame) // _SAMPLE_POINTS))
+        few = frame.take(slice(None, None, 1 + len(frame) // LEVEL_STAGE.sample_points))
         placed = place_with_origins(few, trajectory, frames.rig)
         points.append(placed.xyz_m)
         origins.append(placed.origin_m)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from recon4.settings import GnssSettings
 
 
@@ -27,3 +29,79 @@ class GnssTuning(GnssSettings):
     """Smallest extent of the fixes for which a heading is estimated [m]."""
     seed: int = 4
     """Seed of the random draws of the initial alignment."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlignTuning:
+    """Initial alignment and outliers of fixes."""
+
+    draws: int = 400
+    """Number of random pairs of fixes that are tried."""
+    min_priors: int = 5
+    """With fewer consistent fixes a map stays local."""
+    outlier_sd: float = 5.0
+    """Residual from which on a fix is an outlier, in robust standard deviations."""
+
+
+ALIGN = AlignTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JumpTuning:
+    """Fixes that jump."""
+
+    around: int = 11
+    """Number of fixes whose median shows that the one in their middle jumps."""
+    jump_m: float = 0.2
+    turn_s: float = 0.06
+    """Distance of such a fix from the median [m], and what turns and starts add at a speed [s]."""
+
+
+JUMPS = JumpTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FixTuning:
+    """Usable fixes."""
+
+    default_sd_m: tuple[tuple[float, float, float], ...] = (
+        (np.nan, np.nan, np.nan),
+        (3.0, 3.0, 6.0),
+        (1.0, 1.0, 2.0),
+        (0.3, 0.3, 0.6),
+        (0.02, 0.02, 0.03),
+    )
+    """Standard deviations by rank, if the receiver reports none [m]."""
+    frozen_m: float = 0.5
+    """A body that moves by more while the position stays has a receiver that is stuck [m]."""
+
+
+FIXES = FixTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AttitudeTuning:
+    """Attitudes of a GNSS/INS."""
+
+    min_samples: int = 50
+    """Fewer attitudes are not compared."""
+    turned_rad: float = float(np.deg2rad(10.0))
+    """Bias and mount of an accelerometer may be wrong by some degrees."""
+
+
+ATTITUDES = AttitudeTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LevelStageTuning:
+    """What the stage samples of a walk."""
+
+    sample_frames: int = 200
+    """Number of multiframes that are sampled to find floor and mirrors …"""
+    sample_points: int = 2000
+    """… and of points of each."""
+    walk_m_s: float = 1.3
+    """Speed by which an error of the receiver's clock becomes one of the position [m/s]."""
+
+
+LEVEL_STAGE = LevelStageTuning()

@@ -13,9 +13,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.pose_graph.pairs import Pair
 from recon4.pose_graph.tuning import GraphTuning
-
-_RUN_GAP = 2
-"""Nodes before and after a chosen one that are skipped, because they see the same."""
+from recon4.pose_graph.tuning_places import CANDIDATES
 
 Ends = tuple[int, int]
 """Nodes ``(i, j)`` of a pair."""
@@ -113,7 +111,7 @@ def _spread(nodes: NDArray[np.int64], distance_m: Array, limit: int) -> list[int
             best = int(run[np.argmin(distance_m[run])])
             chosen.append(int(nodes[best]))
             at = int(np.searchsorted(run, best))
-            halves += [run[: max(at - _RUN_GAP, 0)], run[at + 1 + _RUN_GAP :]]
+            halves += [run[: max(at - CANDIDATES.run_gap, 0)], run[at + 1 + CANDIDATES.run_gap :]]
         runs = [run for run in halves if len(run)]
     return sorted(chosen)
 

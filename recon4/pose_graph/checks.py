@@ -10,8 +10,7 @@ import numpy as np
 from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Flags, Relations
-
-_ROTATION_TOLERANCE = 1e-6
+from recon4.pose_graph.tuning_solve import GRAPH_CHECKS
 
 
 def check_relations(T_map_body: SE3, of: Relations) -> list[tuple[int, int]]:
@@ -41,7 +40,7 @@ def _is_motion(T_a_b: SE3) -> Flags:
     R = T_a_b.R
     defect = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max((-1, -2), initial=0.0)
     proper = np.linalg.det(np.nan_to_num(R)) > 0.0
-    return np.isfinite(T_a_b.t).all(-1) & (defect < _ROTATION_TOLERANCE) & proper
+    return np.isfinite(T_a_b.t).all(-1) & (defect < GRAPH_CHECKS.rotation_tolerance) & proper
 
 
 def _is_positive(of: Relations) -> Flags:

@@ -15,21 +15,11 @@ from numpy.typing import NDArray
 from scipy import fft, ndimage
 
 from recon4.geometry.se3 import Array
+from recon4.pose_graph.tuning_places import DENSITY
 
-CELL_M = 0.4
-_CELLS = 128
-RADIUS_M = 15.0
-"""Radius of an image; with the largest shift nothing wraps around."""
-MAX_SHIFT_M = 10.0
-_REACH = round(MAX_SHIFT_M / CELL_M)
+_REACH = round(DENSITY.max_shift_m / DENSITY.cell_m)
 _SHIFTS = np.arange(-_REACH, _REACH + 1)
 """Shifts that are tried along each axis, in cells."""
-_MOST = 4.0
-"""Points in a cell beyond which it is full."""
-_YAW_STEP_RAD = np.deg2rad(5.0)
-_APART_M, _APART_RAD = 1.5, 0.25
-"""Maxima closer than this belong to one hypothesis."""
-_RADII, _ANGLES = 12, 32
 _HEIGHTS_M = np.arange(-2.5, 5.0, 0.25)
 
 Spectrum = NDArray[np.complex64]
@@ -64,7 +54,7 @@ def make_density_image(walls_m: Array, heights_m: Array) -> DensityImage:
         walls_m: Horizontal positions relative to the place [m], (N, 2).
         heights_m: Heights of all points relative to the body [m], (M,): floor and ceiling.
     """
-    near = walls_m[np.linalg.norm(walls_m, axis=1) < RADIUS_M]
+    near = walls_m[np.linalg.norm(walls_m, axis=1) < DENSITY.radius_m]
     image = ndimage.gaussian_filter(_raster(near), 1.0)
     spectrum = fft.rfft2(image / max(float(np.linalg.norm(image)), 1e-9))
     return DensityImage(near, spectrum, _descriptor(image, heights_m))
@@ -85,7 +75,7 @@ def overlays(
     found = []
     for _ in range(most):
         k, a, b = np.unravel_index(int(np.argmax(scores)), scores.shape)
-        shift = (float(_SHIFTS[a] * CELL_M), float(_SHIFTS[b] * CELL_M))
+        shift = (float(_SHIFTS[a] * DENSITY.cell_m), float(_SHIFTS[b] * DENSITY.cell_m))
         found.append(Overlay(float(yaws[k]), shift, float(scores[k, a, b])))
         _suppress(scores, yaws, at=(int(k), int(a), int(b)))
     return [one for one in found if np.isfinite(one.score)]
@@ -94,9 +84,9 @@ def overlays(
 def yaws_within(bound_rad: float) -> Array:
     """Rotations to try: up to a bound on either side, at most a full turn, (Y,)."""
     if bound_rad >= np.pi:
-        return np.arange(-np.pi, np.pi, _YAW_STEP_RAD)
-    steps = int(np.ceil(bound_rad / _YAW_STEP_RAD))
-    return np.arange(-steps, steps + 1) * _YAW_STEP_RAD
+        return np.arange(-np.pi, np.pi, DENSITY.yaw_step_rad)
+    steps = int(np.ceil(bound_rad / DENSITY.yaw_step_rad))
+    return np.asarray(np.arange(-steps, steps + 1) * DENSITY.yaw_step_rad)
 
 
 def _correlate(target: DensityImage, source: DensityImage, yaw: float) -> NDArray[np.float32]:
@@ -112,18 +102,18 @@ def _correlate(target: DensityImage, source: DensityImage, yaw: float) -> NDArra
 
 def _suppress(scores: NDArray[np.float32], yaws: Array, *, at: tuple[int, int, int]) -> None:
     """Exclude the neighborhood of a maximum."""
-    near = round(_APART_M / CELL_M)
+    near = round(DENSITY.apart_m / DENSITY.cell_m)
     turned = np.abs((yaws - yaws[at[0]] + np.pi) % (2.0 * np.pi) - np.pi)
     a, b = max(at[1] - near, 0), max(at[2] - near, 0)
-    rows = np.flatnonzero(turned <= _APART_RAD)
+    rows = np.flatnonzero(turned <= DENSITY.apart_rad)
     scores[rows, a : at[1] + near + 1, b : at[2] + near + 1] = -np.inf
 
 
 def _raster(p_m: Array) -> NDArray[np.float32]:
-    cells = np.floor(p_m / CELL_M + 0.5).astype(np.int64) + _CELLS // 2
-    cells = cells[((cells >= 0) & (cells < _CELLS)).all(axis=1)]
-    counts = np.bincount(cells[:, 0] * _CELLS + cells[:, 1], minlength=_CELLS**2)
-    full = np.minimum(counts.reshape(_CELLS, _CELLS), _MOST) / _MOST
+    cells = np.floor(p_m / DENSITY.cell_m + 0.5).astype(np.int64) + DENSITY.cells // 2
+    cells = cells[((cells >= 0) & (cells < DENSITY.cells)).all(axis=1)]
+    counts = np.bincount(cells[:, 0] * DENSITY.cells + cells[:, 1], minlength=DENSITY.cells**2)
+    full = np.minimum(counts.reshape(DENSITY.cells, DENSITY.cells), DENSITY.most) / DENSITY.most
     return full.astype(np.float32)
 
 
@@ -132,12 +122,12 @@ def _descriptor(image: NDArray[np.float32], heights_m: Array) -> Array:
     invariant to rotations. A histogram of heights tells low rooms from halls.
     """
     magnitude = np.log1p(np.abs(fft.fftshift(fft.fft2(image))))
-    radius = np.linspace(2.0, _CELLS / 4.0, _RADII)
-    angle = np.arange(_ANGLES) * np.pi / _ANGLES  # the other half repeats it
-    center = _CELLS // 2
+    radius = np.linspace(2.0, DENSITY.cells / 4.0, DENSITY.radii)
+    angle = np.arange(DENSITY.angles) * np.pi / DENSITY.angles  # the other half repeats it
+    center = DENSITY.cells // 2
     at = np.stack([np.outer(radius, np.cos(angle)), np.outer(radius, np.sin(angle))]) + center
     polar = ndimage.map_coordinates(magnitude, at, order=1)
-    waves = np.abs(fft.rfft(polar, axis=1))[:, : _ANGLES // 4]
+    waves = np.abs(fft.rfft(polar, axis=1))[:, : DENSITY.angles // 4]
     # The means of the rings are alike everywhere; they would hide the rest.
     rings = (waves[:, 1:] / np.maximum(waves[:, :1], 1e-9)).ravel()
     heights = np.sqrt(np.histogram(heights_m, _HEIGHTS_M)[0].astype(np.float64))

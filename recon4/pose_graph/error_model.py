@@ -13,11 +13,7 @@ import numpy as np
 
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
-
-_MIN_EDGES = 8
-"""Fewer registered edges say nothing of the walk."""
-_LEAST, _MOST = 0.15, 30.0
-"""Bounds of the ratio of the errors of a walk to the usual ones."""
+from recon4.pose_graph.tuning_solve import ERROR_MODEL
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -100,12 +96,12 @@ def agreement(graph: PoseGraph, model: ErrorModel) -> GraphAgreement:
     xi = (of.T_i_j.inverse() @ graph.T_map_body[of.i].inverse() @ graph.T_map_body[of.j]).log()
     registered = of.in_graph & (of.j > of.i + 1)
     ratio: Array = np.ones(2)
-    if registered.sum() >= _MIN_EDGES:
+    if registered.sum() >= ERROR_MODEL.min_edges:
         sizes = [
             np.linalg.norm(xi[registered][:, part], axis=1) for part in (ROTATION, TRANSLATION)
         ]
         usual = np.array([model.usual_rad, model.usual_m])
-        ratio = np.clip(np.median(sizes, axis=1) / usual, _LEAST, _MOST)
+        ratio = np.clip(np.median(sizes, axis=1) / usual, ERROR_MODEL.least, ERROR_MODEL.most)
     moved, weight = np.zeros((len(graph) - 1, 6, 6)), np.zeros(len(graph) - 1)
     for edge, residual in zip(graph.edges, xi, strict=True):
         if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1 and _is_strong(edge, model):

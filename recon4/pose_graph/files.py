@@ -17,19 +17,16 @@ from recon4.geometry.se3 import SE3
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.pose_graph.histories import judgment_columns, judgments_in, judgments_of
+from recon4.pose_graph.tuning_solve import GRAPH_FILES
 from recon4.store.arrays import load_arrays, save_arrays
 
 _NUMBERS = ("overlap", "error_m", "limit_m", "degeneracy", "verification_m", "chi2")
 _COUNTS = ("iterations", "paths")
 _NODES = ("frame_ids", "t_ns", "node_R", "node_t")
-_BLOCK = 1024
-"""Edges that are written at a time."""
 _EDGES = ("i", "j", "edge_R", "edge_t", "information", "converged", "kind")
 
 HISTORY = ("by", "verdict", "reason", "measure", "value", "limit", "person", "note")
 """Names of the values of a judgment in ``edges.json``."""
-_DIGITS = 5
-"""Significant digits of its figures; ``graph.npz`` has all."""
 
 
 def save_graph(folder: Path, graph: PoseGraph) -> None:
@@ -143,8 +140,8 @@ def write_edges_json(path: Path, graph: PoseGraph) -> None:
     with path.open("w", encoding="utf-8") as file:
         file.write(f'{head[:-1]}, "edges": [\n')
         between = ""
-        for start in range(0, len(graph.edges), _BLOCK):
-            records = _records(graph, graph.edges[start : start + _BLOCK])
+        for start in range(0, len(graph.edges), GRAPH_FILES.block):
+            records = _records(graph, graph.edges[start : start + GRAPH_FILES.block])
             file.write(between)
             file.write(",\n".join(json.dumps(msgspec.to_builtins(one)) for one in records))
             between = ",\n"
@@ -218,7 +215,7 @@ def _records(graph: PoseGraph, edges: Sequence[Edge]) -> Iterator[EdgeRecord]:
 
 def _history_row(one: Judgment) -> list[str | float | None]:
     figures = [
-        None if value is None else finite_or_none(value, _DIGITS)
+        None if value is None else finite_or_none(value, GRAPH_FILES.digits)
         for value in (one.value, one.limit)
     ]
     row = [str(one.by), str(one.verdict), str(one.reason), str(one.measure), *figures]

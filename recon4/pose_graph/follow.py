@@ -18,23 +18,11 @@ from recon4.model.pose_graph import (
     Rows,
     Verdict,
 )
-from recon4.pose_graph.density import MAX_SHIFT_M
 from recon4.pose_graph.groups import RecognizedChain, contradicts
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.places import Places
+from recon4.pose_graph.tuning_places import DENSITY, FOLLOW
 from recon4.progress import Progress
-
-_STEP_M, _MAX_STEPS = 1.2, 12
-"""Step along the path at which a correction is tested [m], shorter where the graph states more
-drift; and the largest number of steps."""
-_NEAREST = 5
-"""The best overlap with this many of the nearest nodes counts: on stairs a step changes much."""
-_PARTED_M = 3.0
-"""The two paths have parted where they are farther apart [m]."""
-_CHANGE_M, _CHANGE_RAD = 0.4, 0.07
-"""Largest change of a correction over one step, beside the drift that the graph states."""
-_MAX_STUCK = 2
-"""A correction is followed past this many nodes that contradict it, to count them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -71,7 +59,7 @@ class ChainFollower:
             if chain.edges[0].in_graph
             for direction in (-1, 1)
         ]
-        for _ in range(_MAX_STEPS):
+        for _ in range(FOLLOW.max_steps):
             ends = self._step(ends)
             if not ends:
                 return
@@ -97,7 +85,7 @@ class ChainFollower:
         for pair, end, edge in zip(pairs, kept, edges, strict=True):
             end.chain.edges.append(edge)
             stuck = end.stuck + 1 if contradicts(edge) else 0
-            if stuck <= _MAX_STUCK:
+            if stuck <= FOLLOW.max_stuck:
                 # Without a fit the correction is carried on from its prediction.
                 last = edge if edge.in_graph else edge.evolve(T_i_j=pair.T_i_j)
                 further.append(_ChainEnd(end.chain, last, end.direction, stuck))
@@ -123,9 +111,9 @@ class ChainFollower:
     def _checked(self, pair: Pair, edge: Edge) -> Edge:
         """Reject an edge that moved far from where the neighboring one predicted it."""
         T_map_i = self._places.graph.T_map_body[edge.i]
-        drift = self._places.drift_of_meter(edge.j).times(self._sd * _STEP_M)
+        drift = self._places.drift_of_meter(edge.j).times(self._sd * FOLLOW.step_m)
         if not edge.in_graph or drift.explains(
-            T_map_i @ pair.T_i_j, T_map_i @ edge.T_i_j, beside=(_CHANGE_M, _CHANGE_RAD)
+            T_map_i @ pair.T_i_j, T_map_i @ edge.T_i_j, beside=(FOLLOW.change_m, FOLLOW.change_rad)
         ):
             return edge
         return edge.judged(Judgment(Judge.PLACES, Verdict.REJECTED, Reason.UNCONFIRMED))
@@ -134,16 +122,16 @@ class ChainFollower:
         """The same correction a step along the path; none where the paths part."""
         graph, path_m, edge = self._places.graph, self._places.path_m, end.edge
         drift_m = self._sd * self._places.drift_of_meter(edge.j).across_m
-        step_m = min(_STEP_M, 0.5 * _CHANGE_M / max(drift_m, 1e-9))
+        step_m = min(FOLLOW.step_m, 0.5 * FOLLOW.change_m / max(drift_m, 1e-9))
         ahead = np.flatnonzero(end.direction * (path_m - path_m[edge.j]) >= step_m)
         if not len(ahead):
             return []
         j = int(ahead[0] if end.direction > 0 else ahead[-1])
         T_corrected = graph.T_map_body[edge.i] @ edge.T_i_j
         T_map_body = T_corrected @ graph.T_map_body[edge.j].inverse() @ graph.T_map_body[j]
-        near = np.flatnonzero(np.abs(path_m - path_m[edge.i]) <= MAX_SHIFT_M)
-        near = near[path_m[near] < path_m[j] - MAX_SHIFT_M]
-        return loop_pairs(graph, near, j=j, T_map_body=T_map_body, within_m=_PARTED_M)
+        near = np.flatnonzero(np.abs(path_m - path_m[edge.i]) <= DENSITY.max_shift_m)
+        near = near[path_m[near] < path_m[j] - DENSITY.max_shift_m]
+        return loop_pairs(graph, near, j=j, T_map_body=T_map_body, within_m=FOLLOW.parted_m)
 
 
 def loop_pairs(
@@ -152,7 +140,7 @@ def loop_pairs(
     """Pairs of a node, if it had that pose, with the nearest of some earlier nodes."""
     T = graph.T_map_body
     away_m = np.linalg.norm(T.t[earlier] - T_map_body.t, axis=1)
-    nearest = np.argsort(away_m, kind="stable")[:_NEAREST]
+    nearest = np.argsort(away_m, kind="stable")[: FOLLOW.nearest]
     chosen = earlier[nearest[away_m[nearest] <= within_m]].tolist()
     return [_recognized(i, j, T[i].inverse() @ T_map_body) for i in chosen]
 

@@ -14,18 +14,10 @@ from recon4.geometry.se3 import SE3
 from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, PoseGraph, Reason, Verdict
 from recon4.pose_graph.places import Places
 from recon4.pose_graph.tuning import RecognitionTuning
+from recon4.pose_graph.tuning_places import GROUPS
 
-_LINK_M = 15.0
-"""Corrections with more path in between neither confirm nor exclude each other [m]."""
-_AGREE_M, _AGREE_RATIO, _AGREE_RAD = 0.4, 0.05, 0.09
-"""Largest difference of the corrections of two places, beside the drift that the graph states:
-[m], ratio of the path in between, [rad]."""
-_MAX_HEIGHT_SLACK_M = 1.0
-"""Less than a storey, however long the walk [m]."""
 _NEUTRAL = (Reason.OVERLAP, Reason.DEGENERATE)
 """Reasons that say nothing against a hypothesis."""
-_MAX_CONTRADICTED = 0.15
-"""Largest part of the nodes whose views contradict a correction."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,7 +98,7 @@ def _judgment(
     """Whether a group is accepted."""
     support, by, rejected = len(group.nodes), Judge.PLACES, Verdict.REJECTED
     confirmed = (Measure.CONFIRMED, float(support), float(settings.min_places))
-    most = _MAX_CONTRADICTED * support
+    most = GROUPS.max_contradicted * support
     if support < settings.min_places:
         return Judgment(by, rejected, Reason.UNCONFIRMED, *confirmed)
     if group.contradicted > most:
@@ -131,7 +123,7 @@ def _has_rival(
 
 def _compete(a: _ChainGroup, b: _ChainGroup) -> bool:
     """Whether two groups, which do not agree, correct nodes close to each other."""
-    return a.span_m[0] <= b.span_m[1] + _LINK_M and b.span_m[0] <= a.span_m[1] + _LINK_M
+    return a.span_m[0] <= b.span_m[1] + GROUPS.link_m and b.span_m[0] <= a.span_m[1] + GROUPS.link_m
 
 
 def _groups(
@@ -160,7 +152,7 @@ def _neighboring(places: Places, chains: Sequence[RecognizedChain]) -> Iterator[
     spans = [(*_span_m(places, [chain]), k) for k, chain in enumerate(chains)]
     near: list[tuple[float, float, int]] = []
     for start_m, end_m, k in sorted(spans):
-        near = [span for span in near if span[1] >= start_m - _LINK_M]
+        near = [span for span in near if span[1] >= start_m - GROUPS.link_m]
         yield from ((span[2], k) for span in near)
         near.append((start_m, end_m, k))
 
@@ -179,12 +171,12 @@ def _chains_agree(places: Places, a: RecognizedChain, b: RecognizedChain, *, sd:
 def _agree(places: Places, a: Edge, b: Edge, *, sd: float) -> bool:
     graph = places.graph
     path_m = abs(float(places.path_m[a.j] - places.path_m[b.j]))
-    if path_m > _LINK_M:
+    if path_m > GROUPS.link_m:
         return False
     T_a_b = graph.T_map_body[a.j].inverse() @ graph.T_map_body[b.j]
     return places.drift_between(a.j, b.j).times(sd).explains(
         _corrected(graph, a) @ T_a_b, _corrected(graph, b),
-        beside=(_AGREE_M + _AGREE_RATIO * path_m, _AGREE_RAD),
+        beside=(GROUPS.agree_m + GROUPS.agree_ratio * path_m, GROUPS.agree_rad),
     )  # fmt: skip
 
 
@@ -216,4 +208,4 @@ def _moves_within(
         walked_m = float(places.path_m[edge.j] - places.path_m[edge.i])
         slack_m = settings.bound_m + settings.bound_ratio * walked_m
         across = np.linalg.norm(move[:2]) <= far_m + slack_m
-        yield bool(across and abs(move[2]) <= height_m + min(slack_m, _MAX_HEIGHT_SLACK_M))
+        yield bool(across and abs(move[2]) <= height_m + min(slack_m, GROUPS.max_height_slack_m))

@@ -14,6 +14,7 @@ from recon4.model.events import EdgeTried
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, Measure, Reason, Verdict
 from recon4.pose_graph.tuning import RecognitionTuning, graph_tuning
+from recon4.pose_graph.tuning_solve import PAIRS
 from recon4.progress import Progress
 from recon4.registration.collar_lines import LineTarget, register_lines
 from recon4.registration.overlap import RangeImage, overlap, seen_through
@@ -24,9 +25,6 @@ from recon4.registration.submap import Ends, NodeRangeImages, Submaps, median_ra
 from recon4.registration.tuning import OVERLAP, OdometryTuning, OverlapTuning
 from recon4.settings.reads import GraphReads
 from recon4.settings.tuning import tuned
-
-_CHUNK = 8
-"""Nodes per task of a thread."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +59,7 @@ class PairRegistrar:
     def prepare(self, nodes: int, progress: Progress) -> None:
         """Compute segments and range images of all nodes."""
         progress.start("view volumes", nodes, "node")
-        chunks = [range(k, min(k + _CHUNK, nodes)) for k in range(0, nodes, _CHUNK)]
+        chunks = [range(k, min(k + PAIRS.chunk, nodes)) for k in range(0, nodes, PAIRS.chunk)]
         with ThreadPoolExecutor(self.graph.workers) as pool:
             fills = pool.map(lambda chunk: self.views.fill(self._submaps, chunk), chunks)
             for chunk, _ in zip(chunks, fills, strict=True):
@@ -71,7 +69,7 @@ class PairRegistrar:
         """Register pairs; each sends an event. Edges are returned in the order of the pairs."""
         order = sorted(range(len(pairs)), key=lambda k: (pairs[k].i, pairs[k].j, k))
         groups = _by_target(order, pairs)
-        chunks = [groups[k : k + _CHUNK] for k in range(0, len(groups), _CHUNK)]
+        chunks = [groups[k : k + PAIRS.chunk] for k in range(0, len(groups), PAIRS.chunk)]
         edges: dict[int, Edge] = {}
         progress.start("pairs", len(pairs), "pair")
         with ThreadPoolExecutor(self.graph.workers) as pool:

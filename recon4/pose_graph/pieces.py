@@ -8,14 +8,10 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph
 from recon4.model.trajectory import Times
+from recon4.pose_graph.tuning_solve import PIECES
 
 Pieces = NDArray[np.int64]
 """Number of the piece of each node, (N,)."""
-
-_WALK_M_S = 1.5
-"""Speed at which the body may have moved on without being seen [m/s]."""
-_UNKNOWN_M, _UNKNOWN_RAD, _TILT_RAD = 1.0, np.pi, 0.1
-"""Standard deviations between two pieces, beside what grows with time."""
 
 
 def weakened(edges: tuple[Edge, ...], pieces: Pieces, t_ns: Times) -> tuple[Edge, ...]:
@@ -34,8 +30,8 @@ def weakened(edges: tuple[Edge, ...], pieces: Pieces, t_ns: Times) -> tuple[Edge
 
 
 def _gap_information(gap_s: float) -> Array:
-    far_m = _UNKNOWN_M + _WALK_M_S * gap_s
-    sd = np.array([_TILT_RAD, _TILT_RAD, _UNKNOWN_RAD, far_m, far_m, far_m])
+    far_m = PIECES.unknown_m + PIECES.walk_m_s * gap_s
+    sd = np.array([PIECES.tilt_rad, PIECES.tilt_rad, np.pi, far_m, far_m, far_m])
     return np.diag(sd**-2.0)
 
 

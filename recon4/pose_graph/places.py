@@ -13,14 +13,8 @@ from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
 from recon4.pose_graph.density import DensityImage, make_density_image
 from recon4.pose_graph.tuning import RecognitionTuning
+from recon4.pose_graph.tuning_places import PLACES
 from recon4.registration.submap import NodeRangeImages
-
-_POINTS = 1500
-"""Points of a node that are drawn."""
-_BELOW_M, _ABOVE_M = 0.9, 0.8
-"""Points between these heights below and above the body count as walls [m]."""
-_BROKEN_SD_M = 1.0
-"""Odometry edges that are less certain do not join the parts of a sub-map [m]."""
 
 
 class StatedDrift(NamedTuple):
@@ -117,7 +111,7 @@ def _unbroken_parts(graph: PoseGraph) -> NDArray[np.int64]:
     for edge in graph.edges:
         if edge.kind is EdgeKind.ODOMETRY:
             cov = np.linalg.inv(edge.information)
-            breaks[edge.j] = np.sqrt(np.trace(cov[3:, 3:])) > _BROKEN_SD_M
+            breaks[edge.j] = np.sqrt(np.trace(cov[3:, 3:])) > PLACES.broken_sd_m
     return np.cumsum(breaks)
 
 
@@ -137,11 +131,11 @@ def _image(graph: PoseGraph, views: NodeRangeImages, node: int, *, members: Rows
     walls, heights = [], []
     for member in members:
         p_body = views.ends(int(member)).reshape(-1, 3)
-        p_body = p_body[:: max(1, len(p_body) // _POINTS)]
+        p_body = p_body[:: max(1, len(p_body) // PLACES.points)]
         T_map_body = graph.T_map_body[int(member)]
         p_map = T_map_body @ p_body
         height = p_map[:, 2] - T_map_body.t[2]
-        is_wall = (height > -_BELOW_M) & (height < _ABOVE_M)
+        is_wall = (height > -PLACES.below_m) & (height < PLACES.above_m)
         walls.append(p_map[is_wall, :2] - center[:2])
         heights.append(height)
     return make_density_image(np.concatenate(walls), np.concatenate(heights))

@@ -23,28 +23,14 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
-from recon4.pose_graph.density import MAX_SHIFT_M, Overlay, overlays, yaws_within
+from recon4.pose_graph.density import Overlay, overlays, yaws_within
 from recon4.pose_graph.follow import ChainFollower, loop_pairs, register_recognized, taken_pairs
 from recon4.pose_graph.groups import RecognizedChain, judge_chains
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.places import Places, make_places
 from recon4.pose_graph.tuning import RecognitionTuning
+from recon4.pose_graph.tuning_places import DENSITY, RECOGNITION
 from recon4.progress import Progress
-
-_NEAR_M, _NEAR_RAD = 1.5, 0.26
-"""Hypotheses of one place that are closer than this are the same."""
-_HEIGHT_M = 1.0
-"""Two visits of one place differ in height by less than this, beside the drift [m]."""
-_KNOWN_M, _FLIGHT_M = 0.5, 2.0
-"""A height known to less than this [m] is kept, if it is less than a storey."""
-_YAW_RAD = 0.26
-"""Rotations that are always tried [rad]."""
-_UNLIKELY = 0.1
-"""Score that a hypothesis loses if it moves a node by as much as is likely."""
-_FAR, _MAX_FAR = 1.2, 1
-"""Hypotheses of a place that are farther than likely; they can only be announced."""
-_CLOSED_NODES = 2
-"""A place is known if an accepted loop closure ends this many nodes from it, or closer."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,12 +50,12 @@ class _PlaceHypothesis:
     @property
     def is_far(self) -> bool:
         """Whether it can only be announced."""
-        return self.unlikely > _FAR
+        return self.unlikely > RECOGNITION.far
 
     @property
     def rank(self) -> float:
         """Larger is better."""
-        return self.score - _UNLIKELY * min(self.unlikely, 2.0)
+        return self.score - RECOGNITION.unlikely * min(self.unlikely, 2.0)
 
 
 def recognize(
@@ -132,7 +118,9 @@ def _closed_nodes(graph: PoseGraph) -> NDArray[np.bool_]:
     for edge in graph.edges:
         known = edge.in_graph or edge.reason is Reason.DEGENERATE
         if edge.kind is EdgeKind.LOOP and known:
-            closed[max(edge.j - _CLOSED_NODES, 0) : edge.j + _CLOSED_NODES + 1] = True
+            closed[
+                max(edge.j - RECOGNITION.closed_nodes, 0) : edge.j + RECOGNITION.closed_nodes + 1
+            ] = True
     return closed
 
 
@@ -141,7 +129,9 @@ def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list
     T_map_place = places.graph.T_map_body[places.node]
     found = []
     for k in _candidates(places, place, settings):
-        yaws = yaws_within(settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + _YAW_RAD)
+        yaws = yaws_within(
+            settings.bound_sd * float(places.bounds.yaw_rad[k, place]) + RECOGNITION.yaw_rad
+        )
         likely_m = settings.bound_sd * float(places.bounds.horizontal_m[k, place])
         height_m = settings.bound_sd * float(places.bounds.vertical_m[k, place])
         for overlay in overlays(
@@ -150,7 +140,7 @@ def _hypotheses(places: Places, place: int, settings: RecognitionTuning) -> list
             T = _moved(T_map_place[place], T_map_place[k], overlay, height_m=height_m)
             move_m = T.t - T_map_place.t[place]
             across = float(np.linalg.norm(move_m[:2])) / (likely_m + settings.bound_m)
-            unlikely = max(across, abs(float(move_m[2])) / (height_m + _HEIGHT_M))
+            unlikely = max(across, abs(float(move_m[2])) / (height_m + RECOGNITION.height_m))
             if overlay.score >= settings.min_score:
                 found.append(_PlaceHypothesis(place, T, overlay.score, k, unlikely))
     return _distinct(sorted(found, key=lambda one: -one.rank), settings.hypotheses)
@@ -160,7 +150,7 @@ def _distinct(ranked: Sequence[_PlaceHypothesis], most: int) -> list[_PlaceHypot
     """The first of those that are the same; only a few that are far."""
     chosen: list[_PlaceHypothesis] = []
     for one in ranked:
-        too_many = one.is_far and sum(other.is_far for other in chosen) >= _MAX_FAR
+        too_many = one.is_far and sum(other.is_far for other in chosen) >= RECOGNITION.max_far
         if len(chosen) < most and not too_many and not any(_same(one, o) for o in chosen):
             chosen.append(one)
     return chosen
@@ -172,8 +162,10 @@ def _candidates(places: Places, place: int, settings: RecognitionTuning) -> list
     walked_m = path_m[place] - path_m[:place]
     bounds, ratio = places.bounds, settings.search_ratio * walked_m
     offset = t_m[:place] - t_m[place]
-    across = bounds.horizontal_m[:place, place] * settings.bound_sd + ratio + 0.5 * MAX_SHIFT_M
-    height = bounds.vertical_m[:place, place] * settings.bound_sd + ratio + _HEIGHT_M
+    across = (
+        bounds.horizontal_m[:place, place] * settings.bound_sd + ratio + 0.5 * DENSITY.max_shift_m
+    )
+    height = bounds.vertical_m[:place, place] * settings.bound_sd + ratio + RECOGNITION.height_m
     # Parts of a walk whose relative pose is unknown are compared however short the path is.
     apart = (walked_m >= settings.min_path_m) | (bounds.horizontal_m[:place, place] > walked_m)
     near = (np.linalg.norm(offset[:, :2], axis=1) <= across) & (np.abs(offset[:, 2]) <= height)
@@ -191,13 +183,17 @@ def _moved(T_map_body: SE3, T_map_earlier: SE3, overlay: Overlay, *, height_m: f
     """
     turn = so3_exp([0.0, 0.0, overlay.yaw_rad])
     above_m = float(T_map_body.t[2] - T_map_earlier.t[2])
-    above_m = above_m if height_m < _KNOWN_M and abs(above_m) < _FLIGHT_M else 0.0
+    above_m = (
+        above_m if height_m < RECOGNITION.known_m and abs(above_m) < RECOGNITION.flight_m else 0.0
+    )
     return SE3(turn @ T_map_body.R, T_map_earlier.t + np.append(overlay.shift_m, above_m))
 
 
 def _same(a: _PlaceHypothesis, b: _PlaceHypothesis) -> bool:
     apart = a.T_map_body.inverse() @ b.T_map_body
-    return bool(np.linalg.norm(apart.t) < _NEAR_M and apart.angle() < _NEAR_RAD)
+    return bool(
+        np.linalg.norm(apart.t) < RECOGNITION.near_m and apart.angle() < RECOGNITION.near_rad
+    )
 
 
 def _pairs(
@@ -209,7 +205,7 @@ def _pairs(
     pairs, kept = [], []
     for one in hypotheses:
         j, k = int(places.node[one.place]), int(places.node[one.earlier])
-        around = np.flatnonzero(np.abs(places.path_m - places.path_m[k]) <= MAX_SHIFT_M)
+        around = np.flatnonzero(np.abs(places.path_m - places.path_m[k]) <= DENSITY.max_shift_m)
         near = np.array([i for i in around[around < j] if (i, j) not in taken], np.intp)
         if not len(near):
             continue

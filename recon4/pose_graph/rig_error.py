@@ -15,14 +15,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.calibration_figures import GNSS, IMU, ParameterFigures
-
-_PULL = 0.35
-"""A pose follows a wrong LiDAR by this ratio of its error (1.4° in eleven worlds: NEES of the turns
-0.3 to 2.5 with it, 0.8 to 20 without it)."""
-_ARM_M = 0.6
-"""Surfaces that a wrongly turned LiDAR sees pull the body aside by its turn times this [m]."""
-_WALK_M_S, _TURN_RAD_S = 1.3, 1.0
-"""Speeds by which an error of a LiDAR's clock becomes one of the pose."""
+from recon4.pose_graph.tuning_solve import RIG_ERROR
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -76,8 +69,14 @@ def _of_one(rows: Sequence[ParameterFigures]) -> RigError:
         for quantity in ("rotation", "position", "clock")
     )
     return RigError(
-        turn_rad=_PULL * float(np.hypot(turn_rad, _TURN_RAD_S * clock_s)),
+        turn_rad=RIG_ERROR.pull * float(np.hypot(turn_rad, RIG_ERROR.turn_rad_s * clock_s)),
         shift_m=float(
-            np.linalg.norm([_ARM_M * turn_rad, _PULL * shift_m, _PULL * _WALK_M_S * clock_s])
+            np.linalg.norm(
+                [
+                    RIG_ERROR.arm_m * turn_rad,
+                    RIG_ERROR.pull * shift_m,
+                    RIG_ERROR.pull * RIG_ERROR.walk_m_s * clock_s,
+                ]
+            )
         ),
     )

@@ -15,22 +15,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Flags, PoseGraph, Relations
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.solve import FactorProblem, Priors, Solution, solved
-
-_STEP = 2.0
-"""Growth of GNC's control parameter per round; gtsam uses 1.4."""
-_INNER_ITERATIONS = 3
-"""Iterations per round; gtsam iterates to convergence."""
-_MAX_ROUNDS = 60
-_MAX_SETTLING = 10
-_MAX_NOISE = 10.0
-"""Largest factor by which the variance of edges may exceed the stated one."""
-LOOP_NODES = 10
-"""Edges across fewer nodes are not loops."""
-_GROUP_NODES = 3
-"""Loops whose ends lie at most this many nodes apart form a group."""
-_MAX_GROUPS = 4
-_FEW_OUTLIERS = 0.05
-"""If the first start rejects at most this fraction of the loops, no other start is tried."""
+from recon4.pose_graph.tuning_solve import ROBUST
 
 
 def optimize_gnc(
@@ -84,7 +69,7 @@ def outlier_limit(edge_chi2: Array, *, probability: float) -> float:
     variance of these edges (from their median, 1 to 10): registrations tend to be overconfident.
     """
     ratio = float(np.median(edge_chi2)) / _chi2_quantile(0.5) if len(edge_chi2) else 1.0
-    return float(_chi2_quantile(probability) * np.clip(ratio, 1.0, _MAX_NOISE))
+    return float(_chi2_quantile(probability) * np.clip(ratio, 1.0, ROBUST.max_noise))
 
 
 def _chi2_quantile(probability: float) -> float:
@@ -98,7 +83,7 @@ def _starts(
     problem: FactorProblem, T_map_body: SE3, T_cauchy: SE3, *, limit: float
 ) -> Iterator[SE3]:
     of = problem.of
-    short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < LOOP_NODES))
+    short = of.in_graph & (of.protected | (np.abs(of.j - of.i) < ROBUST.loop_nodes))
     if problem.positions:  # they constrain the walk without its loops, so this start is first
         yield problem.solve(T_map_body, weights=short.astype(np.float64))[0]
     yield T_cauchy
@@ -112,11 +97,13 @@ def _graduate(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> SE3:
     """Graduated non-convexity: from the convex problem to the truncated one, round by round."""
     of = problem.of
     free, weights, mu = of.in_graph & ~of.protected, of.in_graph.astype(np.float64), 0.0
-    for _ in range(_MAX_ROUNDS):
-        T_map_body, _ = problem.solve(T_map_body, weights=weights, max_iterations=_INNER_ITERATIONS)
+    for _ in range(ROBUST.max_rounds):
+        T_map_body, _ = problem.solve(
+            T_map_body, weights=weights, max_iterations=ROBUST.inner_iterations
+        )
         chi2 = squared_residuals(T_map_body, of)[free]
         largest = float(chi2.max(initial=0.0))
-        mu = mu * _STEP if mu else limit / max(2.0 * largest - limit, 1e-3 * limit)
+        mu = mu * ROBUST.step if mu else limit / max(2.0 * largest - limit, 1e-3 * limit)
         weights[free] = _truncated_weights(chi2, limit=limit, mu=mu)
         if np.all((weights < 1e-6) | (weights > 1.0 - 1e-6)):
             break
@@ -134,7 +121,7 @@ def _settle(problem: FactorProblem, T_map_body: SE3, *, limit: float) -> tuple[S
     """Solve with the edges below the limit until this set no longer changes."""
     of = problem.of
     weights, iterations = np.zeros(len(of)), 0
-    for _ in range(_MAX_SETTLING):
+    for _ in range(ROBUST.max_settling):
         fits = of.in_graph & (of.protected | (squared_residuals(T_map_body, of) < limit))
         if np.array_equal(fits, weights > 0.0):
             break
@@ -151,8 +138,8 @@ def _truncated_cost(of: Relations, chi2: Array, *, limit: float) -> float:
 
 def _is_plain(of: Relations, weights: Array) -> bool:
     """Whether nearly all loops are inliers, so that no other start can be better."""
-    loops = of.in_graph & (np.abs(of.j - of.i) >= LOOP_NODES)
-    return bool((loops & (weights == 0.0)).sum() <= _FEW_OUTLIERS * loops.sum())
+    loops = of.in_graph & (np.abs(of.j - of.i) >= ROBUST.loop_nodes)
+    return bool((loops & (weights == 0.0)).sum() <= ROBUST.few_outliers * loops.sum())
 
 
 def _groups(of: Relations, loops: Flags) -> list[Flags]:
@@ -165,11 +152,11 @@ def _groups(of: Relations, loops: Flags) -> list[Flags]:
     if len(rows) == 0:
         return []
     ends = np.stack([of.i[rows], of.j[rows]], 1)
-    near = cKDTree(ends).query_pairs(_GROUP_NODES, p=np.inf, output_type="ndarray")
+    near = cKDTree(ends).query_pairs(ROBUST.group_nodes, p=np.inf, output_type="ndarray")
     links = coo_array((np.ones(len(near)), (near[:, 0], near[:, 1])), shape=(len(rows), len(rows)))
     _, label = connected_components(links, directed=False)
     size = np.bincount(label)
-    largest = np.argsort(-size, kind="stable")[:_MAX_GROUPS]
+    largest = np.argsort(-size, kind="stable")[: ROBUST.max_groups]
     groups = []
     for group in largest[2 * size[largest] >= size.max()]:
         chosen = np.zeros(len(of), dtype=np.bool_)

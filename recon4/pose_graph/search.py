@@ -26,17 +26,14 @@ from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
 from recon4.pose_graph.recognition import recognize, without_settled
 from recon4.pose_graph.solve import Kernel, Solution, optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
+from recon4.pose_graph.tuning_solve import SEARCH
 from recon4.progress import Progress
 from recon4.registration.submap import NodeRangeImages, Submaps, TrackedFrames, node_rows
 from recon4.settings.reads import GraphReads
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 
-_LOST_SD_FACTOR = 200.0
-"""Factor on the standard deviation of an odometry edge across a lost multiframe."""
 _KERNELS: tuple[Kernel, ...] = ("none", "cauchy")
-_BEFORE_RECOGNITION = 2
-"""Rounds before places are recognized: neighbors, and the nearest revisits."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -167,15 +164,15 @@ def close_loops(
     registrar.prepare(len(graph), progress)
     attempts = _Attempts(registrar, pieces, progress)
     selections = rounds(len(graph), g)
-    for select in selections[:_BEFORE_RECOGNITION]:
+    for select in selections[: SEARCH.before_recognition]:
         graph = attempts.run(graph, select(graph))
-    if recognition.enabled and len(selections) > _BEFORE_RECOGNITION and not g.exhaustive:
+    if recognition.enabled and len(selections) > SEARCH.before_recognition and not g.exhaustive:
         for _ in range(recognition.passes):
             edges = recognize(graph, registrar, leveled=leveled, progress=progress)
             graph = attempts.add(graph, edges)
             if not any(edge.in_graph for edge in edges):
                 break
-    for select in selections[_BEFORE_RECOGNITION:]:
+    for select in selections[SEARCH.before_recognition :]:
         graph = attempts.run(graph, select(graph))
     for _ in range(g.retry_rounds):
         graph = attempts.run(graph, retry_pairs(graph, attempts.expected, move_m=g.retry_move_m))
@@ -203,7 +200,7 @@ def odometry_edges(
         into_j = np.kron(np.eye(2), T_odom_body.R[k + 1])
         cov = into_j.T @ ((last - first) * motion_cov[between].sum(axis=0)) @ into_j + floor
         if lost[first : last + 1].any():
-            cov = cov * _LOST_SD_FACTOR**2
+            cov = cov * SEARCH.lost_sd_factor**2
         information = np.linalg.inv(cov)
         edges.append(
             Edge(

@@ -14,18 +14,9 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import PoseGraph, Relations, Rows
 from recon4.pose_graph.checks import check_relations
 from recon4.pose_graph.relations import squared_residuals
+from recon4.pose_graph.tuning_solve import SOLVE
 
 Kernel = Literal["none", "cauchy"]
-
-CAUCHY_SD = 4.0
-"""Mahalanobis length at which the Cauchy kernel halves the weight of an edge; 6 exact standard
-deviations have a length of 2.4."""
-CAUCHY_POSITION_SD = 3.0
-"""The same for an absolute position (1.7)."""
-_GAUGE = 1e6
-"""Ratio of the information of a fixed node to that of the best edge."""
-MAX_ITERATIONS = 100
-_RELATIVE_DECREASE = 1e-7
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -103,7 +94,7 @@ def optimize(
     solution = solved(graph, of, T_map_body, weights=weights, iterations=iterations)
     if kernel == "none":
         return solution
-    softened = weights / (1.0 + solution.edge_chi2 / CAUCHY_SD**2)
+    softened = weights / (1.0 + solution.edge_chi2 / SOLVE.cauchy_sd**2)
     return replace(solution, weights=np.where(of.protected, weights, softened))
 
 
@@ -119,7 +110,7 @@ def solved(
         edge_chi2=edge_chi2,
         weights=weights,
         iterations=iterations,
-        converged=iterations < MAX_ITERATIONS,
+        converged=iterations < SOLVE.max_iterations,
     )
 
 
@@ -182,7 +173,7 @@ class FactorProblem:
         *,
         weights: Array,
         kernel: Kernel = "none",
-        max_iterations: int = MAX_ITERATIONS,
+        max_iterations: int = SOLVE.max_iterations,
     ) -> tuple[SE3, int]:
         """Optimize from ``T_map_body``; returns the poses and the number of iterations.
 
@@ -198,7 +189,7 @@ class FactorProblem:
         values = self._values(T_map_body)
         parameters = gtsam.LevenbergMarquardtParams()
         parameters.setMaxIterations(max_iterations)
-        parameters.setRelativeErrorTol(_RELATIVE_DECREASE)
+        parameters.setRelativeErrorTol(SOLVE.relative_decrease)
         parameters.setAbsoluteErrorTol(0.0)
         optimizer = gtsam.LevenbergMarquardtOptimizer(
             self.factors(weights, kernel=kernel), values, parameters
@@ -229,12 +220,12 @@ class FactorProblem:
         for row in np.flatnonzero(weights > 1e-9).tolist():
             model = gtsam.noiseModel.Gaussian.Information(scaled[row])
             if robust and not of.protected[row]:
-                model = _cauchy(model, CAUCHY_SD)
+                model = _cauchy(model, SOLVE.cauchy_sd)
             out.add(gtsam.BetweenFactorPose3(i[row], j[row], self.measured[row], model))
         for node, p_map, p_body, sd_m in self.positions:
             model = gtsam.noiseModel.Diagonal.Sigmas(sd_m)
             if robust:
-                model = _cauchy(model, CAUCHY_POSITION_SD)
+                model = _cauchy(model, SOLVE.cauchy_position_sd)
             out.add(gtsam.GPSFactorArm(node, p_map, p_body, model))
         for factor in self.always:
             out.add(factor)
@@ -264,7 +255,7 @@ def _pose_factors(prior: PosePriors) -> list[Any]:
 
 
 def _gauge(best: float) -> Any:
-    return gtsam.noiseModel.Gaussian.Information(np.eye(6) * best * _GAUGE)
+    return gtsam.noiseModel.Gaussian.Information(np.eye(6) * best * SOLVE.gauge)
 
 
 def _cauchy(model: Any, scale: float) -> Any:

@@ -22,17 +22,7 @@ from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement
 from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
 from recon4.pose_graph.solve import PositionPriors
-
-_MAX_KNOTS = 300
-"""More nodes than this are joined: the work grows with the third power of their number."""
-_UNKNOWN_STEP = (0.3, 5.0)
-"""Largest standard deviation of an odometry edge: turn [rad], shift [m]."""
-_TILT_RAD = 0.005
-"""Standard deviation of the tilt of a leveled map [rad]."""
-_POINT_M = 0.01
-"""Standard deviation of a control point [m]."""
-_NEARLY = 1.2
-"""Places where a control point leaves at most this multiple of the smallest deviation."""
+from recon4.pose_graph.tuning_solve import UNCERTAINTY
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +130,9 @@ def pose_uncertainty(
     information = _odometry_information(chain)
     _add_edges(information, graph, chain, factor=model.registered * agrees.ratio)
     # On the earth only the tilt is known beforehand, by leveling; else the first pose is exact.
-    loose = np.diag([_TILT_RAD**-2.0, _TILT_RAD**-2.0, 1e-2, 1e-6, 1e-6, 1e-6])
+    loose = np.diag(
+        [UNCERTAINTY.tilt_rad**-2.0, UNCERTAINTY.tilt_rad**-2.0, 1e-2, 1e-6, 1e-6, 1e-6]
+    )
     first = np.eye(6) * 1e9 if positions is None else loose
     information[:6, :6] += first
     if positions is not None:
@@ -183,7 +175,7 @@ def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
     """
     knots = len(t_ns)
     own = np.arange(knots)
-    noise = _POINT_M**2 * np.eye(3)
+    noise = UNCERTAINTY.point_m**2 * np.eye(3)
     gain = np.linalg.inv(cov[own, own] + noise)
     largest_m = np.empty(knots)
     for k in range(knots):
@@ -191,7 +183,7 @@ def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
         worst = np.linalg.eigvalsh(left + alone)[:, -1].max()
         largest_m[k] = np.sqrt(max(float(worst), 0.0))
     best = int(np.argmin(largest_m))
-    near = largest_m <= _NEARLY * largest_m[best]
+    near = largest_m <= UNCERTAINTY.nearly * largest_m[best]
     first = last = best
     while first > 0 and near[first - 1]:
         first -= 1
@@ -203,8 +195,8 @@ def _helpful(cov: Array, alone: Array, t_ns: Times) -> HelpfulPoint:
 def _chain(
     graph: PoseGraph, model: ErrorModel, agrees: GraphAgreement, *, carried: CarriedMotion | None
 ) -> _Chain:
-    """Join nodes to at most `_MAX_KNOTS` knots."""
-    stride = -(-len(graph) // _MAX_KNOTS)
+    """Join nodes to at most `UNCERTAINTY.max_knots` knots."""
+    stride = -(-len(graph) // UNCERTAINTY.max_knots)
     rows = np.unique(np.append(np.arange(0, len(graph), stride), len(graph) - 1))
     step_cov, rate, usual = _steps(graph, model, agrees, carried=carried)
     step_s = _step_seconds(graph.t_ns)
@@ -270,7 +262,9 @@ def _steps(
         observed = np.minimum(model.observed**2 * values, (most / half_s) ** 2)
         observed *= agrees.ratio[row] ** 2
         # Bounded, so that a walk that was lost leaves numbers that can be worked with.
-        true = np.minimum(observed + weak * model.weak**2 * values, _UNKNOWN_STEP[row] ** 2)
+        true = np.minimum(
+            observed + weak * model.weak**2 * values, UNCERTAINTY.unknown_step[row] ** 2
+        )
         inverse_s = (1.0 - weak) / observed_s + weak / model.weak_s
         cov[:, part, part] = V * true[:, None, :] @ np.swapaxes(V, 1, 2)
         rate[:, part, part] = V * inverse_s[:, None, :] @ np.swapaxes(V, 1, 2)

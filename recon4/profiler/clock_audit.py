@@ -15,26 +15,8 @@ from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.fusion import PlanarPoses
 from recon4.profiler.samples import TimedPoints, all_lines, joined
+from recon4.profiler.tuning_audits import CLOCK_AUDIT
 from recon4.store.frames import FrameStore
-
-_MOST_S = 0.25
-"""Largest difference that is searched for [s]."""
-_STEP_S = 0.005
-_SMOOTH_S = 1.0
-"""Slower differences of the headings are drift of the gyroscope [s]."""
-_MIN_POSES = 100
-_MIN_SWING_RAD = float(np.deg2rad(0.3))
-"""Without turns the headings do not show the clocks."""
-_SAME_RATIO = 0.8
-"""The headings must differ less than this part of what they do as recorded."""
-SAID_S = 0.008
-"""Smaller differences are not said: they move a walking body by less than a centimeter [s]."""
-_LINE_POINTS = 250_000
-"""Points of the profiler that are placed for each difference of the clocks."""
-_LINE_MOST_S, _LINE_STEP_S = 0.08, 0.01
-_PLACE_M = 0.08
-_CLEAR_RATIO = 0.98
-"""Fewer places than this part of those as recorded show that the clocks differ."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +33,7 @@ class ClockLag:
     @property
     def is_wrong(self) -> bool:
         """Whether a person should look at the clocks."""
-        return abs(self.ahead_s) > SAID_S + self.blur_s
+        return abs(self.ahead_s) > CLOCK_AUDIT.said_s + self.blur_s
 
 
 def clock_lag(poses: PlanarPoses, attitude: Trajectory, *, blur_s: float = 0.0) -> ClockLag | None:
@@ -66,19 +48,21 @@ def clock_lag(poses: PlanarPoses, attitude: Trajectory, *, blur_s: float = 0.0) 
         None if the walk turns too little, or no difference makes the headings agree better.
     """
     used = _steady(poses, attitude)
-    if len(used.t_ns) < _MIN_POSES:
+    if len(used.t_ns) < CLOCK_AUDIT.min_poses:
         return None
     laser = _unwrapped(used.T_map_laser.R)
-    if np.std(_without_drift(laser, used.t_ns)) < _MIN_SWING_RAD:
+    if np.std(_without_drift(laser, used.t_ns)) < CLOCK_AUDIT.min_swing_rad:
         return None
-    shifts = np.arange(-_MOST_S, _MOST_S + 0.5 * _STEP_S, _STEP_S)
+    shifts = np.arange(
+        -CLOCK_AUDIT.most_s, CLOCK_AUDIT.most_s + 0.5 * CLOCK_AUDIT.step_s, CLOCK_AUDIT.step_s
+    )
     spread = np.array([_spread(laser, used, attitude, shift_s=s) for s in shifts])
     best = int(np.argmin(spread))
     if best in (0, len(shifts) - 1):
         return None
     now = float(spread[len(shifts) // 2])
-    ahead_s = float(shifts[best]) + _STEP_S * _vertex(spread[best - 1 : best + 2] ** 2)
-    if abs(ahead_s) > SAID_S and spread[best] > _SAME_RATIO * now:
+    ahead_s = float(shifts[best]) + CLOCK_AUDIT.step_s * _vertex(spread[best - 1 : best + 2] ** 2)
+    if abs(ahead_s) > CLOCK_AUDIT.said_s and spread[best] > CLOCK_AUDIT.same_ratio * now:
         return None
     return ClockLag(ahead_s, float(spread[best]), blur_s)
 
@@ -90,33 +74,40 @@ def profiler_ahead_s(points: TimedPoints, trajectory: Trajectory) -> float:
         points: Some of all line scans, in the body.
         trajectory: ``T_map_body`` by IMU and 2-D laser.
     """
-    shifts = np.arange(-_LINE_MOST_S, _LINE_MOST_S + 0.5 * _LINE_STEP_S, _LINE_STEP_S)
-    inside_ns = round(1e9 * (_LINE_MOST_S + _LINE_STEP_S))
+    shifts = np.arange(
+        -CLOCK_AUDIT.line_most_s,
+        CLOCK_AUDIT.line_most_s + 0.5 * CLOCK_AUDIT.line_step_s,
+        CLOCK_AUDIT.line_step_s,
+    )
+    inside_ns = round(1e9 * (CLOCK_AUDIT.line_most_s + CLOCK_AUDIT.line_step_s))
     used = points.between(trajectory.t_ns[0] + inside_ns, trajectory.t_ns[-1] - inside_ns)
     if not len(used):
         return 0.0
     places = np.array([_places(used, trajectory, shift_s=s) for s in shifts], dtype=np.float64)
     best = int(np.argmin(places))
-    if best in (0, len(shifts) - 1) or places[best] > _CLEAR_RATIO * places[len(shifts) // 2]:
+    if (
+        best in (0, len(shifts) - 1)
+        or places[best] > CLOCK_AUDIT.clear_ratio * places[len(shifts) // 2]
+    ):
         return 0.0
-    return float(shifts[best]) + _LINE_STEP_S * _vertex(places[best - 1 : best + 2])
+    return float(shifts[best]) + CLOCK_AUDIT.line_step_s * _vertex(places[best - 1 : best + 2])
 
 
 def some_points(frames: FrameStore, *, min_range_m: float) -> TimedPoints:
     """Points of the whole walk, few enough to be placed many times."""
-    every = max(1, frames.points // _LINE_POINTS)
+    every = max(1, frames.points // CLOCK_AUDIT.line_points)
     return joined(list(all_lines(frames, every=every, min_range_m=min_range_m)))
 
 
 def _places(points: TimedPoints, trajectory: Trajectory, *, shift_s: float) -> int:
     """Cubes with a point, if the points were measured that much earlier than stamped."""
     shifted = TimedPoints(points.t_ns - round(1e9 * shift_s), points.p_body)
-    return count_cubes(shifted.placed(trajectory), _PLACE_M)
+    return count_cubes(shifted.placed(trajectory), CLOCK_AUDIT.place_m)
 
 
 def _steady(poses: PlanarPoses, attitude: Trajectory) -> PlanarPoses:
     """Poses that the IMU covers for every difference of the clocks."""
-    margin_ns = round(1e9 * (_MOST_S + _STEP_S))
+    margin_ns = round(1e9 * (CLOCK_AUDIT.most_s + CLOCK_AUDIT.step_s))
     first_ns, last_ns = attitude.t_ns[0] + margin_ns, attitude.t_ns[-1] - margin_ns
     rows = np.flatnonzero((poses.t_ns > first_ns) & (poses.t_ns < last_ns))
     return replace(
@@ -133,7 +124,7 @@ def _spread(laser: Array, poses: PlanarPoses, attitude: Trajectory, *, shift_s: 
 def _without_drift(angle: Array, t_ns: Times) -> Array:
     """What changes within a second, outliers clipped."""
     rate_hz = 1e9 / float(np.median(np.diff(t_ns)))
-    width = max(3, 2 * round(0.5 * _SMOOTH_S * rate_hz) + 1)
+    width = max(3, 2 * round(0.5 * CLOCK_AUDIT.smooth_s * rate_hz) + 1)
     mean = np.convolve(angle, np.full(width, 1.0 / width), mode="valid")
     fast = angle[width // 2 : width // 2 + len(mean)] - mean
     limit = 5.0 * float(np.median(np.abs(fast))) + 1e-6

@@ -20,13 +20,7 @@ from recon4.profiler.imu_chain import (
     linearize,
     rotation_error,
 )
-
-_ROUNDS = 8
-_SMALL_M = 1e-4
-_HEIGHT_SD_M = 0.15
-"""Standard deviation of the height of a walking body on level ground, over a second [m]."""
-_TILT_SD_RAD = 0.1
-"""Without an IMU: standard deviation of roll and pitch of a walking body [rad]."""
+from recon4.profiler.tuning_solve import FUSION
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,13 +61,13 @@ def fuse(drive: Drive, poses: PlanarPoses | None) -> ImuChain:
     chain = initial_chain(drive)
     if poses is not None and len(poses.t_ns):
         chain = _with_heading(chain, poses)
-    for _ in range(_ROUNDS):
+    for _ in range(FUSION.rounds):
         measured = level_walk(chain)
         if poses is not None:
             measured = measured + _planar(chain, poses)
         step = linearize(chain).solve(measured)
         chain = chain.moved(step)
-        if np.abs(step[:, 3:6]).max() < _SMALL_M:
+        if np.abs(step[:, 3:6]).max() < FUSION.small_m:
             break
     return chain
 
@@ -83,13 +77,13 @@ def level_walk(chain: ImuChain) -> Information:
     intervals = len(chain) - 1
     found = Information.none(intervals)
     per_knot = chain.drive.step_s * chain.drive.steps
-    weight = per_knot / _HEIGHT_SD_M**2
+    weight = per_knot / FUSION.height_sd_m**2
     found.H[:, 5, 5] += weight
     found.g[:, 5] += weight * chain.vector[:-1, 2]
     if not chain.drive.has_imu:
         tilt = rotation_error(_upright(chain.R), chain.R)[:-1, 0:2]
-        found.H[:, [0, 1], [0, 1]] += per_knot / _TILT_SD_RAD**2
-        found.g[:, 0:2] += per_knot / _TILT_SD_RAD**2 * tilt
+        found.H[:, [0, 1], [0, 1]] += per_knot / FUSION.tilt_sd_rad**2
+        found.g[:, 0:2] += per_knot / FUSION.tilt_sd_rad**2 * tilt
     return found
 
 

@@ -8,12 +8,8 @@ from scipy.spatial import cKDTree
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points, proper, so3_exp
 from recon4.profiler.sweeps import Sweeps, relative
 from recon4.profiler.tuning import LineTuning
+from recon4.profiler.tuning_solve import GLOBAL_ICP
 
-_POINTS = 8000
-"""Points of a sweep that are paired."""
-_MIN_PAIRS = 50
-_SMALL_M = 1e-3
-_SMALL_RAD = 2e-4
 Links = list[tuple[int, int, float]]
 """Pairs of sweeps, the earlier first, and the part of the points with a closest pair."""
 
@@ -24,7 +20,7 @@ class PairedSweeps:
     def __init__(self, sweeps: Sweeps) -> None:
         self.points: list[Array] = []
         for sweep in sweeps.sweeps:
-            step = max(1, -(-len(sweep.points) // _POINTS))
+            step = max(1, -(-len(sweep.points) // GLOBAL_ICP.points))
             self.points.append(sweep.points[::step].astype(np.float64))
         self._trees = [cKDTree(p, balanced_tree=False, compact_nodes=False) for p in self.points]
 
@@ -56,12 +52,12 @@ def preregister(sweeps: Sweeps, T: SE3, settings: LineTuning) -> SE3:
         )
         for _ in range(settings.slam_rounds):
             p, q = paired.pairs(k - 1, k, T_i_j, reach_m=settings.preregister_m)
-            if len(p) < _MIN_PAIRS:
+            if len(p) < GLOBAL_ICP.min_pairs:
                 break
             found = align_points(p, q)
             moved = float(np.linalg.norm((found.inverse() @ T_i_j).t))
             T_i_j = found
-            if moved < _SMALL_M:
+            if moved < GLOBAL_ICP.small_m:
                 break
         pose = SE3(R[k - 1], t[k - 1]) @ T_i_j
         R[k], t[k] = pose.R, pose.t
@@ -91,13 +87,13 @@ def register_all(sweeps: Sweeps, T: SE3, links: Links, *, settings: LineTuning) 
         for i, j, _ in links:
             T_i, T_j = SE3(R[i], t[i]), SE3(R[j], t[j])
             p, q = paired.pairs(i, j, T_i.inverse() @ T_j, reach_m=settings.link_distance_m)
-            if len(p) >= _MIN_PAIRS:
+            if len(p) >= GLOBAL_ICP.min_pairs:
                 _add(H, g, (i, j), r=T_i @ p - T_j @ q, arms=(p @ R[i].T, q @ R[j].T))
         step = -np.linalg.solve(H, g).reshape(count, 6)
         R, t = proper(so3_exp(step[:, ROTATION]) @ R), t + step[:, TRANSLATION]
         if (
-            np.abs(step[:, TRANSLATION]).max() < _SMALL_M
-            and np.abs(step[:, ROTATION]).max() < _SMALL_RAD
+            np.abs(step[:, TRANSLATION]).max() < GLOBAL_ICP.small_m
+            and np.abs(step[:, ROTATION]).max() < GLOBAL_ICP.small_rad
         ):
             break
     return SE3(R, t)

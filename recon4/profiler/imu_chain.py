@@ -18,6 +18,7 @@ from recon4.kernels.imu_chain import SIZE, level_by_gravity, linearize_chain
 from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.profiler.tuning_solve import IMU_CHAIN
 from recon4.registration.motion import imu_at, imu_in_body, level_rotation
 from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
@@ -27,13 +28,6 @@ ROTATION, POSITION, VELOCITY = slice(0, 3), slice(3, 6), slice(6, 9)
 GYRO_BIAS, ACCEL_BIAS = slice(9, 12), slice(12, 15)
 """Rows of the error state of a knot (15,); rotations are about the map's axes."""
 POSE = slice(0, 6)
-_GYRO_BIAS_SD, _ACCEL_BIAS_SD = 0.02, 0.3
-"""Of a bias [rad/s], [m/s²]."""
-_VELOCITY_SD = 3.0
-"""Of a walking body, a weak prior that keeps the chain solvable [m/s]."""
-_LEVEL_GAIN = 0.15
-_LONGEST_HOLE_NS = 200_000_000
-_REST_S = 0.5
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -123,7 +117,7 @@ def make_drive(
         imu_at(t_ns, imu.t_ns, accel),
         np.array([s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk]),
         np.array([0.0, 0.0, -STANDARD_GRAVITY_M_S2]),
-        np.repeat([_GYRO_BIAS_SD, _ACCEL_BIAS_SD], 3),
+        np.repeat([IMU_CHAIN.gyro_bias_sd, IMU_CHAIN.accel_bias_sd], 3),
     )
 
 
@@ -136,7 +130,10 @@ def covers(imu: ImuSamples, span_ns: tuple[int, int]) -> bool:
     if len(t_ns) < 2:
         return False
     outside = max(int(t_ns[0]) - span_ns[0], span_ns[1] - int(t_ns[-1]))
-    return outside <= _LONGEST_HOLE_NS and int(np.diff(t_ns).max()) <= _LONGEST_HOLE_NS
+    return (
+        outside <= IMU_CHAIN.longest_hole_ns
+        and int(np.diff(t_ns).max()) <= IMU_CHAIN.longest_hole_ns
+    )
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -252,7 +249,7 @@ class LinearizedChain:
         diagonal, lower = np.zeros((knots, SIZE, SIZE)), np.zeros((knots - 1, SIZE, SIZE))
         gradient = np.zeros((knots, SIZE))
         # Divided by the number of knots in a second, so that it does not depend on their step.
-        weight = self.chain.drive.step_s * self.chain.drive.steps / _VELOCITY_SD**2
+        weight = self.chain.drive.step_s * self.chain.drive.steps / IMU_CHAIN.velocity_sd**2
         rows = np.arange(6, 9)
         diagonal[:, rows, rows] += weight
         gradient[:, VELOCITY] += weight * chain.vector[:, 3:6]
@@ -270,9 +267,9 @@ def initial_chain(drive: Drive) -> ImuChain:
     if not drive.has_imu:
         return ImuChain(drive, np.tile(np.eye(3), (knots, 1, 1)), vector)
     R = np.empty((len(drive.gyro), 3, 3))
-    rest = max(1, round(_REST_S / drive.step_s))
+    rest = max(1, round(IMU_CHAIN.rest_s / drive.step_s))
     R[0] = level_rotation(drive.accel[:rest].mean(axis=0))
-    level_by_gravity(drive.gyro, drive.accel, drive.step_s, _LEVEL_GAIN, R)
+    level_by_gravity(drive.gyro, drive.accel, drive.step_s, IMU_CHAIN.level_gain, R)
     return ImuChain(drive, proper(R[:: drive.steps]), vector)
 
 

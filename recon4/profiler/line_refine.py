@@ -36,6 +36,7 @@ from recon4.profiler.samples import joined, laser_points, line_points
 from recon4.profiler.stage_odometry import span_of
 from recon4.profiler.surface_support import surface_support
 from recon4.profiler.tuning import LineTuning
+from recon4.profiler.tuning_solve import LINE_REFINE_STEPS
 from recon4.progress import Progress
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.tuning import PLANES, OdometryTuning, PlaneTuning
@@ -45,9 +46,6 @@ from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans, load_lines
-
-_BLOCK = 5
-"""Multiframes that are matched before the map is brought up to date."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -188,8 +186,8 @@ class _LineSweep:
             self._r.progress.advance()
         self._planes.fit()
         next_row = 0
-        for first in range(0, count, _BLOCK):
-            block = range(first, min(first + _BLOCK, count))
+        for first in range(0, count, LINE_REFINE_STEPS.block):
+            block = range(first, min(first + LINE_REFINE_STEPS.block, count))
             next_row = self._remove_near(block, next_row, count)
             for row in block:
                 self._match_frame(row, chain, found)

@@ -7,15 +7,7 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
-
-_APART_NS = 200_000_000
-_MIN_TURN_RAD = float(np.deg2rad(4.0))
-_PAIRS = 40
-_MIN_PAIRS = 8
-_MOST = 0.75
-"""Part of the pairs that must turn against the gyroscope."""
-_SEARCH_RAD = float(np.deg2rad(25.0))
-_FAR_M = 30.0
+from recon4.profiler.tuning_audits import MIRRORED
 
 
 def is_mirrored(scans: LaserScans, attitude: Trajectory) -> bool:
@@ -26,22 +18,24 @@ def is_mirrored(scans: LaserScans, attitude: Trajectory) -> bool:
         attitude: ``R_map_laser`` by the IMU.
     """
     first = np.flatnonzero(
-        (scans.t_ns >= attitude.t_ns[0]) & (scans.t_ns + 2 * _APART_NS <= attitude.t_ns[-1])
+        (scans.t_ns >= attitude.t_ns[0]) & (scans.t_ns + 2 * MIRRORED.apart_ns <= attitude.t_ns[-1])
     )
     if not len(first):
         return False
-    second = np.clip(np.searchsorted(scans.t_ns, scans.t_ns[first] + _APART_NS), 0, len(scans) - 1)
+    second = np.clip(
+        np.searchsorted(scans.t_ns, scans.t_ns[first] + MIRRORED.apart_ns), 0, len(scans) - 1
+    )
     inside = scans.t_ns[second] <= attitude.t_ns[-1]
     first, second = first[inside], second[inside]
     heading = [_heading(attitude.at(scans.t_ns[rows]).R) for rows in (first, second)]
     turn = (heading[1] - heading[0] + np.pi) % (2.0 * np.pi) - np.pi
-    fast = np.argsort(-np.abs(turn))[:_PAIRS]
-    fast = fast[np.abs(turn[fast]) > _MIN_TURN_RAD]
-    if len(fast) < _MIN_PAIRS:
+    fast = np.argsort(-np.abs(turn))[: MIRRORED.pairs]
+    fast = fast[np.abs(turn[fast]) > MIRRORED.min_turn_rad]
+    if len(fast) < MIRRORED.min_pairs:
         return False
     seen = np.array([_rotation(scans, int(first[k]), int(second[k])) for k in fast])
     against = np.sign(seen) == -np.sign(turn[fast])
-    return bool(np.mean(against & (seen != 0.0)) > _MOST)
+    return bool(np.mean(against & (seen != 0.0)) > MIRRORED.most)
 
 
 def _rotation(scans: LaserScans, i: int, j: int) -> float:
@@ -49,7 +43,7 @@ def _rotation(scans: LaserScans, i: int, j: int) -> float:
     angles = scans.angles_rad(i)
     a, b = (_ranges_at(scans, k, angles) for k in (i, j))
     step = abs(float(scans.angle_step_rad[i]))
-    most = min(int(_SEARCH_RAD / step), len(a) // 3)
+    most = min(int(MIRRORED.search_rad / step), len(a) // 3)
     shifts = range(-most, most + 1, max(1, int(np.deg2rad(0.5) / step)))
     inner = slice(most, len(a) - most)
     # Turned left by s beams, scan j at beam m shows what scan i shows at beam m + s.
@@ -64,7 +58,7 @@ def _ranges_at(scans: LaserScans, k: int, angles: Array) -> Array:
     beam = np.rint((angles - scans.angle_min_rad[k]) / scans.angle_step_rad[k]).astype(np.int64)
     seen = (beam >= 0) & (beam < len(ranges))
     found = np.where(seen, ranges[np.clip(beam, 0, len(ranges) - 1)], np.nan)
-    return np.nan_to_num(found.astype(np.float64), nan=_FAR_M).clip(max=_FAR_M)
+    return np.nan_to_num(found.astype(np.float64), nan=MIRRORED.far_m).clip(max=MIRRORED.far_m)
 
 
 def _heading(R: Array) -> Array:

@@ -15,21 +15,12 @@ from recon4.geometry.cubes import count_cubes
 from recon4.geometry.se3 import Array, so3_exp
 from recon4.model.trajectory import Trajectory
 from recon4.profiler.samples import TimedPoints
+from recon4.profiler.tuning_audits import MOUNT_AUDIT
 
-SAID_RAD = float(np.deg2rad(0.5))
-"""Smaller rotations are not said."""
-SAID_M = 0.03
-"""Smaller shifts are not said [m]."""
-_COARSE_POINTS, _FINE_POINTS = 40_000, 80_000
 _UNIT = np.array([*np.deg2rad([0.25, 0.25, 0.25]), 0.01, 0.01])
 """Step of the search: rotation about x, y, z of the body, shift along x and y."""
 _COARSE, _FINE = np.arange(-12.0, 13.0, 3.0), np.arange(-2.0, 3.0)
 """Changes that are tried, in steps."""
-_COARSE_M, _FINE_M = 0.2, 0.1
-"""Edges of the cubes [m]."""
-_CYCLES = 5
-_CLEAR_RATIO = 0.98
-"""Fewer places than this part of those as mounted show that the mount is another one."""
 _SKEW = so3_exp(np.array([0.4, 0.7, 0.3]))
 """Turns the cubes: a tilt would bring a floor along their faces into one layer of them."""
 
@@ -47,7 +38,8 @@ class MountChange:
     def is_wrong(self) -> bool:
         """Whether a person should look at the mount."""
         return bool(
-            np.linalg.norm(self.turn_rad) > SAID_RAD or np.linalg.norm(self.shift_m) > SAID_M
+            np.linalg.norm(self.turn_rad) > MOUNT_AUDIT.said_rad
+            or np.linalg.norm(self.shift_m) > MOUNT_AUDIT.said_m
         )
 
     def describe(self) -> str:
@@ -85,16 +77,20 @@ def mount_change(
         at = TimedPoints(inside.t_ns[::every], np.ascontiguousarray(moved)).placed(trajectory)
         return count_cubes(at @ _SKEW, cube_m)
 
-    found = _lowest(np.zeros(5), _COARSE, lambda x: places(x, _COARSE_POINTS, _COARSE_M))
-    found = _lowest(found, _FINE, lambda x: places(x, _FINE_POINTS, _FINE_M))
-    before, after = (places(x, _FINE_POINTS, _FINE_M) for x in (np.zeros(5), found))
-    return MountChange(found[:3], found[3:]) if after <= _CLEAR_RATIO * before else None
+    found = _lowest(
+        np.zeros(5), _COARSE, lambda x: places(x, MOUNT_AUDIT.coarse_points, MOUNT_AUDIT.coarse_m)
+    )
+    found = _lowest(found, _FINE, lambda x: places(x, MOUNT_AUDIT.fine_points, MOUNT_AUDIT.fine_m))
+    before, after = (
+        places(x, MOUNT_AUDIT.fine_points, MOUNT_AUDIT.fine_m) for x in (np.zeros(5), found)
+    )
+    return MountChange(found[:3], found[3:]) if after <= MOUNT_AUDIT.clear_ratio * before else None
 
 
 def _lowest(start: Array, steps: Array, cost: Callable[[Array], int]) -> Array:
     """The lowest cost along each coordinate in turn, again while one changes."""
     best, value = start, cost(start)
-    for _ in range(_CYCLES):
+    for _ in range(MOUNT_AUDIT.cycles):
         before = best
         for axis in range(len(best)):
             tried = [best + step * _UNIT * (np.arange(len(best)) == axis) for step in steps if step]

@@ -15,15 +15,10 @@ from recon4.profiler.clock_audit import ClockLag, clock_lag
 from recon4.profiler.fusion import PlanarPoses, attitude
 from recon4.profiler.imu_chain import Drive
 from recon4.profiler.mirrored import is_mirrored
+from recon4.profiler.tuning_solve import LEVELED_SCANS
 from recon4.progress import Progress
 from recon4.settings.reads import Slam2dReads
 from recon4.slam2d.slam import Slam2dResult, slam2d
-
-_FLOOR_SD = np.array([0.02, 0.02, 0.004])
-"""Smallest standard deviation of x, y [m] and heading [rad]: errors of consecutive scans are
-correlated."""
-_MIN_SCANS = 10
-_NEAR_NS = 300_000_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,9 +58,10 @@ def map_in_plane(
         return None
     R_map_body = attitude(drive)
     first, last = np.searchsorted(
-        scans.t_ns, [R_map_body.t_ns[0] - _NEAR_NS, R_map_body.t_ns[-1] + _NEAR_NS]
+        scans.t_ns,
+        [R_map_body.t_ns[0] - LEVELED_SCANS.near_ns, R_map_body.t_ns[-1] + LEVELED_SCANS.near_ns],
     )
-    if last - first < _MIN_SCANS:
+    if last - first < LEVELED_SCANS.min_scans:
         return None
     T_body_laser = rig.sensors[row].T_body_sensor
     T_map_laser = SE3(R_map_body.T_a_b.R @ T_body_laser.R, np.zeros_like(R_map_body.T_a_b.t))
@@ -100,6 +96,6 @@ def _tracked(found: Slam2dResult, T_body_laser: SE3) -> PlanarPoses:
     cov = found.covariance[tracked][:, order][:, :, order]
     R = np.zeros((len(cov), 3, 3))
     R[:, :2, :2], R[:, 2, 2] = found.trajectory.T_a_b.R[tracked, :2, :2], 1.0
-    cov = R @ cov @ np.swapaxes(R, 1, 2) + np.diag(_FLOOR_SD**2)
+    cov = R @ cov @ np.swapaxes(R, 1, 2) + np.diag(np.array(LEVELED_SCANS.floor_sd) ** 2)
     trajectory = found.trajectory
     return PlanarPoses(trajectory.t_ns[tracked], trajectory.T_a_b[tracked], cov, T_body_laser)

@@ -16,10 +16,8 @@ from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.trajectory import Times, Trajectory
 from recon4.model.usability import WEAK_SD_M
 from recon4.profiler.imu_chain import ImuChain, Information
+from recon4.profiler.tuning_solve import PLANAR_HOLD
 from recon4.registration.state import END_POSE, START, VECTOR
-
-_WALK_M = np.array([0.02, 0.02, 0.05])
-"""Random walk of the error of x, y and z [m/sqrt(s)]; the height is by the IMU."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,7 +41,7 @@ class PlanarHold:
         slack_ns = 2 * int(knot_ns[1] - knot_ns[0])
         step_m = np.diff(start.at(knot_ns, slack_ns=slack_ns).t, axis=0)
         seconds = 1e-9 * np.diff(knot_ns)[:, None]
-        return PlanarHold(step_m, known[:, None] / (_WALK_M**2 * seconds))
+        return PlanarHold(step_m, known[:, None] / (np.array(PLANAR_HOLD.walk_m) ** 2 * seconds))
 
     def information(self, chain: ImuChain) -> Information:
         """Normal equations at the present states."""

@@ -20,17 +20,11 @@ from recon4.model.line_scans import LineScans
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import TimedPoints, joined, line_points
 from recon4.profiler.tuning import LineTuning
+from recon4.profiler.tuning_solve import PUBLISHED_REFINE
 from recon4.progress import Progress
 from recon4.registration.scans import thinned
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
 from recon4.store.frames import FrameStore
-
-_NEIGHBOR_SD = np.repeat([0.01, 0.03], 3)
-"""Of the difference of two consecutive corrections [rad], [m]."""
-_TOTAL_SD = np.repeat([0.2, 1.0], 3)
-_PAIR_SD_M = 0.05
-_INDEPENDENT = 0.05
-"""Fraction of the pairs that counts as independent: neighbors pair alike."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,7 +45,12 @@ class PublishedRefiner:
             system, mean_m, ratio = self._match(trajectory, knot_ns)
             if ratio == 0.0:
                 break
-            step = solve_knots(system, applied, neighbor_sd=_NEIGHBOR_SD, total_sd=_TOTAL_SD)
+            step = solve_knots(
+                system,
+                applied,
+                neighbor_sd=np.repeat(PUBLISHED_REFINE.neighbor_sd, 3),
+                total_sd=np.repeat(PUBLISHED_REFINE.total_sd, 3),
+            )
             applied = applied + step
             trajectory = apply_knots(trajectory, knot_ns, step)
             largest_m = float(np.linalg.norm(step[:, TRANSLATION], axis=1).max())
@@ -96,7 +95,7 @@ class PublishedRefiner:
             accumulate_pairs(p, q, interval.astype(np.int64), fraction, center, H, g)
             total += float(distance.sum())
             matches, tried = matches + len(p), tried + len(some)
-        scale = _INDEPENDENT / _PAIR_SD_M**2
+        scale = PUBLISHED_REFINE.independent / PUBLISHED_REFINE.pair_sd_m**2
         system = IntervalEquations(scale * H, scale * g)
         return system, total / max(matches, 1), matches / max(tried, 1)
 

@@ -14,28 +14,21 @@ from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.laser_scans import LaserScans
 from recon4.model.odometry_figures import LineFigures, OdometryFigures
 from recon4.model.trajectory import Times, Trajectory
-from recon4.profiler.clock_audit import SAID_S, profiler_ahead_s, some_points
+from recon4.profiler.clock_audit import profiler_ahead_s, some_points
 from recon4.profiler.fusion import fuse
 from recon4.profiler.imu_chain import Drive, linearize, make_drive
 from recon4.profiler.mount_audit import mount_change
 from recon4.profiler.planar import PlanarMap, map_in_plane
 from recon4.profiler.samples import TimedPoints
 from recon4.profiler.tuning import LineTuning
+from recon4.profiler.tuning_audits import CLOCK_AUDIT
+from recon4.profiler.tuning_solve import FIRST_LINES
 from recon4.progress import Progress
 from recon4.settings.reads import LineOdometryReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameStore
 from recon4.store.line_store import load_laser_scans
-
-_FIRST_KNOT_S = 0.05
-"""The first trajectory needs no finer knots: the IMU determines what lies between."""
-_BRIDGED_NS = 2_000_000_000
-"""The IMU bridges a silent 2-D laser for this time [ns] …"""
-_BRIDGED_WITHOUT_NS = 500_000_000
-"""… and constant velocity for this time [ns]."""
-_POSES_AT_ONCE = 200
-_SILENT_S = 1.0
 
 
 def run_line_odometry(
@@ -52,7 +45,7 @@ def run_line_odometry(
     """
     span_ns = span_of(frames)
     drive = make_drive(
-        frames.imu, frames.rig, span_ns, knot_s=_FIRST_KNOT_S, settings=settings.odometry
+        frames.imu, frames.rig, span_ns, knot_s=FIRST_LINES.first_knot_s, settings=settings.odometry
     )
     has_laser = frames.rig.row_of("laser2d") is not None
     scans = load_laser_scans(frames.folder) if has_laser else None
@@ -114,7 +107,7 @@ def line_figures(
     inside = scans.t_ns[(scans.t_ns >= span_ns[0]) & (scans.t_ns <= span_ns[1])]
     times = np.concatenate([[span_ns[0]], inside, [span_ns[1]]])
     seconds = 1e-9 * np.diff(times)
-    silent = np.flatnonzero(seconds > _SILENT_S)
+    silent = np.flatnonzero(seconds > FIRST_LINES.silent_s)
     return LineFigures(
         walk_s=walk_s,
         laser="used",
@@ -147,7 +140,7 @@ def _profiler_error(
         return None, ""
     points = some_points(frames, min_range_m=min_range_m)
     ahead_s = profiler_ahead_s(points, trajectory)
-    is_ahead = abs(ahead_s) >= SAID_S
+    is_ahead = abs(ahead_s) >= CLOCK_AUDIT.said_s
     if is_ahead:
         points = TimedPoints(points.t_ns - round(1e9 * ahead_s), points.p_body)
     sensor = frames.rig.sensors[frames.rig.row_of("profiler") or 0]
@@ -163,7 +156,7 @@ def _lost(t_ns: Times, planar: PlanarMap | None, drive: Drive) -> NDArray[np.boo
     known = planar.poses.t_ns
     after = np.clip(np.searchsorted(known, t_ns), 1, len(known) - 1)
     away_ns = np.minimum(np.abs(t_ns - known[after - 1]), np.abs(known[after] - t_ns))
-    bridged_ns = _BRIDGED_NS if drive.has_imu else _BRIDGED_WITHOUT_NS
+    bridged_ns = FIRST_LINES.bridged_ns if drive.has_imu else FIRST_LINES.bridged_without_ns
     return np.asarray(away_ns > bridged_ns, dtype=np.bool_)
 
 
@@ -216,7 +209,7 @@ def _report(
     for row in np.flatnonzero(np.diff(lost.astype(np.int8), prepend=0) > 0):
         progress.event(TrackingLost(frame_id=int(row), t_ns=int(t_ns[row])))
     rows = np.arange(0, len(t_ns), 5)
-    for part in np.array_split(rows, max(1, len(rows) // _POSES_AT_ONCE)):
+    for part in np.array_split(rows, max(1, len(rows) // FIRST_LINES.poses_at_once)):
         T: SE3 = trajectory.at(t_ns[part])
         x = np.round(T.quat_xyzw(), 5).tolist()
         progress.event(

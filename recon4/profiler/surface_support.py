@@ -8,13 +8,8 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.support import SurfaceSupport
 from recon4.model.trajectory import Times
+from recon4.profiler.tuning_solve import SUPPORT
 from recon4.registration.degeneracy import observable_pose, of_rigid_pose
-
-_AROUND_NS = 1_000_000_000
-"""A line scan sees one plane of the surroundings: the lines of this time before and after it count
-as well [ns]."""
-_LEAST = 1e-6
-"""Smallest information: a standard deviation of 1 km [1/m²]."""
 
 
 def surface_support(
@@ -39,7 +34,8 @@ def surface_support(
     counted = np.concatenate([np.zeros((1, 2), np.int64), np.cumsum(counts, axis=0)])
     last = len(knot_ns) - 1
     first, stop = (
-        np.clip(np.searchsorted(knot_ns, t_mid_ns + side * _AROUND_NS), 0, last) for side in (-1, 1)
+        np.clip(np.searchsorted(knot_ns, t_mid_ns + side * SUPPORT.around_ns), 0, last)
+        for side in (-1, 1)
     )
     information = summed[stop] - summed[first]
     points, matches = (counted[stop] - counted[first]).T
@@ -59,4 +55,4 @@ def _weakest(H: Array, normal_noise_rad: float) -> tuple[float, Array]:
     coupling = reduced[ROTATION, TRANSLATION]
     position = reduced[TRANSLATION, TRANSLATION] - coupling.T @ np.linalg.solve(of_turn, coupling)
     values, vectors = np.linalg.eigh(0.5 * (position + position.T))
-    return max(float(values[0]), _LEAST) ** -0.5, vectors[:, 0]
+    return max(float(values[0]), SUPPORT.least) ** -0.5, vectors[:, 0]

@@ -30,6 +30,7 @@ from recon4.pose_graph.tuning import graph_tuning
 from recon4.profiler.global_icp import preregister, register_all
 from recon4.profiler.sweeps import Sweeps, relative, unwind_sweeps
 from recon4.profiler.tuning import LineTuning
+from recon4.profiler.tuning_solve import SWEEP_GRAPH
 from recon4.progress import Progress
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
@@ -43,9 +44,6 @@ from recon4.store.line_store import load_lines
 
 Points = NDArray[np.float32]
 
-_COUNTED = 4000
-"""Points of a sweep whose closest pairs are counted."""
-_LOST_FACTOR = 200.0
 _PLANES = replace(PLANES, max_sd_m=0.05)
 """A sweep is bent by the errors of its poses."""
 
@@ -163,7 +161,7 @@ def linked(sweeps: Sweeps, T: SE3, settings: LineGraphReads) -> list[tuple[int, 
     Neighbors first; of earlier visits those with the most pairs (requirements A12 L-3).
     """
     g, s = graph_tuning(settings.graph), tuned(LineTuning, settings.lines)
-    some = [_spread(sweep.points, _COUNTED) for sweep in sweeps.sweeps]
+    some = [_spread(sweep.points, SWEEP_GRAPH.counted) for sweep in sweeps.sweeps]
     trees = [cKDTree(points, balanced_tree=False, compact_nodes=False) for points in some]
     out = []
     for j in range(1, len(sweeps)):
@@ -208,7 +206,7 @@ def register_pair(
     target = PlaneMap(_PLANES)
     target.add(points[0].astype(np.float64))
     edge = _register(target, points, replace(link, overlap=0.0), settings=settings)
-    some = [_spread(one, _COUNTED) for one in points]
+    some = [_spread(one, SWEEP_GRAPH.counted) for one in points]
     tree = cKDTree(some[0], balanced_tree=False, compact_nodes=False)
     overlap = _close_ratio(
         tree, some[1], edge.T_i_j, reach_m=tuned(LineTuning, settings.lines).link_distance_m
@@ -275,7 +273,7 @@ def _chain(
     for k in range(len(sweeps) - 1):
         sd = np.repeat([s.chain_sd_rad, s.chain_sd_m], 3)
         if lost[sweeps.frame_rows[k] : sweeps.frame_rows[k + 1] + 1].any():
-            sd = sd * _LOST_FACTOR
+            sd = sd * SWEEP_GRAPH.lost_factor
         edges.append(
             Edge(
                 i=k,

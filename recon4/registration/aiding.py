@@ -12,11 +12,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, skew, so3_log
 from recon4.model.trajectory import Times, Trajectory
-
-_MAX_GAP_NS = 300_000_000
-"""No position is interpolated between two fixes farther apart than this [ns]."""
-_OUTLIER_SD = 3.0
-"""Residual in standard deviations at which a fix has half its weight."""
+from recon4.registration.tuning_motion import AIDING
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -93,18 +89,18 @@ class GnssAiding:
             return 0.0
         T = trajectory.at(self.t_ns[inside])
         z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
-        return float(np.mean((z**2).sum(axis=1) > _OUTLIER_SD**2))
+        return float(np.mean((z**2).sum(axis=1) > AIDING.outlier_sd**2))
 
     def _around(self, t_ns: int) -> tuple[int, float] | None:
         right = int(np.searchsorted(self.t_ns, t_ns))
         if right == 0 or right == len(self.t_ns):
             return None
         gap_ns = int(self.t_ns[right] - self.t_ns[right - 1])
-        if gap_ns > _MAX_GAP_NS:
+        if gap_ns > AIDING.max_gap_ns:
             return None
         return right - 1, (t_ns - int(self.t_ns[right - 1])) / gap_ns
 
 
 def _cauchy(z2: float) -> float:
     """Weight of a squared residual in standard deviations."""
-    return 1.0 / (1.0 + z2 / _OUTLIER_SD**2)
+    return 1.0 / (1.0 + z2 / AIDING.outlier_sd**2)

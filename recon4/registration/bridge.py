@@ -20,32 +20,12 @@ from recon4.registration.overlap import RangeImage, make_range_image, seen_throu
 from recon4.registration.result import Registration
 from recon4.registration.scans import Scan, lay_onto, make_scan
 from recon4.registration.tuning import SCANS, ScanTuning
-
-TRIED_EVERY_NS = 500_000_000
-"""While tracking is lost a bridge is searched this often [ns]; it takes half a second of work."""
-_SCANS = 8
-_APART_M, _APART_RAD = 0.3, 0.26
-"""The joined scans were taken this far apart, or turned by this."""
-_LEAST_RATIO = 0.28
-"""Least ratio of the points of the new scan on surfaces of the last ones. On 42 steps of up to 8 m
-it was 0.30 to 0.80, on 60 pairs of places that do not overlap 0.04 to 0.34."""
-_RIVAL_RATIO = 0.75
-"""Another pose with this part of the best ratio makes the best one unsure."""
-_RIVAL_M, _RIVAL_RAD = 1.0, 0.2
-"""Poses nearer to each other are the same."""
-_MOST_SEEN_THROUGH = 0.2
-"""Largest ratio of points in the free space of the other view: 0.15 and less on the steps, 0.16 and
-more on the others."""
-_LEAST_DEGENERACY = 0.05
-"""Least eigenvalue of the mean of n n^T: 0.086 and more on the steps."""
-_SD_RAD, _SD_M = 0.035, 0.15
-"""Standard deviations of a bridge; steps of NCLT were wrong by 5 cm in the median, at most by 30 cm
-and 2°."""
+from recon4.registration.tuning_motion import BRIDGE
 
 
 def bridge_cov() -> Array:
     """Covariance that a bridge adds to the motion of its multiframe, (6, 6)."""
-    return np.diag(np.repeat([_SD_RAD, _SD_M], 3) ** 2)
+    return np.diag(np.repeat([BRIDGE.sd_rad, BRIDGE.sd_m], 3) ** 2)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,13 +42,13 @@ class RecentScans:
 
     def __init__(self, settings: ScanTuning = SCANS) -> None:
         self._settings = settings
-        self._kept: deque[tuple[int, SE3, Scan]] = deque(maxlen=_SCANS)
+        self._kept: deque[tuple[int, SE3, Scan]] = deque(maxlen=BRIDGE.scans)
 
     def keep(self, scan: Scan, T_odom_body: SE3, t_ns: int) -> None:
         """Add a scan and its time [ns], unless the last one was taken at nearly the same pose."""
         if self._kept:
             step = self._kept[-1][1].inverse() @ T_odom_body
-            if np.linalg.norm(step.t) < _APART_M and step.angle() < _APART_RAD:
+            if np.linalg.norm(step.t) < BRIDGE.apart_m and step.angle() < BRIDGE.apart_rad:
                 return
         self._kept.append((t_ns, T_odom_body, scan))
 
@@ -104,12 +84,12 @@ def sure_pose(
     found = [
         one
         for one in lay_onto(target, source.scan, initial=initial, settings=settings)
-        if one.match_ratio and _passed(views, one) <= _MOST_SEEN_THROUGH
+        if one.match_ratio and _passed(views, one) <= BRIDGE.most_seen_through
     ]
     if not found:
         return None
     best = found[0]
-    if best.match_ratio < _LEAST_RATIO or best.degeneracy < _LEAST_DEGENERACY:
+    if best.match_ratio < BRIDGE.least_ratio or best.degeneracy < BRIDGE.least_degeneracy:
         return None
     return None if any(_is_rival(one, best) for one in found) else best.T_target_source
 
@@ -126,5 +106,5 @@ def _passed(views: Sequence[RangeImage], one: Registration) -> float:
 
 def _is_rival(one: Registration, best: Registration) -> bool:
     apart = best.T_target_source.inverse() @ one.T_target_source
-    elsewhere = np.linalg.norm(apart.t) > _RIVAL_M or apart.angle() > _RIVAL_RAD
-    return bool(elsewhere) and one.match_ratio >= _RIVAL_RATIO * best.match_ratio
+    elsewhere = np.linalg.norm(apart.t) > BRIDGE.rival_m or apart.angle() > BRIDGE.rival_rad
+    return bool(elsewhere) and one.match_ratio >= BRIDGE.rival_ratio * best.match_ratio

@@ -13,18 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
-
-_SPEED_SD_M_S = 1.5
-"""Standard deviation of the speed of a carrier, each axis [m/s]."""
-_SPEED_S = 10.0
-"""Time over which a speed is forgotten [s]; it changes by 0.2 m/s in a tenth of a second."""
-_LEAST_SD_M = 0.002
-_TURN_SD_RAD_S = 2.0
-"""Standard deviation of the turn rate of a carrier [rad/s]. A tunnel looks the same forward and
-back: nothing else keeps a scan from being turned over."""
-_LEAST_SD_RAD = 0.02
-_HEAVY = 3.0
-"""Distance in standard deviations from which a motion is implausible."""
+from recon4.registration.tuning_motion import CARRIER
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,16 +35,16 @@ class CarrierPrior:
             seconds: Since the last pose.
             velocity_m_s: The last velocity, (3,).
         """
-        kept = float(np.exp(-seconds / _SPEED_S))
-        sd_m = seconds * _SPEED_SD_M_S * float(np.sqrt(1.0 - kept**2))
+        kept = float(np.exp(-seconds / CARRIER.speed_s))
+        sd_m = seconds * CARRIER.speed_sd_m_s * float(np.sqrt(1.0 - kept**2))
         return CarrierPrior(
             seconds * kept * velocity_m_s,
-            max(sd_m, _LEAST_SD_M),
-            max(seconds * _TURN_SD_RAD_S, _LEAST_SD_RAD),
+            max(sd_m, CARRIER.least_sd_m),
+            max(seconds * CARRIER.turn_sd_rad_s, CARRIER.least_sd_rad),
         )
 
     def plausibility(self, T_last_now: SE3) -> float:
         """1 = as expected, less the farther a pose lies from there or is turned; never 0."""
         shift = float(np.linalg.norm(T_last_now.t - self.t_m)) / self.sd_m
         turn = float(T_last_now.angle()) / self.sd_rad
-        return 1.0 / float(np.linalg.norm([1.0, shift / _HEAVY, turn / _HEAVY]))
+        return 1.0 / float(np.linalg.norm([1.0, shift / CARRIER.heavy, turn / CARRIER.heavy]))

@@ -18,12 +18,11 @@ from recon4.geometry.lines import Lines, closest_points
 from recon4.geometry.se3 import ROTATION, SE3, TRANSLATION, Array, align_points
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.tuning import RegistrationTuning, registration_tuning
+from recon4.registration.tuning_matching import COLLAR_LINES
 from recon4.settings import RegistrationSettings
 
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
-
-_MIN_MATCHES = 20
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,7 +56,7 @@ def register_lines(
         portion: Fraction of nearest matches that is kept, 0..1 (the overlap, V §2.5).
         settings: Solver and stop rules.
     """
-    if len(target.lines) < _MIN_MATCHES or len(source) < _MIN_MATCHES:
+    if len(target.lines) < COLLAR_LINES.min_matches or len(source) < COLLAR_LINES.min_matches:
         return _refused(initial)
     rules = registration_tuning(settings)
     solve = _svd_step if rules.solver == "svd" else _common_normal_step
@@ -66,7 +65,7 @@ def register_lines(
     for iteration in range(1, rules.max_iterations + 1):
         moved = source.moved(T_target_source)
         rows_target, rows_source = _match(target.tree, moved, portion, settings=rules)
-        if len(rows_source) < _MIN_MATCHES:
+        if len(rows_source) < COLLAR_LINES.min_matches:
             return _refused(T_target_source)
         step = solve(target.lines[rows_target], moved[rows_source], rules)
         T_target_source = step.T @ T_target_source
@@ -108,7 +107,7 @@ def _svd_step(target: Lines, moved: Lines, settings: RegistrationTuning) -> _Ste
     p_target, p_source = closest_points(target, moved)
     kept = np.isfinite(p_target).all(axis=1)
     p_target, p_source = p_target[kept], p_source[kept]
-    if len(p_target) < _MIN_MATCHES:
+    if len(p_target) < COLLAR_LINES.min_matches:
         return _Step(SE3.identity(), float("nan"), np.eye(6), 0.0)
     T = align_points(p_target, p_source)
     gap = p_target - T @ p_source

@@ -7,14 +7,7 @@ import numpy as np
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.registration.plane_map import Match
 from recon4.registration.state import END_POSE, START
-
-LEAST_TURN = 0.2
-"""Squared part of the turn in a motion from which on it counts as a turn: a shift along a tunnel
-has 0.01 of it, a turn in a round hall or stairwell 0.3 to 1."""
-CURVED_INFORMATION = 0.009
-"""Information on a turn per weight of the points, at their typical distance, that planes fitted to
-curved walls feign: 0.0028 to 0.0040 in a round hall, 0.0018 to 0.0060 on spiral stairs; offices
-and staircases have at least 0.0139."""
+from recon4.registration.tuning_matching import DEGENERACY
 
 
 def observable_directions(
@@ -38,7 +31,7 @@ def observable_directions(
     Returns:
         ``H`` (12, 12) and ``g`` (12,) in the form of `Match`.
     """
-    feigned = CURVED_INFORMATION if with_imu else 0.0
+    feigned = DEGENERACY.curved_information if with_imu else 0.0
     root, full = _reductions(of_rigid_pose(match.H), normal_noise_rad, least_of_turn=feigned)
     both = np.kron(np.eye(2), root)
     return both.T @ match.H @ both, np.kron(np.eye(2), full).T @ match.g
@@ -100,7 +93,7 @@ def _reductions(
     scale = np.repeat([1.0 / max(arm_m, 1e-3), 1.0], 3)
     normalized, V = np.linalg.eigh(scale[:, None] * H * scale / weight)
     kept = np.clip(1.0 - normal_noise_rad**2 / np.maximum(normalized, 1e-12), 0.0, 1.0)
-    turns = np.sum(V[ROTATION] ** 2, axis=0) > LEAST_TURN
+    turns = np.sum(V[ROTATION] ** 2, axis=0) > DEGENERACY.least_turn
     kept[turns & (normalized < least_of_turn)] = 0.0
     root = scale[:, None] * (V * np.sqrt(kept)) @ V.T / scale
     full = scale[:, None] * (V * kept) @ V.T / scale

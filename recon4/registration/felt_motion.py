@@ -30,23 +30,8 @@ from recon4.model.usability import OBSERVED_SD_M
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.motion import imu_in_body
 from recon4.registration.step import OdometryStep
+from recon4.registration.tuning_imu import FELT
 
-_SHIFT_SD_M = 0.003
-"""Standard deviation of the shift over a multiframe along observed directions [m] …"""
-_UNKNOWN_M = 10.0
-"""… and along others, where it is no measurement [m]."""
-_AT_REST_M_S = 0.02
-"""Standard deviation of the velocity of a body that stands [m/s]."""
-_FIRST_SD = np.repeat([2.0, 0.2, 0.1], 3)
-"""Standard deviation at first of the velocity [m/s], of the bias and of gravity [m/s²]: the
-odometry was leveled by the same accelerometer."""
-_BIAS_WALK = 1e-3
-"""Random walk of the bias [m/s²/√s]."""
-_UNFELT_M_S = 2.0
-"""Standard deviation of the change of the velocity where samples are missing or saturated [m/s]."""
-_LEAST_SD_M = 0.001
-"""No motion over a multiframe is known better [m]."""
-_LONGEST_GAP_NS = 50_000_000
 _V = slice(0, 3)
 
 
@@ -122,7 +107,7 @@ def carried(steps: Sequence[OdometryStep], felt: FeltMotion) -> list[OdometrySte
     directions = np.array([step.weak_direction for step in steps[1:]])
     sd_m = felt.sd_m(shifts, np.where(weak[:, None], directions, 0.0))
     after = [
-        _with_weak_motion(step, max(sd, _LEAST_SD_M)) if is_weak else step
+        _with_weak_motion(step, max(sd, FELT.least_sd_m)) if is_weak else step
         for step, is_weak, sd in zip(steps[1:], weak.tolist(), sd_m.tolist(), strict=True)
     ]
     return [*steps[:1], *after]
@@ -137,7 +122,7 @@ def is_carried(step: OdometryStep) -> bool:
 def _with_weak_motion(step: OdometryStep, sd_m: float) -> OdometryStep:
     along = step.weak_direction
     before_m = float(np.sqrt(along @ step.motion_cov[TRANSLATION, TRANSLATION] @ along))
-    ratio = min(sd_m / max(before_m, _LEAST_SD_M), 1.0)
+    ratio = min(sd_m / max(before_m, FELT.least_sd_m), 1.0)
     scale = np.eye(6)
     scale[TRANSLATION, TRANSLATION] -= (1.0 - ratio) * np.outer(along, along)
     cov = scale @ step.motion_cov @ scale
@@ -153,7 +138,7 @@ def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
     s = 1e-9 * (grid - grid[0])
     sample_s = 1e-9 * (imu.t_ns - grid[0])
     f = np.stack([np.interp(s, sample_s, force[:, axis]) for axis in range(3)], axis=1)
-    R = trajectory.at(grid, slack_ns=_LONGEST_GAP_NS).R
+    R = trajectory.at(grid, slack_ns=FELT.longest_gap_ns).R
     both = np.concatenate([(R @ f[:, :, None]), R], axis=2).reshape(len(grid), 12)
     h = np.diff(s)[:, None]
     once = np.cumsum(h * (both[1:] + both[:-1]) / 2, axis=0)
@@ -169,23 +154,25 @@ def _integrate(t_ns: Times, trajectory: Trajectory, imu: ImuSamples, *, rig: Rig
 
 def _missing(t_ns: Times, imu: ImuSamples) -> NDArray[np.bool_]:
     """Whether the samples from each multiframe to the next have a gap or are saturated, (K,)."""
-    gaps = np.diff(imu.t_ns) > _LONGEST_GAP_NS
+    gaps = np.diff(imu.t_ns) > FELT.longest_gap_ns
     bad = np.concatenate([[0], np.cumsum(np.append(gaps, False) | saturated_samples(imu)[:, 1])])
     first = np.maximum(np.searchsorted(imu.t_ns, t_ns) - 1, 0)
     last = np.searchsorted(imu.t_ns, t_ns)
-    outside = (t_ns < imu.t_ns[0] - _LONGEST_GAP_NS) | (t_ns > imu.t_ns[-1] + _LONGEST_GAP_NS)
+    outside = (t_ns < imu.t_ns[0] - FELT.longest_gap_ns) | (
+        t_ns > imu.t_ns[-1] + FELT.longest_gap_ns
+    )
     return np.asarray((bad[last[1:]] > bad[first[:-1]]) | outside[1:] | outside[:-1])
 
 
 def _measurements(steps: Sequence[OdometryStep]) -> Iterator[tuple[Array, Array, bool]]:
     """Shift to each multiframe but the first, its covariance, and whether the body stands."""
     for before, step in pairwise(steps):
-        cov = _SHIFT_SD_M**2 * np.eye(3)
+        cov = FELT.shift_sd_m**2 * np.eye(3)
         tracked = not (before.lost or step.lost or step.bridged) and step.piece == before.piece
         if not tracked or not np.isfinite(step.weak_direction).all():
-            cov = _UNKNOWN_M**2 * np.eye(3)
+            cov = FELT.unknown_m**2 * np.eye(3)
         elif not step.weak_sd_m < OBSERVED_SD_M and not step.stationary:
-            cov = cov + _UNKNOWN_M**2 * np.outer(step.weak_direction, step.weak_direction)
+            cov = cov + FELT.unknown_m**2 * np.outer(step.weak_direction, step.weak_direction)
         yield step.T_odom_body.t - before.T_odom_body.t, cov, step.stationary and before.stationary
 
 
@@ -193,14 +180,14 @@ def _smoothed(
     felt: _Felt, measured: Sequence[tuple[Array, Array, bool]], accel_noise: float
 ) -> FeltMotion:
     """Rauch, Tung and Striebel's smoother; the state is velocity, bias, gravity, (9,)."""
-    x, P = np.zeros(9), np.diag(_FIRST_SD**2)
+    x, P = np.zeros(9), np.diag(np.repeat(FELT.first_sd, 3) ** 2)
     x[8] = -STANDARD_GRAVITY_M_S2
     filtered = []
     for k, (shift_m, cov, still) in enumerate(measured):
         H = _shift_by_state(felt, k)
         x, P = _updated(x, P, H, z=shift_m - felt.shift[k, :, 0], R=cov)
         if still:
-            x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=_AT_REST_M_S**2 * np.eye(3))
+            x, P = _updated(x, P, np.eye(3, 9), z=np.zeros(3), R=FELT.at_rest_m_s**2 * np.eye(3))
         F, Q = _transition(felt, k, accel_noise)
         predicted = F @ x
         predicted[_V] += felt.speed[k, :, 0]
@@ -225,8 +212,8 @@ def _transition(felt: _Felt, k: int, accel_noise: float) -> tuple[Array, Array]:
     dt_s = felt.dt_s[k]
     F = np.eye(9)
     F[_V, 3:] = np.hstack([-felt.speed[k, :, 1:], dt_s * np.eye(3)])
-    speed = accel_noise**2 * dt_s + (_UNFELT_M_S**2 if felt.missing[k] else 0.0)
-    return F, np.diag(np.repeat([speed, _BIAS_WALK**2 * dt_s, 0.0], 3))
+    speed = accel_noise**2 * dt_s + (FELT.unfelt_m_s**2 if felt.missing[k] else 0.0)
+    return F, np.diag(np.repeat([speed, FELT.bias_walk**2 * dt_s, 0.0], 3))
 
 
 def _updated(x: Array, P: Array, H: Array, *, z: Array, R: Array) -> tuple[Array, Array]:

@@ -16,34 +16,19 @@ from recon4.registration.point_map import WeakDirections
 from recon4.registration.segments import Segments
 from recon4.registration.state import END, END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
+from recon4.registration.tuning_matching import FRAME_FIT
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
 
-_GATES_M = (1.0, 0.5, 0.3, 0.2)
-"""Largest distance of a point from its plane in each round [m]; the last one is for all further."""
-
-_EXPECTED_SD: Array = np.repeat([0.02, 0.05], 3)
-"""Standard deviation of the pose that the registration to the last scan expects [rad, m]: both
-scans are distorted. The local map is more exact, but while one turns it may let the body slide."""
-_NEAR_VARIANCE = 1e-6
-"""The first planes are those at the expected pose, to a millimeter [m², rad²]."""
 _MIDDLE: Array = np.zeros((6, END.stop))
 """A correction of the pose at the middle of a frame, by those at its start and end."""
 _MIDDLE[:, START] = _MIDDLE[:, END_POSE] = 0.5 * np.eye(6)
-_PERSON_M_S, _PERSON_SD_M_S = 2.5, 0.5
-"""Speed that a person with a backpack hardly exceeds, and how firmly: where nothing observes the
-motion, errors of the accelerometer would add up to tens of meters a second. What a LiDAR observes
-is known a hundred times better, so a vehicle is not held back."""
-_GYROSCOPE_SD_RAD = float(np.deg2rad(0.1))
-"""Standard deviation of the turn of a multiframe by the gyroscope, with its bias and scale."""
 _AT_REST = {
     Rest.STATIONARY: np.full(3, 0.02**-2),
     Rest.STOPPED: np.array([0.1, 0.1, np.inf]) ** -2.0,
 }
 """Information on the velocity of a person who stands [s²/m²]. Who has just stopped still sways; the
 ground observes the height."""
-_WEAK_SD_M = 0.04
-"""Standard deviation of the position by the points from which on they hardly observe it [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -67,7 +52,7 @@ class FrameFit:
     @property
     def is_weak(self) -> bool:
         """Whether the points hardly observe a direction."""
-        return self.weak_sd_m > _WEAK_SD_M
+        return self.weak_sd_m > FRAME_FIT.weak_sd_m
 
     @property
     def weak_sd_m(self) -> float:
@@ -77,7 +62,7 @@ class FrameFit:
         """
         H6 = of_rigid_pose(self.H_lidar)
         if self.with_imu:
-            H6[ROTATION, ROTATION] += np.eye(3) / _GYROSCOPE_SD_RAD**2
+            H6[ROTATION, ROTATION] += np.eye(3) / FRAME_FIT.gyroscope_sd_rad**2
         direction = np.zeros(6)
         direction[STATE.position] = self.match.weak_direction
         return float(np.sqrt(direction @ np.linalg.solve(H6 + 1e-4 * np.eye(6), direction)))
@@ -172,7 +157,9 @@ class FrameFitter:
             g[END_POSE] += g_aiding
 
     def _gate_m(self, rounds: int) -> float:
-        return _GATES_M[min(rounds - 1 + (0 if self.coarse else 1), len(_GATES_M) - 1)]
+        return FRAME_FIT.gates_m[
+            min(rounds - 1 + (0 if self.coarse else 1), len(FRAME_FIT.gates_m) - 1)
+        ]
 
     def _weighted(self, match: Match) -> tuple[Array, Array]:
         tuning = tuned(OdometryTuning, self.settings)
@@ -191,7 +178,7 @@ def _prior(prediction: Prediction, rest: Rest) -> tuple[Array, Array]:
     information = np.asarray(np.linalg.inv(prediction.prior + 1e-12 * np.eye(END.stop)), np.float64)
     g = np.zeros(END.stop)
     if prediction.expected is not None:
-        weighted = _MIDDLE.T / _EXPECTED_SD**2
+        weighted = _MIDDLE.T / np.repeat(FRAME_FIT.expected_sd, 3) ** 2
         information += weighted @ _MIDDLE
         g -= weighted @ _from_expected(prediction, prediction.expected)
     at_rest = _AT_REST.get(rest)
@@ -202,13 +189,15 @@ def _prior(prediction: Prediction, rest: Rest) -> tuple[Array, Array]:
 
 
 def _add_speed_of_person(information: Array, g: Array, prediction: Prediction) -> None:
-    """Add to the normal equations, in place, that a person is hardly faster than `_PERSON_M_S`."""
+    """Add to the normal equations, in place, that a person is hardly faster."""
     velocity = prediction.end.vector[VECTOR.velocity]
     speed = float(np.linalg.norm(velocity))
-    if speed > _PERSON_M_S:
+    if speed > FRAME_FIT.person_m_s:
         along = velocity / speed
-        information[END_VELOCITY, END_VELOCITY] += np.outer(along, along) / _PERSON_SD_M_S**2
-        g[END_VELOCITY] += along * (speed - _PERSON_M_S) / _PERSON_SD_M_S**2
+        information[END_VELOCITY, END_VELOCITY] += (
+            np.outer(along, along) / FRAME_FIT.person_sd_m_s**2
+        )
+        g[END_VELOCITY] += along * (speed - FRAME_FIT.person_m_s) / FRAME_FIT.person_sd_m_s**2
 
 
 def _correct(prediction: Prediction, delta: Array, center: Array) -> SE3:
@@ -241,7 +230,7 @@ def _first_correction(prediction: Prediction) -> Array:
     if prediction.expected is None:
         return np.zeros(END.stop)
     cross = prediction.prior @ _MIDDLE.T
-    innovation_cov = _MIDDLE @ cross + _NEAR_VARIANCE * np.eye(6)
+    innovation_cov = _MIDDLE @ cross + FRAME_FIT.near_variance * np.eye(6)
     z = _from_expected(prediction, prediction.expected)
     return np.asarray(cross @ np.linalg.solve(innovation_cov, z))
 

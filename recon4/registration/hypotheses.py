@@ -24,11 +24,8 @@ from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.imu_choice import choose_imu, start_and_fastest_turn
 from recon4.registration.moving import find_moving, hide_moving
 from recon4.registration.table import row_of
+from recon4.registration.tuning_motion import HYPOTHESES
 from recon4.registration.walk import TrackedWalk, WalkInputs, positions_m, track_walk
-
-MOST_WALKS = 6
-"""How often a recording is tracked at most, from its import to its map: once is kept for a rig that
-the calibration changes, and with fixes once for the calibration of the antenna, without them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,7 +63,7 @@ def choose_walk(recording: WalkInputs) -> Choice:
 def _most_walks(recording: WalkInputs) -> int:
     kept = (recording.aiding is not None) + (recording.earlier is None)
     before = recording.earlier.walks if recording.earlier else 0
-    return max(MOST_WALKS - kept - before, 1)
+    return max(HYPOTHESES.most_walks - kept - before, 1)
 
 
 class _WalkHypotheses:

@@ -15,15 +15,8 @@ from recon4.geometry.se3 import Array
 from recon4.model.odometry_figures import ImuFault
 from recon4.registration.motion import MotionState
 from recon4.registration.state import STATE, VECTOR
+from recon4.registration.tuning_imu import IMU_ERRORS
 
-_MOST_GAIN = 0.015
-"""A larger error of the scale about an axis of the body is a fault …"""
-_MOST_ANGLE_RAD = 0.012
-"""… and a larger angle between the axes of IMU and body …"""
-_MOST_CLOCK_S = 0.004
-"""… and a larger error of the clock [s] …"""
-_SIGMAS = 5.0
-"""… if it exceeds this multiple of its standard deviation."""
 _TURN = 0.5 * np.array(
     [
         [0, 0, 0, 0, 0, -1, 0, 1, 0],
@@ -64,7 +57,7 @@ class ImuEstimate:
 
     def _scale(self) -> tuple[ImuFault, ...]:
         scale, sd = self.gain[::4], np.sqrt(np.diag(self.gain_cov)[::4])
-        far = (np.abs(scale) > _MOST_GAIN) & (np.abs(scale) > _SIGMAS * sd)
+        far = (np.abs(scale) > IMU_ERRORS.most_gain) & (np.abs(scale) > IMU_ERRORS.sigmas * sd)
         if not far.any():
             return ()
         axis = int(np.argmax(np.where(far, np.abs(scale) / sd, 0.0)))
@@ -77,15 +70,17 @@ class ImuEstimate:
     def _axes(self) -> tuple[ImuFault, ...]:
         turn = _TURN @ self.gain
         angle = float(np.linalg.norm(turn))
-        if not angle > _MOST_ANGLE_RAD:
+        if not angle > IMU_ERRORS.most_angle_rad:
             return ()
         along = turn / angle @ _TURN
         sd = float(np.sqrt(along @ self.gain_cov @ along))
-        if angle < _SIGMAS * sd:
+        if angle < IMU_ERRORS.sigmas * sd:
             return ()
         return (ImuFault(kind="gyroscope rotation", value=angle, sd=sd),)
 
     def _clock(self) -> tuple[ImuFault, ...]:
-        if not abs(self.clock_s) > max(_MOST_CLOCK_S, _SIGMAS * self.clock_sd_s):
+        if not abs(self.clock_s) > max(
+            IMU_ERRORS.most_clock_s, IMU_ERRORS.sigmas * self.clock_sd_s
+        ):
             return ()
         return (ImuFault(kind="clock", value=self.clock_s, sd=self.clock_sd_s),)

@@ -15,14 +15,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.motion import imu_in_body
-
-_MOST_M_S2 = 0.2
-"""A larger difference is not the bias of a unit in order, which has a standard deviation of half
-of this [m/s²]."""
-_MIN_S = 10.0
-"""In a shorter walk the change of the velocity matters too much [s]."""
-_SPEED_NS = 500_000_000
-"""Velocities at the ends are measured over this time [ns]."""
+from recon4.registration.tuning_imu import IMU_GRAVITY
 
 
 def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> float | None:
@@ -37,18 +30,18 @@ def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> float | 
     last_ns = min(int(trajectory.t_ns[-1]), int(imu.t_ns[-1]))
     seconds = (last_ns - first_ns) * 1e-9
     inside = (imu.t_ns >= first_ns) & (imu.t_ns <= last_ns)
-    if seconds < _MIN_S or inside.sum() < 2:
+    if seconds < IMU_GRAVITY.min_s or inside.sum() < 2:
         return None
     _, accel = imu_in_body(imu, rig)
     force = np.einsum("nij,nj->ni", trajectory.at(imu.t_ns[inside]).R, accel[inside]).mean(axis=0)
-    ends = np.array([first_ns, last_ns - _SPEED_NS])
+    ends = np.array([first_ns, last_ns - IMU_GRAVITY.speed_ns])
     gained = np.diff(_velocities(trajectory, ends), axis=0)[0]
     found = float(np.linalg.norm(force - gained / seconds))
     # NaN: no accelerometer
-    return found if abs(found - STANDARD_GRAVITY_M_S2) > _MOST_M_S2 else None
+    return found if abs(found - STANDARD_GRAVITY_M_S2) > IMU_GRAVITY.most_m_s2 else None
 
 
 def _velocities(trajectory: Trajectory, t_ns: Times) -> Array:
-    """Mean velocities [m/s] over `_SPEED_NS` from these times on, (N, 3)."""
-    moved = trajectory.at(t_ns + _SPEED_NS).t - trajectory.at(t_ns).t
-    return np.asarray(moved / (_SPEED_NS * 1e-9))
+    """Mean velocities [m/s] over `IMU_GRAVITY.speed_ns` from these times on, (N, 3)."""
+    moved = trajectory.at(t_ns + IMU_GRAVITY.speed_ns).t - trajectory.at(t_ns).t
+    return np.asarray(moved / (IMU_GRAVITY.speed_ns * 1e-9))

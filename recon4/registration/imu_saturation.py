@@ -9,15 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.samples import ImuSamples
-
-_SAME = 1e-4
-"""Values that differ by less than this ratio are the same."""
-_LEAST_RUN, _LEAST_SAMPLES = 3, 5
-"""A peak of a motion has one largest sample, a saturated sensor repeats it."""
-_BRIDGED = 20
-"""At the ends of a stretch noise leaves the largest value for some samples."""
-_SLOWEST_RAD_S, _WEAKEST_M_S2 = 1.5, 14.0
-"""No range of an IMU ends below this."""
+from recon4.registration.tuning_imu import SATURATION
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +31,8 @@ def saturated_axes(imu: ImuSamples) -> list[SaturatedAxis]:
     Args:
         imu: As recorded, in its own axes.
     """
-    gyro = _saturated("gyroscope", imu.gyro_rad_s, _SLOWEST_RAD_S)
-    return gyro + _saturated("accelerometer", imu.accel_m_s2, _WEAKEST_M_S2)
+    gyro = _saturated("gyroscope", imu.gyro_rad_s, SATURATION.slowest_rad_s)
+    return gyro + _saturated("accelerometer", imu.accel_m_s2, SATURATION.weakest_m_s2)
 
 
 def saturated_samples(imu: ImuSamples) -> NDArray[np.bool_]:
@@ -58,7 +50,7 @@ def _saturated(sensor: str, values: Array, least: float) -> list[SaturatedAxis]:
     found = []
     for axis, column in zip("xyz", values.T, strict=True):
         runs = _runs_at_the_end(column, least)
-        if sum(map(len, runs)) >= _LEAST_SAMPLES:
+        if sum(map(len, runs)) >= SATURATION.least_samples:
             largest = float(np.nanmax(np.abs(column)))
             found.append(SaturatedAxis(sensor, axis, largest, runs))
     return found
@@ -70,6 +62,6 @@ def _runs_at_the_end(values: Array, least: float) -> list[NDArray[np.intp]]:
     largest = float(size.max(initial=0.0))
     if largest < least:
         return []
-    rows = np.flatnonzero(size >= (1.0 - _SAME) * largest)
-    runs = np.split(rows, np.flatnonzero(np.diff(rows) > _BRIDGED) + 1)
-    return [run for run in runs if len(run) >= _LEAST_RUN]
+    rows = np.flatnonzero(size >= (1.0 - SATURATION.same) * largest)
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) > SATURATION.bridged) + 1)
+    return [run for run in runs if len(run) >= SATURATION.least_run]

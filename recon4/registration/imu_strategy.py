@@ -21,14 +21,11 @@ from recon4.registration.state import STATE, VECTOR
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import OdometryTuning, registration_tuning
+from recon4.registration.tuning_imu import IMU_MOTION
 from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
-
-_AS_PREDICTED_M = 0.03
-"""While it is not known how much usually matches, a frame is sure of its pose if the LiDARs move
-what the IMU predicts by less, and what matches lies as near [m]."""
 
 
 class ImuStrategy:
@@ -123,7 +120,7 @@ class ImuStrategy:
     def is_lost(self, fit: FrameFit, prediction: Prediction, limits: LostLimits) -> bool:
         """See `MotionStrategy.is_lost`."""
         offset_m = float(np.linalg.norm(fit.T_dense.t[-1] - prediction.T_odom_body.t[-1]))
-        fits = fit.converged and max(fit.match.mean_m, offset_m) < _AS_PREDICTED_M
+        fits = fit.converged and max(fit.match.mean_m, offset_m) < IMU_MOTION.as_predicted_m
         sure = fits and not limits.is_usual_known
         return not is_numeric(fit) or limits.is_lost(fit.match, sure=sure)
 

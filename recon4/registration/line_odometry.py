@@ -21,13 +21,9 @@ from recon4.registration.scan_chain import body_points
 from recon4.registration.segments import Segments, sample_segments
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning, registration_tuning
+from recon4.registration.tuning_matching import LINE_ODOMETRY
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
-
-_PREDICTOR = 3
-"""Number of past motions the linear predictor uses (requirements A3.2)."""
-_PASSES = 2
-"""Undistort, register, undistort again (V §2.6)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +52,7 @@ class LineOdometry:
         with_imu = imu is not None and len(imu) > 1 and settings.odometry.use_imu
         self._imu = ImuMotion(imu, rig, settings.odometry) if with_imu and imu else None
         self._history: deque[_HistoryFrame] = deque(maxlen=settings.odometry.history)
-        self._motions: deque[SE3] = deque(maxlen=_PREDICTOR)
+        self._motions: deque[SE3] = deque(maxlen=LINE_ODOMETRY.predictor)
         self._T_odom_body, self._t_mid_ns = SE3.identity(), 0
 
     def push(self, frame: Multiframe) -> OdometryStep:
@@ -67,7 +63,7 @@ class LineOdometry:
         predicted = motion = self._predicted_motion(frame)
         T_predicted = T_odom_body = self._T_odom_body @ _times(motion, steps)
         found = None
-        for _ in range(_PASSES if self._history else 1):
+        for _ in range(LINE_ODOMETRY.passes if self._history else 1):
             lines = self._lines(segments, frame, T_odom_body, motion=motion)
             if self._history:
                 found = self._register(lines, view, T_odom_body)

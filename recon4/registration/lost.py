@@ -10,11 +10,9 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.registration.plane_map import Match
 from recon4.registration.scan_chain import ScanChain
 from recon4.registration.tuning import SCANS, OdometryTuning, ScanTuning
+from recon4.registration.tuning_motion import LOST
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
-
-_USUAL_FRAMES = 50
-"""Number of frames from which the usual match ratio is learned."""
 
 
 class LostLimits:
@@ -26,7 +24,7 @@ class LostLimits:
 
     def __init__(self, settings: OdometrySettings) -> None:
         self._settings = tuned(OdometryTuning, settings)
-        self._ratios: deque[float] = deque(maxlen=_USUAL_FRAMES)
+        self._ratios: deque[float] = deque(maxlen=LOST.usual_frames)
 
     def learn(self, match_ratio: float) -> None:
         """Count a frame that was tracked."""

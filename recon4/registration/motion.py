@@ -16,39 +16,11 @@ from recon4.model.trajectory import Times
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.state import STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
+from recon4.registration.tuning_imu import PREDICTION
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
 
-_FREE_SD = (0.01, 0.05, 0.3, 0.3)
-"""Standard deviation of a state between two scans: turn [rad], place [m], velocity [m/s], turn
-rate [rad/s]."""
-_REST_NS = 500_000_000
-"""The vertical is averaged over samples this near in time [ns]; if there is none, the nearest."""
-_MIN_REST_SAMPLES = 10
-_REST_RAD_S, _REST_M_S2, _REST_M_S = 0.12, 0.3, 0.1
-"""Largest turn rate [rad/s], shaking [m/s²] and speed [m/s] of a person who stands; who walks turns
-by 0.5 rad/s and shakes by 1 m/s² and more."""
-_WALKED_NS, _WALK_M_S2 = 30_000_000_000, 0.8
-"""Who stops has walked within this time [ns], and shook by more than this [m/s²]."""
-_STOPPED_M_S2 = 1.4
-"""Least acceleration of who does not stand [m/s²]; the wrong bias and tilt of a body whose motion
-nothing observes look like up to 1.1."""
-_GAIN_WALK, _CLOCK_WALK_S = 1e-5, 1e-4
-"""Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
-estimated: a clock that drifts by 300 ppm is followed."""
-_LESS_SURE_GAIN, _LESS_SURE_CLOCK_S = 1e-3, 5e-4
-"""Standard deviations that are added to both when a new map is begun: what was found before may
-have come from the map that was lost."""
-_MOST_CLOCK_S = 0.1
-"""A larger error of the clock is not corrected [s]."""
 _VECTOR_SIZE = SIZE - 3
-_KEPT_NS = 60_000_000_000
-"""During live capture IMU samples are kept for this time [ns]."""
-_SATURATED_NOISE = (0.5, 10.0)
-"""Noise densities of a gyroscope [rad/s/√Hz] and an accelerometer [m/s²/√Hz] at the end of their
-range: a gyroscope of 250°/s in turns of 330°/s misses 8° in a multiframe."""
-_SLOT_S = 0.02
-"""Without an IMU the motion is sampled this often [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -127,7 +99,10 @@ class ImuMotion:
         self._saturated = saturated_samples(imu)
         self._has_accel = bool(np.isfinite(self._accel).all())
         s = tuned(OdometryTuning, settings)
-        walks = (_GAIN_WALK if s.gyro_gain_sd else 0.0, _CLOCK_WALK_S if s.imu_clock_sd_s else 0.0)
+        walks = (
+            PREDICTION.gain_walk if s.gyro_gain_sd else 0.0,
+            PREDICTION.clock_walk_s if s.imu_clock_sd_s else 0.0,
+        )
         self._noise = np.array(
             [s.gyro_noise, s.accel_noise, s.gyro_bias_walk, s.accel_bias_walk, *walks]
         )
@@ -140,13 +115,13 @@ class ImuMotion:
     def remember(self, state: MotionState) -> None:
         """Begin later initial states with what this one knows of gain and clock."""
         self._unit = state.vector[VECTOR.unit]
-        less = np.repeat([_LESS_SURE_GAIN, _LESS_SURE_CLOCK_S], [9, 1])
+        less = np.repeat([PREDICTION.less_sure_gain, PREDICTION.less_sure_clock_s], [9, 1])
         self._unit_cov = state.P[STATE.unit, STATE.unit] + np.diag(self._is_estimated * less**2)
 
     def extend(self, imu: ImuSamples) -> None:
         """Append newer samples of a live capture; drop samples older than a minute."""
         gyro, accel = imu_in_body(imu, self._rig)
-        kept = self._t_ns > imu.t_ns[-1] - _KEPT_NS
+        kept = self._t_ns > imu.t_ns[-1] - PREDICTION.kept_ns
         self._t_ns = np.concatenate([self._t_ns[kept], imu.t_ns])
         self._gyro = np.concatenate([self._gyro[kept], gyro])
         self._accel = np.concatenate([self._accel[kept], accel])
@@ -174,10 +149,10 @@ class ImuMotion:
             return Rest.MOVING
         speed = np.linalg.norm(state.vector[VECTOR.velocity])
         speed_sd = np.sqrt(np.trace(state.P[STATE.velocity, STATE.velocity]))
-        if speed < _REST_M_S + 3.0 * min(speed_sd, _REST_M_S):
+        if speed < PREDICTION.rest_m_s + 3.0 * min(speed_sd, PREDICTION.rest_m_s):
             return Rest.STATIONARY
-        walked = self._shakes(state.t_ns, _WALKED_NS) > _WALK_M_S2
-        stopped = weak and walked and self._acceleration(state) < _STOPPED_M_S2
+        walked = self._shakes(state.t_ns, PREDICTION.walked_ns) > PREDICTION.walk_m_s2
+        stopped = weak and walked and self._acceleration(state) < PREDICTION.stopped_m_s2
         return Rest.STOPPED if stopped else Rest.MOVING
 
     def _acceleration(self, state: MotionState) -> float:
@@ -185,16 +160,16 @@ class ImuMotion:
 
         Where the motion is not observed its estimated bias may be as wrong as the velocity.
         """
-        force = self._accel[self._before(state.t_ns, _REST_NS)].mean(axis=0)
+        force = self._accel[self._before(state.t_ns, PREDICTION.rest_ns)].mean(axis=0)
         return float(np.linalg.norm(state.R @ force + state.vector[VECTOR.gravity]))
 
     def _is_still(self, state: MotionState) -> bool:
-        rows = self._before(state.t_ns, _REST_NS)
+        rows = self._before(state.t_ns, PREDICTION.rest_ns)
         turn = self._gyro[rows] - state.vector[VECTOR.gyro_bias]
         return bool(
-            len(turn) >= _MIN_REST_SAMPLES
-            and np.abs(turn).max() < _REST_RAD_S
-            and self._shakes(state.t_ns, _REST_NS) < _REST_M_S2
+            len(turn) >= PREDICTION.min_rest_samples
+            and np.abs(turn).max() < PREDICTION.rest_rad_s
+            and self._shakes(state.t_ns, PREDICTION.rest_ns) < PREDICTION.rest_m_s2
         )
 
     def _shakes(self, t_ns: int, span_ns: int) -> float:
@@ -207,7 +182,7 @@ class ImuMotion:
     def initial(self, t_ns: int) -> MotionState:
         """Initial state at ``t_ns``: roll and pitch from the mean specific force."""
         away_ns = np.abs(self._t_ns - t_ns)
-        near = away_ns <= max(_REST_NS, int(away_ns.min()))
+        near = away_ns <= max(PREDICTION.rest_ns, int(away_ns.min()))
         up_body = self._accel[near].mean(axis=0) if self._has_accel else np.array([0, 0, 1.0])
         sd = _start_sd([1e-4, 1e-4, 1.0, 0.02, 0.2, 0.3])
         if not self._has_accel:
@@ -229,7 +204,9 @@ class ImuMotion:
         """Integrate the IMU samples from the state's time to ``end_ns``."""
         first, last = np.searchsorted(self._t_ns, [state.t_ns + 1, end_ns])
         times = np.concatenate([[state.t_ns], self._t_ns[first:last], [end_ns]])
-        ahead_s = np.clip(state.vector[VECTOR.clock][0], -_MOST_CLOCK_S, _MOST_CLOCK_S)
+        ahead_s = np.clip(
+            state.vector[VECTOR.clock][0], -PREDICTION.most_clock_s, PREDICTION.most_clock_s
+        )
         stamps = times + round(1e9 * float(ahead_s))
         gyro, accel = (imu_at(stamps, self._t_ns, v) for v in (self._gyro, self._accel))
         if not self._has_accel:
@@ -237,7 +214,9 @@ class ImuMotion:
         noise = self._noise.copy()
         first, last = np.searchsorted(self._t_ns, stamps[[0, -1]])
         saturated = self._saturated[max(first - 1, 0) : last + 1].any(axis=0)
-        noise[:2] = np.where(saturated, np.maximum(noise[:2], _SATURATED_NOISE), noise[:2])
+        noise[:2] = np.where(
+            saturated, np.maximum(noise[:2], PREDICTION.saturated_noise), noise[:2]
+        )
         return _predict(state, times, gyro, accel=accel, noise=noise)
 
 
@@ -269,13 +248,13 @@ class FreeMotion:
         vector = np.zeros(_VECTOR_SIZE)
         vector[VECTOR.position] = T_odom_body.t[1] - back_s * velocity
         vector[VECTOR.velocity], vector[VECTOR.gyro_bias] = velocity, -turn_rate
-        sd = _start_sd([*_FREE_SD, 1e-9, 1e-9])
+        sd = _start_sd([*PREDICTION.free_sd, 1e-9, 1e-9])
         R = T_odom_body.R[1] @ so3_exp(-back_s * turn_rate)
         return MotionState(start_ns, R, vector, np.diag(sd**2))
 
     def coasting(self, state: MotionState) -> MotionState:
         """State without IMU after a gap began: no gravity, no biases, the turn rate unknown."""
-        sd = _start_sd([*_FREE_SD, 1e-9, 1e-9])[STATE.calibration]
+        sd = _start_sd([*PREDICTION.free_sd, 1e-9, 1e-9])[STATE.calibration]
         return state.with_biases(np.zeros(len(sd)), np.diag(sd**2))
 
     def rest(self, state: MotionState, *, weak: bool) -> Rest:
@@ -290,7 +269,7 @@ class FreeMotion:
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
         """Continue with constant velocity until ``end_ns``."""
-        slots = max(2, round((end_ns - state.t_ns) * 1e-9 / _SLOT_S) + 1)
+        slots = max(2, round((end_ns - state.t_ns) * 1e-9 / PREDICTION.slot_s) + 1)
         times = np.linspace(state.t_ns, end_ns, slots).astype(np.int64)
         silent = np.zeros((slots, 3))
         return _predict(state, times, silent, accel=silent, noise=self._noise)

@@ -29,31 +29,19 @@ from recon4.model.odometry_figures import MovingFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.registration.tuning_matching import MOVING
 
-_VIEW_NS = 1_000_000_000
-"""Time between two scans that are compared [ns]."""
-_APART_NS, _REACH_NS = 400_000_000, 10_500_000_000
-"""Points are compared with scans at least and at most this far away in time [ns]: trajectories
-drift, and who walks along has left his place after seconds."""
-_ROWS, _COLUMNS = 90, 180
-"""Of an image of ranges: cells of 2°, as far apart as the rings of a VLP-16."""
-_MARGIN_M, _MARGIN_PER_M = 0.3, 0.05
-"""How far behind a point everything lies if a scan sees through it; the same by its range."""
-_NEAREST_M, _FARTHEST_M = 0.3, 30.0
-"""Range of points that are compared: farther away a person is smaller than the cells around."""
-_MIN_PASSES, _AGREED = 2, 4
-"""Scans that see through a moving point; if this many more do than not, they agree, and no more
-are asked."""
 _RULES: Array = np.array(
-    [_MARGIN_M, _MARGIN_PER_M, _NEAREST_M, _FARTHEST_M, _MIN_PASSES, _AGREED], np.float64
+    [
+        MOVING.margin_m,
+        MOVING.margin_per_m,
+        MOVING.nearest_m,
+        MOVING.farthest_m,
+        MOVING.min_passes,
+        MOVING.agreed,
+    ],
+    np.float64,
 )
-_AROUND_M, _AROUND_POINTS = 0.25, 3
-"""Feet on the ground and hands at a wall are not seen through: points count as moving, too, if so
-many moving ones lie in the cubes of this size around their own [m]."""
-_SAMPLED = 3000
-"""Points of a scan of which the ratio of moving ones is worked out."""
-_CLEARED, _CLEARED_NS = 0.04, 2_000_000_000
-"""They are left out near scans [ns] with at least this ratio of them."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,9 +99,9 @@ class FreeSpace:
     def _near(self, frame: Multiframe) -> list[_View]:
         """The scans with which points of a multiframe are compared, nearest in time first."""
         away_ns = np.abs(self._t_ns - frame.t_mid_ns)
-        near = np.flatnonzero((away_ns >= _APART_NS) & (away_ns <= _REACH_NS))
+        near = np.flatnonzero((away_ns >= MOVING.apart_ns) & (away_ns <= MOVING.reach_ns))
         near = near[np.argsort(away_ns[near], kind="stable")]
-        for old in [k for k in self._views if away_ns[k] > _REACH_NS + _VIEW_NS]:
+        for old in [k for k in self._views if away_ns[k] > MOVING.reach_ns + MOVING.view_ns]:
             del self._views[old]
         for k in near.tolist():
             if k not in self._views:
@@ -125,7 +113,7 @@ class FreeSpace:
         frame, rig = self._frames[row], self._frames.rig
         T_odom_body = self._trajectory.at(np.array([frame.t_mid_ns]))
         T_odom_sensor = T_odom_body @ rig.T_body_sensor
-        images = np.full((len(rig.sensors), _ROWS, _COLUMNS), NO_SURFACE, np.float32)
+        images = np.full((len(rig.sensors), MOVING.rows, MOVING.columns), NO_SURFACE, np.float32)
         p_odom = _placed(frame, self._trajectory, rig)
         for sensor, image in enumerate(images):
             T = T_odom_sensor[sensor]
@@ -147,7 +135,7 @@ def find_moving(frames: RecordedFrames, trajectory: Trajectory, piece: Times) ->
     ratios = []
     for row in space.rows:
         frame = frames[int(row)]
-        rows = np.arange(0, len(frame), 1 + len(frame) // _SAMPLED)
+        rows = np.arange(0, len(frame), 1 + len(frame) // MOVING.sampled)
         ratios.append(float(space.moving(frame, rows).mean()) if len(rows) else 0.0)
     since_s = (frames.t_mid_ns[space.rows] - frames.t_mid_ns[0]) / 1e9
     return MovingFigures(
@@ -181,11 +169,11 @@ def hide_moving(
 
 def with_points_around(frame: Multiframe, moving: NDArray[np.bool_], rig: Rig) -> NDArray[np.bool_]:
     """Moving points of a multiframe and the points around them: feet on the ground, (N,)."""
-    cell = cubes_of(_in_body(frame, rig), _AROUND_M)
+    cell = cubes_of(_in_body(frame, rig), MOVING.around_m)
     crowded, count = np.unique(_keys(cell[moving]), return_counts=True)
     around = (crowded[:, None] + _keys(_NEIGHBORS)).ravel()
     cells, of = np.unique(around, return_inverse=True)
-    near = np.bincount(of, np.repeat(count, len(_NEIGHBORS)), len(cells)) >= _AROUND_POINTS
+    near = np.bincount(of, np.repeat(count, len(_NEIGHBORS)), len(cells)) >= MOVING.around_points
     return np.asarray(moving | np.isin(_keys(cell), cells[near]))
 
 
@@ -198,7 +186,7 @@ def _keys(cell: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def is_crowded_at(
-    t_ns: Times, found: MovingFigures, *, within_ns: int = _CLEARED_NS
+    t_ns: Times, found: MovingFigures, *, within_ns: int = MOVING.cleared_ns
 ) -> NDArray[np.bool_]:
     """Near which multiframes moving objects were found.
 
@@ -207,15 +195,15 @@ def is_crowded_at(
         found: Of `find_moving`.
         within_ns: How near in time [ns].
     """
-    since_s = np.array(found.t_s)[np.array(found.ratio) >= _CLEARED]
+    since_s = np.array(found.t_s)[np.array(found.ratio) >= MOVING.cleared]
     crowded_ns = t_ns[0] + np.round(1e9 * since_s).astype(np.int64)
     return np.asarray((np.abs(crowded_ns - t_ns[:, None]) <= within_ns).any(axis=1))
 
 
 def _regular(t_ns: Times, usable: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Numbers of usable multiframes, the first of each `_VIEW_NS`."""
+    """Numbers of usable multiframes, the first of each `MOVING.view_ns`."""
     rows = np.flatnonzero(usable)
-    slots = (t_ns[rows] - t_ns[0]) // _VIEW_NS
+    slots = (t_ns[rows] - t_ns[0]) // MOVING.view_ns
     return np.asarray(rows[np.unique(slots, return_index=True)[1]], np.intp)
 
 

@@ -18,13 +18,7 @@ from recon4.registration.motion import MotionState
 from recon4.registration.scan_chain import ScanChain, body_points
 from recon4.registration.state import STATE, VECTOR
 from recon4.registration.tuning import SCANS, ScanTuning
-
-MOVING_M_S = 0.3
-"""A slower body is taken for one that stands [m/s]."""
-_SD_M_S = 0.2
-"""Standard deviation of the velocity between two scans [m/s]."""
-LONGEST_NS = 300_000_000
-"""Frames that are farther apart do not show the velocity of the first [ns]."""
+from recon4.registration.tuning_motion import MOVING_START
 
 
 def starting_velocity(
@@ -35,7 +29,7 @@ def starting_velocity(
     None if the body stands, or if the scans do not surely fit each other.
     """
     span_ns = second.t_mid_ns - first.t_mid_ns
-    if not 0 < span_ns <= LONGEST_NS:
+    if not 0 < span_ns <= MOVING_START.longest_ns:
         return None
     chain = ScanChain(settings)
     chain.locate(body_points(first, rig), first.t_mid_ns)
@@ -44,7 +38,7 @@ def starting_velocity(
     if found is None or not chain.is_sure:
         return None
     velocity = found.t / (1e-9 * span_ns)
-    return velocity if float(np.linalg.norm(velocity)) > MOVING_M_S else None
+    return velocity if float(np.linalg.norm(velocity)) > MOVING_START.moving_m_s else None
 
 
 def set_moving(state: MotionState, velocity_body: Array, *, duration_ns: int) -> MotionState:
@@ -60,5 +54,5 @@ def set_moving(state: MotionState, velocity_body: Array, *, duration_ns: int) ->
     vector[VECTOR.position] -= 0.5e-9 * duration_ns * velocity
     vector[VECTOR.velocity] = velocity
     P[STATE.velocity, :] = P[:, STATE.velocity] = 0.0
-    P[STATE.velocity, STATE.velocity] = _SD_M_S**2 * np.eye(3)
+    P[STATE.velocity, STATE.velocity] = MOVING_START.sd_m_s**2 * np.eye(3)
     return replace(state, vector=vector, P=P)

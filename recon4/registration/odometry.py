@@ -20,12 +20,10 @@ from recon4.registration.state import END
 from recon4.registration.step import OdometryStep, make_step
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import OdometryTuning
+from recon4.registration.tuning_motion import GAPS
 from recon4.registration.view import FrameView
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
-
-_INTERRUPTED_NS = 2_000_000_000
-"""Longest gap between two frames that is predicted across without an IMU [ns]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -175,7 +173,7 @@ class Odometry:
 
     def _is_interrupted(self, start_ns: int) -> bool:
         """Whether the motion since the last frame is unknown: a long gap that nothing covers."""
-        if self._end_ns is None or start_ns - self._end_ns <= _INTERRUPTED_NS:
+        if self._end_ns is None or start_ns - self._end_ns <= GAPS.interrupted_ns:
             return False
         return not self._motion.covers(self._end_ns, start_ns)
 

@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.kernels import planes
 from recon4.registration.tuning import PLANES, PlaneTuning
-
-_FIRST_CAPACITY = 1 << 16
+from recon4.registration.tuning_matching import PLANE_MAP
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,8 +82,8 @@ class PlaneMap:
             np.float64,
         )  # fmt: skip
         self._sizes: Array = settings.finest_m * np.exp2(np.arange(settings.levels))
-        self._keys = np.full(_FIRST_CAPACITY, planes.EMPTY, np.int64)
-        self._sums = np.zeros((_FIRST_CAPACITY, planes.COLUMNS))
+        self._keys = np.full(PLANE_MAP.first_capacity, planes.EMPTY, np.int64)
+        self._sums = np.zeros((PLANE_MAP.first_capacity, planes.COLUMNS))
         self._batch = 0
         self._used = 0
         self._make_room_for_fits()

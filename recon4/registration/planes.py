@@ -10,11 +10,8 @@ from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.state import START
 from recon4.registration.tuning import registration_tuning
+from recon4.registration.tuning_matching import PLANE_MATCHES
 from recon4.settings import RegistrationSettings
-
-_GATES_M = (1.0, 0.7, 0.5, 0.3, 0.2, 0.15)
-_ERROR_GATE_M = 0.5
-_MIN_MATCHES = 100
 
 
 def register_to_planes(
@@ -41,9 +38,9 @@ def register_to_planes(
     stop, rounds = StopReason.LIMIT, 0
     match = _empty(len(source))
     for rounds in range(1, rules.max_iterations + 1):
-        last_gate = rounds >= len(_GATES_M)
+        last_gate = rounds >= len(PLANE_MATCHES.gates_m)
         match = _match_round(target, T_target_source, source, rounds=rounds)
-        if match.matches < _MIN_MATCHES:
+        if match.matches < PLANE_MATCHES.min_matches:
             stop = StopReason.TOO_FEW
             break
         step = _gauss_newton_step(match.H[START, START], match.g[START])
@@ -93,7 +90,7 @@ def _match_round(target: PlaneMap, T_target_source: SE3, source: Array, *, round
         np.zeros(len(source)),
         center=T_target_source.t,
         finest=max(target.levels - rounds, 0),
-        gate_m=_GATES_M[min(rounds, len(_GATES_M)) - 1],
+        gate_m=PLANE_MATCHES.gates_m[min(rounds, len(PLANE_MATCHES.gates_m)) - 1],
     )
 
 
@@ -104,7 +101,7 @@ def _error(target: PlaneMap, T_target_source: SE3, source: Array) -> float:
         np.zeros(len(source)),
         center=T_target_source.t,
         finest=0,
-        gate_m=_ERROR_GATE_M,
+        gate_m=PLANE_MATCHES.error_gate_m,
     )
     return wide.mean_m
 

@@ -24,32 +24,7 @@ from recon4.registration.motion import Prediction
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.state import END_POSE, START
 from recon4.registration.tuning import PLANES, PlaneTuning
-
-_NEAR_M, _NEAR_STRIDE = 2.5, 4
-"""Of points nearer than this [m] every fourth is used: near surfaces have more than enough."""
-_MIN_EXTENT_M, _MAX_VARIANCE_RATIO = 0.03, 0.2
-"""Planes of the map: a reveal is only 10 cm deep, but wider than the noise of a single ring."""
-_MIN_VIEWPOINTS = 5
-"""Far away a scan is a few sparse lines, which move with the sensor and seem to be surfaces until
-they were seen from this many keyframes."""
-_MIN_FACING = 0.5
-"""Cosine between a plane's normal and a weak direction above which its points are used."""
-_MIN_INCIDENCE = 0.25
-"""Cosine of the angle of incidence above which a point is used. Where one ring sweeps around an
-edge, its points span the plane of the ring itself, which moves with the sensor: a false plane, but
-one that contains the line of sight."""
-_MAX_POINTS = 1500
-_SCALE = 0.2
-"""Fraction of the points that counts as independent; more of them hold the odometry to errors of
-their map."""
-_GATE_M = 0.3
-"""Largest distance from its plane of a point that is chosen [m]."""
-_RADIUS_M = 120.0
-"""Planes farther away are forgotten [m], a little more than the range of the sensors."""
-_FORGET_EVERY = 50
-"""Number of keyframes between two such clean-ups."""
-_MAX_CUBES = 300_000
-"""With more cubes than this after a clean-up the radius is halved: about 100 MB."""
+from recon4.registration.tuning_matching import POINT_MAP
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -77,21 +52,23 @@ def frame_points(frame: Multiframe, rig: Rig) -> FramePoints:
     body, s = [np.empty((0, 3))], [np.empty(0)]
     for number, sensor in enumerate(rig.sensors):
         if sensor.enabled:
-            rows = thin_near(frame.xyz, frame.sensor, number, _NEAR_M, _NEAR_STRIDE)
+            rows = thin_near(
+                frame.xyz, frame.sensor, number, POINT_MAP.near_m, POINT_MAP.near_stride
+            )
             body.append(sensor.T_body_sensor @ frame.xyz[rows].astype(np.float64))
             s.append(frame.dt_ns[rows].astype(np.float64) * 1e-9)
     return FramePoints(np.concatenate(body), np.concatenate(s))
 
 
 class PointMap:
-    """Planes of the points of all keyframes within `_RADIUS_M`."""
+    """Planes of the points of all keyframes within `POINT_MAP.radius_m`."""
 
     def __init__(self, settings: PlaneTuning = PLANES) -> None:
         self._planes = PlaneMap(
             settings,
-            min_extent_m=_MIN_EXTENT_M,
-            max_variance_ratio=_MAX_VARIANCE_RATIO,
-            min_viewpoints=_MIN_VIEWPOINTS,
+            min_extent_m=POINT_MAP.min_extent_m,
+            max_variance_ratio=POINT_MAP.max_variance_ratio,
+            min_viewpoints=POINT_MAP.min_viewpoints,
         )
         self._keyframes = 0
 
@@ -99,13 +76,13 @@ class PointMap:
         """Add the points of a keyframe; its poses ``T_odom_body`` (K,) are at ``t_s`` (K,)."""
         self._planes.add(points.placed(t_s, T_odom_body), T_odom_body.t[-1].copy())
         self._keyframes += 1
-        if self._keyframes % _FORGET_EVERY == 0:
+        if self._keyframes % POINT_MAP.forget_every == 0:
             self._forget_far(T_odom_body.t[-1])
 
     def _forget_far(self, center: Array) -> None:
-        radius_m = _RADIUS_M
+        radius_m = POINT_MAP.radius_m
         self._planes.forget_beyond(radius_m, center)
-        while len(self._planes) > _MAX_CUBES:
+        while len(self._planes) > POINT_MAP.max_cubes:
             radius_m /= 2
             self._planes.forget_beyond(radius_m, center)
 
@@ -128,13 +105,13 @@ class PointMap:
         if not self._keyframes:
             return points[:0]
         p_odom = points.placed(t_s, T_odom_body)
-        n = self._planes.normals(p_odom, _GATE_M)
+        n = self._planes.normals(p_odom, POINT_MAP.gate_m)
         sight = p_odom - T_odom_body.t[-1]
-        incidence = np.abs(np.sum(n * sight, axis=1)) > _MIN_INCIDENCE * np.linalg.norm(
+        incidence = np.abs(np.sum(n * sight, axis=1)) > POINT_MAP.min_incidence * np.linalg.norm(
             sight, axis=1
         )
-        rows = np.flatnonzero(incidence & (np.abs(n @ weak.T).max(axis=1) > _MIN_FACING))
-        return points[rows[:: -(-len(rows) // _MAX_POINTS) or 1]]
+        rows = np.flatnonzero(incidence & (np.abs(n @ weak.T).max(axis=1) > POINT_MAP.min_facing))
+        return points[rows[:: -(-len(rows) // POINT_MAP.max_points) or 1]]
 
     def match(
         self, points: FramePoints, t_s: Array, T_odom_body: SE3, *, center: Array, gate_m: float
@@ -192,7 +169,7 @@ class WeakDirections:
             self._chosen, self._t_s, T_odom_body, center=self._center, gate_m=gate_m
         )
         only = _along(self._weak)
-        return _SCALE * (only @ match.H @ only), _SCALE * (only @ match.g)
+        return POINT_MAP.scale * (only @ match.H @ only), POINT_MAP.scale * (only @ match.g)
 
 
 def _along(directions: Array) -> Array:

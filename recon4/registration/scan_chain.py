@@ -9,19 +9,13 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
-from recon4.registration.bridge import (
-    TRIED_EVERY_NS,
-    RecentScans,
-    SeenScan,
-    sure_pose,
-)
+from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.result import StopReason
 from recon4.registration.scans import make_scan, search_scans
 from recon4.registration.tuning import SCANS, ScanTuning
-
-_SOURCE_POINTS = 3000
-"""Number of points of a new scan; the registration to the plane map uses all segments."""
+from recon4.registration.tuning_matching import SCAN_CHAIN
+from recon4.registration.tuning_motion import BRIDGE
 
 
 class ScanChain:
@@ -32,7 +26,7 @@ class ScanChain:
     """
 
     def __init__(self, settings: ScanTuning = SCANS) -> None:
-        self._settings = replace(settings, source_points=_SOURCE_POINTS)
+        self._settings = replace(settings, source_points=SCAN_CHAIN.source_points)
         self._last: SeenScan | None = None
         self._now: SeenScan | None = None
         self._recent = RecentScans(settings)
@@ -93,7 +87,7 @@ class ScanChain:
         since_ns = t_ns - self._t_ns
         if self._last is None or not 0 < since_ns <= 1e9 * self._settings.bridge_s:
             return None
-        if self._tried_ns > self._t_ns and t_ns - self._tried_ns < TRIED_EVERY_NS:
+        if self._tried_ns > self._t_ns and t_ns - self._tried_ns < BRIDGE.tried_every_ns:
             return None
         self._tried_ns = t_ns
         now = self._see(points)

@@ -17,15 +17,12 @@ from recon4.registration.scan_chain import ScanChain
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import PLANES, OdometryTuning, registration_tuning
+from recon4.registration.tuning_motion import SCAN_MOTION
 from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
-
-_UNSEEN_NS = 200_000_000
-"""Least time without a frame in which the body moved unseen [ns]. Without such a gap a scan that is
-lost shows a change of what stands around: the doors of an elevator that opened elsewhere."""
 
 
 class ScanStrategy:
@@ -67,7 +64,7 @@ class ScanStrategy:
 
     def bridge(self, view: FrameView, last_ns: int) -> Prediction | None:
         """See `MotionStrategy.bridge`."""
-        if view.start_ns - last_ns < _UNSEEN_NS:
+        if view.start_ns - last_ns < SCAN_MOTION.unseen_ns:
             return None
         found = self._chain.bridge(view.scan(), view.frame.t_mid_ns)
         if found is None:

@@ -24,26 +24,7 @@ from recon4.registration.carrier import CarrierPrior
 from recon4.registration.degeneracy import observable_pose
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.tuning import SCANS, ScanTuning
-
-_MIN_MATCHES = 50
-_COARSE_POINTS = 1500
-_COARSE_ROUNDS = 10
-_WIDE = 3.0
-"""The gate of the first rounds is larger by this factor."""
-_FITS = 6
-"""Coarse fits that are refined where others than the best count."""
-_YAWS = 120
-_PLAN = 160
-"""Cells of a ground plan along each side."""
-_PLAN_CELL_M = 0.5
-_PLAN_MOST = 4.0
-_NORMAL_NOISE_RAD = 0.05
-"""Standard deviation of a normal; what it seems to observe gives way to a prior [rad]. With 0.07 a
-corridor with recessed doors, which is observed along its axis, counts as a tunnel."""
-_MIN_VARIANCE_M2 = 1e-4
-"""Smallest variance of a match [m²]."""
-_STEEP = 0.6
-"""The ground plan has the points whose normal has a smaller z component than this."""
+from recon4.registration.tuning_matching import SCAN_MATCHES
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +43,7 @@ class Scan:
     @cached_property
     def plan(self) -> Array:
         """Ground plan: x and y of the points on steep surfaces [m], (M, 2)."""
-        steep = np.abs(self.normals[:, 2]) < _STEEP
+        steep = np.abs(self.normals[:, 2]) < SCAN_MATCHES.steep
         return np.ascontiguousarray(self.points[steep, :2])
 
 
@@ -130,9 +111,9 @@ def search_scans(
     first = register_scans(target, source, initial=initial, settings=settings, prior=prior)
     if first.converged and first.match_ratio >= settings.confident_inlier_ratio:
         return first
-    some = _some(source, _COARSE_POINTS)
+    some = _some(source, SCAN_MATCHES.coarse_points)
     starts = overlay_plans(target, source, count=settings.starts, height_m=float(initial.t[2]))
-    coarse = replace(settings, rounds=_COARSE_ROUNDS)
+    coarse = replace(settings, rounds=SCAN_MATCHES.coarse_rounds)
     tries = [
         _descend(target, some, initial=start, settings=coarse, prior=prior)
         for start in [first.T_target_source, *starts]
@@ -161,14 +142,14 @@ def lay_onto(
         settings: Gate, kernel, bounds.
     """
     settings = replace(settings, min_inlier_ratio=0.0)
-    coarse = replace(settings, rounds=_COARSE_ROUNDS)
-    some = _some(source, _COARSE_POINTS)
+    coarse = replace(settings, rounds=SCAN_MATCHES.coarse_rounds)
+    some = _some(source, SCAN_MATCHES.coarse_points)
     starts = [*initial, *overlay_plans(target, source, count=settings.starts, height_m=0.0)]
     tries = [_descend(target, some, initial=start, settings=coarse, prior=None) for start in starts]
     tries.sort(key=lambda one: -one.match_ratio)
     fits = [
         register_scans(target, source, initial=one.T_target_source, settings=settings)
-        for one in tries[:_FITS]
+        for one in tries[: SCAN_MATCHES.fits]
     ]
     return sorted(fits, key=lambda one: -one.match_ratio)
 
@@ -182,14 +163,14 @@ def overlay_plans(target: Scan, source: Scan, *, count: int, height_m: float) ->
         count: Number of overlays; those next to a better one are omitted.
         height_m: ``z`` of the results [m].
     """
-    yaw: Array = np.linspace(0.0, 2.0 * np.pi, _YAWS, endpoint=False)
-    fixed = np.zeros((1, _PLAN, _PLAN), np.float32)
-    turned = np.zeros((_YAWS, _PLAN, _PLAN), np.float32)
-    count_from_above(target.plan, yaw[:1], _PLAN_CELL_M, _PLAN_MOST, fixed)
-    count_from_above(source.plan, yaw, _PLAN_CELL_M, _PLAN_MOST, turned)
+    yaw: Array = np.linspace(0.0, 2.0 * np.pi, SCAN_MATCHES.yaws, endpoint=False)
+    fixed = np.zeros((1, SCAN_MATCHES.plan, SCAN_MATCHES.plan), np.float32)
+    turned = np.zeros((SCAN_MATCHES.yaws, SCAN_MATCHES.plan, SCAN_MATCHES.plan), np.float32)
+    count_from_above(target.plan, yaw[:1], SCAN_MATCHES.plan_cell_m, SCAN_MATCHES.plan_most, fixed)
+    count_from_above(source.plan, yaw, SCAN_MATCHES.plan_cell_m, SCAN_MATCHES.plan_most, turned)
     fixed = ndimage.uniform_filter(fixed, (1, 3, 3))
     spectrum = fft.rfft2(fixed) * np.conj(fft.rfft2(turned))
-    score = fft.irfft2(spectrum, s=(_PLAN, _PLAN))
+    score = fft.irfft2(spectrum, s=(SCAN_MATCHES.plan, SCAN_MATCHES.plan))
     return [_start(score, yaw, height_m) for _ in range(count)]
 
 
@@ -197,10 +178,15 @@ def _start(score: NDArray[Any], yaw: Array, height_m: float) -> SE3:
     """Take the best overlay and clear its surroundings, so that the next call finds another."""
     m, i, j = np.unravel_index(int(score.argmax()), score.shape)
     near_yaw = np.arange(m - 2, m + 3) % len(score)
-    near_i, near_j = np.arange(i - 2, i + 3) % _PLAN, np.arange(j - 2, j + 3) % _PLAN
+    near_i, near_j = (
+        np.arange(i - 2, i + 3) % SCAN_MATCHES.plan,
+        np.arange(j - 2, j + 3) % SCAN_MATCHES.plan,
+    )
     score[np.ix_(near_yaw, near_i, near_j)] = -np.inf
-    shift = (np.array([i, j]) + _PLAN // 2) % _PLAN - _PLAN // 2
-    return SE3.from_rpy(0.0, 0.0, float(yaw[m]), t=np.append(shift * _PLAN_CELL_M, height_m))
+    shift = (np.array([i, j]) + SCAN_MATCHES.plan // 2) % SCAN_MATCHES.plan - SCAN_MATCHES.plan // 2
+    return SE3.from_rpy(
+        0.0, 0.0, float(yaw[m]), t=np.append(shift * SCAN_MATCHES.plan_cell_m, height_m)
+    )
 
 
 def _descend(
@@ -213,11 +199,11 @@ def _descend(
 ) -> Registration:
     """Match and solve until the steps are small; ``source`` are points and normals, (N, 3)."""
     p, n = source
-    if len(target) < _MIN_MATCHES or len(p) < _MIN_MATCHES:
+    if len(target) < SCAN_MATCHES.min_matches or len(p) < SCAN_MATCHES.min_matches:
         return _refused(initial, 0)
     T, stop, done = initial, StopReason.LIMIT, 0
     for done in range(1, settings.rounds + 1):
-        reach = settings.gate_m * (_WIDE if done <= 2 else 1.0)
+        reach = settings.gate_m * (SCAN_MATCHES.wide if done <= 2 else 1.0)
         q = T @ p
         nearest = target.tree.query(q, distance_upper_bound=reach)[1]
         H, g, nn = np.zeros((6, 6)), np.zeros(6), np.zeros((3, 3))
@@ -225,9 +211,9 @@ def _descend(
             q, n @ T.R.T, nearest, target.points, target.normals, T.t,
             settings.kernel_m, settings.inlier_m, H, g, nn,
         )  # fmt: skip
-        if matches < _MIN_MATCHES:
+        if matches < SCAN_MATCHES.min_matches:
             return _refused(T, done)
-        variance = max(squares / weight, _MIN_VARIANCE_M2)
+        variance = max(squares / weight, SCAN_MATCHES.min_variance_m2)
         if prior is not None:
             H, g = _with_prior(H, g, T, variance=variance, prior=prior)
         step = -np.linalg.solve(H + 1e-9 * np.trace(H) * np.eye(6), g)
@@ -246,7 +232,7 @@ def _with_prior(
     H: Array, g: Array, T: SE3, *, variance: float, prior: CarrierPrior
 ) -> tuple[Array, Array]:
     """Normal equations with those of the prior at a pose, without what normals feign."""
-    H, full = observable_pose(H, _NORMAL_NOISE_RAD)
+    H, full = observable_pose(H, SCAN_MATCHES.normal_noise_rad)
     g = full.T @ g
     weight = variance / prior.sd_m**2
     H[TRANSLATION, TRANSLATION] += weight * np.eye(3)

@@ -15,13 +15,8 @@ import numpy as np
 from recon4.geometry.se3 import SE3, proper, so3_exp, so3_log
 from recon4.model.trajectory import Trajectory
 from recon4.registration.motion import middle_of
-from recon4.registration.moving_start import LONGEST_NS, MOVING_M_S
 from recon4.registration.step import OdometryStep
-
-_MOST_TURN_RAD, _MOST_SHIFT_M = 2e-3, 5e-3
-"""A larger jump from one multiframe to the next is a contradiction, and stays where it is."""
-_DENSE_NS = 9_000_000
-"""Poses of the dense trajectory are at least this far apart [ns] (at most about 100 Hz)."""
+from recon4.registration.tuning_motion import DENSE, MOVING_START
 
 
 def smooth(steps: list[OdometryStep]) -> list[OdometryStep]:
@@ -37,7 +32,7 @@ def dense_trajectory(steps: list[OdometryStep]) -> Trajectory:
     # The first pose of a frame updates the last pose of the frame before.
     newest = len(t_ns) - 1 - np.unique(t_ns[::-1], return_index=True)[1]
     t_ns, R, t_m = t_ns[newest], R[newest], t_m[newest]
-    slot = (t_ns - t_ns[0]) // _DENSE_NS
+    slot = (t_ns - t_ns[0]) // DENSE.step_ns
     kept = np.append(np.diff(slot) > 0, True)
     kept[0] = True
     return Trajectory(t_ns[kept], SE3(R[kept], t_m[kept]))
@@ -53,13 +48,13 @@ def _begun_in_motion(steps: list[OdometryStep]) -> list[OdometryStep]:
         return steps
     first, second = steps[:2]
     span_ns = second.t_mid_ns - first.t_mid_ns
-    if second.piece != first.piece or not 0 < span_ns <= LONGEST_NS:
+    if second.piece != first.piece or not 0 < span_ns <= MOVING_START.longest_ns:
         return steps
     # Both at the end of the first frame; what the IMU measured inside it stays.
     there = (second.T_odom_body.t - first.T_odom_body.t) / (1e-9 * span_ns)
     reported = (first.T_dense.t[-1] - first.T_dense.t[-2]) / (1e-9 * np.diff(first.t_ns)[-1])
     missing = there - reported
-    if float(np.linalg.norm(missing)) < MOVING_M_S:
+    if float(np.linalg.norm(missing)) < MOVING_START.moving_m_s:
         return steps
     since_s = 1e-9 * (first.t_ns - first.t_mid_ns)
     moving = SE3(first.T_dense.R, first.T_dense.t + since_s[:, None] * missing)
@@ -85,7 +80,7 @@ def _led_to(step: OdometryStep, after: OdometryStep) -> OdometryStep:
     T, begin = step.T_dense, after.T_dense[0]
     part = ((step.t_ns - step.t_ns[0]) / max(1, int(step.t_ns[-1] - step.t_ns[0])))[:, None]
     turn, shift = so3_log(begin.R @ T.R[-1].T), begin.t - T.t[-1]
-    if np.linalg.norm(turn) > _MOST_TURN_RAD or np.linalg.norm(shift) > _MOST_SHIFT_M:
+    if np.linalg.norm(turn) > DENSE.most_turn_rad or np.linalg.norm(shift) > DENSE.most_shift_m:
         return step
     led = SE3(proper(so3_exp(part * turn) @ T.R), T.t + part * shift)
     t_s = 1e-9 * (step.t_ns - step.t_ns[0])

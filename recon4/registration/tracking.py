@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from enum import Enum, auto
 
 from recon4.registration.lost import LostLimits
+from recon4.registration.tuning_motion import TRACKING
 from recon4.settings import OdometrySettings
-
-_TRUSTED_FRAMES = 30
-"""If a new map is lost before this many frames, the state it began with was wrong."""
 
 
 class Mode(Enum):
@@ -101,7 +99,7 @@ class TrackingState:
 
         It does not if the map before was lost soon, too: then the state itself is wrong.
         """
-        trusted = self._tracked_frames >= _TRUSTED_FRAMES or not self._resets + self.piece
+        trusted = self._tracked_frames >= TRACKING.trusted_frames or not self._resets + self.piece
         if seen is Seen.LOST_FOR_LONG:
             self._resets += 1
         if not (seen is Seen.LOST_FOR_LONG and trusted):

@@ -27,42 +27,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.motion import imu_in_body
-
-_KNOT_S = 0.5
-_MIN_KNOTS = 12
-"""In a shorter walk the bias is not known."""
-_PUSH_M_S2, _PUSH_SIGMAS = 0.12, 5.0
-"""A push is larger than this, and than this multiple of the usual difference."""
-_PUSH_M_S = 0.25
-"""It changes the speed by at least this."""
-_SLOW_PUSH_M_S2, _SLOW_PUSH_SIGMAS = 0.03, 8.0
-_SLOW_PUSH_M_S = 0.06
-"""The same of a slow lift, if an opposite push follows while the body stays in one place."""
-_CAR_M = 1.0
-"""A person in the car of a lift moves by at most this from the middle [m]."""
-_RELIABLE_M_S2 = 0.06
-"""With a larger usual difference rides are not distinguished from errors of IMU and trajectory."""
-_CONTRADICTION_M_S2, _CONTRADICTION_S = 0.1, 2.0
-"""A difference above the first contradicts the heights, if it lasts for the second. On walks with
-known truth it is 0.003 to 0.04."""
-_SHARP_M_S2, _SHARP_SIGMAS = 0.2, 5.0
-"""A single difference above this, and this multiple of the usual one, contradicts the heights, too:
-the odometry changed its vertical speed by 0.1 m/s at once, and the IMU did not feel it. In 29 walks
-that were right it was at most 0.03, and 0.16 where one began in motion; 0.24 to 0.46 where the
-odometry followed a lift two thirds of its way."""
-_BIAS_SD_M_S2, _BIAS_NOISE_M_S2, _BIAS_ROUNDS = 0.1, 0.01, 10
-"""Bias of an accelerometer, usual difference beside it, and rounds of its fit."""
-_BRIDGED_KNOTS = 2
-_SAME_RIDE_S = 3.0
-"""Stretches with no longer break between them are one: the speed that the first has built up
-carries on through the break."""
-_WHOLE = 0.8
-"""Part of the samples of a knot without which it lies at a gap of the IMU."""
-_BALANCE = 0.4
-"""The changes of the speed at both ends of a ride cancel out but for this ratio."""
-_LONGEST_S = 120.0
-_UNKNOWN_RIDE_M = 3.0
-"""A ride of which the end, or the begin, was not recorded [m]."""
+from recon4.registration.tuning_motion import RIDES
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +50,7 @@ class UnseenRide:
         return HeightDoubt(
             start_s=self.start_s,
             end_s=self.end_s,
-            rise_m=_UNKNOWN_RIDE_M,
+            rise_m=RIDES.unknown_ride_m,
             speed_m_s=self.speed_m_s,
         )
 
@@ -127,15 +92,15 @@ def unseen_rides(
     """
     knots_s, extra, upward = _contradiction(trajectory, imu, rig, lost_ns=lost_ns)
     known = np.isfinite(extra)
-    if known.sum() < _MIN_KNOTS:
+    if known.sum() < RIDES.min_knots:
         return []
     extra[known] -= _of_bias(extra[known], upward[known])
     extra[~known] = 0.0
     usual = 1.4826 * float(np.median(np.abs(extra[known])))
     rides: list[UnseenRide] = []
-    if usual <= _RELIABLE_M_S2:
-        limit = max(_PUSH_M_S2, _PUSH_SIGMAS * usual)
-        rides = _rides(knots_s, extra, limit=limit, least_m_s=_PUSH_M_S)
+    if usual <= RIDES.reliable_m_s2:
+        limit = max(RIDES.push_m_s2, RIDES.push_sigmas * usual)
+        rides = _rides(knots_s, extra, limit=limit, least_m_s=RIDES.push_m_s)
         rides += _slow_rides(knots_s, extra, usual, trajectory=trajectory, others=rides)
     others = [
         stretch for stretch in _contradicted(knots_s, extra, usual)
@@ -162,10 +127,12 @@ def _of_bias(extra: Array, upward: Array) -> Array:
     level = float(np.median(extra))
     tilted = upward - np.median(upward, axis=0)
     bias: Array = np.zeros(3)
-    for _ in range(_BIAS_ROUNDS):
+    for _ in range(RIDES.bias_rounds):
         r = extra - level - tilted @ bias
-        weight = 1.0 / np.maximum(np.abs(r), _BIAS_NOISE_M_S2)
-        H = (tilted * weight[:, None]).T @ tilted + _BIAS_NOISE_M_S2 / _BIAS_SD_M_S2**2 * np.eye(3)
+        weight = 1.0 / np.maximum(np.abs(r), RIDES.bias_noise_m_s2)
+        H = (
+            tilted * weight[:, None]
+        ).T @ tilted + RIDES.bias_noise_m_s2 / RIDES.bias_sd_m_s2**2 * np.eye(3)
         bias = np.asarray(np.linalg.solve(H, tilted.T @ (weight * (extra - level))))
         level = float(np.median(extra - tilted @ bias))
     return np.asarray(level + tilted @ bias)
@@ -180,8 +147,8 @@ def _slow_rides(
     others: list[UnseenRide],
 ) -> list[UnseenRide]:
     """Rides with weak pushes, as of a platform lift, in which the body stays in one place."""
-    limit = max(_SLOW_PUSH_M_S2, _SLOW_PUSH_SIGMAS * usual)
-    found = _rides(knots_s, extra, limit=limit, least_m_s=_SLOW_PUSH_M_S)
+    limit = max(RIDES.slow_push_m_s2, RIDES.slow_push_sigmas * usual)
+    found = _rides(knots_s, extra, limit=limit, least_m_s=RIDES.slow_push_m_s)
     return [
         ride for ride in found
         if np.isfinite(ride.rise_m)
@@ -194,22 +161,25 @@ def _stays(trajectory: Trajectory, start_s: float, end_s: float) -> bool:
     """Whether the body stays within the car of a lift, whatever its height."""
     since_s = (trajectory.t_ns - trajectory.t_ns[0]) * 1e-9
     place_m = trajectory.T_a_b.t[(since_s >= start_s) & (since_s <= end_s), :2]
-    return bool(np.linalg.norm(place_m - np.median(place_m, axis=0), axis=1).max() < _CAR_M)
+    return bool(np.linalg.norm(place_m - np.median(place_m, axis=0), axis=1).max() < RIDES.car_m)
 
 
 def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightContradiction]:
-    """Stretches of `_CONTRADICTION_S` in which most differences are large, and sharp ones."""
-    sharp_m_s2 = max(_SHARP_M_S2, _SHARP_SIGMAS * usual)
-    rows = np.flatnonzero(np.abs(extra) > _CONTRADICTION_M_S2)
+    """Stretches of `RIDES.contradiction_s` in which most differences are large, and sharp ones."""
+    sharp_m_s2 = max(RIDES.sharp_m_s2, RIDES.sharp_sigmas * usual)
+    rows = np.flatnonzero(np.abs(extra) > RIDES.contradiction_m_s2)
     if not len(rows):
         return []
-    runs = np.split(rows, np.flatnonzero(np.diff(rows) > _BRIDGED_KNOTS) + 1)
+    runs = np.split(rows, np.flatnonzero(np.diff(rows) > RIDES.bridged_knots) + 1)
     spans: list[slice] = []
     for run in runs:
-        if len(run) * _KNOT_S < _CONTRADICTION_S and np.abs(extra[run]).max() < sharp_m_s2:
+        if (
+            len(run) * RIDES.knot_s < RIDES.contradiction_s
+            and np.abs(extra[run]).max() < sharp_m_s2
+        ):
             continue
         begin, end = int(run[0]), int(run[-1]) + 1
-        if spans and (begin - spans[-1].stop) * _KNOT_S <= _SAME_RIDE_S:
+        if spans and (begin - spans[-1].stop) * RIDES.knot_s <= RIDES.same_ride_s:
             begin = spans.pop().start
         spans.append(slice(begin, end))
     return [
@@ -226,7 +196,7 @@ def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightCont
 
 def _rise_m(extra: Array) -> float:
     """Height with the largest size that a stretch of accelerations leads to, from rest [m]."""
-    height_m = np.cumsum(np.cumsum(extra)) * _KNOT_S**2
+    height_m = np.cumsum(np.cumsum(extra)) * RIDES.knot_s**2
     return float(height_m[np.argmax(np.abs(height_m))])
 
 
@@ -238,34 +208,34 @@ def _contradiction(
     """
     first_ns = max(trajectory.t_ns[0], imu.t_ns[0])
     last_ns = min(trajectory.t_ns[-1], imu.t_ns[-1])
-    count = int((last_ns - first_ns) * 1e-9 / _KNOT_S) if len(imu) > 1 else 0
-    if count < _MIN_KNOTS:
+    count = int((last_ns - first_ns) * 1e-9 / RIDES.knot_s) if len(imu) > 1 else 0
+    if count < RIDES.min_knots:
         return np.empty(0), np.empty(0), np.empty((0, 3))
     _, accel = imu_in_body(imu, rig)
     inside = (imu.t_ns >= first_ns) & (imu.t_ns <= last_ns)
     upward = trajectory.at(imu.t_ns[inside]).R[:, 2, :]
     force = np.einsum("ni,ni->n", upward, accel[inside]) - STANDARD_GRAVITY_M_S2
-    slot = (imu.t_ns[inside] - first_ns) * 1e-9 / _KNOT_S
+    slot = (imu.t_ns[inside] - first_ns) * 1e-9 / RIDES.knot_s
     measured, weight = np.zeros(count + 2), np.zeros(count + 2)
     left = np.minimum(slot.astype(np.intp), count)
     for rows, part in ((left, 1.0 - (slot - left)), (left + 1, slot - left)):
         np.add.at(measured, rows, part * force)
         np.add.at(weight, rows, part)
-    knots_ns = first_ns + np.rint(np.arange(count + 1) * _KNOT_S * 1e9).astype(np.int64)
+    knots_ns = first_ns + np.rint(np.arange(count + 1) * RIDES.knot_s * 1e9).astype(np.int64)
     height_m = trajectory.at(np.minimum(knots_ns, last_ns)).t[:, 2]
-    seen = np.diff(height_m, 2) / _KNOT_S**2
+    seen = np.diff(height_m, 2) / RIDES.knot_s**2
     extra = measured[1:count] / np.maximum(weight[1:count], 1e-9) - seen
     extra[_near_gap(weight)[1:count]] = np.nan
-    lost_at = (lost_ns - first_ns) * 1e-9 / _KNOT_S
+    lost_at = (lost_ns - first_ns) * 1e-9 / RIDES.knot_s
     rows = np.arange(1, count)
     extra[np.isin(rows, np.rint(lost_at)[:, None] + [-1, 0, 1])] = np.nan
     up = trajectory.at(knots_ns[1:count]).R[:, 2, :]
-    return rows * _KNOT_S + (first_ns - trajectory.t_ns[0]) * 1e-9, extra, up
+    return rows * RIDES.knot_s + (first_ns - trajectory.t_ns[0]) * 1e-9, extra, up
 
 
 def _near_gap(weight: Array) -> NDArray[np.bool_]:
     """Knots at or beside which samples are missing: half a step of a walk looks like a push."""
-    gap = weight < _WHOLE * np.median(weight[1:-2])
+    gap = weight < RIDES.whole * np.median(weight[1:-2])
     gap[[0, -2, -1]] = False  # the ends, where there is one side only
     return gap | np.roll(gap, 1) | np.roll(gap, -1)
 
@@ -273,17 +243,17 @@ def _near_gap(weight: Array) -> NDArray[np.bool_]:
 def _rides(knots_s: Array, extra: Array, *, limit: float, least_m_s: float) -> list[UnseenRide]:
     """Pair pushes with the opposite one that follows them."""
     pushes = _pushes(extra, limit, least_m_s=least_m_s)
-    change = [float(extra[push].sum() * _KNOT_S) for push in pushes]
+    change = [float(extra[push].sum() * RIDES.knot_s) for push in pushes]
     found, k = [], 0
     while k < len(pushes):
         begin = pushes[k]
         if k + 1 < len(pushes) and _balanced(change[k], change[k + 1]):
             # A knot more on both sides: the first and the last of a push are below the limit.
             rows = np.arange(max(begin[0] - 1, 0), min(pushes[k + 1][-1] + 2, len(extra)))
-            if len(rows) * _KNOT_S <= _LONGEST_S:
+            if len(rows) * RIDES.knot_s <= RIDES.longest_s:
                 # At rest before and after it.
                 steps = extra[rows] - extra[rows].mean()
-                rise_m = float(np.cumsum(steps).sum() * _KNOT_S**2)
+                rise_m = float(np.cumsum(steps).sum() * RIDES.knot_s**2)
                 start_s, end_s = float(knots_s[rows[0]]), float(knots_s[rows[-1]])
                 found.append(UnseenRide(start_s, end_s, rise_m, change[k]))
                 k += 2
@@ -295,7 +265,9 @@ def _rides(knots_s: Array, extra: Array, *, limit: float, least_m_s: float) -> l
 
 
 def _balanced(first: float, second: float) -> bool:
-    return first * second < 0.0 and abs(first + second) < _BALANCE * max(abs(first), abs(second))
+    return first * second < 0.0 and abs(first + second) < RIDES.balance * max(
+        abs(first), abs(second)
+    )
 
 
 def _pushes(extra: Array, limit: float, *, least_m_s: float) -> list[NDArray[np.intp]]:
@@ -303,4 +275,4 @@ def _pushes(extra: Array, limit: float, *, least_m_s: float) -> list[NDArray[np.
     sign = np.where(np.abs(extra) > limit, np.sign(extra), 0.0)
     edges = [0, *(np.flatnonzero(np.diff(sign)) + 1).tolist(), len(sign)]
     runs = [np.arange(a, b) for a, b in pairwise(edges) if sign[a]]
-    return [run for run in runs if abs(extra[run].sum()) * _KNOT_S >= least_m_s]
+    return [run for run in runs if abs(extra[run].sum()) * RIDES.knot_s >= least_m_s]

@@ -26,10 +26,8 @@ from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
 from recon4.registration.smoother import dense_trajectory, smooth
 from recon4.registration.step import OdometryStep
+from recon4.registration.tuning_motion import REPORTED_POSES
 from recon4.settings.reads import OdometryReads
-
-_REPORT_EVERY, _REPORT_AT_ONCE = 5, 4
-"""The pose of every n-th multiframe is reported while the stage runs, some per event."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -135,8 +133,11 @@ def _register(
         if step.lost:
             progress.event(TrackingLost(frame_id=step.frame_id, t_ns=step.t_mid_ns))
         steps.append(step)
-        if len(steps) % (_REPORT_EVERY * _REPORT_AT_ONCE) == 0:
-            _report_poses(steps[-_REPORT_EVERY * _REPORT_AT_ONCE :: _REPORT_EVERY], progress)
+        if len(steps) % (REPORTED_POSES.every * REPORTED_POSES.at_once) == 0:
+            _report_poses(
+                steps[-REPORTED_POSES.every * REPORTED_POSES.at_once :: REPORTED_POSES.every],
+                progress,
+            )
     return steps
 
 

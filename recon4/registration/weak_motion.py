@@ -14,19 +14,7 @@ import numpy as np
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.usability import OBSERVED_SD_M
 from recon4.registration.frame_fit import FrameFit
-
-_WEAK_SD_M = 0.06
-"""Deviation of a position by the points of one multiframe at which half of the error remains [m].
-Measured on walks with known truth: up to 2 cm the motion of half a second is wrong by 2 mm, at 5 cm
-by 0.1 m, above 10 cm by 0.25 m (``docs/studies/covariances.md``)."""
-_SPEED_M_S = 0.6
-"""Standard deviation of the speed along a direction that nothing but the IMU knows [m/s]."""
-_FREE_SPEED_M_S = 2.0
-"""The same if there is no IMU: the registration of scans may slide either way [m/s]."""
-
-
-_WALKING_M_S = 1.5
-"""Motion along such a direction that is faster than a person walks is an error [m/s]."""
+from recon4.registration.tuning_motion import WEAK_MOTION
 
 
 def unknown_speed_sd(speed_m_s: float, *, with_imu: bool) -> float:
@@ -36,7 +24,10 @@ def unknown_speed_sd(speed_m_s: float, *, with_imu: bool) -> float:
         speed_m_s: Speed that was estimated; without information it may be anything [m/s].
         with_imu: Whether an IMU predicts the motion.
     """
-    return max(_SPEED_M_S if with_imu else _FREE_SPEED_M_S, speed_m_s - _WALKING_M_S)
+    return max(
+        WEAK_MOTION.speed_m_s if with_imu else WEAK_MOTION.free_speed_m_s,
+        speed_m_s - WEAK_MOTION.walking_m_s,
+    )
 
 
 def weak_motion_cov(
@@ -53,7 +44,7 @@ def weak_motion_cov(
     cov = np.zeros((6, 6))
     if not np.isfinite(direction).all() or not weak_sd_m >= OBSERVED_SD_M:
         return cov
-    ratio = (weak_sd_m / _WEAK_SD_M) ** 4
+    ratio = (weak_sd_m / WEAK_MOTION.weak_sd_m) ** 4
     sd_m = unknown_m * ratio / (1.0 + ratio)
     cov[TRANSLATION, TRANSLATION] = sd_m**2 * np.outer(direction, direction)
     if not converged:

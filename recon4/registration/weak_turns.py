@@ -18,20 +18,9 @@ import numpy as np
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.odometry_figures import TurnDoubt
 from recon4.model.usability import WEAK_SECONDS
-from recon4.registration.degeneracy import CURVED_INFORMATION, LEAST_TURN
 from recon4.registration.step import OdometryStep
-
-_WEAK_SD_M = 0.02
-"""Deviation by the points of one multiframe at their typical distance, above which the turn is not
-observed [m]: at most 0.012 in offices, staircases, corridors and forests (95 %), 0.025 to 0.036 in
-a round hall."""
-_BRIDGED_S = 1.0
-"""Two stretches with less than this between them are one [s]."""
-_RATE_SD_RAD_S = float(np.deg2rad(0.2))
-"""Standard deviation of a turn rate that only a gyroscope measures, whose bias such surroundings
-do not show, either [rad/s]: 0.22° a second were measured."""
-_FREE_RATE_SD_RAD_S = float(np.deg2rad(2.0))
-"""The same without a gyroscope."""
+from recon4.registration.tuning_matching import DEGENERACY
+from recon4.registration.tuning_motion import WEAK_TURNS
 
 
 def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDoubt, ...]:
@@ -45,8 +34,8 @@ def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDo
         return ()
     t_s = 1e-9 * (np.array([step.t_mid_ns for step in steps]) - steps[0].t_mid_ns)
     rows = np.flatnonzero([_is_weak(step) for step in steps])
-    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > _BRIDGED_S) + 1)
-    rate = _RATE_SD_RAD_S if with_imu else _FREE_RATE_SD_RAD_S
+    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > WEAK_TURNS.bridged_s) + 1)
+    rate = WEAK_TURNS.rate_sd_rad_s if with_imu else WEAK_TURNS.free_rate_sd_rad_s
     return tuple(
         _doubt([steps[k] for k in run], t_s[run], steps[0].T_odom_body.t, rate_sd_rad_s=rate)
         for run in runs
@@ -57,8 +46,11 @@ def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDo
 def _is_weak(step: OdometryStep) -> bool:
     if step.lost or step.stationary:  # one is reported by itself, the other cannot drift
         return False
-    by_shape = step.weak_twist_information < CURVED_INFORMATION
-    return bool(by_shape and step.weak_twist_sd_m > _WEAK_SD_M) and _turn_part(step) > LEAST_TURN
+    by_shape = step.weak_twist_information < DEGENERACY.curved_information
+    return (
+        bool(by_shape and step.weak_twist_sd_m > WEAK_TURNS.weak_sd_m)
+        and _turn_part(step) > DEGENERACY.least_turn
+    )
 
 
 def _turn_part(step: OdometryStep) -> float:

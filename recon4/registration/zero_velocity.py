@@ -10,19 +10,12 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.registration.frame_fit import FrameFit, pose_correction
 from recon4.registration.motion import Prediction
 from recon4.registration.state import END_MOTION, END_POSE, POSES, START, VECTOR
-
-_STILL_M = 0.01
-"""While stationary two consecutive scans agree to this [m] …"""
-_STILL_RAD = 0.0035
-"""… and this [rad]."""
-_STILL_CHI2 = 1.0
-"""The body is stationary if the best motion reduces chi-square by less than this.
-Measured at rest: up to 0.6; 4 mm or 0.1° of true motion exceed it."""
+from recon4.registration.tuning_motion import STILL
 
 
 def is_stationary(T_scan_scan: SE3) -> bool:
     """Whether the motion between two consecutive scans is within its noise."""
-    small = np.linalg.norm(T_scan_scan.t) < _STILL_M and T_scan_scan.angle() < _STILL_RAD
+    small = np.linalg.norm(T_scan_scan.t) < STILL.scans_m and T_scan_scan.angle() < STILL.scans_rad
     return bool(small)
 
 
@@ -39,7 +32,7 @@ def zero_velocity_update(fit: FrameFit, prediction: Prediction, T_odom_body: SE3
     """
     delta = _standing(fit, prediction, T_odom_body)
     d = (delta - fit.delta)[POSES]
-    if d @ fit.H_lidar @ d > _STILL_CHI2:
+    if d @ fit.H_lidar @ d > STILL.chi2:
         return fit
     poses = len(prediction.t_s)
     return replace(fit, delta=delta, T_dense=SE3.stack([T_odom_body] * poses))

@@ -9,14 +9,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import turned_round
 from recon4.slam2d.odometry import Odometry2d
 from recon4.slam2d.tuning import Slam2dTuning
-
-_TURN_RAD = 0.6
-"""Rotation by the odometry that is enough to decide [rad] …"""
-_SCANS = 60
-"""… within this number of scans."""
-_STRETCHES = 5
-_CLEAR = 0.7
-"""The rotation by the scans must agree with plus or minus the odometry to this ratio."""
+from recon4.slam2d.tuning_graph import BEAM_ORDER
 
 
 def with_true_order(scans: LaserScans) -> tuple[LaserScans, str]:
@@ -42,12 +35,12 @@ def _turns(scans: LaserScans) -> list[slice]:
     found: list[slice] = []
     steps = np.abs(wrap(np.diff(scans.odometry[:, 2])))
     first = 0
-    while first + 2 < len(scans) and len(found) < _STRETCHES:
-        turned = np.cumsum(steps[first : first + _SCANS])
-        enough = int(np.searchsorted(turned, _TURN_RAD))
+    while first + 2 < len(scans) and len(found) < BEAM_ORDER.stretches:
+        turned = np.cumsum(steps[first : first + BEAM_ORDER.scans])
+        enough = int(np.searchsorted(turned, BEAM_ORDER.turn_rad))
         if enough < len(turned):
             found.append(slice(first, first + enough + 2))
-        first += _SCANS
+        first += BEAM_ORDER.scans
     return found
 
 
@@ -60,4 +53,4 @@ def _vote(scans: LaserScans) -> int:
     by_scans = wrap(np.diff(odometry.steps.pose[:, 2]))
     by_robot = wrap(np.diff(scans.odometry[:, 2]))
     agreement = float(by_scans @ by_robot) / max(float(by_robot @ by_robot), 1e-12)
-    return int(agreement > _CLEAR) - int(agreement < -_CLEAR)
+    return int(agreement > BEAM_ORDER.clear) - int(agreement < -BEAM_ORDER.clear)

@@ -14,11 +14,7 @@ from recon4.model.pose_graph import EdgeKind, PoseGraph
 from recon4.slam2d.edges import plane_information
 from recon4.slam2d.keyframes import Keyframes, Rows
 from recon4.slam2d.tuning import Loop2dTuning
-
-_CHUNK = 256
-_SIGMAS = 3.0
-_LOOSE_SD_M = 0.05
-"""Motions with a larger standard deviation count by it, not by their length [m]."""
+from recon4.slam2d.tuning_graph import CANDIDATES_2D
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +49,8 @@ def candidates(
     p_map = graph.T_map_body.t[:, :2]
     targets = np.arange(0, len(graph), settings.target_stride)
     sources = np.arange(0, len(graph), settings.source_stride)
-    for first in range(0, len(sources), _CHUNK):
-        chunk = sources[first : first + _CHUNK]
+    for first in range(0, len(sources), CANDIDATES_2D.chunk):
+        chunk = sources[first : first + CANDIDATES_2D.chunk]
         limit = most_m / settings.drift_ratio
         path_m = dijkstra(links, directed=False, indices=chunk, limit=limit)[:, targets]
         for row, source in enumerate(chunk.tolist()):
@@ -78,7 +74,9 @@ def _links(graph: PoseGraph, settings: Loop2dTuning) -> coo_array:
     sd_m = np.sqrt(covariance[:, 1, 1] + covariance[:, 2, 2])
     is_walk = np.array([graph.edges[row].kind is EdgeKind.ODOMETRY for row in used.tolist()])
     path_m = np.where(is_walk, np.hypot(*of.T_i_j.t[used, :2].T), 0.0)
-    length_m = path_m + np.where(sd_m > _LOOSE_SD_M, _SIGMAS * sd_m / settings.drift_ratio, 0.1)
+    length_m = path_m + np.where(
+        sd_m > CANDIDATES_2D.loose_sd_m, CANDIDATES_2D.sigmas * sd_m / settings.drift_ratio, 0.1
+    )
     ends = (of.i[used], of.j[used])
     return coo_array((length_m, ends), shape=(len(graph), len(graph))).tocsr()
 

@@ -10,14 +10,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se2 import transform
 from recon4.geometry.se3 import Array
 from recon4.kernels.correlation2d import branch_and_bound, likelihood_field, max_filter
-
-_CELL_M = 0.1
-_BLUR_M = 0.1
-"""Standard deviation of a return around the points of the map [m]."""
-_LEVELS = 5
-_ANGLE_STEP_RANGE_M = 25.0
-"""Points farther from the laser do not limit the step of the rotation [m]."""
-_MAX_POINTS = 400
+from recon4.slam2d.tuning_matching import CORRELATION
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -42,15 +35,17 @@ class LikelihoodField:
     @staticmethod
     def of(points: Array) -> LikelihoodField:
         """The field around points of a map [m], (P, 2)."""
-        reach = int(np.ceil(2.5 * _BLUR_M / _CELL_M))
+        reach = int(np.ceil(2.5 * CORRELATION.blur_m / CORRELATION.cell_m))
         low, high = points.min(axis=0), points.max(axis=0)
-        origin = np.floor(low / _CELL_M - reach) * _CELL_M
-        rows, columns = np.ceil((high - origin) / _CELL_M).astype(int) + reach + 1
-        offsets = np.arange(-reach, reach + 1) * _CELL_M
+        origin = np.floor(low / CORRELATION.cell_m - reach) * CORRELATION.cell_m
+        rows, columns = np.ceil((high - origin) / CORRELATION.cell_m).astype(int) + reach + 1
+        offsets = np.arange(-reach, reach + 1) * CORRELATION.cell_m
         squared = offsets[:, None] ** 2 + offsets[None, :] ** 2
-        stamp = np.round(255.0 * np.exp(-0.5 * squared / _BLUR_M**2)).astype(np.uint8)
-        field = likelihood_field(points, origin, (int(rows), int(columns)), _CELL_M, stamp)
-        return LikelihoodField(max_filter(field, _LEVELS), origin)
+        stamp = np.round(255.0 * np.exp(-0.5 * squared / CORRELATION.blur_m**2)).astype(np.uint8)
+        field = likelihood_field(
+            points, origin, (int(rows), int(columns)), CORRELATION.cell_m, stamp
+        )
+        return LikelihoodField(max_filter(field, CORRELATION.levels), origin)
 
     def search(
         self,
@@ -73,22 +68,24 @@ class LikelihoodField:
         Returns:
             The best pose, to about a cell; None = none with that score.
         """
-        points = thinned(points, _CELL_M, max_points=_MAX_POINTS)
+        points = thinned(points, CORRELATION.cell_m, max_points=CORRELATION.max_points)
         if not len(points):
             return None
-        farthest = min(float(np.hypot(points[:, 0], points[:, 1]).max()), _ANGLE_STEP_RANGE_M)
+        farthest = min(
+            float(np.hypot(points[:, 0], points[:, 1]).max()), CORRELATION.angle_step_range_m
+        )
         # One step of the rotation moves the farthest point by a cell (Hess 2016, eq. 7).
-        count = int(np.ceil(half_window_rad / (_CELL_M / max(farthest, 1.0))))
+        count = int(np.ceil(half_window_rad / (CORRELATION.cell_m / max(farthest, 1.0))))
         angles = np.linspace(-half_window_rad, half_window_rad, 2 * count + 1)
         poses = np.repeat(initial_pose[None], len(angles), axis=0)
         poses[:, 2] += angles
         moved = transform(poses[:, None], points[None])
-        cells = np.floor((moved - self.origin) / _CELL_M).astype(np.int32)
-        window = int(np.ceil(half_window_m / _CELL_M))
+        cells = np.floor((moved - self.origin) / CORRELATION.cell_m).astype(np.int32)
+        window = int(np.ceil(half_window_m / CORRELATION.cell_m))
         score, row, dx, dy = branch_and_bound(self.pyramid, cells, window, min_score)
         if score <= min_score:
             return None
-        pose = poses[row] + np.array([dx * _CELL_M, dy * _CELL_M, 0.0])
+        pose = poses[row] + np.array([dx * CORRELATION.cell_m, dy * CORRELATION.cell_m, 0.0])
         return ScanMatch2d(pose, score)
 
 

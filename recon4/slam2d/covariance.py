@@ -13,11 +13,7 @@ from recon4.geometry.se3 import Array
 from recon4.kernels.selected_inverse import entries, selected_inverse
 from recon4.model.pose_graph import PoseGraph, Rows
 from recon4.slam2d.edges import plane_information
-
-_GAUGE = 1e9
-_NOTHING = 1e-12
-"""Weight of structural entries, as a fraction of the largest information: the sparse factor has
-entries only where the matrix is not zero."""
+from recon4.slam2d.tuning_graph import COVARIANCE_2D
 
 
 def node_covariances(graph: PoseGraph) -> Array:
@@ -38,8 +34,12 @@ def node_covariances(graph: PoseGraph) -> Array:
         (i, j, left),
         (j, i, W @ A),
         (j, j, W),
-        (every, every, np.full((nodes, 3, 3), _NOTHING * float(np.abs(W).max(initial=1.0)))),
-        (first, first, _GAUGE * np.eye(3)[None]),
+        (
+            every,
+            every,
+            np.full((nodes, 3, 3), COVARIANCE_2D.nothing * float(np.abs(W).max(initial=1.0))),
+        ),
+        (first, first, COVARIANCE_2D.gauge * np.eye(3)[None]),
     ]
     factor = splu(
         _assembled(blocks, nodes),

@@ -8,11 +8,10 @@ from recon4.geometry.se2 import between, to_se3
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, accepted_unseen
 from recon4.slam2d.keyframes import Keyframes
+from recon4.slam2d.tuning_graph import EDGES_2D
 
 _PLANE = np.array([2, 3, 4])
 """Rows of yaw, x and y in a tangent of SE(3), rotation first."""
-_FIXED_SD = 1e-3
-"""Standard deviation of height [m], roll and pitch [rad]: every edge says they are zero."""
 
 
 def space_information(information: Array, *, sd_m: float, sd_rad: float) -> Array:
@@ -25,7 +24,7 @@ def space_information(information: Array, *, sd_m: float, sd_rad: float) -> Arra
     """
     covariance = np.linalg.inv(information + 1e-6 * np.eye(3))
     covariance = covariance + np.diag([sd_rad**2, sd_m**2, sd_m**2])
-    out = np.eye(6) / _FIXED_SD**2
+    out = np.eye(6) / EDGES_2D.fixed_sd**2
     plane = np.linalg.inv(covariance)
     out[np.ix_(_PLANE, _PLANE)] = (plane + plane.T) / 2.0
     return out

@@ -15,11 +15,7 @@ from recon4.kernels.occupancy2d import gradient_equations
 from recon4.slam2d.line_map import Match2d
 from recon4.slam2d.occupancy import OccupancyGrid
 from recon4.slam2d.tuning import HectorTuning
-
-_LARGEST_TURN_RAD = 0.2
-"""A step of the yaw is clamped to this [rad]."""
-_MATCHED = 0.5
-"""A return on a cell with a larger probability matches."""
+from recon4.slam2d.tuning_matching import HECTOR
 
 
 class HectorMap:
@@ -91,7 +87,9 @@ class HectorMap:
         cells = np.floor((transform(pose, points) - grid.origin) / grid.cell_m).astype(np.int64)
         inside = np.all((cells >= 0) & (cells < grid.log_odds.shape), axis=1)
         cells = cells[inside]
-        hits = grid.log_odds[cells[:, 0], cells[:, 1]] > np.log(_MATCHED / (1.0 - _MATCHED))
+        hits = grid.log_odds[cells[:, 0], cells[:, 1]] > np.log(
+            HECTOR.matched / (1.0 - HECTOR.matched)
+        )
         return float(hits.sum()) / max(len(points), 1)
 
 
@@ -101,5 +99,5 @@ def _step(out: Array) -> Array:
     if H[1, 1] == 0.0 or H[2, 2] == 0.0:
         return np.zeros(3)
     turn, x, y = np.linalg.solve(H + 1e-9 * np.eye(3), out[9:12])
-    turn = float(np.clip(turn, -_LARGEST_TURN_RAD, _LARGEST_TURN_RAD))
+    turn = float(np.clip(turn, -HECTOR.largest_turn_rad, HECTOR.largest_turn_rad))
     return np.array([x, y, turn])

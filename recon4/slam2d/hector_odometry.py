@@ -14,8 +14,7 @@ from recon4.slam2d.observability import observed
 from recon4.slam2d.scan_points import leveling, scan_points
 from recon4.slam2d.steps import Steps2d, empty_steps
 from recon4.slam2d.tuning import HectorTuning, Slam2dTuning
-
-_FEWEST_POINTS = 15
+from recon4.slam2d.tuning_matching import HECTOR_ODOMETRY
 
 
 def run_hector(
@@ -43,7 +42,7 @@ def run_hector(
         if k:
             turned = np.array([0.0, 0.0, turn_rad[k] - turn_rad[k - 1]])
             steps.pose[k] = compose(steps.pose[k - 1], turned)
-        if len(scan.points) < _FEWEST_POINTS:
+        if len(scan.points) < HECTOR_ODOMETRY.fewest_points:
             steps.lost[k] = True
             continue
         if not grids.empty:

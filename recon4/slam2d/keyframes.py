@@ -16,11 +16,9 @@ from recon4.slam2d.prediction import MotionPredictor
 from recon4.slam2d.scan_points import ScanPoints, leveling, scan_points
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.tuning import Slam2dTuning
+from recon4.slam2d.tuning_graph import KEYFRAMES
 
 Rows = NDArray[np.intp]
-
-_LOOSE_SD_M = 0.3
-"""Keyframes with a less certain motion between them are not registered together [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -91,7 +89,7 @@ def make_keyframes(
     )
     information = steps.motion_information[rows]
     covariance = np.linalg.inv(information + 1e-9 * np.eye(3))
-    loose = np.sqrt(covariance[:, 1, 1] + covariance[:, 2, 2]) > _LOOSE_SD_M
+    loose = np.sqrt(covariance[:, 1, 1] + covariance[:, 2, 2]) > KEYFRAMES.loose_sd_m
     loose[:1] = False
     pose = steps.pose[rows]
     moved_m = np.hypot(*np.diff(pose[:, :2], axis=0).T)

@@ -10,12 +10,7 @@ import numpy as np
 from recon4.geometry.se2 import wrap
 from recon4.geometry.se3 import Array
 from recon4.kernels.lines2d import SUMS, add_points, line_equations
-
-_MAX_ITERATIONS = 30
-_CONVERGED_M = 1e-4
-_CONVERGED_RAD = 2e-5
-_LEVELS = (4.0, 1.0)
-"""Edges of the cells, coarse first, in units of the finest."""
+from recon4.slam2d.tuning_matching import LINE_MAP
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,7 +49,7 @@ class LineMap:
             cell_m: Edge of the smallest cells [m].
             extent_m: Largest extent of the points that are in it at one time [m].
         """
-        self._cells_m = [cell_m * factor for factor in _LEVELS]
+        self._cells_m = [cell_m * factor for factor in LINE_MAP.levels]
         self._sums = [
             np.zeros((size, size, SUMS))
             for size in (int(np.ceil(extent_m / cell)) + 3 for cell in self._cells_m)
@@ -94,7 +89,7 @@ class LineMap:
         for sums, cell_m in zip(self._sums, self._cells_m, strict=True):
             scales = np.array([cell_m, coarse_m, max(sd_m, 0.1 * cell_m), 1.5 * cell_m])
             converged = False
-            for _ in range(_MAX_ITERATIONS):
+            for _ in range(LINE_MAP.max_iterations):
                 inliers = line_equations(sums, coarse, points, weights, pose, scales, out)
                 step = _step(out, pose, prior)
                 pose += step
@@ -126,7 +121,9 @@ def _step(out: Array, pose: Array, prior: Prior2d | None) -> Array:
 
 
 def _is_small(step: Array) -> bool:
-    return bool(np.hypot(step[0], step[1]) < _CONVERGED_M and abs(step[2]) < _CONVERGED_RAD)
+    return bool(
+        np.hypot(step[0], step[1]) < LINE_MAP.converged_m and abs(step[2]) < LINE_MAP.converged_rad
+    )
 
 
 def stack_points(parts: Sequence[Array]) -> Array:

@@ -15,9 +15,7 @@ from recon4.slam2d.edges import odometry_graph
 from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.submaps import Pair, SubmapRegistrar, predicted_pose
 from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
-
-_RETRY_MOVE_M = 0.5
-"""A rejected pair is tried again after its predicted pose has moved by more than this [m]."""
+from recon4.slam2d.tuning_graph import LOOP_RETRIES
 
 
 def close_loops(
@@ -71,7 +69,7 @@ def _is_new(pair: Candidate2d, graph: PoseGraph, tried: dict[Pair, Array]) -> bo
     if before is None:
         return True
     moved = np.hypot(*(predicted_pose(graph, pair) - before)[:2])
-    return bool(moved > _RETRY_MOVE_M)
+    return bool(moved > LOOP_RETRIES.retry_move_m)
 
 
 def _with_latest(graph: PoseGraph, edges: Iterable[Edge]) -> PoseGraph:

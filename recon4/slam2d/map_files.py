@@ -11,19 +11,8 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.slam2d.occupancy import OccupancyGrid
 from recon4.slam2d.tuning import Grid2dTuning
+from recon4.slam2d.tuning_graph import MAP_FILES_2D
 from recon4.untrusted.bounded import read_text_limited
-
-_FREE, _UNKNOWN, _OCCUPIED = 254, 205, 0
-"""Gray values of map_saver."""
-_OCCUPIED_THRESHOLD, _FREE_THRESHOLD = 0.65, 0.196
-"""Thresholds for these gray values: 205 is a probability of 0.1961, which is neither."""
-
-OVERVIEW_CELLS = 4096
-"""Cells along the longer side of the image that pages show: browsers and graphics cards decode it
-at once, and some refuse 16384."""
-_MAX_YAML_BYTES = 4096
-_MAX_PIXELS = 1 << 28
-_BLOCK_CELLS = 1 << 22
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,29 +29,29 @@ class TrinaryMap:
     @property
     def occupied(self) -> NDArray[np.bool_]:
         """Cells with a surface, (Y, X)."""
-        return self.gray == _OCCUPIED
+        return self.gray == MAP_FILES_2D.occupied
 
     @property
     def free(self) -> NDArray[np.bool_]:
         """Cells that beams crossed, (Y, X)."""
-        return self.gray == _FREE
+        return self.gray == MAP_FILES_2D.free
 
 
 def trinary_image(grid: OccupancyGrid, settings: Grid2dTuning) -> NDArray[np.uint8]:
     """Occupied black, free white, unknown gray; the first row has the largest y, (Y, X)."""
     width, height = grid.log_odds.shape
-    image = np.full((height, width), _UNKNOWN, np.uint8)
-    columns = max(1, _BLOCK_CELLS // max(height, 1))
+    image = np.full((height, width), MAP_FILES_2D.unknown, np.uint8)
+    columns = max(1, MAP_FILES_2D.block_cells // max(height, 1))
     for first in range(0, width, columns):
         probability = grid.probability_of(slice(first, first + columns)).T[::-1]
         part = image[:, first : first + columns]
-        part[probability < settings.free_threshold] = _FREE
-        part[probability > settings.occupied_threshold] = _OCCUPIED
+        part[probability < settings.free_threshold] = MAP_FILES_2D.free
+        part[probability > settings.occupied_threshold] = MAP_FILES_2D.occupied
     return image
 
 
 def overview_of(gray: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
-    """An image of at most `OVERVIEW_CELLS` on either side, with the same lower left corner.
+    """An image of at most `MAP_FILES_2D.overview_cells` a side, with the same lower left corner.
 
     A cell is occupied if any of those that it joins is, else free if any is.
 
@@ -72,18 +61,20 @@ def overview_of(gray: NDArray[np.uint8]) -> tuple[NDArray[np.uint8], int]:
     Returns:
         The smaller image, and how many cells it joins along x and along y.
     """
-    joined = max(1, -(-max(gray.shape) // OVERVIEW_CELLS))
+    joined = max(1, -(-max(gray.shape) // MAP_FILES_2D.overview_cells))
     if joined == 1:
         return gray, 1
     rows, columns = (-(-n // joined) for n in gray.shape)
-    out = np.full((rows, columns), _UNKNOWN, np.uint8)
+    out = np.full((rows, columns), MAP_FILES_2D.unknown, np.uint8)
     for row in range(rows):  # the last row begins at the lower edge
         last = len(gray) - joined * (rows - 1 - row)
         part = gray[max(last - joined, 0) : last]
         starts = np.arange(0, gray.shape[1], joined)
-        occupied = np.logical_or.reduceat((part == _OCCUPIED).any(axis=0), starts)
-        free = np.logical_or.reduceat((part == _FREE).any(axis=0), starts)
-        out[row] = np.where(occupied, _OCCUPIED, np.where(free, _FREE, _UNKNOWN))
+        occupied = np.logical_or.reduceat((part == MAP_FILES_2D.occupied).any(axis=0), starts)
+        free = np.logical_or.reduceat((part == MAP_FILES_2D.free).any(axis=0), starts)
+        out[row] = np.where(
+            occupied, MAP_FILES_2D.occupied, np.where(free, MAP_FILES_2D.free, MAP_FILES_2D.unknown)
+        )
     return out, joined
 
 
@@ -116,8 +107,8 @@ def _write(folder: Path, name: str, made: TrinaryMap) -> None:
         f"resolution: {made.cell_m:.6g}\n"
         f"origin: [{made.origin_m[0]:.6f}, {made.origin_m[1]:.6f}, 0]\n"
         "negate: 0\n"
-        f"occupied_thresh: {_OCCUPIED_THRESHOLD}\n"
-        f"free_thresh: {_FREE_THRESHOLD}\n"
+        f"occupied_thresh: {MAP_FILES_2D.occupied_threshold}\n"
+        f"free_thresh: {MAP_FILES_2D.free_threshold}\n"
     )
     (folder / f"{name}.yaml").write_text(text, "ascii")
 
@@ -148,13 +139,15 @@ def read_map(folder: Path) -> TrinaryMap:
 def _read(folder: Path, name: str) -> TrinaryMap:
     from PIL import Image
 
-    text = read_text_limited(folder / f"{name}.yaml", _MAX_YAML_BYTES, failure=StoreError)
+    text = read_text_limited(
+        folder / f"{name}.yaml", MAP_FILES_2D.max_yaml_bytes, failure=StoreError
+    )
     facts = dict(line.partition(": ")[::2] for line in text.splitlines())
     try:
         x, y = facts["origin"].strip("[]").split(",")[:2]
         cell_m, origin_m = float(facts["resolution"]), (float(x), float(y))
         with Image.open(folder / f"{name}.png", formats=["PNG"]) as image:
-            if image.mode != "L" or image.width * image.height > _MAX_PIXELS:
+            if image.mode != "L" or image.width * image.height > MAP_FILES_2D.max_pixels:
                 raise ValueError(f"an image of {image.width} x {image.height}, {image.mode}")
             gray = np.asarray(image)
     except (KeyError, ValueError, OSError, SyntaxError, Image.DecompressionBombError) as error:

@@ -12,9 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import Array
-
-UNOBSERVED_SD_M = 1e3
-"""Reported for a direction without any information [m]."""
+from recon4.slam2d.tuning_matching import OBSERVABILITY_2D
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,7 +38,9 @@ def observed(H: Array, normal_noise_rad: float) -> Observed:
     """
     weight = float(H[1, 1] + H[2, 2])
     if weight <= 0.0:
-        return Observed(np.zeros((3, 3)), 0.0, UNOBSERVED_SD_M, np.array([1.0, 0.0]))
+        return Observed(
+            np.zeros((3, 3)), 0.0, OBSERVABILITY_2D.unobserved_sd_m, np.array([1.0, 0.0])
+        )
     # The rotation in meters at the typical distance, so that it compares with shifts.
     arm_m = max(float(np.sqrt(H[0, 0] / weight)), 1e-3)
     scale = np.array([1.0 / arm_m, 1.0, 1.0])
@@ -53,5 +53,5 @@ def observed(H: Array, normal_noise_rad: float) -> Observed:
     coupling = information[1:, 0]
     position = information[1:, 1:] - np.outer(coupling, coupling) / of_turn
     values, vectors = np.linalg.eigh((position + position.T) / 2.0)
-    least = max(float(values[0]), UNOBSERVED_SD_M**-2)
+    least = max(float(values[0]), OBSERVABILITY_2D.unobserved_sd_m**-2)
     return Observed(information, max(float(values[0]), 0.0) / weight, least**-0.5, vectors[:, 0])

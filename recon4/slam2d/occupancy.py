@@ -11,15 +11,7 @@ from numpy.typing import NDArray
 from recon4.errors import MapTooLarge
 from recon4.geometry.se3 import Array
 from recon4.kernels.occupancy2d import cast_scan, crossing_beams
-
-MAX_CELLS = 150_000_000
-"""Cells of the largest grid; 1.2 GB with what is needed to fill it."""
-_MARGIN_M = 5.0
-"""A grid that grows gets this much more on each side [m]."""
-_LARGEST_LOG_ODDS = 6.0
-_CROSSING_MARGIN_M = 0.3
-_WALL = 0.9
-"""Cells with a larger probability are walls that a beam should not cross."""
+from recon4.slam2d.tuning_graph import OCCUPANCY
 
 
 @dataclass(slots=True, eq=False)
@@ -56,10 +48,10 @@ class OccupancyGrid:
             high: Its largest x and y [m], (2,).
 
         Raises:
-            MapTooLarge: If the grid would have more than about `MAX_CELLS` cells.
+            MapTooLarge: If the grid would have more than about `OCCUPANCY.max_cells` cells.
         """
-        first = np.floor((low - _MARGIN_M) / self.cell_m).astype(np.int64)
-        last = np.ceil((high + _MARGIN_M) / self.cell_m).astype(np.int64)
+        first = np.floor((low - OCCUPANCY.margin_m) / self.cell_m).astype(np.int64)
+        last = np.ceil((high + OCCUPANCY.margin_m) / self.cell_m).astype(np.int64)
         if self.log_odds.size:
             begin = np.round(self.origin / self.cell_m).astype(np.int64)
             end = begin + self.log_odds.shape
@@ -68,11 +60,11 @@ class OccupancyGrid:
             if np.array_equal(first, begin) and np.array_equal(last, end):
                 return
         shape = tuple(int(n) for n in last - first)
-        if shape[0] * shape[1] > 1.01 * MAX_CELLS:
+        if shape[0] * shape[1] > 1.01 * OCCUPANCY.max_cells:
             raise MapTooLarge(
                 f"the occupancy grid would be {shape[0] * self.cell_m:.0f} x "
                 f"{shape[1] * self.cell_m:.0f} m in cells of {self.cell_m:g} m: expected at most "
-                f"{MAX_CELLS} cells. Is a position wrong? Larger cells need less"
+                f"{OCCUPANCY.max_cells} cells. Is a position wrong? Larger cells need less"
             )
         log_odds, seen = np.zeros(shape, np.float32), np.zeros(shape, np.int32)
         if self.log_odds.size:
@@ -96,7 +88,8 @@ class OccupancyGrid:
         self.cover(both.min(axis=0), both.max(axis=0))
         cells = np.floor((both - self.origin) / self.cell_m).astype(np.int32)
         update = np.array(
-            [_log_odds(self.p_occupied), _log_odds(self.p_free), _LARGEST_LOG_ODDS], np.float32
+            [_log_odds(self.p_occupied), _log_odds(self.p_free), OCCUPANCY.largest_log_odds],
+            np.float32,
         )
         self._scans += 1
         cast_scan(self.log_odds, self._seen, cells, self._scans, update)
@@ -113,19 +106,19 @@ def crossing_ratio(grid: OccupancyGrid, scans: Iterable[tuple[Array, Array]]) ->
         scans: Returns in the map [m], (P, 2), and position of the laser [m], (2,), of some scans.
     """
     crossing, beams = 0, 0
-    margin = int(np.ceil(_CROSSING_MARGIN_M / grid.cell_m))
+    margin = int(np.ceil(OCCUPANCY.crossing_margin_m / grid.cell_m))
     for p_map, laser in scans:
         both = np.concatenate([laser[None], p_map])
         cells = np.floor((both - grid.origin) / grid.cell_m).astype(np.int32)
-        crossing += crossing_beams(grid.log_odds, cells, _log_odds(_WALL), margin)
+        crossing += crossing_beams(grid.log_odds, cells, _log_odds(OCCUPANCY.wall), margin)
         beams += len(p_map)
     return crossing / max(beams, 1)
 
 
 def fitting_cell_m(low: Array, high: Array, cell_m: float) -> float:
-    """The edge of the cells, doubled until a grid over a rectangle has at most `MAX_CELLS` [m]."""
-    size_m = np.maximum(high - low, 0.0) + 2.0 * _MARGIN_M
-    while float(np.prod(size_m / cell_m)) > MAX_CELLS:
+    """The edge of the cells, doubled until a grid over a rectangle is not too large [m]."""
+    size_m = np.maximum(high - low, 0.0) + 2.0 * OCCUPANCY.margin_m
+    while float(np.prod(size_m / cell_m)) > OCCUPANCY.max_cells:
         cell_m *= 2.0
     return cell_m
 

@@ -20,22 +20,7 @@ from recon4.slam2d.prediction import MotionPredictor, Predicted, VarianceGrowth
 from recon4.slam2d.scan_points import ScanPoints, leveling, scan_points
 from recon4.slam2d.steps import Steps2d, empty_steps
 from recon4.slam2d.tuning import Slam2dTuning
-
-_FEWEST_POINTS = 15
-"""With fewer returns a scan cannot be registered."""
-_WINDOW_PATH_M = 25.0
-"""Extent of the local map beside the ranges [m]."""
-_SEARCH_SCORE = 0.35
-_WIDEST_SEARCH_M = 10.0
-_LOOSE_SD_M = 0.5
-"""A motion less certain than this ends at a keyframe [m]."""
-_LOOSE_PRIOR = 2.0
-"""The prediction has less weight in the registration than its accuracy allows: its errors are the
-same from scan to scan, and would bend the map a little everywhere."""
-_FIRST_KEYFRAMES = 5
-"""A local map of fewer keyframes has gaps between the returns: every scan is added to it."""
-_RESET_AFTER = 20
-"""Number of scans that are lost one after the other before the local map starts again."""
+from recon4.slam2d.tuning_matching import ODOMETRY_2D
 
 
 class Odometry2d:
@@ -57,7 +42,7 @@ class Odometry2d:
         """
         self._settings = settings or Slam2dTuning()
         self._take(scans, attitude)
-        extent_m = 2.0 * self._settings.max_range_m + _WINDOW_PATH_M
+        extent_m = 2.0 * self._settings.max_range_m + ODOMETRY_2D.window_path_m
         self._map = LineMap(cell_m=self._settings.cell_m, extent_m=extent_m)
         self._window: deque[tuple[Array, Array]] = deque()
         self._field: LikelihoodField | None = None
@@ -98,7 +83,7 @@ class Odometry2d:
         start = compose(steps.pose[k - 1], predicted.motion) if k else np.zeros(3)
         if not self._window:
             steps.pose[k] = start
-            steps.lost[k] = len(scan.points) < _FEWEST_POINTS
+            steps.lost[k] = len(scan.points) < ODOMETRY_2D.fewest_points
             if not steps.lost[k]:
                 self._insert(k, scan)
             return
@@ -127,9 +112,11 @@ class Odometry2d:
     def _register(
         self, k: int, scan: ScanPoints, start: Array, *, predicted: Predicted
     ) -> Match2d | None:
-        if len(scan.points) < _FEWEST_POINTS:
+        if len(scan.points) < ODOMETRY_2D.fewest_points:
             return None
-        loose = _LOOSE_PRIOR * np.array([predicted.sd_rad, predicted.sd_m, predicted.sd_m])
+        loose = ODOMETRY_2D.loose_prior * np.array(
+            [predicted.sd_rad, predicted.sd_m, predicted.sd_m]
+        )
         prior = Prior2d(start, np.diag(loose**-2.0))
         sd_m = self._settings.noise_sd_m
         match = self._map.register(scan.points, scan.weights, start=start, prior=prior, sd_m=sd_m)
@@ -147,9 +134,9 @@ class Odometry2d:
         found = self._field.search(
             scan.points,
             initial_pose=start,
-            half_window_m=min(0.1 + reach * predicted.sd_m, _WIDEST_SEARCH_M),
+            half_window_m=min(0.1 + reach * predicted.sd_m, ODOMETRY_2D.widest_search_m),
             half_window_rad=min(0.05 + reach * predicted.sd_rad, np.pi),
-            min_score=_SEARCH_SCORE,
+            min_score=ODOMETRY_2D.search_score,
         )
         if found is None:
             return match
@@ -184,17 +171,23 @@ class Odometry2d:
         steps.pose[k], steps.lost[k] = start, True
         steps.motion_information[k] = self._in_scan_axes(start, np.zeros((3, 3)))
         self._lost_in_a_row += 1
-        if self._lost_in_a_row >= _RESET_AFTER and len(scan.points) >= _FEWEST_POINTS:
+        if (
+            self._lost_in_a_row >= ODOMETRY_2D.reset_after
+            and len(scan.points) >= ODOMETRY_2D.fewest_points
+        ):
             steps.resets[k] = True
             while self._window:
                 self._map.remove(self._window.popleft()[1])
             self._insert(k, scan)
             self._lost_in_a_row = 0
-        elif self._growth.sd_m > _LOOSE_SD_M or self._is_keyframe(k):
+        elif self._growth.sd_m > ODOMETRY_2D.loose_sd_m or self._is_keyframe(k):
             self._mark_keyframe(k)  # a node for the path, without returns
 
     def _is_keyframe(self, k: int) -> bool:
-        if len(self._window) < _FIRST_KEYFRAMES or self._growth.sd_m > _LOOSE_SD_M:
+        if (
+            len(self._window) < ODOMETRY_2D.first_keyframes
+            or self._growth.sd_m > ODOMETRY_2D.loose_sd_m
+        ):
             return True
         moved = between(self._key_pose, self.steps.pose[k])
         far = float(np.hypot(moved[0], moved[1])) > self._settings.keyframe_m
@@ -218,7 +211,7 @@ class Odometry2d:
     def _is_too_large(self) -> bool:
         (first, _), (last, _) = self._window[0], self._window[-1]
         distance = float(np.hypot(first[0] - last[0], first[1] - last[1]))
-        return len(self._window) > self._settings.window or distance > _WINDOW_PATH_M
+        return len(self._window) > self._settings.window or distance > ODOMETRY_2D.window_path_m
 
 
 def run_odometry_2d(

@@ -11,21 +11,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
 from recon4.slam2d.tuning import Slam2dTuning
-
-_VELOCITY_S = 0.25
-"""The velocity is measured over at least this time, because times of scans jitter [s]."""
-_ACCELERATION_M_S2 = 3.0
-_ACCELERATION_RAD_S2 = 4.0
-_LONG_GAP_S = 0.7
-"""Over longer times without odometry the velocity is not extrapolated [s]."""
-_SLIP = 0.05
-"""Error of the distance of wheel odometry as a ratio …"""
-_TURN_SLIP = 0.1
-"""… error of its rotation as a ratio …"""
-_TURN_PER_M = 0.02
-"""… and per distance [rad/m]."""
-_IMU_RAD_S = 0.002
-"""Drift of the yaw of an IMU [rad/s]."""
+from recon4.slam2d.tuning_matching import PREDICTION_2D
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,10 +76,12 @@ class MotionPredictor:
 
     def _past_velocity(self, k: int, poses: Array) -> Array:
         before = k - 1
-        while before > 0 and self._t_ns[k - 1] - self._t_ns[before] < _VELOCITY_S * 1e9:
+        while (
+            before > 0 and self._t_ns[k - 1] - self._t_ns[before] < PREDICTION_2D.velocity_s * 1e9
+        ):
             before -= 1
         span_s = float(self._t_ns[k - 1] - self._t_ns[before]) / 1e9
-        if span_s <= 0.0 or span_s > 4.0 * _VELOCITY_S + _LONG_GAP_S:
+        if span_s <= 0.0 or span_s > 4.0 * PREDICTION_2D.velocity_s + PREDICTION_2D.long_gap_s:
             return np.zeros(3)
         moved = between(poses[k - 1], poses[before])
         return np.array([-moved[0], -moved[1], -moved[2]]) / span_s
@@ -112,20 +100,20 @@ class MotionPredictor:
             motion = between(self._odometry[k - 1], self._odometry[k])
             distance = float(np.hypot(motion[0], motion[1]))
             turn = abs(float(motion[2]))
-            drift_m = _SLIP * distance
-            drift_rad = 0.5 * (_TURN_SLIP * turn + _TURN_PER_M * distance)
+            drift_m = PREDICTION_2D.slip * distance
+            drift_rad = 0.5 * (PREDICTION_2D.turn_slip * turn + PREDICTION_2D.turn_per_m * distance)
             sd_m = 0.005 + drift_m
             sd_rad = 0.003 + 2.0 * drift_rad
-        elif seconds > _LONG_GAP_S:
+        elif seconds > PREDICTION_2D.long_gap_s:
             motion = np.zeros(3)
             sd_m, sd_rad = drift_m, drift_rad
         else:
             motion = self.velocity(k, poses) * seconds
-            sd_m = 0.02 + 0.5 * _ACCELERATION_M_S2 * seconds**2
-            sd_rad = 0.02 + 0.5 * _ACCELERATION_RAD_S2 * seconds**2
+            sd_m = 0.02 + 0.5 * PREDICTION_2D.acceleration_m_s2 * seconds**2
+            sd_rad = 0.02 + 0.5 * PREDICTION_2D.acceleration_rad_s2 * seconds**2
         if self._yaw is not None:
             motion = np.array([motion[0], motion[1], wrap(self._yaw[k] - self._yaw[k - 1])])
-            drift_rad = _IMU_RAD_S * seconds
+            drift_rad = PREDICTION_2D.imu_rad_s * seconds
             sd_rad = 0.003 + 10.0 * drift_rad
         return Predicted(motion, sd_m, sd_rad, drift_m=drift_m, drift_rad=drift_rad)
 

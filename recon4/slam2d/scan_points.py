@@ -10,9 +10,7 @@ from recon4.geometry.se2 import transform
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.laser_scans import LaserScans
 from recon4.slam2d.tuning import Slam2dTuning
-
-_SPACING_M = 0.05
-"""Neighboring returns closer than this have less weight each [m]."""
+from recon4.slam2d.tuning_matching import SCAN_POINTS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +48,7 @@ def scan_points(
     if motion is not None and scans.time_step_s[k] > 0.0:
         beams = np.flatnonzero(used)
         points = transform(beams[:, None] * scans.time_step_s[k] * motion, points)
-    weights = np.clip(ranges * abs(scans.angle_step_rad[k]) / _SPACING_M, 0.1, 1.0)
+    weights = np.clip(ranges * abs(scans.angle_step_rad[k]) / SCAN_POINTS.spacing_m, 0.1, 1.0)
     if R_level_laser is None:
         return ScanPoints(points, weights)
     level = points @ R_level_laser[:, :2].T

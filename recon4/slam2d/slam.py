@@ -26,11 +26,7 @@ from recon4.slam2d.odometry import run_odometry_2d
 from recon4.slam2d.scan_points import leveling, scan_points
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.tuning import Grid2dTuning, HectorTuning, Loop2dTuning, Slam2dTuning
-
-_GRID_STEP_M = 0.05
-"""A scan is entered into the grid after this motion [m] …"""
-_GRID_STEP_RAD = 0.05
-"""… or this rotation [rad]: standing still must not outweigh what was seen once."""
+from recon4.slam2d.tuning_graph import GRID_STEPS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -158,8 +154,8 @@ def make_grid(
     last = np.full(3, np.inf)
     for k in track(range(len(scans)), progress, what="Grid", unit="scans"):
         moved = poses[k] - last
-        near = float(np.hypot(moved[0], moved[1])) < _GRID_STEP_M
-        if near and abs(float(moved[2])) < _GRID_STEP_RAD:
+        near = float(np.hypot(moved[0], moved[1])) < GRID_STEPS.grid_step_m
+        if near and abs(float(moved[2])) < GRID_STEPS.grid_step_rad:
             continue
         grid.add_scan(placed(k), poses[k, :2])
         last = poses[k]

@@ -32,15 +32,10 @@ from recon4.slam2d.scan_points import scan_points
 from recon4.slam2d.slam import make_grid, map_poses, run_steps, scan_covariances
 from recon4.slam2d.steps import Steps2d
 from recon4.slam2d.tuning import Grid2dTuning, Loop2dTuning, Slam2dTuning
+from recon4.slam2d.tuning_graph import SCAN_GAPS
 from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
 from recon4.store.atomic import write_json
 from recon4.store.line_store import LineStoreWriter, load_laser_scans
-
-_GAP_S = 2.0
-"""A longer time without a scan is reported [s]."""
-_GAPS_LISTED = 5
-_CHECKED_SCANS = 1000
-"""Scans that are compared with the finished map."""
 
 
 def import_scans(
@@ -118,13 +113,13 @@ def _in_true_order(mounted: MountedScans, report: ImportReport) -> LaserScans:
 
 def _report_gaps(scans: LaserScans, report: ImportReport) -> None:
     seconds = np.diff(scans.t_ns) / 1e9
-    wide = np.flatnonzero(seconds > _GAP_S)
+    wide = np.flatnonzero(seconds > SCAN_GAPS.gap_s)
     report.count("gaps", len(wide))
-    for k in wide[:_GAPS_LISTED]:
+    for k in wide[: SCAN_GAPS.gaps_listed]:
         since = (scans.t_ns[k] - scans.t_ns[0]) / 1e9
         report.warn(f"the laser is silent for {seconds[k]:.1f} s at {since:.1f} s")
-    if len(wide) > _GAPS_LISTED:
-        report.warn(f"the laser is silent for more than {_GAP_S:.0f} s {len(wide)} times")
+    if len(wide) > SCAN_GAPS.gaps_listed:
+        report.warn(f"the laser is silent for more than {SCAN_GAPS.gap_s:.0f} s {len(wide)} times")
 
 
 def read_scans(folder: Path) -> LaserScans:
@@ -247,7 +242,7 @@ def _crossing(
     grid: OccupancyGrid, scans: LaserScans, poses: Array, *, settings: Map2dReads
 ) -> float:
     def placed() -> Iterator[tuple[Array, Array]]:
-        for k in range(0, len(scans), max(1, len(scans) // _CHECKED_SCANS)):
+        for k in range(0, len(scans), max(1, len(scans) // SCAN_GAPS.checked_scans)):
             points = scan_points(scans, k, settings=tuned(Slam2dTuning, settings.slam2d)).points
             yield transform(poses[k], points), poses[k, :2]
 

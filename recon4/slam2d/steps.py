@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
-from recon4.slam2d.observability import UNOBSERVED_SD_M
+from recon4.slam2d.tuning_matching import OBSERVABILITY_2D
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +50,7 @@ def empty_steps(t_ns: Times) -> Steps2d:
         motion_information=np.zeros((n, 3, 3)),
         match_ratio=np.zeros(n),
         degeneracy=np.zeros(n),
-        weak_sd_m=np.full(n, UNOBSERVED_SD_M),
+        weak_sd_m=np.full(n, OBSERVABILITY_2D.unobserved_sd_m),
         weak_direction=np.zeros((n, 2)),
         lost=np.zeros(n, np.bool_),
         keyframe=np.zeros(n, np.bool_),

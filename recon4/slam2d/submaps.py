@@ -28,13 +28,7 @@ from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.line_map import LineMap, Match2d
 from recon4.slam2d.observability import observed
 from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
-
-_MOST_POINTS = 1500
-"""Returns of a source that are registered."""
-_MOVED_M = 0.5
-"""A registration that leaves the pose found by the search by more is wrong [m]."""
-_GIVEN_M, _GIVEN_RAD = 0.5, 0.2
-"""How far off a pose may be that a person predicted."""
+from recon4.slam2d.tuning_graph import SUBMAPS_2D
 
 Pair = tuple[int, int]
 
@@ -73,7 +67,9 @@ class SubmapRegistrar:
 
     def register_at(self, pair: Pair, predicted: Array) -> Edge:
         """Register two nodes from a pose that a person predicted: x [m], y [m], yaw [rad], (3,)."""
-        return self.register_pair(Candidate2d(*pair, _GIVEN_M, _GIVEN_RAD), predicted)
+        return self.register_pair(
+            Candidate2d(*pair, SUBMAPS_2D.given_m, SUBMAPS_2D.given_rad), predicted
+        )
 
     def register_pair(self, pair: Candidate2d, predicted: Array) -> Edge:
         """Register two nodes from a predicted pose: x [m], y [m], yaw [rad], (3,)."""
@@ -131,7 +127,7 @@ class SubmapRegistrar:
         self, match: Match2d, degeneracy: float, *, moved: Array, error_m: float
     ) -> Judgment:
         by, rejected, loops = Judge.SEARCH, Verdict.REJECTED, self._loops
-        if not match.converged or np.hypot(moved[0], moved[1]) > _MOVED_M:
+        if not match.converged or np.hypot(moved[0], moved[1]) > SUBMAPS_2D.moved_m:
             return Judgment(by, rejected, Reason.NOT_CONVERGED)
         if match.match_ratio < loops.min_match_ratio:
             measured = (Measure.MATCHES, float(match.match_ratio), loops.min_match_ratio)
@@ -155,5 +151,5 @@ def _rejected(pair: Candidate2d, predicted: Array, reason: Reason) -> Edge:
 
 
 def _sampled(points: Array, weights: Array) -> tuple[Array, Array]:
-    step = max(1, len(points) // _MOST_POINTS)
+    step = max(1, len(points) // SUBMAPS_2D.most_points)
     return points[::step], weights[::step]

@@ -15,7 +15,7 @@ from tools.structure import (
     places_in,
 )
 
-LIMITS = {DICTS: 23, PARAMETERS: 12, POSITIONAL: 1, FUNCTIONS: 0, FILES: 0, NUMBERS: 1440}
+LIMITS = {DICTS: 23, PARAMETERS: 12, POSITIONAL: 1, FUNCTIONS: 0, FILES: 0, NUMBERS: 1428}
 """What was reached. Lower a limit with the change that makes it possible; never raise one."""
 
 
@@ -58,6 +58,7 @@ def test_what_is_counted(source, expected):
     [
         ("_FAR_M = 30.0", 1),
         ("_MOST: int = -3", 1),
+        ("_NEAR_M, _FAR_M = 0.3, 30.0", 2),
         ("_BYTES = 64 << 20", 1),
         ("_LAST = 2 * OTHER", 1),
         ("_STEPS = (0.5, 0.2)", 1),

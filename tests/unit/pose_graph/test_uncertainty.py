@@ -147,7 +147,9 @@ def test_a_straight_walk_has_a_shape_although_a_turn_about_its_axis_moves_nothin
 def test_joined_nodes_state_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     graph = chain(400)
     joined = stated(graph)
-    monkeypatch.setattr(uncertainty, "_MAX_KNOTS", 1000)
+    monkeypatch.setattr(
+        uncertainty, "UNCERTAINTY", replace(uncertainty.UNCERTAINTY, max_knots=1000)
+    )
 
     each = stated(graph)
 

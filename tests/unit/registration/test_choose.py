@@ -15,11 +15,12 @@ from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.registration import hypotheses as module
 from recon4.registration.choose import choose
-from recon4.registration.hypotheses import MOST_WALKS, choose_walk
+from recon4.registration.hypotheses import choose_walk
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
 from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
 from recon4.registration.stage import earlier_walks, run_odometry
+from recon4.registration.tuning_motion import HYPOTHESES
 from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs, track_walk
 from recon4.settings import preset
 
@@ -177,7 +178,7 @@ def test_however_much_is_wrong_a_recording_is_tracked_six_times_at_most(
 
     tracked = sum(row.whole for row in choice.tried)
     assert tracked == walks
-    assert tracked + (earlier.walks if earlier else 0) <= MOST_WALKS
+    assert tracked + (earlier.walks if earlier else 0) <= HYPOTHESES.most_walks
     assert choice.moving.is_severe
 
 

@@ -11,9 +11,10 @@ from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.known_errors import KnownErrors
-from recon4.registration.degeneracy import CURVED_INFORMATION, of_rigid_pose, weakest_twist
+from recon4.registration.degeneracy import of_rigid_pose, weakest_twist
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.step import OdometryStep
+from recon4.registration.tuning_matching import DEGENERACY
 from recon4.registration.weak_turns import weak_turns
 
 CENTER = np.array([0.5, 3.0, 0.0])
@@ -76,7 +77,12 @@ def test_a_round_hall_does_not_observe_the_turn_about_its_axis():
     np.testing.assert_allclose(center[:2], CENTER[:2], atol=0.4)
     in_square = weakest_in(is_round=False)
     assert sd_m > 3.0 * in_square[1]
-    assert information < CURVED_INFORMATION / 3.0 < CURVED_INFORMATION < in_square[3] / 3.0
+    assert (
+        information
+        < DEGENERACY.curved_information / 3.0
+        < DEGENERACY.curved_information
+        < in_square[3] / 3.0
+    )
 
 
 def test_the_information_on_a_turn_does_not_depend_on_the_number_of_points():

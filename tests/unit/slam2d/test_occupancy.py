@@ -1,6 +1,7 @@
 """Occupancy grids: beams, growth, and the files that nav2 reads."""
 
 import struct
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,16 +12,11 @@ from recon4.errors import MapTooLarge, StoreError
 from recon4.progress import Silent
 from recon4.settings import Settings
 from recon4.slam2d import occupancy
-from recon4.slam2d.map_files import (
-    OVERVIEW_CELLS,
-    read_map,
-    read_overview,
-    trinary_image,
-    write_map,
-)
-from recon4.slam2d.occupancy import MAX_CELLS, OccupancyGrid, crossing_ratio, fitting_cell_m
+from recon4.slam2d.map_files import read_map, read_overview, trinary_image, write_map
+from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio, fitting_cell_m
 from recon4.slam2d.slam import make_grid
 from recon4.slam2d.tuning import Grid2dTuning
+from recon4.slam2d.tuning_graph import MAP_FILES_2D, OCCUPANCY
 from tests.planar_walks import furnished_room, scanned
 
 
@@ -84,7 +80,7 @@ def test_a_position_far_away_is_a_clear_error_where_a_grid_grows():
 
 
 def test_a_map_with_a_position_far_away_is_bounded(monkeypatch):
-    monkeypatch.setattr(occupancy, "MAX_CELLS", 100_000)
+    monkeypatch.setattr(occupancy, "OCCUPANCY", replace(occupancy.OCCUPANCY, max_cells=100_000))
     scans = scanned(furnished_room(), np.zeros((3, 3)), odometry=False).scans
     poses = np.array([[0.0, 0.0, 0.0], [1e6, -1e6, 0.5], [0.1, 0.0, 0.0]])
 
@@ -100,7 +96,7 @@ def test_a_map_that_would_be_too_large_gets_larger_cells():
     large_m = fitting_cell_m(np.zeros(2), np.array([3000.0, 3000.0]), 0.05)
 
     assert small == 0.05
-    assert (3010.0 / large_m) ** 2 <= MAX_CELLS < (3010.0 / large_m * 2.0) ** 2
+    assert (3010.0 / large_m) ** 2 <= OCCUPANCY.max_cells < (3010.0 / large_m * 2.0) ** 2
 
 
 def test_beams_through_walls_are_counted():
@@ -172,7 +168,7 @@ def test_a_map_of_202_million_cells_is_written_in_full(large):
 def test_pages_show_an_overview_of_a_large_map_with_the_same_places(large):
     shown = read_overview(large[0])
 
-    assert max(shown.gray.shape) <= OVERVIEW_CELLS
+    assert max(shown.gray.shape) <= MAP_FILES_2D.overview_cells
     assert shown.cell_m == pytest.approx(0.2)
     assert shown.origin_m == (-100.0, -50.0)
     rows, columns = np.nonzero(shown.occupied)

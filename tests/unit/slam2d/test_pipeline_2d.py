@@ -157,7 +157,7 @@ def test_a_silent_laser_without_odometry_is_part_of_the_verdict(tmp_path):
 
 
 def test_a_map_whose_cells_had_to_be_enlarged_says_so(tmp_path, room, monkeypatch):
-    monkeypatch.setattr(occupancy, "MAX_CELLS", 20_000)
+    monkeypatch.setattr(occupancy, "OCCUPANCY", replace(occupancy.OCCUPANCY, max_cells=20_000))
 
     summary = run(tmp_path, room.scans[:40])
 

@@ -1,0 +1,197 @@
+"""Tuning of the other methods of calibration, and of what they start from."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RestTuning:
+    """Floor normals and gravity while the backpack rests."""
+
+    max_bytes: int = 4 << 20
+    """Largest table of inclinations."""
+    thickness_m: float = 0.03
+    """Points this near to a plane are on the floor [m]."""
+    rounds: int = 6
+    """Number of fits to the points that are near."""
+    min_points: int = 200
+    """Fewer points are no floor."""
+    min_frames: int = 5
+    """Multiframes of a rest."""
+    rest_rad_s: float = 0.05
+    rest_m_s2: float = 0.1
+    """Largest standard deviations of turn rate and force while the backpack rests."""
+    below_m: float = 0.3
+    flat: float = 0.8
+    """A floor is farther below the body than this, and its normal is that near to the body's z."""
+
+
+RESTS = RestTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GravityAlignmentTuning:
+    """IMU against LiDARs by floors and gravity."""
+
+    min_pairs: int = 2
+    """Fewer inclinations show no rotation."""
+    min_spread: float = 1e-3
+    """Smallest second singular value of the mean of ``n g^T``: of less the heading is not
+    observable (inclinations of about 2°)."""
+
+
+GRAVITY_ALIGNMENT = GravityAlignmentTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GyroAlignmentTuning:
+    """IMU against LiDARs by their turn rates."""
+
+    min_intervals: int = 20
+    """Fewer intervals in which the body turns show nothing."""
+    min_rate_rad_s: float = 0.03
+    """A body that turns less shows nothing."""
+    sure: float = 0.97
+    """Left-handed axes must explain this part: any noise makes a sign likely."""
+    largest_clock_s: float = 0.5
+    clock_step_s: float = 0.005
+    """Largest error of the clock that is searched for, and the step of the search [s]."""
+
+
+GYRO_ALIGNMENT = GyroAlignmentTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineEntropyTuning:
+    """Mount and clock of a profiler by the sharpness of the map."""
+
+    cubes_m: tuple[float, float, float] = (0.2, 0.08, 0.05)
+    """Edges of the cubes, coarse first [m]."""
+    evaluations: int = 250
+    """Largest number of maps that are compared in a step."""
+    points: int = 100_000
+    """Points of the profiler in a map."""
+    carrier_m: float = 1.5
+    """Nearer points may be on the person who carries the rig [m]."""
+    margin_s: float = 0.3
+    """Lines this near to the ends of the walk are not used: a clock may move them beyond [s]."""
+
+
+LINE_ENTROPY = LineEntropyTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MountSearchTuning:
+    """Coarse mounts from any start."""
+
+    voxel_m: float = 0.2
+    """Edge of the voxels to which scans are thinned [m]."""
+    neighbors: int = 12
+    """Points from which a normal is computed."""
+    source_points: int = 2000
+    """Largest number of points of a source."""
+    gates_m: tuple[float, ...] = (1.0, 1.0, 0.6, 0.6, 0.4, 0.4, 0.3, 0.2, 0.2, 0.15)
+    """Largest distance of a match in each round [m]."""
+    inlier_m: float = 0.08
+    """Largest distance of an inlier from its plane [m]."""
+    ranked: int = 6
+    """Number of mounts that are returned: in a small room several seem possible."""
+
+
+MOUNT_SEARCH = MountSearchTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PosePairTuning:
+    """The mount of a sensor from pairs of poses."""
+
+    max_bytes: int = 16 << 20
+    """Largest table of poses."""
+    unit_tolerance: float = 0.01
+    """A quaternion may differ from a unit by this."""
+    min_axes: float = 2e-3
+    """Of the mean of rotations: the second singular value, 1 if all are alike."""
+    outlier_rad: float = 0.1
+    outlier_m: float = 0.2
+    """Pairs with larger residuals are outliers [rad], [m]."""
+    least_noise_rad: float = float(np.deg2rad(0.05))
+    vague_rad: float = float(np.deg2rad(0.5))
+    least_noise_m: float = 0.001
+    vague_m: float = 0.01
+    """No tracking is better; a rotation that is known no better is refused."""
+
+
+POSE_PAIRS = PosePairTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SliceTuning:
+    """A slice through a part of the walk."""
+
+    thickness_m: float = 0.2
+    """Of the slices that the stage keeps [m]."""
+    seconds: float = 6.0
+    """Length of the part [s]."""
+    max_points: int = 12_000
+    """Drawn of each LiDAR."""
+    max_kept: int = 3000
+    """Kept of each LiDAR for the page of the project."""
+    reach_m: float = 6.0
+    """Points farther away are not shown [m]."""
+
+
+SLICES = SliceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StartTuning:
+    """What the IMU's readings say of its axes and units."""
+
+    min_explained: float = 0.9
+    """Part of the turning that an IMU explains if it is the right one and only its mount is
+    wrong."""
+    unit_tolerance: float = 0.1
+    """A scale this near to that of a unit is that of the unit."""
+    min_seconds: float = 6.0
+    """In a shorter walk the accelerations do not cancel out."""
+    alone_s: float = 10.0
+    """Length of the window that is tracked with the reference LiDAR alone [s]."""
+    far_rad: float = float(np.deg2rad(5.0))
+    far_s: float = 0.05
+    """Smaller errors are found by the joint calibration from the rig file."""
+    scale_tolerance: float = 0.02
+    force_tolerance: float = 0.04
+    """A usual accelerometer has a bias of 1 % of gravity along each axis."""
+
+
+START = StartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapAlignmentTuning:
+    """Mounts by registering the maps of single LiDARs."""
+
+    windows: int = 6
+    window_s: float = 8.0
+    """Windows that are mapped: number and length [s]."""
+    scatter_rad: float = float(np.deg2rad(1.5))
+    scatter_m: float = 0.1
+    """Windows that differ more do not agree."""
+
+
+MAP_ALIGNMENT = MapAlignmentTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationStageTuning:
+    """The stage ``calibration``."""
+
+    same_rad: float = 0.1
+    same_m: float = 0.1
+    """Two mounts are the same within this."""
+
+
+CALIBRATION_STAGE = CalibrationStageTuning()

@@ -1,0 +1,141 @@
+"""Tuning of what an IMU says of the motion."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FeltMotionTuning:
+    """What the accelerometer says of the motion (docs/explanation/odometry.md)."""
+
+    shift_sd_m: float = 0.003
+    """Standard deviation of the shift over a multiframe along observed directions [m] …"""
+    unknown_m: float = 10.0
+    """… and along others, where it is no measurement [m]."""
+    at_rest_m_s: float = 0.02
+    """Standard deviation of the velocity of a body that stands [m/s]."""
+    first_sd: tuple[float, float, float] = (2.0, 0.2, 0.1)
+    """Standard deviation at first of the velocity [m/s], of the bias and of gravity [m/s²]: the
+    odometry was leveled by the same accelerometer."""
+    bias_walk: float = 1e-3
+    """Random walk of the bias [m/s²/√s]."""
+    unfelt_m_s: float = 2.0
+    """Standard deviation of the change of the velocity where samples are missing or saturated
+    [m/s]."""
+    least_sd_m: float = 0.001
+    """No motion over a multiframe is known better [m]."""
+    longest_gap_ns: int = 50_000_000
+    """Samples farther apart do not feel what lies between them [ns]."""
+
+
+FELT = FeltMotionTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImuEstimateTuning:
+    """Which errors of an IMU are faults."""
+
+    most_gain: float = 0.015
+    """A larger error of the scale about an axis of the body is a fault …"""
+    most_angle_rad: float = 0.012
+    """… and a larger angle between the axes of IMU and body …"""
+    most_clock_s: float = 0.004
+    """… and a larger error of the clock [s] …"""
+    sigmas: float = 5.0
+    """… if it exceeds this multiple of its standard deviation."""
+
+
+IMU_ERRORS = ImuEstimateTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImuGravityTuning:
+    """Gravity as an accelerometer measures it."""
+
+    most_m_s2: float = 0.2
+    """A larger difference is not the bias of a unit in order, which has a standard deviation of
+    half of this [m/s²]."""
+    min_s: float = 10.0
+    """In a shorter walk the change of the velocity matters too much [s]."""
+    speed_ns: int = 500_000_000
+    """Velocities at the ends are measured over this time [ns]."""
+
+
+IMU_GRAVITY = ImuGravityTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SaturationTuning:
+    """An IMU at the end of its range."""
+
+    same: float = 1e-4
+    """Values that differ by less than this ratio are the same."""
+    bridged: int = 20
+    """At the ends of a stretch noise leaves the largest value for some samples."""
+    least_run: int = 3
+    least_samples: int = 5
+    """A peak of a motion has one largest sample, a saturated sensor repeats it."""
+    slowest_rad_s: float = 1.5
+    weakest_m_s2: float = 14.0
+    """No range of an IMU ends below this."""
+
+
+SATURATION = SaturationTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImuMotionTuning:
+    """The motion by an IMU."""
+
+    as_predicted_m: float = 0.03
+    """While it is not known how much usually matches, a frame is sure of its pose if the LiDARs
+    move what the IMU predicts by less, and what matches lies as near [m]."""
+
+
+IMU_MOTION = ImuMotionTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PredictionTuning:
+    """Prediction of the motion between two registrations."""
+
+    free_sd: tuple[float, ...] = (0.01, 0.05, 0.3, 0.3)
+    """Standard deviation of a state between two scans: turn [rad], place [m], velocity [m/s], turn
+    rate [rad/s]."""
+    rest_ns: int = 500_000_000
+    """The vertical is averaged over samples this near in time [ns]; if there is none, the
+    nearest."""
+    min_rest_samples: int = 10
+    """Fewer samples show no vertical."""
+    stopped_m_s2: float = 1.4
+    """Least acceleration of who does not stand [m/s²]; the wrong bias and tilt of a body whose
+    motion nothing observes look like up to 1.1."""
+    most_clock_s: float = 0.1
+    """A larger error of the clock is not corrected [s]."""
+    kept_ns: int = 60_000_000_000
+    """During live capture IMU samples are kept for this time [ns]."""
+    saturated_noise: tuple[float, float] = (0.5, 10.0)
+    """Noise densities of a gyroscope [rad/s/√Hz] and an accelerometer [m/s²/√Hz] at the end of
+    their range: a gyroscope of 250°/s in turns of 330°/s misses 8° in a multiframe."""
+    slot_s: float = 0.02
+    """Without an IMU the motion is sampled this often [s]."""
+    rest_rad_s: float = 0.12
+    rest_m_s2: float = 0.3
+    rest_m_s: float = 0.1
+    """Largest turn rate [rad/s], shaking [m/s²] and speed [m/s] of a person who stands; who walks
+    turns by 0.5 rad/s and shakes by 1 m/s² and more."""
+    walked_ns: int = 30_000_000_000
+    walk_m_s2: float = 0.8
+    """Who stops has walked within this time [ns], and shook by more than this [m/s²]."""
+    gain_walk: float = 1e-5
+    clock_walk_s: float = 1e-4
+    """Random walk of the gyroscope's gain and of the clock of the IMU, per sqrt(s), while they are
+    estimated: a clock that drifts by 300 ppm is followed."""
+    less_sure_gain: float = 1e-3
+    less_sure_clock_s: float = 5e-4
+    """Standard deviations that are added to both when a new map is begun: what was found before may
+    have come from the map that was lost."""
+
+
+PREDICTION = PredictionTuning()
