@@ -46,7 +46,7 @@ class Sender(msgspec.Struct):
     per_s: float
     """Datagrams per second."""
     data_per_s: float
-    """Datagrams per second with the size of a LiDAR data packet."""
+    """Datagrams per second that are large enough for a data packet of a LiDAR."""
     silent_s: float
     """Time since the last one [s]."""
 

@@ -73,7 +73,7 @@ _CAPTURES = {
     "records": _read("captured packets"),
     "records_not_udp": _usual("records", "no UDP over IPv4, not read"),
     "records_fragment": _lost(
-        "records", "IP fragments, which are not put together: lower the size of the datagrams"
+        "records", "IP fragments of datagrams whose other fragments are missing"
     ),
     "records_cut": _lost(
         "records", "cut when they were captured (snap length): capture again with tcpdump -s 0"
@@ -175,6 +175,7 @@ _MESSAGES = {
 }
 _SAMPLES = {
     "imu_samples": _read("IMU samples received"),
+    "imu_samples_not_read": _read("samples of the IMUs of other LiDARs"),
     "imu_kept": _read("IMU samples used", noun="IMU samples"),
     "imu_nan": _lost("imu_kept", "no numbers, dropped", apart=True),
     "imu_without_stamp": _repaired("imu_kept", _NO_STAMP),

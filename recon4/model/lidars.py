@@ -37,6 +37,17 @@ class LidarFacts:
     """Standard deviation of a range [m]."""
     divergence_rad: float
     """Full angle of a beam [rad]."""
+    port: int = 2368
+    """UDP port of its data packets, unless it was set to another."""
+    sample_ports: tuple[int, ...] = ()
+    """UDP ports of its other packets: IMU, positions, device data."""
+    has_imu: bool = False
+    """Whether its packets have an IMU."""
+
+    @property
+    def has_rings(self) -> bool:
+        """Whether its points lie on rings: the same elevation again and again."""
+        return self.scanning == "spinning"
 
 
 _VLP16 = LidarFacts(
@@ -48,12 +59,20 @@ _VLP16 = LidarFacts(
     range_m=50.0,
     accuracy_m=0.03,
     divergence_rad=0.003,
+    sample_ports=(8308,),
 )
 _VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3)
     _VLP16,
     replace(_VLP16, name="VLP-16 Hi-Res", elevation_deg=(-10.0, 10.0)),
     replace(_VLP16, name="VLP-32C", beams=32, elevation_deg=(-25.0, 15.0), range_m=80.0),
-    replace(_VLP16, name="HDL-32E", beams=32, elevation_deg=(-30.67, 10.67), accuracy_m=0.02),
+    replace(
+        _VLP16,
+        name="HDL-32E",
+        beams=32,
+        elevation_deg=(-30.67, 10.67),
+        accuracy_m=0.02,
+        has_imu=True,
+    ),
     replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), accuracy_m=0.02),
 )
 
@@ -120,18 +139,26 @@ _AVIA = LidarFacts(
     range_m=190.0,
     accuracy_m=0.02,
     divergence_rad=0.0049,
+    has_imu=True,
 )
 _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 v1.0, Avia v1.2,
     # Mid-360 v1.2, HAP v1.0; the divergence is the larger one of 0.28° x 0.03° (Mid-360: as the
     # others, its manual states none that fits its spots)
     _AVIA,
     replace(
-        _AVIA, name="Mid-40", beams=1, elevation_deg=(-19.2, 19.2), azimuth_deg=38.4, range_m=90.0
+        _AVIA,
+        name="Mid-40",
+        beams=1,
+        has_imu=False,
+        elevation_deg=(-19.2, 19.2),
+        azimuth_deg=38.4,
+        range_m=90.0,
     ),
     replace(
         _AVIA,
         name="Mid-70",
         beams=1,
+        has_imu=False,
         elevation_deg=(-35.2, 35.2),
         azimuth_deg=70.4,
         min_range_m=0.05,
@@ -162,12 +189,16 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
         azimuth_deg=360.0,
         min_range_m=0.1,
         range_m=40.0,
+        port=56301,
+        sample_ports=(56401,),
     ),
     replace(
         _AVIA,
         name="HAP",
         elevation_deg=(-12.5, 12.5),
         azimuth_deg=120.0,
+        port=57000,
+        sample_ports=(58000,),
         min_range_m=0.5,
         range_m=150.0,
     ),
@@ -181,6 +212,9 @@ _OS1 = LidarFacts(
     range_m=90.0,
     accuracy_m=0.015,
     divergence_rad=0.0031,
+    port=7502,
+    sample_ports=(7503,),
+    has_imu=True,
 )
 _OUSTER_KINDS = (  # data sheets of revision 7, firmware 3.0: precision in the middle of its range
     replace(

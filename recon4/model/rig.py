@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import date
 from importlib import resources
@@ -15,7 +16,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
-from recon4.model.lidars import LIDARS
+from recon4.model.lidars import LIDARS, lidar_model
 from recon4.model.toml_tables import TomlTable, parse_toml
 from recon4.untrusted.bounded import read_text_limited
 
@@ -33,17 +34,17 @@ SensorKind = Literal["lidar", "profiler", "laser2d"]
 turns slowly. ``laser2d``: one beam that spins in a plane."""
 _KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
 DEFAULT_PORTS: dict[SensorKind, int] = {
-    "lidar": 2368,
     "profiler": PROFILER_PORT,
     "laser2d": LASER2D_PORT,
 }
-"""UDP port of the data of each kind of sensor, where a rig file says none."""
+"""UDP port of the data of the other kinds, where a rig file says none; that of a LiDAR is in
+`recon4.model.lidars`."""
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "kind", "head_topic",
     "head_rate_deg_s", "beams",
 }  # fmt: skip
-_IMU_KEYS = _MOUNTING_KEYS | {"topic"}
+_IMU_KEYS = _MOUNTING_KEYS | {"topic", "sensor"}
 _GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial", "topic"}
 _SD_KEYS = ("sd_deg", "sd_mm", "sd_ms")
 _OPTIONAL_SD_KEYS = ("sd_beam_deg", "sd_beam_mm", "sd_antenna_mm", "sd_gnss_ms")
@@ -130,6 +131,8 @@ class Rig:
     """Serial device of the receiver, for example ``/dev/ttyUSB0:115200``; empty = none."""
     imu_topic: str = ""
     """Topic of the IMU in a bag; empty = chosen by content."""
+    imu_sensor: str = ""
+    """Name of the LiDAR whose IMU it is; empty = an IMU of its own, or chosen by content."""
     gnss_topic: str = ""
     """Topic of the GNSS receiver in a bag; empty = chosen by content."""
     calibration: RigCalibration | None = None
@@ -202,10 +205,11 @@ def parse_rig(text: str, *, where: str) -> Rig:
         raise ConfigError(f"{where}: sensor names must differ, got {names}")
     imu = TomlTable.of(table.get("imu", {}), f"{where}: imu", _IMU_KEYS)
     gnss = TomlTable.of(table.get("gnss", {}), f"{where}: gnss", _GNSS_KEYS)
+    built_in = _imu_sensor(imu, sensors)
     return Rig(
         name=table.text("name", where),
         sensors=sensors,
-        T_body_imu=_mounting(imu),
+        T_body_imu=built_in.T_body_sensor if built_in else _mounting(imu),
         imu_time_offset_s=imu.number("time_offset_s"),
         p_body_antenna=gnss.vector("lever_arm_m", 3),
         gnss_time_offset_s=gnss.number("time_offset_s"),
@@ -213,9 +217,29 @@ def parse_rig(text: str, *, where: str) -> Rig:
         gnss_port=gnss.port(GNSS_PORT),
         gnss_serial=gnss.text("serial"),
         imu_topic=imu.text("topic"),
+        imu_sensor=built_in.name if built_in else "",
         gnss_topic=gnss.text("topic"),
         calibration=_calibration(table.get("calibration"), f"{where}: calibration"),
     )
+
+
+def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:
+    """The LiDAR with the IMU; its mounting is that of the IMU, whose axes are the LiDAR's.
+
+    Raises:
+        ConfigError: If there is none of this name, or the IMU is also mounted by itself.
+    """
+    name = imu.text("sensor")
+    if not name:
+        return None
+    names = [sensor.name for sensor in sensors]
+    if name not in names:
+        raise ConfigError(f"{imu.where}: sensor must be one of {names}, got {name[:80]!r}")
+    if mounted := sorted({"xyz_m", "rpy_deg", "quat_xyzw"} & imu.values.keys()):
+        raise ConfigError(
+            f"{imu.where}: the IMU in {name} is mounted as {name} is: leave out {mounted[0]}"
+        )
+    return sensors[names.index(name)]
 
 
 def _calibration(value: object, where: str) -> RigCalibration | None:
@@ -255,7 +279,9 @@ def format_rig(rig: Rig) -> str:
         lines += [f"serial = {_quoted(sensor.serial)}"] if sensor.serial else []
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
         lines += format_beams(sensor.beams)
-    lines += ["[imu]", *_mounting_lines(rig.T_body_imu)]
+    lines += ["[imu]"]
+    lines += [f"sensor = {_quoted(rig.imu_sensor)}"] if rig.imu_sensor else []
+    lines += [] if rig.imu_sensor else _mounting_lines(rig.T_body_imu)
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
     lines += [f"topic = {_quoted(rig.imu_topic)}"] if rig.imu_topic else []
     lines += ["", "[gnss]"]
@@ -315,7 +341,7 @@ def _sensor(row: TomlTable) -> Sensor:
         head_rate_rad_s=_head_rate(row),
         time_offset_s=row.number("time_offset_s"),
         address=row.text("address"),
-        port=row.port(DEFAULT_PORTS[kind]),
+        port=row.port(lidar_model(model).port if kind == "lidar" else DEFAULT_PORTS[kind]),
         topic=row.text("topic"),
         enabled=row.flag("enabled", default=True),
         serial=row.text("serial"),

@@ -17,6 +17,7 @@ from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_dat
 from recon4.recording.packets.companions import companions_of
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import Companion, PacketSensor, same_start
+from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.streams import recognized
 from recon4.recording.report import ImportReport
@@ -33,10 +34,25 @@ class PacketTopics:
     """The topics of a bag with packets, and what describes their LiDARs."""
 
     def __init__(
-        self, bag: Bag, rig: Rig, settings: IngestSettings, *, report: ImportReport
+        self,
+        bag: Bag,
+        rig: Rig,
+        settings: IngestSettings,
+        *,
+        imu_topic: str,
+        report: ImportReport,
     ) -> None:
-        """Read what describes the LiDARs: files beside the bag, texts in it."""
+        """Read what describes the LiDARs: files beside the bag, texts in it.
+
+        Args:
+            bag: An open bag.
+            rig: With the topics of its LiDARs.
+            settings: Limits of the range.
+            imu_topic: Topic of an IMU whose messages are read; empty = that of a LiDAR.
+            report: Receives counts, and what was derived.
+        """
         self._bag, self._rig, self._settings, self._report = bag, rig, settings, report
+        self._imu = LidarImu(rig, other=imu_topic, report=report)
         self._companions = bag_companions(bag)
 
     def readers(self, row: int, sensor: Sensor) -> dict[str, PacketReader]:
@@ -55,7 +71,7 @@ class PacketTopics:
         )
         decoder = open_decoder(of, alone=len(self._rig.sensors) == 1)
         topics = [sensor.topic, *self._samples_of(sensor)]
-        return {topic: PacketReader(decoder, self._report) for topic in topics}
+        return {topic: PacketReader(decoder, sensor.name, self._imu) for topic in topics}
 
     def _samples_of(self, sensor: Sensor) -> list[str]:
         """Topics with other packets, each of the sensor whose topic is most alike."""
@@ -67,14 +83,16 @@ class PacketTopics:
 class PacketReader:
     """Decodes messages of packets of one sensor."""
 
-    def __init__(self, decoder: PacketDecoder, report: ImportReport) -> None:
+    def __init__(self, decoder: PacketDecoder, name: str, imu: LidarImu) -> None:
         """Prepare.
 
         Args:
             decoder: Of the sensor; the readers of its topics share it.
-            report: Receives lags and counts.
+            name: Of the sensor.
+            imu: Says whether the samples of its IMU are read.
         """
-        self._decoder, self._report = decoder, report
+        self._decoder, self._name, self._imu = decoder, name, imu
+        self._report = decoder.report
 
     def push(self, message: BagMessage, content: Any) -> Iterator[Shots | ImuSamples | GnssSamples]:
         """Shots, and samples of the LiDAR's IMU and GPS, of a message."""
@@ -90,9 +108,10 @@ class PacketReader:
                 self._report.note_lag(LIDAR, message.t_ns - int(shots.t_ns[-1]))
                 yield shots
         samples = decoder.samples(datagrams.take(beside)) if beside.any() else None
-        for found in (samples.imu, samples.gnss) if samples is not None else ():
-            if found is not None:
-                yield found
+        if samples is None:
+            return
+        read = self._imu.of(self._name, samples)
+        yield from (found for found in (read.imu, read.gnss) if found is not None)
 
     def flush(self) -> Iterator[Shots]:
         """Shots that were held back."""

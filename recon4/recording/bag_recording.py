@@ -148,7 +148,9 @@ class BagRecording:
     def _lidars(self, bag: Bag) -> dict[str, TopicReader]:
         kinds = {topic.name: topic for topic in bag.topics}
         found: dict[str, TopicReader] = {}
-        packets = PacketTopics(bag, self.rig, self._settings, report=self._report)
+        packets = PacketTopics(
+            bag, self.rig, self._settings, imu_topic=self.imu_topic, report=self._report
+        )
         for row, sensor in enumerate(self.rig.sensors):
             topic = kinds.get(sensor.topic)
             if topic is not None and topic.type in DATA_MESSAGES:

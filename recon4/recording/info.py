@@ -291,7 +291,7 @@ def _with_head(
     samples = [*info.samples]
     texts = " ".join(samples)
     if head.imu and "IMU" not in texts:
-        samples.append("IMU in the position packets")
+        samples.append("IMU in the packets of the LiDAR")
     if rig is not None and not head.imu and "IMU" not in texts:
         beside = samples_beside(path, RecordingKind.IMU_CSV)
         missing.append(f"IMU ({beside or 'an IMU file can be given beside it'})")

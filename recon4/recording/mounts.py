@@ -22,7 +22,7 @@ from recon4.recording.frame_graph import (
 )
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, single_rig
-from recon4.recording.transform_messages import frame_name, has_frames, read_frames
+from recon4.recording.transform_messages import frame_of, has_frames, read_frames
 
 _PROBED_MESSAGES = 50
 _NAMES_LISTED = 5
@@ -79,9 +79,8 @@ def read_mounts(bag: Bag, topics: Sequence[str], report: ImportReport) -> Mounts
 def _frame_of(bag: Bag, topic: str) -> str:
     for message in islice(bag.messages([topic]), _PROBED_MESSAGES):
         content = bag.decode(message)
-        if content is not None:  # packets of an Ouster come without a header
-            header = getattr(content, "header", None)
-            return frame_name(header.frame_id) if header is not None else ""
+        if content is not None:
+            return frame_of(content)
     return ""
 
 

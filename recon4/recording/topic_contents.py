@@ -14,7 +14,7 @@ from recon4.recording.formats.bags import CLOUD, Bag, BagTopic
 from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.samples.measured import imu_channels
 from recon4.recording.samples.units import FASTEST_RAD_S
-from recon4.recording.transform_messages import frame_name
+from recon4.recording.transform_messages import frame_of
 
 _PROBED_MESSAGES = 200
 _PROBED_CLOUDS = 5
@@ -45,7 +45,7 @@ class Contents:
     @property
     def frame(self) -> str:
         """The frame of the messages; empty = not known."""
-        return frame_name(self.messages[0].header.frame_id) if self.messages else ""
+        return frame_of(self.messages[0]) if self.messages else ""
 
     @property
     def rate_hz(self) -> float:
@@ -87,7 +87,8 @@ def read_contents(bag: Bag, topics: Sequence[BagTopic]) -> dict[str, Contents]:
         waiting[message.topic] -= 1
         content = bag.decode(message)
         if content is not None:
-            t_ns = stamp_ns(content.header.stamp)
+            header = getattr(content, "header", None)  # messages of packets may have none
+            t_ns = stamp_ns(header.stamp) if header is not None else 0
             found[message.topic].append((t_ns if t_ns > 0 else message.t_ns, content))
         if not any(left > 0 for left in waiting.values()):
             break

@@ -80,6 +80,12 @@ def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameG
     return stated.graph()
 
 
+def frame_of(message: Any) -> str:
+    """The frame that a message names; empty = it has no header, or names none."""
+    header = getattr(message, "header", None)
+    return frame_name(header.frame_id) if header is not None else ""
+
+
 def frame_name(raw: str) -> str:
     """The name of a frame; a slash at its front, as in ROS 1, means nothing."""
     return clean_name(raw.strip().lstrip("/"))

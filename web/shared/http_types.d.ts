@@ -392,6 +392,7 @@ export interface GroupView {
 }
 
 export interface ImuContent {
+  sensor?: string;
   xyz_m?: [number, number, number];
   rpy_deg?: [number, number, number];
   time_offset_s?: number;

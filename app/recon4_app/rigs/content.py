@@ -39,6 +39,7 @@ def content_of(rig: Rig) -> RigContent:
         name=visible(rig.name),
         sensors=[_sensor_content(sensor) for sensor in rig.sensors],
         imu=ImuContent(
+            sensor=visible(rig.imu_sensor),
             xyz_m=_triple(rig.T_body_imu.t),
             rpy_deg=rpy_deg(rig.T_body_imu.R),
             time_offset_s=rig.imu_time_offset_s,
@@ -67,7 +68,7 @@ def rig_of(content: RigContent) -> Rig:
     return Rig(
         name=content.name.strip(),
         sensors=tuple(_sensor(one) for one in content.sensors),
-        T_body_imu=_mount(content.imu.xyz_m, content.imu.rpy_deg),
+        T_body_imu=_imu_mount(content),
         imu_time_offset_s=content.imu.time_offset_s,
         p_body_antenna=np.array(content.gnss.lever_arm_m),
         gnss_time_offset_s=content.gnss.time_offset_s,
@@ -75,8 +76,15 @@ def rig_of(content: RigContent) -> Rig:
         gnss_port=content.gnss.port,
         gnss_serial=content.gnss.serial.strip(),
         imu_topic=content.imu.topic.strip(),
+        imu_sensor=content.imu.sensor.strip(),
         gnss_topic=content.gnss.topic.strip(),
     )
+
+
+def _imu_mount(content: RigContent) -> SE3:
+    """That of the LiDAR that the IMU is in, or its own."""
+    holder = next((one for one in content.sensors if one.name == content.imu.sensor), content.imu)
+    return _mount(holder.xyz_m, holder.rpy_deg)
 
 
 def problems_of(content: RigContent) -> dict[str, str]:
@@ -138,6 +146,9 @@ def _problems(content: RigContent) -> Iterator[Problem]:
         taken.add(sensor.name.strip())
         yield from _mount_problems(sensor.xyz_m, sensor.rpy_deg, where=where, label=label)
         yield from _port_problems(sensor.port, f"{where}.port", label)
+    names = [one.name for one in content.sensors]
+    if content.imu.sensor and content.imu.sensor not in names:
+        yield "imu.sensor", f"must be the name of a LiDAR ({', '.join(names)}) or empty"
     yield from _mount_problems(content.imu.xyz_m, content.imu.rpy_deg, where="imu", label="IMU")
     yield from _port_problems(content.imu.port, "imu.port", "IMU")
     yield from _distance_problems(content.gnss.lever_arm_m, "gnss.lever_arm_m", "GNSS antenna")

@@ -69,6 +69,8 @@ class SensorContent(RigPart):
 class ImuContent(RigPart):
     """The IMU."""
 
+    sensor: Name = Field(default="", max_length=LONGEST_TEXT)
+    """Name of the LiDAR whose IMU it is, mounted as that LiDAR; empty = an IMU of its own."""
     xyz_m: Triple = (0.0, 0.0, 0.0)
     rpy_deg: Triple = (0.0, 0.0, 0.0)
     time_offset_s: Number = 0.0

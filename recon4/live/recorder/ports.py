@@ -11,11 +11,10 @@ from ipaddress import IPv4Address
 from recon4.errors import ConfigError
 from recon4.live.recorder.capture_file import Datagram
 from recon4.live.recorder.serial_port import check_serial_device
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.model.serial_device import parse_serial_device
 
-POSITION_PORT = 8308
-"""Velodyne's position packets."""
 _BUFFER_BYTES = 16 << 20
 """Requested receive buffer; six seconds of two VLP-16."""
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
@@ -62,7 +61,8 @@ def wanted_ports(rig: Rig) -> dict[int, str]:
     ports: dict[int, list[str]] = {}
     for sensor in rig.sensors:
         ports.setdefault(sensor.port, []).append(sensor.name)
-    ports.setdefault(POSITION_PORT, []).append("positions")
+        for number in lidar_model(sensor.model).sample_ports if sensor.kind == "lidar" else ():
+            ports.setdefault(number, []).append(f"{sensor.name} (other packets)")
     for number, name in ((rig.imu_port, "IMU"), (rig.gnss_port, "GNSS")):
         if number:
             ports.setdefault(number, []).append(name)

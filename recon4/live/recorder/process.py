@@ -49,7 +49,6 @@ from recon4.live.recorder.serial_port import open_serial_device
 from recon4.live.session import CaptureSession, load_session, stretched
 from recon4.model.rig import Rig, load_rig
 from recon4.model.serial_device import SerialDevice, parse_serial_device
-from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.sandbox import refuse_new_sockets, restart_with_one_thread
 from recon4.store.atomic import write_json
 from recon4.system.stopping import StopSignals, end_process
@@ -57,6 +56,8 @@ from recon4.system.stopping import StopSignals, end_process
 STATUS_EVERY_S = 0.5
 _MAX_SENDERS = 64
 """Counted one by one; datagrams of further senders are counted together."""
+_DATA_BYTES = 513
+"""Data packets of all LiDARs are larger; position and IMU packets are not."""
 _AT_ONCE = 256
 """Datagrams read from a port before the other ports are read."""
 
@@ -155,7 +156,7 @@ class Recorder:
         if sender not in self._counts and len(self._counts) >= _MAX_SENDERS:
             sender = "others", datagram.port
         self._counts[sender] += 1
-        self._data[sender] += len(datagram.payload) == DATA_SIZE
+        self._data[sender] += len(datagram.payload) >= _DATA_BYTES
         self._received_s[sender] = time.monotonic()
         if self._paused:
             self._skipped += 1

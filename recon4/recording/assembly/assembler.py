@@ -316,6 +316,11 @@ class Assembler:
         return taken
 
 
+def _spins(sensor: Sensor) -> bool:
+    """Whether a sensor may rotate; `rotation_rate` finds out for a LiDAR of unknown model."""
+    return sensor.kind == "lidar" and lidar_model(sensor.model).has_rings
+
+
 def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport) -> Shots:
     """Remove points that are not finite, at the origin, too near or too far; counts them."""
     with np.errstate(over="ignore", invalid="ignore"):

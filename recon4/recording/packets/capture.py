@@ -20,6 +20,7 @@ from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_o
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import PacketSamples, PacketSensor
+from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.slots import in_slots
 from recon4.recording.packets.streams import (
     PacketStream,
@@ -105,11 +106,11 @@ class PacketCapture:
                 report.warn(f"{stream.label}: {remark}")
         self.rig = rig or _rig_of(groups)
         self._warn_of_others()
+        self._imu = LidarImu(self.rig, other=self._own_imu(), report=report)
         self._settings = settings
         self._channels = self._assign(groups)
         self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
-        self._samples = SampleDecoder(report)
-        self._open = open_file
+        self._samples, self._open = SampleDecoder(report), open_file
 
     def read(self) -> Iterator[Shots | PacketSamples]:
         """Stream the whole recording once; the shots of one sensor are in order of time."""
@@ -168,7 +169,7 @@ class PacketCapture:
             yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, decoder.size))
         samples = decoder.samples(datagrams.take(beside)) if beside.any() else None
         if samples is not None:
-            yield samples
+            yield self._imu.of(channel.sensor.name, samples)
         if len(rows) and channel.sensor.name in self._report.ahead_ns:
             ahead_ns = self._report.ahead_ns[channel.sensor.name] - self._report.utc_ahead_ns
             self._report.note_lag(LIDAR, -ahead_ns)
@@ -210,6 +211,11 @@ class PacketCapture:
                     f"not read: {stream.text}; the rig expects {stream.kind} at port {expected}: "
                     f"give [{stream.kind.lower()}] port = {stream.port} in the rig file"
                 )
+
+    def _own_imu(self) -> str:
+        """Sender of an IMU that is in no LiDAR; empty = there is none."""
+        own = [s.label for s in self.streams if s.kind == "IMU" and s.port == self.rig.imu_port]
+        return next(iter(own), "")
 
     def _sent_instead(self, sensor: Sensor) -> str:
         others = [s for s in self.streams if s.refused and fits(sensor, s.source, s.port)]

@@ -19,13 +19,24 @@ def is_companion(path: Path) -> bool:
 
 
 def companion_paths(recording: Path) -> list[Path]:
-    """The files in the folder of a recording that describe a LiDAR."""
-    folder = recording if recording.is_dir() else recording.parent
+    """The files beside or in a recording that describe a LiDAR."""
+    files = [file for folder in _folders_of(recording) for file in _files_in(folder)]
+    return [path for path in files if path != recording and is_companion(path)]
+
+
+def _folders_of(recording: Path) -> list[Path]:
+    """Where files of a recording lie: a rosbag2 is a folder of its own."""
+    if not recording.is_dir():
+        return [recording.parent]
+    is_bag = (recording / "metadata.yaml").exists()
+    return [recording, recording.parent] if is_bag else [recording]
+
+
+def _files_in(folder: Path) -> list[Path]:
     try:
-        files = sorted(file for file in folder.iterdir() if not file.is_symlink())
+        return sorted(file for file in folder.iterdir() if not file.is_symlink())
     except OSError:  # a confined process may not list it; what it may read was given
         return []
-    return [path for path in files if path != recording and is_companion(path)]
 
 
 def companions_of(paths: Sequence[Path]) -> list[Companion]:

@@ -70,7 +70,9 @@ class PacketDecoder:
             alone=alone,
         )
         self.clock.past_hour = layout.stamps_past_hour
-        self._layout, self._report = layout, of.report
+        self._layout = layout
+        self.report = of.report
+        """Takes counts and warnings."""
         self._sensor: Sensor = of.sensor
         self._rotation = Rotation()
         window_s = tuned(IngestTuning, of.settings).reorder_window_s
@@ -104,8 +106,8 @@ class PacketDecoder:
         """
         t_arrival_ns = np.asarray(t_arrival_ns, dtype=np.int64)
         if payloads.ndim != 2 or payloads.shape[1] != self.size:
-            self._report.count("packets", len(payloads))
-            self._report.count("packets_wrong_length", len(payloads))
+            self.report.count("packets", len(payloads))
+            self.report.count("packets_wrong_length", len(payloads))
             t_arrival_ns, payloads = t_arrival_ns[:0], np.zeros((0, self.size), np.uint8)
         sound = self._layout.sound(payloads)
         if not sound.all():
@@ -146,17 +148,15 @@ class PacketDecoder:
         azimuth_cdeg = self._layout.azimuth_cdeg(payloads)
         if azimuth_cdeg is not None:
             self._rotation.push(t_ns, azimuth_cdeg, packet_s)
-        else:
-            azimuth_cdeg = np.zeros(len(t_ns), np.int64)
         self._count_missing(self._holes.missing(t_ns, azimuth_cdeg, packet_s))
         usual_s = self._holes.usual_s()
         fits = self._layout.likely_models(usual_s) if usual_s else ()
         if fits and self._sensor.model not in fits:
-            self._report.warn(
+            self.report.warn(
                 f"{self._sensor.name}: a packet every {1e3 * usual_s:.3f} ms is what a {fits[0]} "
                 f"sends, but it is decoded as {self._sensor.model}"
             )
 
     def _count_missing(self, number: int) -> None:
-        self._report.count("packets_missing", number)
-        self._report.count(f"packets_missing_{self._sensor.name}", number)
+        self.report.count("packets_missing", number)
+        self.report.count(f"packets_missing_{self._sensor.name}", number)

@@ -55,14 +55,17 @@ class PacketHoles:
     _outside: _Hole | None = None
     """The last hole outside the field of view; None = the sensor looks all around."""
 
-    def missing(self, t_ns: Times, azimuth_cdeg: NDArray[np.int64], packet_s: float) -> int:
+    def missing(self, t_ns: Times, azimuth_cdeg: NDArray[np.int64] | None, packet_s: float) -> int:
         """How many packets turned out to be missing, in pauses of less than a second.
 
         Args:
             t_ns: Times of packets [ns], (N,), rising, N > 0.
-            azimuth_cdeg: Their first azimuths [0.01°], (N,).
+            azimuth_cdeg: Their first azimuths [0.01°], (N,); None = it does not spin, every hole
+                is a loss.
             packet_s: Time between two packets of the model [s].
         """
+        spins = azimuth_cdeg is not None
+        azimuth_cdeg = np.zeros(len(t_ns), np.int64) if azimuth_cdeg is None else azimuth_cdeg
         if self._last is not None:
             t_ns = np.append(self._last[0], t_ns)
             azimuth_cdeg = np.append(self._last[1], azimuth_cdeg)
@@ -71,6 +74,8 @@ class PacketHoles:
         if not self._reported:
             self._first_s.extend(steps_s[:_PROBED].tolist())
         holes = np.flatnonzero((steps_s > 1.5 * packet_s) & (steps_s < _LONGEST_S))
+        if not spins:
+            return int(np.rint(steps_s[holes] / packet_s - 1.0).sum())
         return sum(
             self._lost_in(
                 _Hole(int(t_ns[k]), int(azimuth_cdeg[k]), round(steps_s[k] / packet_s - 1))

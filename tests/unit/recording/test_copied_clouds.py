@@ -152,9 +152,8 @@ def imu(bag, t_ns, k):
     ("kind", "remedy"),
     [
         ("livox_ros_driver2/msg/CustomMsg", "set xfer_format to 0"),
-        ("ouster_sensor_msgs/msg/PacketMsg", "play the bag back through the driver"),
-        ("pandar_msgs/msg/PandarScan", "play the bag back through the driver"),
-        ("rslidar_msg/msg/RslidarPacket", "play the bag back through the driver"),
+        ("cepton_messages/msg/CeptonPacket", "play the bag back through the driver"),
+        ("innovusion/msg/InnovusionScan", "play the bag back through the driver"),
     ],
 )
 def test_a_lidar_in_messages_of_its_driver_is_named_with_the_remedy(tmp_path, kind, remedy):

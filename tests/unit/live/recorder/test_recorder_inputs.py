@@ -75,4 +75,4 @@ def test_other_mixtures_are_refused_with_what_to_do(text):
 
 
 def test_scans_have_ports_of_their_own_by_default():
-    assert set(wanted_ports(load_rig("wuerzburg"))) == {8308, 8309, 8310, 8311, 8312}
+    assert set(wanted_ports(load_rig("wuerzburg"))) == {8309, 8310, 8311, 8312}
