@@ -56,7 +56,9 @@ class ErrorModel:
     anchor_m: float = 1.5e-3
     """… and of its position [m]."""
     anchor_ratio: float = 0.06
-    """The same as a ratio of what half a second of odometry usually states."""
+    """The same as a ratio of what half a second of odometry usually states, of shifts along its
+    worst axis: without an IMU the points of a multiframe, and its pose, lie wrong along the motion.
+    """
     gnss_m: float = 0.02
     """Error of GNSS that all fixes of a walk share [m] …"""
     gnss_turn_rad: float = 0.0

@@ -97,7 +97,8 @@ class _Chain:
     step_cov: Array
     """Covariance of the step to each knot but the first, in axes of the map, (K - 1, 6, 6)."""
     usual: Array
-    """Stated deviation of half a second of odometry as usual on the walk: turn [rad], shift [m]."""
+    """Stated deviation of half a second of odometry as usual on the walk: turn about the best axis
+    [rad], shift along the worst one [m]."""
     step_rho: Array
     """Correlation of its whitened error with that of the step before, symmetric, (K - 1, 6, 6)."""
     knot_of: Rows
@@ -252,8 +253,9 @@ def _steps(
         )
     ):
         values, V = np.linalg.eigh(stated[:, part, part])
-        usual[row] = np.median(half_s[:, 0] * np.sqrt(values[:, 0]))
-        limit = min(max(weak_at, model.weak_ratio * usual[row]), surely)
+        best, _, worst = np.median(half_s * np.sqrt(values), axis=0)
+        usual[row] = worst if part is TRANSLATION else best
+        limit = min(max(weak_at, model.weak_ratio * best), surely)
         ratio = half_s * np.sqrt(values) / limit
         weak = ratio**4 / (1.0 + ratio**4)
         if part is TRANSLATION and carried is not None:

@@ -336,3 +336,15 @@ def test_points_observe_what_is_tracked_converged_and_not_weak(tmp_path: Path) -
 
     assert found.observed.tolist() == [False, True, True, False, False, False, True, False]
     assert found.observed_between(np.array([0, 2, 3, 6, 7])).tolist() == [True, False, False, False]
+
+
+def test_single_poses_are_as_wrong_as_the_worst_axis_of_the_odometry_states() -> None:
+    """Without an IMU the motion within a multiframe is known least along it."""
+    ahead = np.array([1e-3, 1e-3, 1e-3, 0.07, 0.02, 0.02])
+
+    even, along = (
+        stated(chain(14, sd=sd), ErrorModel()) for sd in (ahead[[0, 1, 2, 4, 4, 4]], ahead)
+    )
+
+    sideways_m = np.sqrt([even.cov[1, 4, 4], along.cov[1, 4, 4]])
+    np.testing.assert_allclose(sideways_m, [0.0027, 0.0062], rtol=0.1)
