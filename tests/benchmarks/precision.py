@@ -72,6 +72,7 @@ _FIRST_REASONS = {
     "The mounts of": "RIG-EXCHANGED",
     "A mirror or a glass wall": "MIRROR",
     "The registration converged in only": "NOT-CONVERGED",
+    r"\d+ multiframes did not converge": "NOT-CONVERGED",
     "No loop closure was accepted": "LOOPS-NONE",
     "The gyroscope is rotated": "IMU-GYRO-ROTATION",
     "The gyroscope measures turns": "IMU-GYRO-SCALE",

@@ -1,4 +1,4 @@
-"""What is no fault of a map: kinds that accused maps that were right."""
+"""Kinds that accused maps that were right, or were silent of one that was not."""
 
 from dataclasses import replace
 
@@ -49,3 +49,30 @@ def test_a_unit_of_the_gyroscope_that_its_samples_leave_open_is_settled_by_lidar
     found = only(walked, FindingKind.IMU_UNIT)
     assert found.level is level
     assert "ingest.imu_gyro_unit=deg_s" in text_of(found)
+
+
+@pytest.mark.parametrize(
+    ("offset_m", "converged", "level"),
+    [(0.14, False, Level.CHECK), (0.03, False, None), (0.29, True, None)],
+    ids=["far and stopped", "near and stopped", "far and converged"],
+)
+def test_one_multiframe_that_did_not_converge_counts_if_it_is_far_from_where_it_was_expected(
+    offset_m, converged, level
+):
+    flags = {name: np.zeros(40, bool) for name in ("lost", "stationary", "bridged")}
+    offsets = np.full(40, 0.05)
+    offsets[39] = offset_m
+    done = np.ones(40, bool)
+    done[[0, 39]] = False, converged
+    steps = flags | {"converged": done, "prediction_offset_m": offsets}
+    steps |= {"t_mid_ns": np.arange(40) * 10**8, "t_m": np.zeros((40, 3))}
+
+    found = check_walk(WalkRecord(steps=steps), preset("indoor"))
+
+    levels = [one.level for one in found if one.kind is FindingKind.NOT_CONVERGED]
+    assert levels == ([] if level is None else [level])
+    assert all(
+        "lie up to 14.0 cm from where" in text_of(one) and one.span_s == (3.9, 3.9)
+        for one in found
+        if one.kind is FindingKind.NOT_CONVERGED
+    )
