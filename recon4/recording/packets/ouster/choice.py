@@ -168,8 +168,12 @@ def missing_text(head: Datagrams, found: MetadataFiles, sensor: Sensor) -> str:
     sizes = np.unique(head.length).tolist()
     seen = [
         f"{item.name} is of packets of {item.layout.size} bytes ({item.layout.profile.name}, "
-        f"{item.layout.beams} beams, {item.layout.columns} columns), those here have "
-        f"{', '.join(map(str, sizes[:4]))}"
+        f"{item.layout.beams} beams, {item.layout.columns} columns), those here "
+        + (
+            "have that size and other contents"
+            if item.layout.size in sizes
+            else f"have {', '.join(map(str, sizes[:4]))}"
+        )
         for item in found.metadata
     ]
     return "; ".join([f"{_sender(head, sensor)}: {NEEDED}", *seen, *found.damaged])

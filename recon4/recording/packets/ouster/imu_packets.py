@@ -204,15 +204,17 @@ def _sound_legacy(payloads: Payloads) -> NDArray[np.bool_]:
         np.abs(packets[name].astype(np.int64) // 2 - gyro_ns // 2) < _APART_NS
         for name in ("sent_ns", "accel_ns")
     ]
-    accel = STANDARD_GRAVITY_M_S2 * packets["accel_g"].astype(np.float64)
-    gyro = np.deg2rad(packets["gyro_deg_s"].astype(np.float64))
+    with np.errstate(invalid="ignore"):  # bytes that are no numbers
+        accel = STANDARD_GRAVITY_M_S2 * packets["accel_g"].astype(np.float64)
+        gyro = np.deg2rad(packets["gyro_deg_s"].astype(np.float64))
     values = _sound(packets["gyro_ns"], accel, gyro)
     return np.asarray(near[0] & near[1] & values)
 
 
 def _sound(t_ns: NDArray[np.uint64], accel_m_s2: Array, gyro_rad_s: Array) -> NDArray[np.bool_]:
     """Which samples can have been measured, (...)."""
-    moved = (np.abs(accel_m_s2) < _MAX_ACCEL_M_S2) & (np.abs(gyro_rad_s) < _MAX_GYRO_RAD_S)
+    with np.errstate(invalid="ignore"):
+        moved = (np.abs(accel_m_s2) < _MAX_ACCEL_M_S2) & (np.abs(gyro_rad_s) < _MAX_GYRO_RAD_S)
     return np.asarray((t_ns > 0) & (t_ns < _LATEST_NS) & moved.all(axis=-1))
 
 

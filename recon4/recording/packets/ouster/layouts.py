@@ -31,20 +31,17 @@ MAX_PACKET_BYTES = 65507
 """Of a UDP datagram."""
 
 STANDARD_HEADER = np.dtype(
-    {
-        "names": ["type", "frame", "init_id", "serial"],
-        "formats": ["<u2", "<u2", ("u1", 3), ("u1", 5)],
-        "offsets": [0, 2, 4, 7],
-        "itemsize": HEADER_BYTES,
-    }
+    [("type", "<u2"), ("frame", "<u2"), ("init_id", "u1", 3), ("serial", "u1", 5), ("rest", "V20")]
 )
 FUSA_HEADER = np.dtype(
-    {
-        "names": ["type", "init_id", "frame", "serial"],
-        "formats": ["u1", ("u1", 3), "<u4", ("u1", 5)],
-        "offsets": [0, 1, 4, 11],
-        "itemsize": HEADER_BYTES,
-    }
+    [
+        ("type", "u1"),
+        ("init_id", "u1", 3),
+        ("frame", "<u4"),
+        ("alerts", "u1", 3),
+        ("serial", "u1", 5),
+        ("rest", "V16"),
+    ]
 )
 """Header of sensors set to functional safety."""
 

@@ -38,8 +38,8 @@ _SECTIONS = (
 _BEAM_ORIGIN_MM = {"OS-0-": 27.67, "OS-1-": 15.806, "OS-2-": 13.762}
 """Start of the product line -> how far from the axis the beams leave, where it is not stated."""
 _OLDEST_BEAM_ORIGIN_MM = 12.163
-_LIDAR_HEIGHT_MM = 36.18
-"""Height of the optical center above the base, where it is not stated: that of OS0 and OS1."""
+_LIDAR_HEIGHT_MM, _OS2_HEIGHT_MM = 36.18, 74.296
+"""Height of the optical center above the base, where it is not stated."""
 _MODE = re.compile(r"(\d{3,4})x(\d{1,2})")
 _PRODUCT = re.compile(r"OS-?(0|1|2|DOME)-(\d+)", re.IGNORECASE)
 
@@ -237,7 +237,7 @@ def _metadata(values: _Values, likeness: int) -> OusterMetadata:
         elevation_rad=np.deg2rad(elevation),
         azimuth_rad=np.deg2rad(azimuth),
         p_lidar_beam_m=p_lidar_beam_m,
-        T_sensor_lidar=_usual_mount() if T_sensor_lidar is None else T_sensor_lidar,
+        T_sensor_lidar=usual_mount(product) if T_sensor_lidar is None else T_sensor_lidar,
         R_sensor_imu=np.eye(3) if T_sensor_imu is None else T_sensor_imu[:3, :3],
         port=values.integer("udp_port_lidar", 0, (0, 65535)),
         imu_port=values.integer("udp_port_imu", 0, (0, 65535)),
@@ -280,12 +280,19 @@ def _beam_origin(values: _Values, product: str) -> tuple[Array, bool]:
         return transform[[0, 2], 3], True
     stated = values.number("lidar_origin_to_beam_origin_mm", 1000.0)
     if stated is None:
-        usual = (mm for start, mm in _BEAM_ORIGIN_MM.items() if product.startswith(start))
-        return np.array([1e-3 * next(usual, _OLDEST_BEAM_ORIGIN_MM), 0.0]), False
+        return usual_beam_origin_m(product), False
     return np.array([1e-3 * stated, 0.0]), True
 
 
-def _usual_mount() -> Array:
+def usual_beam_origin_m(product: str) -> Array:
+    """Where the beams of a product line leave: x and z in the turning frame [m], (2,)."""
+    usual = (mm for start, mm in _BEAM_ORIGIN_MM.items() if product.startswith(start))
+    return np.array([1e-3 * next(usual, _OLDEST_BEAM_ORIGIN_MM), 0.0])
+
+
+def usual_mount(product: str) -> Array:
+    """``T_sensor_lidar`` of a product line [m], (4, 4)."""
     T_sensor_lidar = np.diag([-1.0, -1.0, 1.0, 1.0])
-    T_sensor_lidar[2, 3] = 1e-3 * _LIDAR_HEIGHT_MM
+    height_mm = _OS2_HEIGHT_MM if product.startswith("OS-2-") else _LIDAR_HEIGHT_MM
+    T_sensor_lidar[2, 3] = 1e-3 * height_mm
     return T_sensor_lidar
