@@ -68,7 +68,6 @@ class OusterPackets:
     from the connector), y left, z up. Its drivers call it ``os_sensor``.
     """
 
-    sample_sizes = SAMPLE_SIZES
     stamps_past_hour = False
 
     def __init__(self, sensor: PacketSensor, metadata: OusterMetadata, turning: Turning) -> None:
@@ -81,6 +80,7 @@ class OusterPackets:
         """
         assert turning.columns > 0
         self.size = metadata.layout.size
+        self.sample_sizes = SAMPLE_SIZES - {self.size}
         self.packet_s = metadata.layout.columns * turning.column_s
         self._layout, self._turn = metadata.layout, turning.columns
         self._sensor, self._metadata = sensor, metadata
