@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from recon4.model.import_counts import COUNT_WORDINGS, WARNED_RATIO, Loss, losses, wording
+from recon4.model.count_words import COUNT_WORDINGS
+from recon4.model.import_counts import WARNED_RATIO, Loss, losses, wording
 
 _SEVERE_RATIO = 0.5
 _SAMPLES = {"imu_kept", "gnss_kept", "gnss_samples", "sample_datagrams", "positions"}

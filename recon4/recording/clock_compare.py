@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.model.import_counts import FREE_CLOCK
+from recon4.model.count_words import FREE_CLOCK
 from recon4.recording.clock_names import described, known_offset_s
 from recon4.recording.report import ImportReport
 

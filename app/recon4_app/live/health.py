@@ -8,7 +8,7 @@ from recon4.live.findings import rates
 from recon4.live.mapper.notes import RECENT_S
 from recon4.live.newest import Newest
 from recon4.live.protocol import Notes
-from recon4.model.import_counts import FREE_CLOCK
+from recon4.model.count_words import FREE_CLOCK
 from recon4.model.rig import Rig, Sensor
 
 IN_STEP, SHIFTED, JUMPED = "in step", "own, shifted", "jumped"

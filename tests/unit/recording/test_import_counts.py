@@ -6,7 +6,8 @@ from pathlib import Path
 import pytest
 
 import recon4
-from recon4.model.import_counts import COUNT_WORDINGS, CountKind, count_text, losses, wording
+from recon4.model.count_words import COUNT_WORDINGS, CountKind
+from recon4.model.import_counts import count_text, losses, wording
 from recon4.recording.report import ImportReport
 
 ROOT = Path(recon4.__file__).parent
