@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.segments import draw_pairs, segment_ends
+from recon4.model.lidars import LidarFacts, lidar_model
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.tuning import SEGMENTS, SegmentTuning
@@ -53,9 +55,9 @@ def _of_sensor(
     if not sensor.enabled or len(rows) < 2:
         return None
     xyz = np.ascontiguousarray(frame.xyz[rows])
-    ring = np.ascontiguousarray(frame.ring[rows])
+    band = _bands(xyz, frame.ring[rows], lidar_model(sensor.model), settings.most_bands)
     pairs = draw_pairs(
-        xyz, ring, int(ring.max()) + 1, settings.azimuth_bins, settings.generated,
+        xyz, band, int(band.max()) + 1, settings.azimuth_bins, settings.generated,
         settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
     )  # fmt: skip
     ends, times_s = np.empty((2, len(pairs), 3)), np.empty((2, len(pairs)))
@@ -63,6 +65,24 @@ def _of_sensor(
     segment_ends(xyz, np.ascontiguousarray(frame.dt_ns[rows]), pairs, ends, times_s, range_m)
     a_body, b_body = (sensor.T_body_sensor @ end for end in ends)
     return a_body, b_body, times_s[0], times_s[1], range_m
+
+
+def _bands(
+    xyz: NDArray[np.float32], ring: NDArray[np.uint8], model: LidarFacts, most: int
+) -> NDArray[np.uint8]:
+    """Bands of elevation between which segments are drawn, (N,): the rings of the sensor.
+
+    Neighboring rings of a sensor with more than ``most`` are one band, so that the number of
+    segments does not grow with the beams. A pattern that does not repeat has no rings: its field
+    of view is cut into ``most`` bands.
+    """
+    if model.has_rings:
+        joined = -(-(int(ring.max()) + 1) // most)
+        return np.ascontiguousarray(ring // np.uint8(joined))
+    low, high = np.deg2rad(model.elevation_deg)
+    elevation = np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1]))
+    band = np.floor((elevation - low) * (most / (high - low)))
+    return np.clip(band, 0, most - 1).astype(np.uint8)
 
 
 def _seed(seed: int, frame: Multiframe, row: int) -> int:

@@ -18,6 +18,9 @@ class SegmentTuning:
     """Number of random segments per cell between two neighboring rings."""
     preserved: int = 5
     """Number of the shortest of them that are kept."""
+    most_bands: int = 40
+    """Bands of elevation between which segments are drawn: 32 rings are bands of their own, those
+    of 64 and 128 beams are joined; a VLP-16 has one each 2°, these 40 of a Mid-360 have 1.5°."""
     max_length_per_range: float = 0.34
     """A segment longer than this times the range of its nearer end crosses a depth edge and is
     dropped (a third: 2° between beams, at least 6° of incidence)."""

@@ -64,7 +64,7 @@ class _Stream:
 
 def _spins(sensor: Sensor) -> bool:
     """Whether a sensor has revolutions; the pattern of a Livox never repeats."""
-    return sensor.kind == "lidar" and lidar_model(sensor.model).scanning == "spinning"
+    return sensor.kind == "lidar" and lidar_model(sensor.model).has_rings
 
 
 class Assembler:
@@ -314,11 +314,6 @@ class Assembler:
                 left.append(_rows(shots, slice(end, None)))
         stream.waiting = left
         return taken
-
-
-def _spins(sensor: Sensor) -> bool:
-    """Whether a sensor may rotate; `rotation_rate` finds out for a LiDAR of unknown model."""
-    return sensor.kind == "lidar" and lidar_model(sensor.model).has_rings
 
 
 def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport) -> Shots:
