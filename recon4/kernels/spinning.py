@@ -57,6 +57,8 @@ class Layout(NamedTuple):
     """A smaller turn from one firing to the next is a jump, not rotation [0.01°]; -18000 = any."""
     max_step_cdeg: int
     """And so is a larger one (limited field of view) [0.01°]."""
+    distance_mask: int = 0xFFFF
+    """Bits of the two bytes that are the distance."""
 
 
 class BlockRoles(NamedTuple):
@@ -205,7 +207,7 @@ def decode(
             for i in range(layout.channels):
                 c = order[i]
                 at = base + layout.channel * c
-                distance = _word(payload, at, layout.big_endian)
+                distance = _word(payload, at, layout.big_endian) & layout.distance_mask
                 intensity = payload[at + layout.intensity]
                 other, other_intensity = np.int32(0), np.uint8(0)
                 if twin >= 0:
@@ -213,7 +215,7 @@ def decode(
                     # sensors repeat a single return, or leave one of the two empty.
                     other, other_intensity = distance, intensity
                     at += to_twin
-                    distance = _word(payload, at, layout.big_endian)
+                    distance = _word(payload, at, layout.big_endian) & layout.distance_mask
                     intensity = payload[at + layout.intensity]
                     if distance == 0 or (other_intensity > intensity and other != 0):
                         distance, other = other, distance

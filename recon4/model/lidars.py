@@ -263,6 +263,59 @@ _OUSTER = (
     ),
 )
 
+_HELIOS = LidarFacts(
+    name="Helios 32",
+    maker="RoboSense",
+    beams=32,
+    elevation_deg=(-16.0, 15.0),
+    min_range_m=0.2,
+    range_m=110.0,
+    accuracy_m=0.02,
+    divergence_rad=0.0026,
+)
+_ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0, M1 2.0, E1 1.0
+    _HELIOS,
+    replace(_HELIOS, name="Helios 5515", elevation_deg=(-55.0, 15.0)),
+    replace(_HELIOS, name="Helios 16P", beams=16, elevation_deg=(-15.0, 15.0), range_m=90.0),
+    replace(_HELIOS, name="Bpearl", elevation_deg=(0.0, 90.0), min_range_m=0.1, range_m=30.0),
+    replace(_HELIOS, name="Bpearl V4", elevation_deg=(0.0, 90.0), min_range_m=0.1, range_m=30.0),
+    replace(
+        _HELIOS,
+        name="Ruby Plus",
+        beams=128,
+        elevation_deg=(-25.0, 15.0),
+        min_range_m=0.4,
+        range_m=240.0,
+    ),
+    replace(
+        _HELIOS, name="Airy", beams=96, elevation_deg=(0.0, 90.0), min_range_m=0.1, range_m=30.0
+    ),
+    replace(
+        _HELIOS,
+        name="M1",
+        beams=5,
+        scanning="solid-state",
+        elevation_deg=(-12.5, 12.5),
+        azimuth_deg=120.0,
+        min_range_m=0.5,
+        range_m=150.0,
+        accuracy_m=0.03,
+        divergence_rad=0.0035,
+    ),
+    replace(
+        _HELIOS,
+        name="E1",
+        beams=1,
+        scanning="solid-state",
+        elevation_deg=(-45.0, 45.0),
+        azimuth_deg=120.0,
+        min_range_m=0.1,
+        range_m=30.0,
+        accuracy_m=0.03,
+        divergence_rad=0.0045,
+    ),
+)
+
 _GENERIC = LidarFacts(
     name="generic",
     maker="",
@@ -275,7 +328,7 @@ _GENERIC = LidarFacts(
 )
 
 LIDARS: dict[str, LidarFacts] = {
-    model.name: model for model in (*_VELODYNE, *_HESAI, *_LIVOX, *_OUSTER, _GENERIC)
+    model.name: model for model in (*_VELODYNE, *_HESAI, *_LIVOX, *_OUSTER, *_ROBOSENSE, _GENERIC)
 }
 """All models by name; ``generic`` is any LiDAR whose points come as clouds."""
 

@@ -25,8 +25,9 @@ from recon4.settings import IngestSettings
 
 _STRING = "std_msgs/msg/String"
 _PROBED_MESSAGES = 50
-_PROBED_PACKETS = 200
-"""Packets at the beginning of a topic from which its sensor is known."""
+_PROBED_PACKETS = 2000
+"""Packets at the beginning of a topic from which its sensor is known: more than a second, as some
+send their angles once a second."""
 _MOST_TEXT = 1 << 20
 
 
@@ -65,6 +66,7 @@ class PacketTopics:
             row=row,
             sensor=sensor,
             head=head_of(self._bag, sensor.topic),
+            beside=join_datagrams([head_of(self._bag, name) for name in self._samples_of(sensor)]),
             companions=self._companions,
             settings=self._settings,
             report=self._report,

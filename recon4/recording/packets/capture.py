@@ -14,7 +14,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
-from recon4.recording.formats.datagrams import Datagrams, address_number
+from recon4.recording.formats.datagrams import Datagrams, address_number, join_datagrams
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_of
 from recon4.recording.packets.datagram_files import read_datagrams
@@ -221,12 +221,18 @@ class PacketCapture:
         others = [s for s in self.streams if s.refused and fits(sensor, s.source, s.port)]
         return f"; found: {'; '.join(s.text for s in others)}" if others else ""
 
+    def _beside(self, data: PacketStream) -> Datagrams:
+        """First other packets of a LiDAR: those of its sender to other ports."""
+        others = [s for s in self.streams if s.kind == "samples" and s.source == data.source]
+        return join_datagrams([stream.head for stream in others])
+
     def _channel(self, row: int, streams: tuple[PacketStream, ...]) -> _Channel:
         sensor = self.rig.sensors[row]
         of = PacketSensor(
             row=row,
             sensor=sensor,
             head=streams[0].head,
+            beside=self._beside(streams[0]),
             companions=self._companions,
             settings=self._settings,
             report=self._report,

@@ -6,11 +6,13 @@ from recon4.recording.packets.family import PacketFamily
 from recon4.recording.packets.hesai.family import HESAI
 from recon4.recording.packets.livox.family import LIVOX
 from recon4.recording.packets.ouster.family import OUSTER
+from recon4.recording.packets.robosense.family import ROBOSENSE
 from recon4.recording.packets.velodyne.family import VELODYNE
 
 FAMILIES: tuple[PacketFamily, ...] = (
     HESAI,
     LIVOX,
+    ROBOSENSE,
     OUSTER,
     VELODYNE,
 )

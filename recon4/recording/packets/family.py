@@ -94,6 +94,8 @@ class PacketSensor:
     """Its model selects the tables."""
     head: Datagrams = NO_DATAGRAMS
     """First data packets of the sensor; none if it is silent at the beginning."""
+    beside: Datagrams = NO_DATAGRAMS
+    """First other packets of the sensor, wherever it sends them: device data with angles."""
     companions: Sequence[Companion] = ()
     """Files beside the recording; the family finds out which are of this sensor."""
     settings: IngestSettings

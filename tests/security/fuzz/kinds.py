@@ -40,6 +40,7 @@ from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.kinds_live import LIVE_KINDS
 from tests.security.fuzz.kinds_livox import LIVOX_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
+from tests.security.fuzz.kinds_robosense import ROBOSENSE_KINDS
 
 
 def _info(path: Path) -> None:
@@ -350,6 +351,7 @@ def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
 
 
 KINDS: dict[str, Kind] = {
-    kind.name: kind for kind in (*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS, *LIVOX_KINDS)
+    kind.name: kind
+    for kind in (*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS, *LIVOX_KINDS, *ROBOSENSE_KINDS)
 }
 """By name."""

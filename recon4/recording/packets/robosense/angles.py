@@ -1,0 +1,138 @@
+"""Angles of the lasers of a RoboSense: of its device packets, of a csv file, or of the factory."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.model.lidars import lidar_model
+from recon4.recording.packets.family import Companion, Payloads
+from recon4.recording.packets.robosense.models import (
+    ANGLE,
+    ANGLES_AT,
+    DEVICE_ID,
+    MODE_AT,
+    SIZE,
+    RoboSenseModel,
+)
+
+_DUAL = 0
+_MOST_ROWS = 200
+_TOLERANCE_DEG = 3.0
+"""A table of angles may exceed the elevations of its model by this."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class LaserAngles:
+    """Where the lasers of one sensor point."""
+
+    cdeg: NDArray[np.float64]
+    """Elevation and azimuth of each [0.01°], (lasers, 2)."""
+    source: str
+    """Where they are from, in words."""
+    measured: bool
+    """Whether they are of this very sensor."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class DeviceData:
+    """What one device packet tells."""
+
+    angles_cdeg: NDArray[np.float64]
+    """Elevation and azimuth of each laser [0.01°], as many as are given, (L, 2)."""
+    dual: bool
+    """Whether two returns are sent, in the numbers of Helios and Bpearl."""
+
+
+def is_device(payloads: Payloads) -> NDArray[np.bool_]:
+    """Which payloads are device packets (DIFOP) of a sensor that spins, (N,)."""
+    if payloads.shape[1] != SIZE:
+        return np.zeros(len(payloads), np.bool_)
+    return np.asarray((payloads[:, :8] == np.frombuffer(DEVICE_ID, np.uint8)).all(axis=1))
+
+
+def device_data(payloads: Payloads, lasers: int) -> DeviceData | None:
+    """The newest device packet with angles; None = there is none.
+
+    Args:
+        payloads: Packets, (N, 1248); others than device packets are passed over.
+        lasers: Lasers that the layout has room for.
+    """
+    for payload in payloads[is_device(payloads)][::-1]:
+        table = np.ascontiguousarray(payload[ANGLES_AT : ANGLES_AT + 6 * lasers]).view(ANGLE)
+        given = table["sign"].reshape(2, lasers) <= 1
+        count = int(np.argmin(given.all(axis=0))) if not given.all() else lasers
+        signs = 1 - 2 * table["sign"].reshape(2, lasers)[:, :count].astype(np.float64)
+        angles = (signs * table["cdeg"].reshape(2, lasers)[:, :count]).T
+        if count and np.abs(angles).max() < 9000 and np.ptp(angles[:, 0]) > 0:
+            return DeviceData(angles, int(payload[MODE_AT]) == _DUAL)
+    return None
+
+
+def laser_angles(
+    model: RoboSenseModel, device: DeviceData | None, companions: Sequence[Companion]
+) -> LaserAngles:
+    """The angles of a sensor: its own, else those of a file, else those of the factory.
+
+    Raises:
+        ConfigError: If there are none of any kind.
+    """
+    if device is not None and len(device.angles_cdeg) >= model.lasers:
+        return LaserAngles(device.angles_cdeg[: model.lasers], "its device packets (DIFOP)", True)
+    found = [(one, table) for one in companions if (table := fitting_table(one, model)) is not None]
+    named = [pair for pair in found if _names(pair[0].name, model)]
+    if named or found:
+        file, table = (named or found)[0]
+        return LaserAngles(table, file.name, True)
+    if model.factory_cdeg is None:
+        raise ConfigError(
+            f"packets of a {model.name} need the angles of its {model.lasers} lasers: record its "
+            "device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and "
+            "azimuth [°] per laser beside the recording"
+        )
+    return LaserAngles(
+        model.factory_cdeg.astype(np.float64), "another sensor's factory table", False
+    )
+
+
+def _names(file: str, model: RoboSenseModel) -> bool:
+    plain = "".join(filter(str.isalnum, file.lower()))
+    return "".join(filter(str.isalnum, model.name.lower())) in plain
+
+
+def fitting_table(file: Companion, model: RoboSenseModel) -> NDArray[np.float64] | None:
+    """The table of a csv file if it has the lasers and elevations of the model [0.01°]."""
+    table = angles_of_csv(file) if file.name.lower().endswith(".csv") else None
+    if table is None or len(table) != model.lasers:
+        return None
+    low, high = lidar_model(model.name).elevation_deg
+    inside = (table[:, 0] >= 100 * (low - _TOLERANCE_DEG)) & (
+        table[:, 0] <= 100 * (high + _TOLERANCE_DEG)
+    )
+    return table if inside.all() else None
+
+
+def angles_of_csv(file: Companion) -> NDArray[np.float64] | None:
+    """Rows of elevation and azimuth [0.01°] of a csv file; None = it has none.
+
+    Rows are ``elevation,azimuth[,ring]`` in the order of the lasers without a header, or
+    ``laser,elevation,azimuth`` under a header.
+    """
+    lines = [line.strip() for line in file.content.decode("utf-8", "replace").splitlines()]
+    rows = [line for line in lines if line][: _MOST_ROWS + 1]
+    if not rows or len(rows) > _MOST_ROWS:
+        return None
+    header = rows[0].lower()
+    named = "elevation" in header and "azimuth" in header
+    first = 1 if named and header.startswith(("laser", "channel")) else 0
+    try:
+        cells = [[float(cell) for cell in row.split(",") if cell.strip()] for row in rows[named:]]
+        table = 100.0 * np.array([row[first : first + 2] for row in cells], np.float64)
+    except ValueError:
+        return None
+    right = table.ndim == 2 and table.shape[1] == 2 and bool((np.abs(table) < 9000).all())
+    return table if right else None

@@ -1,0 +1,137 @@
+"""Packets of RoboSense LiDARs written: the inverse of `packets`, `angles`, `solid`."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.robosense.models import (
+    AIRY_VARIANT,
+    ANGLE,
+    ANGLES_AT,
+    DEVICE_ID,
+    MODE_AT,
+    SIZE,
+    TYPE_AT,
+    RoboSenseModel,
+)
+from recon4.recording.packets.robosense.packets import block_bytes
+from recon4.recording.packets.robosense.solid import (
+    SOLID_HEADER,
+    SOLID_ID,
+    SOLID_STAMP_AT,
+    SolidModel,
+)
+from recon4.recording.packets.sensor_clock import SECOND_NS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpinningBlocks:
+    """The blocks of P data packets, as they lie on the wire."""
+
+    azimuth_cdeg: NDArray[np.integer]
+    """Azimuth at the first shot of each block [0.01°], taken modulo 360°, (P, B)."""
+    distance: NDArray[np.integer]
+    """Distance in units of the model, 0 = no return, (P, B, C)."""
+    intensity: NDArray[np.integer]
+    """0..255, (P, B, C)."""
+
+
+def encode_spinning(t_ns: Times, blocks: SpinningBlocks, model: RoboSenseModel) -> Payloads:
+    """Data packets of a model that spins.
+
+    Args:
+        t_ns: Time of the first shot of each packet [ns], (P,).
+        blocks: Azimuths and returns; second returns in the blocks that the model puts them in.
+        model: The sensor.
+
+    Returns:
+        UDP payloads, (P, 1248).
+    """
+    payloads = np.zeros((len(t_ns), SIZE), np.uint8)
+    payloads[:, : len(model.data_id)] = np.frombuffer(model.data_id, np.uint8)
+    if model.name == "Bpearl V4":
+        payloads[:, TYPE_AT : TYPE_AT + 2] = 3, 4
+    if model.name == "Airy":
+        payloads[:, TYPE_AT + 1] = AIRY_VARIANT
+    payloads[:, model.stamp_at : model.stamp_at + 10] = _stamp_bytes(t_ns, model.stamp)
+    written = block_bytes(payloads, model)
+    written[:, :, : len(model.flag)] = np.frombuffer(model.flag, np.uint8)
+    written[:, :, 2:4] = _words(np.asarray(blocks.azimuth_cdeg) % 36000)
+    written[:, :, 4::3], written[:, :, 5::3] = np.moveaxis(_words(blocks.distance), -1, 0)
+    written[:, :, 6::3] = blocks.intensity
+    return payloads
+
+
+def encode_device(angles_cdeg: NDArray[np.integer], *, room: int, mode: int = 4) -> Payloads:
+    """A device packet (DIFOP).
+
+    Args:
+        angles_cdeg: Elevation and azimuth of each laser [0.01°], (L, 2).
+        room: Lasers that the packet has room for; 0xFF in the places of those that are not there.
+        mode: Return mode; 0 = dual for Helios and Bpearl.
+
+    Returns:
+        UDP payload, (1, 1248).
+    """
+    payload = np.zeros((1, SIZE), np.uint8)
+    payload[0, :8] = np.frombuffer(DEVICE_ID, np.uint8)
+    payload[0, MODE_AT] = mode
+    table = np.frombuffer(b"\xff" * (6 * room), ANGLE).reshape(2, room).copy()
+    table["sign"][:, : len(angles_cdeg)] = (angles_cdeg < 0).T
+    table["cdeg"][:, : len(angles_cdeg)] = np.abs(angles_cdeg).T
+    payload[0, ANGLES_AT : ANGLES_AT + 6 * room] = np.frombuffer(table.tobytes(), np.uint8)
+    return payload
+
+
+def encode_solid(t_ns: Times, blocks: NDArray[np.void], model: SolidModel) -> Payloads:
+    """Data packets of a model that does not spin.
+
+    Args:
+        t_ns: Time of each packet [ns], (P,).
+        blocks: Its records, ``SolidModel.block``, (P, B).
+        model: The sensor.
+
+    Returns:
+        UDP payloads, (P, size).
+    """
+    payloads = np.zeros((len(t_ns), model.size), np.uint8)
+    payloads[:, :4] = np.frombuffer(SOLID_ID, np.uint8)
+    payloads[:, SOLID_STAMP_AT : SOLID_STAMP_AT + 10] = _stamp_bytes(t_ns, "us")
+    body = np.frombuffer(blocks.tobytes(), np.uint8).reshape(len(t_ns), -1)
+    payloads[:, SOLID_HEADER : SOLID_HEADER + body.shape[1]] = body
+    return payloads
+
+
+def _words(values: NDArray[np.integer]) -> NDArray[np.uint8]:
+    """Big-endian words, (…, 2)."""
+    words = np.asarray(values).astype(">u2")
+    return words[..., None].view(np.uint8)
+
+
+def _stamp_bytes(t_ns: Times, kind: str) -> NDArray[np.uint8]:
+    seconds, rest_ns = np.divmod(np.asarray(t_ns, np.int64), SECOND_NS)
+    if kind == "date":
+        return _date_bytes(seconds, rest_ns // 1000)
+    stamp = np.zeros(len(seconds), [("high", ">u2"), ("seconds", ">u4"), ("rest", ">u4")])
+    stamp["seconds"] = seconds
+    stamp["rest"] = rest_ns if kind == "ns" else rest_ns // 1000
+    return stamp.view(np.uint8).reshape(-1, 10)
+
+
+def _date_bytes(seconds: NDArray[np.int64], us: NDArray[np.int64]) -> NDArray[np.uint8]:
+    moment = seconds.astype("datetime64[s]")
+    day, month = moment.astype("datetime64[D]"), moment.astype("datetime64[M]")
+    rest = seconds % 86400
+    columns = [
+        month.astype(np.int64) // 12 - 30,
+        month.astype(np.int64) % 12 + 1,
+        (day - month.astype("datetime64[D]")).astype(np.int64) + 1,
+        *(rest // 3600, rest // 60 % 60, rest % 60),
+    ]
+    words = np.stack([us // 1000, us % 1000], axis=1).astype(">u2")
+    return np.hstack([np.stack(columns, axis=1).astype(np.uint8), words.view(np.uint8)])

@@ -1,0 +1,314 @@
+"""The family of RoboSense LiDARs: what their packets look like, and the decoder of one sensor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.model.trajectory import Times
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.packets.family import (
+    Companion,
+    MessagePackets,
+    PacketFormat,
+    PacketSamples,
+    PacketSensor,
+    Payloads,
+    Recognized,
+)
+from recon4.recording.packets.robosense.angles import (
+    DeviceData,
+    device_data,
+    fitting_table,
+    is_device,
+    laser_angles,
+)
+from recon4.recording.packets.robosense.imu_packets import IMU_SIZE, imu_samples, is_imu
+from recon4.recording.packets.robosense.messages import MESSAGES
+from recon4.recording.packets.robosense.models import (
+    AIRY_VARIANT,
+    HELIOS_16P_DUAL,
+    MODELS,
+    SIZE,
+    TYPE_AT,
+    RoboSenseModel,
+)
+from recon4.recording.packets.robosense.packets import (
+    SINGLE,
+    azimuths_cdeg,
+    has_id,
+    packet_s,
+    sound_packets,
+    spinning_tables,
+    split_blocks,
+    stamps,
+    variants_of,
+)
+from recon4.recording.packets.robosense.solid import (
+    SOLID_MODELS,
+    SolidModel,
+    decode_solid,
+    solid_stamps,
+    sound_solid,
+)
+from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.spinning import spinning_points
+from recon4.recording.report import ImportReport
+
+NAME = "RoboSense"
+_BPEARL_V4 = (3, 4)
+_AIRY_UNKNOWN = 0
+_LOW_CDEG = -4000
+"""A Helios with lasers below -40° is a 5515."""
+
+
+class SpinningFormat:
+    """The packets of one RoboSense that spins.
+
+    Points are in the frame of the maker's driver: x forward (azimuth 0), y left, z up, azimuth
+    clockwise seen from above; the origin is on the axis.
+    """
+
+    stamps_past_hour = False
+    size = SIZE
+    sample_sizes = frozenset({SIZE, IMU_SIZE})
+
+    def __init__(self, of: PacketSensor, model: RoboSenseModel) -> None:
+        """Prepare.
+
+        Raises:
+            ConfigError: If the angles of its lasers are nowhere.
+        """
+        self._of, self._report = of, of.report
+        self._model = model
+        self._device = _device(of.head, model) or _device(of.beside, model)
+        self._dual = False
+        self._use_angles()
+        rows = np.flatnonzero(of.head.length == SIZE)
+        self._see(of.head.payloads(rows, SIZE))
+
+    @property
+    def packet_s(self) -> float:
+        """Usual time from one data packet to the next [s]."""
+        return packet_s(self._layout, dual=self._returns_two)
+
+    def sound(self, payloads: Payloads) -> NDArray[np.bool_]:
+        """Data packets; device packets among them are read and are no fault."""
+        device = is_device(payloads)
+        if device.any():
+            self._learn(payloads[device])
+        sound = np.zeros(len(payloads), np.bool_)
+        sound[~device] = sound_packets(payloads[~device], self._model, self._report)
+        self._see(payloads[sound][:1])
+        return sound
+
+    def stamps_ns(self, payloads: Payloads) -> Times:
+        """Seconds and µs, or ns, or a date of the packets."""
+        return stamps(payloads, self._model)[0]
+
+    def azimuth_cdeg(self, payloads: Payloads) -> NDArray[np.int64]:
+        """Of the first block of each packet."""
+        return azimuths_cdeg(payloads, self._model)[:, 0]
+
+    def decode(self, t_ns: Times, payloads: Payloads) -> Shots:
+        """Points in firing order."""
+        variant = variants_of(payloads, self._model)
+        if self._layout is not self._model:
+            payloads, variant = split_blocks(payloads, self._model), np.ones_like(variant)
+        columns = spinning_points(t_ns, payloads, variant, tables=self._tables, report=self._report)
+        return Shots(self._of.row, *columns)
+
+    def likely_models(self, usual_s: float) -> tuple[str, ...]:
+        """Of models with the same layout, those whose packets come at this interval."""
+        alike = [model for model in MODELS.values() if _same_bytes(model, self._model)]
+        return tuple(m.name for m in alike if _fits(m, usual_s, dual=self._returns_two))
+
+    def samples(self, datagrams: Datagrams, clock: SensorClock) -> PacketSamples | None:
+        """Angles from device packets; samples of the inertial unit of an Airy."""
+        whole = np.flatnonzero(datagrams.length == SIZE)
+        if len(whole):
+            self._learn(datagrams.payloads(whole, SIZE))
+        rows = np.flatnonzero(datagrams.length == IMU_SIZE)
+        payloads = datagrams.payloads(rows, IMU_SIZE)
+        imu = imu_samples(payloads, datagrams.t_ns[rows], clock=clock, report=self._report)
+        return PacketSamples(imu=imu) if imu is not None else None
+
+    @property
+    def _returns_two(self) -> bool:
+        return self._dual or self._layout is not self._model
+
+    def _see(self, payloads: Payloads) -> None:
+        """Note whether packets have two returns."""
+        of_model = payloads[has_id(payloads, self._model)]
+        if len(of_model):
+            self._dual = bool(np.median(variants_of(of_model, self._model)) != SINGLE)
+
+    def _learn(self, payloads: Payloads) -> None:
+        """Read device packets: the first one with angles counts."""
+        if self._device is None:
+            self._device = device_data(payloads, _room(self._model))
+            if self._device is not None:
+                self._use_angles()
+
+    def _use_angles(self) -> None:
+        halves = self._model.lasers == 16 and self._device is not None and self._device.dual
+        self._layout = HELIOS_16P_DUAL if halves else self._model
+        angles = laser_angles(self._model, self._device, self._of.companions)
+        name = self._of.sensor.name
+        self._report.derive(f"{name}: angles of its lasers from {angles.source}")
+        if not angles.measured:
+            self._report.warn(
+                f"{name}: the angles of its lasers are those of another {self._model.name}, some "
+                "0.1° off, until a device packet (DIFOP) comes: record its port 7788 too"
+            )
+        self._tables = spinning_tables(self._layout, angles, self._of.settings)
+
+
+class SolidFormat:
+    """The packets of one M1 or E1; x forward, y left, z up."""
+
+    stamps_past_hour = False
+    sample_sizes: frozenset[int] = frozenset()
+
+    def __init__(self, of: PacketSensor, model: SolidModel) -> None:
+        """Prepare."""
+        self._of, self._model = of, model
+        self.size, self.packet_s = model.size, model.packet_s
+
+    def sound(self, payloads: Payloads) -> NDArray[np.bool_]:
+        """Which payloads are data packets of this sensor, (N,)."""
+        return sound_solid(payloads, self._of.report)
+
+    def stamps_ns(self, payloads: Payloads) -> Times:
+        """Time of each packet [ns], (N,)."""
+        return solid_stamps(payloads)[0]
+
+    def azimuth_cdeg(self, payloads: Payloads) -> None:
+        """None: it does not spin."""
+
+    def decode(self, t_ns: Times, payloads: Payloads) -> Shots:
+        """Points in firing order."""
+        return decode_solid(t_ns, payloads, self._model, of=self._of)
+
+    def likely_models(self, usual_s: float) -> tuple[str, ...]:
+        """The size of the packets tells the model."""
+        del usual_s
+        return ()
+
+    def samples(self, datagrams: Datagrams, clock: SensorClock) -> None:
+        """None: there are no other packets."""
+
+
+class RoboSenseFamily:
+    """RoboSense LiDARs with the protocols MSOP and DIFOP."""
+
+    name = NAME
+    messages: Mapping[str, MessagePackets] = MESSAGES
+
+    def describes(self, companion: Companion) -> bool:
+        """A table of the angles of the lasers of a model."""
+        return any(fitting_table(companion, model) is not None for model in MODELS.values())
+
+    def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+        """What the datagrams of one sender to one port are; None = not of this family."""
+        del companions
+        for solid in SOLID_MODELS.values():
+            payloads = _of_size(head, solid.size)
+            if 2 * int(sound_solid(payloads, ImportReport()).sum()) > len(head):
+                return Recognized(
+                    family=NAME,
+                    kind="data",
+                    model=solid.name,
+                    packet_s=solid.packet_s,
+                    size=solid.size,
+                )
+        payloads = _of_size(head, SIZE)
+        device = is_device(payloads)
+        data = payloads[~device]
+        if 2 * len(data) > len(head) and (found := _recognized_data(head, data)) is not None:
+            return found
+        others = int(device.sum()) + int(is_imu(_of_size(head, IMU_SIZE)).sum())
+        return Recognized(family=NAME, kind="samples") if 2 * others > len(head) else None
+
+    def open(self, sensor: PacketSensor) -> PacketFormat:
+        """The packets of one sensor.
+
+        Raises:
+            ConfigError: If its model is not decoded, or the angles of its lasers are nowhere.
+        """
+        name = sensor.sensor.model
+        if name in SOLID_MODELS:
+            return SolidFormat(sensor, SOLID_MODELS[name])
+        if name in MODELS:
+            return SpinningFormat(sensor, MODELS[name])
+        known = ", ".join([*MODELS, *SOLID_MODELS])
+        raise ConfigError(f"no packet decoder for RoboSense model {name!r}; decoded: {known}")
+
+
+ROBOSENSE = RoboSenseFamily()
+
+
+def _of_size(head: Datagrams, size: int) -> Payloads:
+    return head.payloads(np.flatnonzero(head.length == size), size)
+
+
+def _room(model: RoboSenseModel) -> int:
+    """Lasers that the device packets of a model have room for."""
+    return max(32, model.lasers)
+
+
+def _device(datagrams: Datagrams, model: RoboSenseModel) -> DeviceData | None:
+    return device_data(_of_size(datagrams, SIZE), _room(model))
+
+
+def _same_bytes(one: RoboSenseModel, other: RoboSenseModel) -> bool:
+    return (one.layout, one.data_id, one.flag) == (other.layout, other.data_id, other.flag)
+
+
+def _fits(model: RoboSenseModel, usual_s: float, *, dual: bool) -> bool:
+    return abs(usual_s / packet_s(model, dual=dual) - 1) < 0.03
+
+
+def _recognized_data(head: Datagrams, payloads: Payloads) -> Recognized | None:
+    for model in MODELS.values():
+        sound = sound_packets(payloads, model, ImportReport())
+        if 2 * int(sound.sum()) <= len(payloads):
+            continue
+        packets = payloads[sound]
+        dual = bool(np.median(variants_of(packets, model)) != SINGLE)
+        found = Recognized(
+            family=NAME,
+            kind="data",
+            model=model.name,
+            mode="dual" if dual else "",
+            packet_s=packet_s(model, dual=dual),
+            size=SIZE,
+        )
+        return _refined(found, head, packets)
+    return None
+
+
+def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognized:
+    """The model among those with the same bytes."""
+    kinds = packets[:, TYPE_AT : TYPE_AT + 2]
+    kind = tuple(np.median(kinds, axis=0).astype(int).tolist())
+    if found.model == "Bpearl":
+        return replace(found, model="Bpearl V4") if kind == _BPEARL_V4 else found
+    if found.model == "Airy" and kind[1] not in (AIRY_VARIANT, _AIRY_UNKNOWN):
+        reason = f"an Airy of variant {kind[1]} (48 or 192 lines), whose packets are not decoded"
+        return replace(found, kind="other", remarks=(reason,))
+    if found.model != "Helios 32":
+        return found
+    device = _device(head, MODELS["Helios 32"])
+    steps = np.diff(np.unique(stamps(packets, MODELS["Helios 32"])[0]))
+    usual_s = float(np.median(steps)) / SECOND_NS if len(steps) > 4 else float("nan")
+    lasers = 32 if device is None else len(device.angles_cdeg)
+    if lasers == 16 or _fits(MODELS["Helios 16P"], usual_s, dual=False):
+        return replace(found, model="Helios 16P", packet_s=usual_s)
+    low = device is None or float(device.angles_cdeg[:, 0].min()) < _LOW_CDEG
+    return replace(found, model="Helios 5515" if low else "Helios 32")
