@@ -62,13 +62,15 @@ class CarriedMotion:
         return np.asarray(unobserved[frame_ids[1:] + 1] == unobserved[frame_ids[:-1] + 1])
 
 
-def load_carried_motion(odometry: Path) -> CarriedMotion:
-    """Read it from the artifact of the stage ``odometry``.
+def load_carried_motion(odometry: Path) -> CarriedMotion | None:
+    """Read it from the artifact of the stage ``odometry``; None if its version did not state it.
 
     Raises:
         StoreError: If a file is missing or damaged.
     """
-    steps = load_arrays(odometry / "steps.npz", _COLUMNS)
+    steps = load_arrays(odometry / "steps.npz")
+    if not steps.keys() >= set(_COLUMNS):
+        return None
     along = np.nan_to_num(steps["weak_direction"]) * steps["weak_motion_sd_m"][:, None]
     new_piece = np.diff(steps["piece"], prepend=steps["piece"][:1]) != 0
     tracked = steps["converged"] & ~steps["lost"] & ~steps["bridged"] & ~new_piece
