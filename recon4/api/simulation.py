@@ -17,7 +17,7 @@ def simulate(
     seed: int = 1,
     rig: str | PathLike[str] = "4recon",
 ) -> Sources:
-    """Simulate a walk of a person with a backpack of VLP-16s and an IMU.
+    """Simulate a walk of a person with a backpack of LiDARs and an IMU.
 
     Args:
         world: ``office``, ``staircase``, ``street``, ``field``, ``corridor:7``, …; all are in
@@ -48,10 +48,10 @@ def simulate(
     folder = Path(out)
     setup = prepare(world, seconds=seconds, seed=seed, rig=load_rig(rig))
     run(setup, folder, bag=False, progress=Silent())
-    gnss = folder / "gnss.csv"
+    imu, gnss = folder / "imu.csv", folder / "gnss.csv"
     return Sources.of(
         folder / "recording.pcap",
         rig=folder / "rig.toml",
-        imu=folder / "imu.csv",
+        imu=imu if imu.exists() else None,
         gnss=gnss if gnss.exists() else None,
     )

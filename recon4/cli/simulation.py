@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from functools import partial
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from recon4.cli.terminal import write
 
+if TYPE_CHECKING:
+    from recon4.model.rig import Rig
+
 simulation = typer.Typer()
 
 
 @simulation.command()
-def simulate(
+def simulate(  # noqa: PLR0913 - options of a command
     world: Annotated[str, typer.Argument(help="As office or corridor:7; docs: page simulation.")],
     out: Annotated[Path, typer.Argument(help="New folder for the recording and its truth.")],
     *,
@@ -23,11 +26,23 @@ def simulate(
         typer.Option(help="Length of the walk in seconds; default: 60, or that of the figure."),
     ] = None,
     seed: Annotated[int, typer.Option(help="Draws the walk and the noise.")] = 1,
-    rig: Annotated[str, typer.Option(help="Rig preset or .toml file.")] = "4recon",
+    rig: Annotated[
+        str, typer.Option(help="Rig preset or .toml file; default: 4recon, with two VLP-16.")
+    ] = "",
+    lidar: Annotated[
+        list[str] | None,
+        typer.Option(
+            metavar="MODEL",
+            help="In place of a rig: one or two LiDARs of any make, as Mid-360; repeatable. The "
+            "first one is level, the second one upright. All are on the page simulation.",
+        ),
+    ] = None,
     figure: Annotated[
         str, typer.Option(help="Rigs with a profiler, in the hall: eight, rectangle or circle.")
     ] = "",
-    bag: Annotated[bool, typer.Option(help="Also write a rosbag2.")] = True,
+    bag: Annotated[
+        bool | None, typer.Option(help="Also write a rosbag2; default: if all are Velodynes.")
+    ] = None,
     degrade: Annotated[
         list[str] | None,
         typer.Option(
@@ -38,28 +53,64 @@ def simulate(
     ] = None,
 ) -> None:
     """Simulate a walk: packets, IMU, GNSS, and the truth they can be judged by."""
-    from recon4.cli.terminal import watcher
+    if rig and lidar:
+        raise typer.BadParameter("give --rig or --lidar, not both")
+    given = _Given(world, out, seconds, seed, figure, bag, tuple(degrade or ()))
+    _simulate(given, _rig(rig, lidar))
+
+
+@dataclass(frozen=True, slots=True)
+class _Given:
+    """What the command was called with, but the rig."""
+
+    world: str
+    out: Path
+    seconds: float | None
+    seed: int
+    figure: str
+    bag: bool | None
+    degrade: tuple[str, ...]
+
+
+def _rig(name: str, lidars: list[str] | None) -> Rig:
     from recon4.model.rig import load_rig
+    from recon4.simulation.setup import rig_of_lidars
+
+    return rig_of_lidars(lidars) if lidars else load_rig(name or "4recon")
+
+
+def _simulate(given: _Given, mounted: Rig) -> None:
+    from recon4.cli.terminal import watcher
     from recon4.simulation.backpack import prepare_backpack, simulate_backpack
     from recon4.simulation.crowd import Crowd
     from recon4.simulation.degradation import parse_degradations
     from recon4.simulation.setup import models_with, prepare
     from recon4.simulation.simulate import simulate as run
 
-    degradations, mounted = parse_degradations(degrade or []), load_rig(rig)
+    degradations = parse_degradations(given.degrade)
     profiler = mounted.row_of("profiler") is not None
-    if figure and not profiler:
+    if given.figure and not profiler:
         raise typer.BadParameter("--figure is for rigs with a profiler, as --rig wuerzburg")
     crowd = Crowd.of(degradations)
     with watcher() as progress:
         if profiler:
-            prepared = partial(prepare_backpack, world, figure=figure, rig=mounted)
-            walk = prepared(seconds=seconds or 0.0, seed=seed, people=crowd.people)
-            simulate_backpack(walk, out, degradations=degradations, progress=progress)
-        else:
-            models = models_with(degradations)
-            setup = prepare(
-                world, seconds=seconds or 60.0, seed=seed, rig=mounted, models=models, crowd=crowd
+            walk = prepare_backpack(
+                given.world,
+                figure=given.figure,
+                seconds=given.seconds or 0.0,
+                seed=given.seed,
+                rig=mounted,
+                people=crowd.people,
             )
-            run(setup, out, bag=bag, degradations=degradations, progress=progress)
-    write(f"{out}")
+            simulate_backpack(walk, given.out, degradations=degradations, progress=progress)
+        else:
+            setup = prepare(
+                given.world,
+                seconds=given.seconds or 60.0,
+                seed=given.seed,
+                rig=mounted,
+                models=models_with(degradations),
+                crowd=crowd,
+            )
+            run(setup, given.out, bag=given.bag, degradations=degradations, progress=progress)
+    write(f"{given.out}")

@@ -20,7 +20,7 @@ def carrier_range(
     """Range at which each shot hits the carrier, an upright cylinder in the body.
 
     Args:
-        shot: Azimuth clockwise, elevation [rad], then what is not used, (N, 5).
+        shot: Azimuth clockwise, elevation [rad], then what is not used, (N, 7).
         mount_R: ``R_body_sensor``, (3, 3).
         mount_t: Sensor in the body [m], outside of the cylinder, (3,).
         carrier: x, y of the axis, radius, bottom, top [m], (5,).

@@ -54,8 +54,8 @@ def make_rays(
         state: x, y, z [m], roll, pitch, yaw [rad] of the body at the time of each shot, (N, 6).
         mount_R: ``R_body_sensor``, (3, 3).
         mount_t: Sensor in the body [m], (3,).
-        shot: Azimuth, elevation [rad], height of the beam's origin [m], and azimuth and elevation
-            of the second ray relative to the first [rad], (N, 5).
+        shot: Azimuth, elevation [rad], height of the beam's origin [m], azimuth and elevation of
+            the second ray relative to the first [rad], x and y of the origin [m], (N, 7).
         rays: (2 N, 6) float32, filled: first the N central rays, then the N second ones.
     """
     n = len(state)
@@ -66,10 +66,10 @@ def make_rays(
         r00, r01, r02 = cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr
         r10, r11, r12 = sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr
         r20, r21, r22 = -sp, cp * sr, cp * cr
-        z = shot[i, 2]
-        bx = mount_t[0] + mount_R[0, 2] * z
-        by = mount_t[1] + mount_R[1, 2] * z
-        bz = mount_t[2] + mount_R[2, 2] * z
+        x, y, z = shot[i, 5], shot[i, 6], shot[i, 2]
+        bx = mount_t[0] + mount_R[0, 2] * z + mount_R[0, 0] * x + mount_R[0, 1] * y
+        by = mount_t[1] + mount_R[1, 2] * z + mount_R[1, 0] * x + mount_R[1, 1] * y
+        bz = mount_t[2] + mount_R[2, 2] * z + mount_R[2, 0] * x + mount_R[2, 1] * y
         ox = state[i, 0] + r00 * bx + r01 * by + r02 * bz
         oy = state[i, 1] + r10 * bx + r11 * by + r12 * bz
         oz = state[i, 2] + r20 * bx + r21 * by + r22 * bz
@@ -99,7 +99,7 @@ def hits_carrier(
     """Mark shots that hit the carrier: an upright cylinder in the body.
 
     Args:
-        shot: As in `make_rays`, (N, 5).
+        shot: As in `make_rays`, (N, 7).
         mount_R: ``R_body_sensor``, (3, 3).
         mount_t: Sensor in the body [m], (3,).
         carrier: x, y of the axis, radius, bottom, top [m], (5,).
@@ -135,7 +135,7 @@ def measure(
     gain: NDArray[np.float64],
     noise: NDArray[np.float32],
     rules: NDArray[np.float64],
-    distance: NDArray[np.uint16],
+    distance: NDArray[np.uint32],
     intensity: NDArray[np.uint8],
     truth: NDArray[np.uint8],
 ) -> None:
@@ -151,8 +151,9 @@ def measure(
         gain: Of the beam of each shot, (N,).
         noise: Standard normal for range and intensity, uniform for mixing and for losses, (N, 4).
         rules: sigma [m], shortest and longest range [m], weakest signal, longest mixed step [m],
-            random loss, intensity noise relative and absolute, glass, resolution [m], (10,).
-        distance: (N,) uint16, filled: in units of the resolution, 0 = no return.
+            random loss, intensity noise relative and absolute, glass, resolution [m], what is added
+            to the range [m], (11,).
+        distance: (N,) uint32, filled: in units of the resolution, 0 = no return.
         intensity: (N,) uint8, filled.
         truth: (N,) uint8, filled: hundred times the true reflectivity, 0 = no return.
     """
@@ -177,13 +178,13 @@ def measure(
         if abs(gap) < rules[4]:
             r += (0.5 * noise[i, 2]) * gap
         measured = r + rules[0] * noise[i, 0]
-        units = round(measured / rules[9])
-        if measured < rules[1] or measured > rules[2] or units <= 0 or units > 65535:
+        units = round((measured + rules[10]) / rules[9])
+        if measured < rules[1] or measured > rules[2] or units <= 0:
             continue
         near = 1.0 - math.exp(-r / 0.8)
         far = math.exp(-r / 60.0)
         expected = 100.0 * rho * gain[i] * near * far * (0.25 + 0.75 * cosine)
         value = expected * (1.0 + rules[6] * noise[i, 1]) + rules[7] * noise[i, 1]
-        distance[i] = np.uint16(units)
+        distance[i] = np.uint32(units)
         intensity[i] = np.uint8(min(max(round(value), 0.0), 255.0))
         truth[i] = np.uint8(min(max(round(100.0 * rho), 1.0), 255.0))

@@ -165,7 +165,7 @@ def simulate_backpack(
     wrong = sorted(NOT_PROFILER & set(values))
     if wrong:
         raise ConfigError(f"{wrong[0]}: not possible on a rig with a profiler")
-    degradation = Degradation.drawn(values, sensors=len(setup.rig.sensors), seed=setup.seed)
+    degradation = Degradation.drawn(values, lasers=[1] * len(setup.rig.sensors), seed=setup.seed)
     if out.exists() and (not out.is_dir() or any(out.iterdir())):
         raise StoreError(f"{out} exists already; give a new folder")
     if out.exists():

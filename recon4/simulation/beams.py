@@ -64,9 +64,9 @@ def shoot(
     """
     count, direction = len(shots.t_s), shots.direction
     half = 0.5 * model.divergence_rad
-    shot = np.zeros((count, 5))
+    shot = np.zeros((count, 7))
     shot[:, 0], shot[:, 1] = -direction[:, 0], direction[:, 1]
-    shot[:, 3:] = rng.uniform(-half, half, (count, 2))
+    shot[:, 3:5] = rng.uniform(-half, half, (count, 2))
     R, t = shots.T_body_sensor.R, shots.T_body_sensor.t
     rays = np.empty((2 * count, 6), dtype=np.float32)
     make_rays(walk.state(shots.t_s), R, t, shot, rays)

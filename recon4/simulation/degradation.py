@@ -19,7 +19,8 @@ from recon4.model.rig import Rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.simulation.imu import ImuModel
-from recon4.simulation.lidar import LASERS, RESOLUTION_M, Firings
+from recon4.simulation.lidar import Firings
+from recon4.simulation.patterns import FiringPattern
 
 _BURST_PACKETS = 6
 """Packets are lost in runs of this length on average."""
@@ -56,7 +57,7 @@ KINDS: Mapping[str, DegradationKind] = {
     "no-imu": DegradationKind(_SWITCH, 1, "", "no IMU was recorded"),
     "no-gnss": DegradationKind(_SWITCH, 1, "", "no GNSS was recorded"),
     "lever-arm": DegradationKind(0.15, 10, "m", "the antenna is not where the rig file says"),
-    "dead-beams": DegradationKind(6, LASERS, "", "number of lasers that return nothing"),
+    "dead-beams": DegradationKind(6, 128, "", "number of lasers that return nothing"),
     "beam-bias": DegradationKind(0.03, 1, "m", "standard deviation of a range bias of each laser"),
     "beam-angle": DegradationKind(
         0.03, 1, "°", "standard deviation of the elevation and azimuth of each laser"
@@ -83,6 +84,8 @@ PEOPLE = "people"
 """It changes the rays, see `recon4.simulation.companions`."""
 VEHICLES = "vehicles"
 """Likewise, see `recon4.simulation.vehicles`."""
+WRONG_MODEL = "wrong-model"
+"""The two models must send the same packets."""
 BEAM_ANGLE = "beam-angle"
 """See `recon4.simulation.lidar.LidarModel.beam_angle_sd_rad`."""
 UPSIDE_DOWN = "laser2d-mirrored"
@@ -144,15 +147,20 @@ class Degradation:
     """Unit vector of the rotation of the IMU, in the body, (3,)."""
     direction_antenna: Array
     """Unit vector of the shift of the antenna, in the body, (3,)."""
-    dead: NDArray[np.int64]
-    """Lasers that return nothing, in the order of firing, (sensors, K)."""
-    range_bias_m: Array
-    """Range bias of each laser in the order of firing [m], (sensors, 16)."""
+    dead: Sequence[NDArray[np.int64]]
+    """Lasers of each sensor that return nothing, in the order of firing, (K,) each."""
+    range_bias_m: Sequence[Array]
+    """Range bias of each laser of each sensor in the order of firing [m], (L,) each."""
     seed: int
 
     @staticmethod
-    def drawn(values: Mapping[str, float], *, sensors: int, seed: int) -> Degradation:
+    def drawn(values: Mapping[str, float], *, lasers: Sequence[int], seed: int) -> Degradation:
         """Draw what is random in some degradations.
+
+        Args:
+            values: By name.
+            lasers: Number of lasers of each sensor.
+            seed: Of the recording.
 
         Raises:
             ConfigError: If a name or a value is not allowed.
@@ -162,8 +170,11 @@ class Degradation:
         axes = rng.standard_normal((3, 3))
         axes /= np.linalg.norm(axes, axis=1, keepdims=True)
         count = int(values.get("dead-beams", 0))
-        dead = np.stack([np.sort(rng.permutation(LASERS)[:count]) for _ in range(sensors)])
-        bias = values.get("beam-bias", 0.0) * rng.standard_normal((sensors, LASERS))
+        if count > min(lasers):
+            raise ConfigError(f"dead-beams: at most {min(lasers)} of a LiDAR here, got {count}")
+        dead = [np.sort(rng.permutation(number)[:count]) for number in lasers]
+        sd_m = values.get("beam-bias", 0.0)
+        bias = [sd_m * rng.standard_normal(number) for number in lasers]
         return Degradation(dict(values), axes[0], axes[1], axes[2], dead, bias, seed)
 
     def nominal_rig(self, true: Rig) -> Rig:
@@ -172,7 +183,7 @@ class Degradation:
         last = sensors[-1]
         turned = _turned(last.T_body_sensor, self.axis_lidar, self._get("extrinsics"))
         shifted = SE3(turned.R, turned.t + self._get("mount-shift") * self.axis_lidar)
-        model = "HDL-32E" if "wrong-model" in self.values else last.model
+        model = "HDL-32E" if WRONG_MODEL in self.values else last.model
         sensors[-1] = replace(last, T_body_sensor=shifted, model=model)
         if "swap-lidars" in self.values and len(sensors) > 1:
             first, second = (sensor.T_body_sensor for sensor in sensors[:2])
@@ -185,7 +196,8 @@ class Degradation:
     def imu_model(self, model: ImuModel) -> ImuModel:
         """Errors of the IMU that was really mounted."""
         grade = self.values.get("imu-grade", 1.0)
-        return ImuModel(**{f.name: grade * getattr(model, f.name) for f in fields(model)})
+        errors = [f.name for f in fields(model) if f.name != "rate_hz"]
+        return replace(model, **{name: grade * getattr(model, name) for name in errors})
 
     def imu(self, samples: ImuSamples) -> ImuSamples:
         """Samples as they are written."""
@@ -208,7 +220,9 @@ class Degradation:
         """Times since the start of the walk by the clock of a LiDAR [ns], (N,)."""
         return self._stamps("lidar", t_ns, 0) if row == sensors - 1 else t_ns
 
-    def degrade_firings(self, firings: Firings, row: int, second: int) -> Firings:
+    def degrade_firings(
+        self, firings: Firings, row: int, second: int, *, pattern: FiringPattern
+    ) -> Firings:
         """What is recorded of the firings of one sensor in one second."""
         distance, truth = firings.distance.copy(), firings.reflectivity.copy()
         distance[..., self.dead[row]] = 0
@@ -216,13 +230,14 @@ class Degradation:
         if "beam-bias" in self.values:
             # Rounded at random, so that the mean is the bias and not a multiple of the resolution.
             rng = np.random.default_rng([self.seed, 9, row, second])
-            units = self.range_bias_m[row] / RESOLUTION_M + rng.uniform(-0.5, 0.5, distance.shape)
-            distance = np.where(distance > 0, np.clip(np.rint(distance + units), 1, 65535), 0)
+            units = self.range_bias_m[row] / pattern.unit_m + rng.uniform(-0.5, 0.5, distance.shape)
+            biased = np.clip(np.rint(distance + units), 1, pattern.most_units)
+            distance = np.where(distance > 0, biased, 0)
         kept = self._kept(len(distance), row, second) & self.recorded(firings.t_ns[:, 0, 0])
         return Firings(
             firings.t_ns[kept],
-            firings.azimuth_rad[kept],
-            distance[kept].astype(np.uint16),
+            firings.turn_rad[kept],
+            distance[kept].astype(np.uint32),
             firings.intensity[kept],
             truth[kept],
         )
@@ -249,8 +264,8 @@ class Degradation:
             "mount-shift": {"direction_body": self.axis_lidar.tolist()},
             "imu-rotation": {"axis_body": self.axis_imu.tolist()},
             "lever-arm": {"direction_body": self.direction_antenna.tolist()},
-            "dead-beams": {"lasers_by_sensor": self.dead.tolist()},
-            "beam-bias": {"bias_m_by_sensor": self.range_bias_m.tolist()},
+            "dead-beams": {"lasers_by_sensor": [one.tolist() for one in self.dead]},
+            "beam-bias": {"bias_m_by_sensor": [one.tolist() for one in self.range_bias_m]},
         }
         return drawn.get(name, {})
 

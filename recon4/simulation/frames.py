@@ -15,8 +15,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Progress, Silent
 from recon4.recording.formats.poses import write_tum
-from recon4.recording.packets.velodyne.models import MODELS
-from recon4.simulation.lidar import Firings
+from recon4.simulation.lidar import Firings, Lidar
 from recon4.simulation.setup import SimulationSetup, gnss_samples, imu_samples
 from recon4.simulation.truth import true_trajectory
 from recon4.store.frames import FrameWriter
@@ -71,35 +70,22 @@ def _chunks(setup: SimulationSetup) -> Iterator[list[Multiframe]]:
             rng = setup.rng(3, row, first)
             shots = lidar.fire(range(fired[row], until), setup.walk, setup.surroundings, rng=rng)
             fired[row] = until
-            waiting[row] = _joined(waiting[row], _points(shots, row))
+            waiting[row] = _joined(waiting[row], _points(lidar, shots, row))
         yield [_frame(k, waiting, setup.epoch_ns) for k in range(first, last)]
         for row, columns in enumerate(waiting):
             late = columns["t_ns"] >= last * FRAME_NS
             waiting[row] = {name: column[late] for name, column in columns.items()}
 
 
-def _points(shots: Firings, row: int) -> Columns:
+def _points(lidar: Lidar, shots: Firings, row: int) -> Columns:
     """Returns of one sensor in its own frame, in firing order."""
-    tables = MODELS["VLP-16"]
     hit = shots.distance > 0
-    shape = shots.distance.shape
-    elevation = np.broadcast_to(tables.elevation_rad, shape)[hit]
-    height = np.broadcast_to(tables.height_m, shape)[hit]
-    range_m, azimuth = tables.distance_unit_m * shots.distance[hit], shots.azimuth_rad[hit]
-    flat = range_m * np.cos(elevation)
-    xyz = np.stack(
-        [
-            flat * np.cos(azimuth),
-            -flat * np.sin(azimuth),
-            range_m * np.sin(elevation) + height,
-        ],
-        axis=1,
-    )
+    xyz = lidar.points(shots)[hit]
     return {
         "t_ns": shots.t_ns[hit],
         "xyz": xyz.astype(np.float32),
         "intensity": shots.intensity[hit].astype(np.uint16),
-        "ring": np.broadcast_to(tables.ring, shape)[hit],
+        "ring": np.broadcast_to(lidar.pattern.ring, hit.shape)[hit],
         "sensor": np.full(len(xyz), row, dtype=np.uint8),
         "echo": np.zeros(len(xyz), dtype=np.uint8),
     }

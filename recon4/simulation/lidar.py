@@ -1,8 +1,8 @@
-"""A Velodyne VLP-16 on a walking body: time, direction and measurement of each shot."""
+"""A LiDAR on a walking body: time, direction and measurement of each shot."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -12,34 +12,27 @@ from recon4.geometry.mesh import GLASS, WorldMesh
 from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
-from recon4.recording.packets.velodyne.models import BLOCKS, MODELS
 from recon4.simulation.companions import REFLECTIVITY as OF_PEOPLE
 from recon4.simulation.companions import Companions
 from recon4.simulation.mirrors import follow
+from recon4.simulation.patterns import Directions, FiringPattern
 from recon4.simulation.rides import CarScene, ElevatorCar
 from recon4.simulation.vehicles import REFLECTIVITY as OF_VEHICLES
 from recon4.simulation.vehicles import Vehicles
 from recon4.simulation.walk import Walk
 
-_VLP16 = MODELS["VLP-16"]
-LASER_NS = round(1e9 * _VLP16.laser_time_s[1])
-"""From one laser of a firing sequence to the next [ns]."""
-SEQUENCE_NS = round(1e9 * _VLP16.sequence_s)
-"""From one firing sequence to the next [ns]."""
-SEQUENCES = BLOCKS * _VLP16.sequences_per_block
-"""Firing sequences in a packet."""
-PACKET_NS = SEQUENCES * SEQUENCE_NS
-LASERS = _VLP16.lasers
-RESOLUTION_M = _VLP16.distance_unit_m
+RESOLUTION_M = 0.002
+"""Of ranges of profilers and 2-D lasers, and of the LiDAR whose errors `LidarModel` has [m]."""
 CARRIER = np.array([0.24, 0.0, 0.21, -1.5, 0.12])
 """The person: x, y, radius, bottom and top of an upright cylinder in the body [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class LidarModel:
-    """Errors of a sensor; zeros make it perfect."""
+    """Errors of a sensor; zeros make it perfect. The values are those of a VLP-16."""
 
     range_sd_m: float = 0.015
     """Standard deviation of a range [m]."""
@@ -79,21 +72,34 @@ class LidarModel:
             carrier=False,
         )
 
+    def of(self, pattern: FiringPattern) -> LidarModel:
+        """The errors of another sensor: as the data sheets of both relate."""
+        own, other = lidar_model("VLP-16"), lidar_model(pattern.model)
+        reach = other.range_m / own.range_m
+        return replace(
+            self,
+            range_sd_m=self.range_sd_m * (other.accuracy_m / own.accuracy_m),
+            min_range_m=self.min_range_m * (other.min_range_m / own.min_range_m),
+            max_range_m=min(self.max_range_m * reach, pattern.unit_m * pattern.most_units),
+            weakest_signal=self.weakest_signal / reach**2,
+            divergence_rad=self.divergence_rad * (other.divergence_rad / own.divergence_rad),
+        )
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Firings:
-    """Some packets of one sensor before they are packed. P packets, 24 sequences, 16 lasers."""
+    """Some packets of one sensor before they are packed. P packets, S sequences, L lasers."""
 
     t_ns: Times
-    """Time of each shot since the start of the walk [ns], (P, 24, 16)."""
-    azimuth_rad: Array
-    """Azimuth of each shot by the encoder, clockwise seen from above, (P, 24, 16)."""
-    distance: NDArray[np.uint16]
-    """In units of 2 mm, 0 = no return, (P, 24, 16)."""
+    """Time of each shot since the start of the walk [ns], (P, S, L)."""
+    turn_rad: Array
+    """How far the motor has turned at each shot, not modulo 2π, (P, S, L)."""
+    distance: NDArray[np.uint32]
+    """In units of the pattern, 0 = no return, (P, S, L)."""
     intensity: NDArray[np.uint8]
-    """0..255, (P, 24, 16)."""
+    """0..255, (P, S, L)."""
     reflectivity: NDArray[np.uint8]
-    """Hundred times the true one, 0 = no return, (P, 24, 16)."""
+    """Hundred times the true one, 0 = no return, (P, S, L)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -101,56 +107,65 @@ class Lidar:
     """One sensor with its own clock phase, motor phase and beam gains."""
 
     sensor: Sensor
+    pattern: FiringPattern
     model: LidarModel
     first_packet_ns: int
     """Time of its first shot since the start of the walk [ns]."""
     azimuth_rad: float
-    """Azimuth at the start of the walk."""
+    """Of its motor at the start of the walk."""
     turn_rate_hz: float
-    """Near 10 Hz; two sensors are not phase locked."""
+    """Near that of the pattern; two sensors are not phase locked."""
     gain: Array
-    """Gain of each laser, (16,)."""
+    """Gain of each laser, (L,)."""
     beam_angle_error_rad: Array
     """By which the elevation (upwards) and azimuth (clockwise) of each laser differ from the data
-    sheet, (2, 16)."""
+    sheet, (2, L)."""
 
     @staticmethod
-    def drawn(sensor: Sensor, model: LidarModel, rng: np.random.Generator) -> Lidar:
-        """A sensor with phases and gains drawn at random."""
+    def drawn(
+        sensor: Sensor, pattern: FiringPattern, *, model: LidarModel, rng: np.random.Generator
+    ) -> Lidar:
+        """A sensor with phases and gains drawn at random; its errors are `LidarModel.of`."""
+        errors = model.of(pattern)
+        first_ns = int(rng.integers(0, pattern.packet_ns))
+        azimuth_rad = float(rng.uniform(0.0, 2.0 * np.pi))
+        rate_hz = pattern.turn_hz * float(1.0 + 5e-4 * rng.uniform(-1.0, 1.0))
+        if pattern.steps:  # packets begin at whole steps of the encoder
+            rate_hz = pattern.turn_hz
+            step = int(azimuth_rad / (2.0 * np.pi) * pattern.steps)
+            azimuth_rad = 2.0 * np.pi * (step / pattern.steps - rate_hz * 1e-9 * first_ns)
         return Lidar(
             sensor,
-            model,
-            int(rng.integers(0, PACKET_NS)),
-            float(rng.uniform(0.0, 2.0 * np.pi)),
-            10.0 * float(1.0 + 5e-4 * rng.uniform(-1.0, 1.0)),
-            1.0 + model.gain_spread * rng.uniform(-1.0, 1.0, LASERS),
-            model.beam_angle_sd_rad * rng.standard_normal((2, LASERS)),
+            pattern,
+            errors,
+            first_ns,
+            azimuth_rad,
+            rate_hz,
+            1.0 + errors.gain_spread * rng.uniform(-1.0, 1.0, pattern.lasers),
+            errors.beam_angle_sd_rad * rng.standard_normal((2, pattern.lasers)),
         )
 
     def packets_before(self, t_ns: int) -> int:
         """Number of packets complete at a time since the start of the walk [ns]."""
-        return max(0, (t_ns - self.first_packet_ns) // PACKET_NS)
+        return max(0, (t_ns - self.first_packet_ns) // self.pattern.packet_ns)
 
     def fire(
         self, packets: range, walk: Walk, surroundings: Surroundings, *, rng: np.random.Generator
     ) -> Firings:
         """Measure from a walking body, every shot from its own pose."""
-        t_ns = self.first_packet_ns + (
-            PACKET_NS * np.arange(packets.start, packets.stop, dtype=np.int64)[:, None, None]
-            + SEQUENCE_NS * np.arange(SEQUENCES)[:, None]
-            + LASER_NS * np.arange(LASERS)
+        pattern = self.pattern
+        t_ns = (
+            self.first_packet_ns
+            + pattern.packet_ns
+            * np.arange(packets.start, packets.stop, dtype=np.int64)[:, None, None]
+            + pattern.offset_ns
         )
         count = t_ns.size
         t_s = 1e-9 * t_ns.ravel()
-        shot = np.empty((count, 5))
-        stated = self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s
-        nominal_rad = np.stack([_VLP16.elevation_rad, np.zeros(LASERS)])
-        elevation, azimuth = nominal_rad + self.beam_angle_error_rad
-        shot[:, 0] = stated + np.tile(azimuth, count // LASERS)
-        shot[:, 1] = np.tile(elevation, count // LASERS)
-        shot[:, 2] = np.tile(_VLP16.height_m, count // LASERS)
+        turn = self._turn_rad(t_s)
+        shot, laser = self._shots(turn)
         half = 0.5 * self.model.divergence_rad
-        shot[:, 3:] = rng.uniform(-half, half, (count, 2))
+        shot[:, 3:5] = rng.uniform(-half, half, (count, 2))
         mount = self.sensor.T_body_sensor
         rays = np.empty((2 * count, 6), dtype=np.float32)
         make_rays(walk.state(t_s), mount.R, mount.t, shot, rays)
@@ -160,13 +175,50 @@ class Lidar:
         hits = surroundings.cast(rays, walk, np.tile(t_s, 2))
         found = measure_hits(
             RaysAndHits(rays, hits, blocked, hit_noise(count, rng)),
-            np.tile(self.gain, count // LASERS),
+            self.gain[laser],
             surroundings=surroundings,
             model=self.model,
+            unit=RangeUnit(pattern.unit_m, pattern.added_m),
         )
-        columns = (found.distance, found.intensity, found.reflectivity)
-        encoder = np.mod(stated, 2.0 * np.pi).reshape(t_ns.shape)
-        return Firings(t_ns, encoder, *(column.reshape(t_ns.shape) for column in columns))
+        return Firings(
+            t_ns,
+            turn.reshape(t_ns.shape),
+            found.distance.reshape(t_ns.shape),
+            found.intensity.reshape(t_ns.shape),
+            found.reflectivity.reshape(t_ns.shape),
+        )
+
+    def points(self, firings: Firings) -> Array:
+        """Where its shots ended by what the sensor states, in its own frame [m], (P, S, L, 3).
+
+        Angles are those of the data sheet; a shot without a return ends somewhere.
+        """
+        directions, _ = self._directions(firings.turn_rad.ravel())
+        azimuth, elevation = directions.azimuth_rad, directions.elevation_rad
+        range_m = self.pattern.unit_m * firings.distance.ravel() - self.pattern.added_m
+        flat = range_m * np.cos(elevation)
+        ends = [flat * np.cos(azimuth), -flat * np.sin(azimuth), range_m * np.sin(elevation)]
+        xyz = np.stack(ends, axis=1) + directions.origin_m
+        return xyz.reshape(*firings.distance.shape, 3)
+
+    def _turn_rad(self, t_s: NDArray[np.floating]) -> Array:
+        """How far the motor has turned at times since the start of the walk [s], (N,)."""
+        return np.asarray(self.azimuth_rad + 2.0 * np.pi * self.turn_rate_hz * t_s, np.float64)
+
+    def _directions(self, turn_rad: Array) -> tuple[Directions, NDArray[np.int64]]:
+        """Of shots in the order of firing, by the data sheet; the laser of each, (N,)."""
+        laser = np.arange(len(turn_rad)) % self.pattern.lasers
+        return self.pattern.motion.directions(turn_rad, laser), laser
+
+    def _shots(self, turn_rad: Array) -> tuple[Array, NDArray[np.int64]]:
+        """True directions for `make_rays`, without the second rays, (N, 7); laser of each, (N,)."""
+        directions, laser = self._directions(turn_rad)
+        elevation_error, azimuth_error = self.beam_angle_error_rad[:, laser]
+        shot = np.zeros((len(turn_rad), 7))
+        shot[:, 0] = directions.azimuth_rad + azimuth_error
+        shot[:, 1] = directions.elevation_rad + elevation_error
+        shot[:, [5, 6, 2]] = directions.origin_m
+        return shot, laser
 
 
 @dataclass(frozen=True, eq=False)
@@ -223,12 +275,22 @@ class RaysAndHits:
 class MeasuredHits:
     """What a sensor makes of hits."""
 
-    distance: NDArray[np.uint16]
-    """In units of 2 mm, 0 = no return, (N,)."""
+    distance: NDArray[np.uint32]
+    """In units of the range, 0 = no return, (N,)."""
     intensity: NDArray[np.uint8]
     """0..255, (N,)."""
     reflectivity: NDArray[np.uint8]
     """Hundred times the true one, 0 = no return, (N,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class RangeUnit:
+    """How a sensor states a range."""
+
+    unit_m: float = RESOLUTION_M
+    """Of a distance [m]."""
+    added_m: float = 0.0
+    """It states a range longer by this [m]."""
 
 
 def hit_noise(count: int, rng: np.random.Generator) -> NDArray[np.float32]:
@@ -240,7 +302,12 @@ def hit_noise(count: int, rng: np.random.Generator) -> NDArray[np.float32]:
 
 
 def measure_hits(
-    given: RaysAndHits, gain: Array, *, surroundings: Surroundings, model: LidarModel
+    given: RaysAndHits,
+    gain: Array,
+    *,
+    surroundings: Surroundings,
+    model: LidarModel,
+    unit: RangeUnit = RangeUnit(),
 ) -> MeasuredHits:
     """Measure hits with the errors of a model.
 
@@ -249,16 +316,17 @@ def measure_hits(
         gain: Of the laser of each shot, (N,).
         surroundings: What was hit.
         model: Errors.
+        unit: Of the distances.
     """
     count, hits = len(gain), given.hits
     found = MeasuredHits(
-        np.empty(count, np.uint16), np.empty(count, np.uint8), np.empty(count, np.uint8)
+        np.empty(count, np.uint32), np.empty(count, np.uint8), np.empty(count, np.uint8)
     )
     rules = np.array(
         [
             model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
             model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
-            GLASS, RESOLUTION_M,
+            GLASS, unit.unit_m, unit.added_m,
         ]
     )  # fmt: skip
     measure(

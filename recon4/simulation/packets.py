@@ -1,22 +1,22 @@
-"""Firings as Velodyne packets in a capture file, with what a receiver of time adds to them."""
+"""Firings as packets in a capture file, with what a receiver of time adds to them."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.velodyne.encode import (
-    PacketBlocks,
     PcapWriter,
     encode_position,
-    encode_vlp16,
     rmc_sentence,
 )
-from recon4.recording.packets.velodyne.models import BLOCKS, CHANNELS
 from recon4.simulation.degradation import Degradation
+from recon4.simulation.families.families import family_of
+from recon4.simulation.families.velodyne import VELODYNES
 from recon4.simulation.gnss import geodetic
 from recon4.simulation.lidar import Firings
 from recon4.simulation.setup import SimulationSetup
@@ -36,7 +36,9 @@ class Packets:
     t_arrival_ns: Times
     """When they reach the recorder [ns], (N,)."""
     payloads: NDArray[np.uint8]
-    """(N, 1206)."""
+    """(N, size)."""
+    port: int
+    """UDP port they go to."""
 
 
 def pack(
@@ -48,20 +50,29 @@ def pack(
     rng: np.random.Generator,
 ) -> Packets:
     """Data packets, which arrive a tenth of a millisecond after their last shot."""
-    sensor_epoch_ns = setup.epoch_ns - round(1e9 * setup.rig.sensors[row].time_offset_s)
+    lidar, sensor = setup.lidars[row], setup.rig.sensors[row]
+    sensor_epoch_ns = setup.epoch_ns - round(1e9 * sensor.time_offset_s)
     count = len(firings.t_ns)
-    azimuth = firings.azimuth_rad[:, ::2, 0]
-    t_ns = degradation.stamps(row, firings.t_ns[:, 0, 0], sensors=len(setup.lidars))
-    payloads = encode_vlp16(
-        (sensor_epoch_ns + t_ns) // 1000,
-        PacketBlocks(
-            np.rint(np.rad2deg(azimuth) * 100.0).astype(np.int64),
-            firings.distance.reshape(count, BLOCKS, CHANNELS),
-            firings.intensity.reshape(count, BLOCKS, CHANNELS),
-        ),
-    )
+    start_ns = firings.t_ns[:, 0, 0] - lidar.pattern.offset_ns[0, 0]
+    t_ns = degradation.stamps(row, start_ns, sensors=len(setup.lidars))
+    payloads = family_of(sensor.model).data_packets(lidar, firings, sensor_epoch_ns + t_ns)
+    last_ns = firings.t_ns.max(axis=(1, 2))
     delay = _LATENCY_NS + rng.integers(0, _JITTER_NS, count)
-    return Packets(row, sensor_epoch_ns + firings.t_ns[:, -1, -1] + delay, payloads)
+    return Packets(row, sensor_epoch_ns + last_ns + delay, payloads, sensor.port)
+
+
+def pack_imu(
+    samples: ImuSamples, row: int, setup: SimulationSetup, *, degradation: Degradation
+) -> Packets:
+    """Packets of the IMU in a LiDAR, which arrive a tenth of a millisecond after their sample."""
+    lidar, sensor = setup.lidars[row], setup.rig.sensors[row]
+    family = family_of(sensor.model)
+    built_in = family.imu(sensor.model)
+    assert built_in is not None
+    stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
+    stamped = replace(samples, t_ns=setup.epoch_ns + stamps)
+    payloads = family.imu_packets(lidar, stamped)
+    return Packets(row, samples.t_ns + _LATENCY_NS, payloads, built_in.port)
 
 
 def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup) -> None:
@@ -78,12 +89,12 @@ def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup
         part, rows = parts[owner[run[0]]], place[run]
         sensor = setup.rig.sensors[part.row]
         file.write(
-            part.t_arrival_ns[rows], part.payloads[rows], source=sensor.address, port=sensor.port
+            part.t_arrival_ns[rows], part.payloads[rows], source=sensor.address, port=part.port
         )
 
 
 def write_position_packets(file: PcapWriter, second: int, setup: SimulationSetup) -> None:
-    """Append the position packets of a whole second: time always, a position outdoors.
+    """Append the position packets of Velodynes, of a second: time always, a position outdoors.
 
     The position is that of a plain receiver, some meters off; RTK is in ``gnss.csv``.
     """
@@ -98,6 +109,8 @@ def write_position_packets(file: PcapWriter, second: int, setup: SimulationSetup
         valid=setup.world.outdoors,
     )
     for sensor in setup.rig.sensors:
+        if family_of(sensor.model) is not VELODYNES:
+            continue
         stamp_ns = t_ns + 30_000_000 - round(1e9 * sensor.time_offset_s)
         payload = encode_position(stamp_ns // 1000, sentence)
         arrival = np.array([stamp_ns + _LATENCY_NS], dtype=np.int64)

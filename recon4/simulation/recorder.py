@@ -16,13 +16,19 @@ from recon4.model.rig import Rig, format_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.packets.velodyne.encode import PcapWriter
-from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.bag import BagWriter, open_bag
 from recon4.simulation.csv_tables import write_gnss, write_imu, write_markers
 from recon4.simulation.degradation import Degradation
+from recon4.simulation.families.families import family_of
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.lidar import Firings
-from recon4.simulation.packets import pack, write_packets, write_position_packets
+from recon4.simulation.packets import (
+    Packets,
+    pack,
+    pack_imu,
+    write_packets,
+    write_position_packets,
+)
 from recon4.simulation.reflectivity import ReflectivityWriter
 from recon4.simulation.setup import SimulationSetup, gnss_samples
 from recon4.simulation.truth import true_trajectory
@@ -39,15 +45,19 @@ class WalkRecorder:
     ) -> None:
         self._folder, self._setup, self._degradation = folder, setup, degradation
         self._imu, self._gnss = _sense(setup, degradation), _receive(setup, degradation)
-        if self._imu is not None:
+        if self._imu is not None and setup.imu_row is None:
             write_imu(folder / "imu.csv", self._imu)
         if self._gnss is not None:
             write_gnss(folder / "gnss.csv", self._gnss)
         (folder / "rig.toml").write_text(format_rig(degradation.nominal_rig(setup.rig)), "utf-8")
+        for name, content in _companions(setup).items():
+            (folder / name).write_bytes(content)
         self._open = ExitStack()
         self._pcap = self._open.enter_context(PcapWriter(folder / "recording.pcap"))
         self._reflectivity = self._open.enter_context(
-            ReflectivityWriter(folder / "reflectivity.npz", len(setup.lidars))
+            ReflectivityWriter(
+                folder / "reflectivity.npz", [lidar.pattern.shape for lidar in setup.lidars]
+            )
         )
         self._bag: BagWriter | None = None
         if bag:
@@ -66,7 +76,9 @@ class WalkRecorder:
         setup, degradation = self._setup, self._degradation
         if degradation.values:
             firings_by_lidar = [
-                degradation.degrade_firings(firings, row, second_index)
+                degradation.degrade_firings(
+                    firings, row, second_index, pattern=setup.lidars[row].pattern
+                )
                 for row, firings in enumerate(firings_by_lidar)
             ]
         packets = [
@@ -75,7 +87,7 @@ class WalkRecorder:
         ]
         if degradation.recorded(np.array([second_index * _SECOND_NS]))[0]:
             write_position_packets(self._pcap, second_index, setup)
-        write_packets(self._pcap, packets, setup)
+        write_packets(self._pcap, [*packets, *self._imu_packets(second_index)], setup)
         for row, firings in enumerate(firings_by_lidar):
             self._reflectivity.append(row, firings.reflectivity)
         if self._bag is not None:
@@ -86,6 +98,14 @@ class WalkRecorder:
                 self._bag.imu(_during(self._imu, start_ns))
             if self._gnss is not None:
                 self._bag.gnss(_during(self._gnss, start_ns))
+
+    def _imu_packets(self, second_index: int) -> list[Packets]:
+        """Those of one second of the LiDAR whose IMU is that of the rig."""
+        setup = self._setup
+        if self._imu is None or setup.imu_row is None:
+            return []
+        samples = _during(self._imu, setup.epoch_ns + second_index * _SECOND_NS)
+        return [pack_imu(samples, setup.imu_row, setup, degradation=self._degradation)]
 
     def _write_truth(self) -> None:
         folder, setup = self._folder, self._setup
@@ -102,15 +122,24 @@ class WalkRecorder:
 
 def true_rig(setup: SimulationSetup, degradation: Degradation) -> Rig:
     """The rig that was simulated, with the errors of its beams as corrections."""
-    ring = MODELS["VLP-16"].ring
     sensors = []
     for lidar, range_bias_m in zip(setup.lidars, degradation.range_bias_m, strict=True):
+        ring = lidar.pattern.ring
         rows = np.zeros((3, len(ring)))
         elevation_rad, clockwise_rad = lidar.beam_angle_error_rad
         rows[:, ring] = [-range_bias_m, elevation_rad, -clockwise_rad]
         beams = BeamCorrections.of(rows) if rows.any() else None
         sensors.append(replace(lidar.sensor, beams=beams))
     return replace(setup.rig, sensors=tuple(sensors))
+
+
+def _companions(setup: SimulationSetup) -> dict[str, bytes]:
+    """What the makers deliver with the sensors, named by the sensor."""
+    return {
+        f"{lidar.sensor.name}_{name}": content
+        for lidar in setup.lidars
+        for name, content in family_of(lidar.sensor.model).companions(lidar).items()
+    }
 
 
 def _sense(setup: SimulationSetup, degradation: Degradation) -> ImuSamples | None:
@@ -150,6 +179,7 @@ def _parameters(setup: SimulationSetup) -> dict[str, object]:
         "lidars": [
             {
                 "sensor": lidar.sensor.name,
+                "model": lidar.pattern.model,
                 "first_packet_ns": lidar.first_packet_ns,
                 "azimuth_rad": lidar.azimuth_rad,
                 "turn_rate_hz": lidar.turn_rate_hz,

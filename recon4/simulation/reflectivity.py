@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import zipfile
+from collections.abc import Sequence
 from pathlib import Path
 from types import TracebackType
 from typing import Self
@@ -11,20 +12,24 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.simulation.lidar import LASERS, SEQUENCES
-
 _NO_DATE = (1980, 1, 1, 0, 0, 0)
 
 
 class ReflectivityWriter:
     """Writes an ``.npz`` with an array ``sensor0``, ``sensor1``, … a sensor, without holding it.
 
-    Each is (packets, 24, 16) uint8: hundred times the reflectivity of what the shot hit, at most
-    255, and 0 where nothing came back.
+    Each is (packets, sequences, lasers) uint8: hundred times the reflectivity of what the shot
+    hit, at most 255, and 0 where nothing came back.
     """
 
-    def __init__(self, path: Path, sensors: int) -> None:
-        self._path = path
+    def __init__(self, path: Path, shapes: Sequence[tuple[int, int]]) -> None:
+        """Begin.
+
+        Args:
+            path: File to write.
+            shapes: Sequences and lasers of a packet of each sensor.
+        """
+        self._path, self._shapes, sensors = path, shapes, len(shapes)
         self._parts = [path.with_name(f"{path.stem}{row}.tmp") for row in range(sensors)]
         self._files = [part.open("wb") for part in self._parts]
         self._packets = [0] * sensors
@@ -43,7 +48,7 @@ class ReflectivityWriter:
             part.unlink()
 
     def append(self, row: int, reflectivity: NDArray[np.uint8]) -> None:
-        """Append packets of a sensor, (P, 24, 16)."""
+        """Append packets of a sensor, (P, S, L)."""
         self._files[row].write(reflectivity.tobytes())
         self._packets[row] += len(reflectivity)
 
@@ -55,7 +60,7 @@ class ReflectivityWriter:
                     header = {
                         "descr": "|u1",
                         "fortran_order": False,
-                        "shape": (packets, SEQUENCES, LASERS),
+                        "shape": (packets, *self._shapes[row]),
                     }
                     np.lib.format.write_array_header_1_0(target, header)
                     shutil.copyfileobj(source, target, 1 << 20)

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from itertools import count
 
 import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.raycast import Scene
-from recon4.model.rig import Rig, load_rig
+from recon4.geometry.se3 import SE3
+from recon4.model.lidars import lidar_model
+from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.simulation.crowd import ALONE, Crowd
 from recon4.simulation.degradation import BEAM_ANGLE
+from recon4.simulation.families.families import family_of, pattern_of
+from recon4.simulation.families.family import BuiltInImu
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.gnss import GnssModel, simulate_gnss
 from recon4.simulation.imu import ImuModel, simulate_imu
@@ -23,6 +28,8 @@ from recon4.simulation.worlds import build_world
 
 EPOCH_NS = 1_780_308_000_000_000_000
 """Start of every simulated walk: 2026-06-01T10:00:00Z."""
+_SAME_M, _SAME_RAD = 1e-3, 2e-3
+"""An IMU that is nearer to the place of a built-in one is that one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -58,6 +65,8 @@ class SimulationSetup:
     seed: int
     epoch_ns: int
     """UTC of the start [ns]."""
+    imu_row: int | None = None
+    """Row of the LiDAR whose built-in IMU is that of the rig; None = it is a device of its own."""
 
     def rng(self, *purpose: int) -> np.random.Generator:
         """A generator of its own for each purpose, so that parts can be left out or reordered."""
@@ -79,14 +88,15 @@ def prepare(
         world: One of `recon4.simulation.worlds.WORLDS`, or one of your own.
         seconds: Length of the walk, at least 5; rounded to 20 ms.
         seed: Draws the walk and all noise.
-        rig: VLP-16s and their mounting; None = 4RECON. Addresses and topics that are
+        rig: LiDARs and their mounting; None = 4RECON. Addresses and topics that are
             missing are filled in.
-        models: Errors of the sensors; None = those of the real ones.
+        models: Errors of a VLP-16 and of the samples; those of other LiDARs are larger or smaller
+            as the data sheets say. None = those of the real ones.
         crowd: People and vehicles that move around the carrier and hide part of the view.
 
     Raises:
         ConfigError: If there is no such world, the walk is shorter than 5 s, the seed is
-            negative or the rig has a sensor other than a VLP-16.
+            negative or the rig has a sensor that is not simulated.
     """
     if not 5.0 <= seconds < 1e6:
         raise ConfigError(f"a walk takes 5 s to 1e6 s, got {seconds}")
@@ -94,14 +104,12 @@ def prepare(
         raise ConfigError(f"the seed must not be negative, got {seed}")
     crowd.check()
     used, errors = _addressed(rig or load_rig("4recon")), models or Models()
-    for sensor in used.sensors:
-        if sensor.model != "VLP-16":
-            raise ConfigError(f"only VLP-16 can be simulated, got {sensor.model} ({sensor.name})")
+    row = imu_row(used)
+    if row is not None:
+        rate_hz = _built_in(used.sensors[row]).rate_hz
+        errors = replace(errors, imu=replace(errors.imu, rate_hz=rate_hz))
     place = build_world(world) if isinstance(world, str) else world
-    lidars = tuple(
-        Lidar.drawn(sensor, errors.lidar, np.random.default_rng([seed, 1, row]))
-        for row, sensor in enumerate(used.sensors)
-    )
+    lidars = _lidars(used, errors, seed)
     companions, vehicles = crowd.drawn(seed)
     return SimulationSetup(
         place,
@@ -112,6 +120,68 @@ def prepare(
         Surroundings(place.mesh, Scene(place.mesh), companions, place.car, vehicles),
         seed,
         EPOCH_NS,
+        row,
+    )
+
+
+def rig_of_lidars(models: Sequence[str]) -> Rig:
+    """A rig with one or two LiDARs, mounted as those of 4RECON; the first IMU in them is used.
+
+    A second one that does not see all around looks back.
+
+    Raises:
+        ConfigError: If there are none or more than two, or one is not simulated.
+    """
+    mounts = load_rig("4recon")
+    if not 1 <= len(models) <= len(mounts.sensors):
+        raise ConfigError(f"expected one or two LiDARs, got {len(models)}")
+    used: set[int] = set()
+    sensors: list[Sensor] = []
+    for model, mount in zip(models, mounts.sensors, strict=False):
+        port = next(k for k in count(family_of(model).port(model)) if k not in used)
+        used.add(port)
+        if sensors and lidar_model(model).azimuth_deg < 360.0:
+            back = SE3.from_rpy(0.0, 0.0, np.pi, t=mount.T_body_sensor.t)
+            mount = replace(mount, name="back", T_body_sensor=back)
+        sensors.append(replace(mount, model=model, port=port))
+    rig = replace(mounts, name=" and ".join(models), sensors=tuple(sensors))
+    for sensor in sensors:
+        if family_of(sensor.model).imu(sensor.model) is not None:
+            return replace(rig, T_body_imu=_imu_mount(sensor), imu_time_offset_s=0.0)
+    return rig
+
+
+def imu_row(rig: Rig) -> int | None:
+    """Row of the LiDAR in which the IMU of the rig is, by its place; None = in none."""
+    for row, sensor in enumerate(rig.sensors):
+        if family_of(sensor.model).imu(sensor.model) is not None:
+            off = _imu_mount(sensor).inverse() @ rig.T_body_imu
+            if np.linalg.norm(off.t) < _SAME_M and float(off.angle()) < _SAME_RAD:
+                return row
+    return None
+
+
+def _built_in(sensor: Sensor) -> BuiltInImu:
+    found = family_of(sensor.model).imu(sensor.model)
+    assert found is not None
+    return found
+
+
+def _imu_mount(sensor: Sensor) -> SE3:
+    """``T_body_imu`` of the IMU in a LiDAR."""
+    return sensor.T_body_sensor @ SE3(np.eye(3), _built_in(sensor).p_sensor_imu)
+
+
+def _lidars(rig: Rig, models: Models, seed: int) -> tuple[Lidar, ...]:
+    """The LiDARs of a rig, each drawn by a generator of its own."""
+    return tuple(
+        Lidar.drawn(
+            sensor,
+            pattern_of(sensor.model),
+            model=models.lidar,
+            rng=np.random.default_rng([seed, 1, row]),
+        )
+        for row, sensor in enumerate(rig.sensors)
     )
 
 
@@ -138,7 +208,7 @@ def _addressed(rig: Rig) -> Rig:
         replace(
             sensor,
             address=sensor.address or f"192.168.1.{201 + row}",
-            topic=sensor.topic or f"/{sensor.name}/velodyne_packets",
+            topic=sensor.topic or f"/{sensor.name}/{family_of(sensor.model).name.lower()}_packets",
             beams=None,
         )
         for row, sensor in enumerate(rig.sensors)

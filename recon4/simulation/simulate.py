@@ -10,7 +10,16 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress
-from recon4.simulation.degradation import BEAM_ANGLE, ONLY_PROFILER, PEOPLE, VEHICLES, Degradation
+from recon4.simulation.degradation import (
+    BEAM_ANGLE,
+    ONLY_PROFILER,
+    PEOPLE,
+    VEHICLES,
+    WRONG_MODEL,
+    Degradation,
+)
+from recon4.simulation.families.families import family_of
+from recon4.simulation.families.velodyne import VELODYNES
 from recon4.simulation.lidar import Firings
 from recon4.simulation.recorder import WalkRecorder
 from recon4.simulation.setup import SimulationSetup
@@ -24,7 +33,7 @@ def simulate(
     out: Path,
     *,
     progress: Progress,
-    bag: bool = True,
+    bag: bool | None = None,
     degradations: Mapping[str, float] | None = None,
 ) -> None:
     """Write a recording and its truth to a new folder (see ``docs/explanation/simulation.md``).
@@ -33,14 +42,19 @@ def simulate(
         setup: The walk and the sensors, see `prepare`; the same setup gives the same bytes.
         out: Folder to make: it must not exist, or be empty.
         progress: Receives every simulated second.
-        bag: Also write the rosbag2, which doubles the size.
+        bag: Also write the rosbag2, which doubles the size; None = if all LiDARs are Velodynes,
+            whose packets alone it can have.
         degradations: Errors that the rig file does not know, see
             `recon4.simulation.degradation.KINDS`; None = none.
 
     Raises:
-        ConfigError: If a degradation cannot be simulated.
+        ConfigError: If a degradation or the bag cannot be written.
         StoreError: If the folder exists with something in it or cannot be written.
     """
+    others = [s.model for s in setup.rig.sensors if family_of(s.model) is not VELODYNES]
+    if bag and others:
+        raise ConfigError(f"a rosbag2 is written of Velodynes only, got {', '.join(others)}")
+    bag = not others if bag is None else bag
     record(setup, {out: degradations or {}}, bag=bag, progress=progress)
 
 
@@ -65,8 +79,9 @@ def record(
     """
     for values in folders.values():
         _check_possible(values, setup)
+    lasers = [lidar.pattern.lasers for lidar in setup.lidars]
     degraded = {
-        folder: Degradation.drawn(values, sensors=len(setup.lidars), seed=setup.seed)
+        folder: Degradation.drawn(values, lasers=lasers, seed=setup.seed)
         for folder, values in folders.items()
     }
     for folder in folders:
@@ -105,6 +120,11 @@ def _check_possible(values: Mapping[str, float], setup: SimulationSetup) -> None
     wrong = sorted(ONLY_PROFILER & set(values))
     if wrong:
         raise ConfigError(f"{wrong[0]}: only possible on a rig with a profiler")
+    last = setup.rig.sensors[-1].model
+    if WRONG_MODEL in values and family_of(last) is not VELODYNES:
+        raise ConfigError(
+            f"{WRONG_MODEL}: only possible if the last LiDAR is a Velodyne, got {last}"
+        )
     cast = {
         PEOPLE: float(len(setup.surroundings.companions or ())),
         VEHICLES: float(len(setup.surroundings.vehicles or ())),

@@ -71,7 +71,7 @@ def _fire(
     t_shot_s = (t_s[:, None, None] + model.firing_time_s()).ravel()
     count, tile = len(t_shot_s), len(t_shot_s) // model.lasers
     offset_rad = np.deg2rad(0.01 * model.azimuth_offset_cdeg)
-    shot = np.zeros((count, 5))
+    shot = np.zeros((count, 7))
     shot[:, 0] = 2.0 * np.pi * 1e9 / TURN_NS * t_shot_s + np.tile(offset_rad, tile)
     shot[:, 1] = np.tile(model.elevation_rad, tile)
     shot[:, 2] = np.tile(model.height_m, tile)

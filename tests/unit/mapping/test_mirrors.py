@@ -32,7 +32,7 @@ def sights(setup: SimulationSetup) -> Sight:
             shots = lidar.fire(packets, setup.walk, setup.surroundings, rng=rng)
             hit = np.flatnonzero(shots.distance.ravel() > 0)[row::7]
             up = np.broadcast_to(MODELS["VLP-16"].elevation_rad, shots.distance.shape).ravel()[hit]
-            azimuth = shots.azimuth_rad.ravel()[hit]
+            azimuth = shots.turn_rad.ravel()[hit]
             away = 0.002 * shots.distance.ravel()[hit, None]
             flat = np.cos(up)
             along = np.stack([flat * np.cos(azimuth), -flat * np.sin(azimuth), np.sin(up)], axis=1)

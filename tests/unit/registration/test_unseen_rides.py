@@ -38,7 +38,7 @@ def walked(
     """What the odometry makes of a walk, with errors of 2 mm and blind to the elevator; the IMU."""
     walk = plan_walk(build_world(world), seconds=seconds, rng=np.random.default_rng([seed, 0]))
     worse = {name.replace("_", "-"): value for name, value in degraded.items()}
-    degradation = Degradation.drawn(worse, sensors=2, seed=seed)
+    degradation = Degradation.drawn(worse, lasers=[16, 16], seed=seed)
     rng = np.random.default_rng([seed, 2])
     model = degradation.imu_model(ImuModel())
     imu = degradation.imu(simulate_imu(walk, RIG, model, epoch_ns=EPOCH_NS, rng=rng))

@@ -1,10 +1,13 @@
 """Small worlds and motions whose answers are known on paper."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.raycast import Scene
 from recon4.model.rig import load_rig
+from recon4.simulation.families.families import pattern_of
 from recon4.simulation.lidar import Lidar, LidarModel, Surroundings
 from recon4.simulation.walk import KNOT_S, Walk
 
@@ -42,10 +45,8 @@ def around(builder):
 
 def sensor_at_rest(model, sensor=SENSOR, azimuth_rad=0.0):
     """A sensor that turns exactly ten times a second from the first moment on."""
-    gain = np.ones(16) if model.gain_spread == 0.0 else None
-    drawn = Lidar.drawn(sensor, model, np.random.default_rng(3))
-    gain = drawn.gain if gain is None else gain
-    return Lidar(sensor, model, 0, azimuth_rad, 10.0, gain, drawn.beam_angle_error_rad)
+    drawn = Lidar.drawn(sensor, pattern_of(sensor.model), model=model, rng=np.random.default_rng(3))
+    return replace(drawn, first_packet_ns=0, azimuth_rad=azimuth_rad, turn_rate_hz=10.0)
 
 
 def fire(model, surroundings, walk, packets=76, azimuth_rad=0.0, sensor=SENSOR):

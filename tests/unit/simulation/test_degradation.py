@@ -13,6 +13,7 @@ from recon4.recording.formats.poses import read_tum
 from recon4.recording.packets.velodyne.models import MODELS
 from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.simulation.degradation import KINDS, Degradation, parse_degradations
+from recon4.simulation.families.families import pattern_of
 from recon4.simulation.imu import ImuModel
 from recon4.simulation.lidar import Firings, Lidar, LidarModel
 from recon4.simulation.recorder import true_rig
@@ -22,10 +23,11 @@ from tests.unit.simulation.rooms import still, walls
 from tests.unit.simulation.test_simulate import datagrams, hashes
 
 RIG = load_rig("4recon")
+VLP16 = pattern_of("VLP-16")
 
 
 def degraded(*words):
-    return Degradation.drawn(parse_degradations(words), sensors=2, seed=5)
+    return Degradation.drawn(parse_degradations(words), lasers=[16, 16], seed=5)
 
 
 def angle_deg(a, b):
@@ -37,7 +39,7 @@ def shots(packets=400):
     return Firings(
         np.zeros(shape, np.int64),
         np.zeros(shape),
-        np.full(shape, 2000, np.uint16),
+        np.full(shape, 2000, np.uint32),
         np.full(shape, 50, np.uint8),
         np.full(shape, 60, np.uint8),
     )
@@ -123,7 +125,7 @@ def test_a_cheaper_imu_has_larger_errors_of_every_kind():
 
 
 def test_dead_lasers_return_nothing_and_the_others_all():
-    found = degraded("dead-beams=6").degrade_firings(shots(), 0, 0)
+    found = degraded("dead-beams=6").degrade_firings(shots(), 0, 0, pattern=VLP16)
 
     per_laser = (found.distance > 0).mean(axis=(0, 1))
     assert sorted(per_laser) == [0.0] * 6 + [1.0] * 10
@@ -132,14 +134,14 @@ def test_dead_lasers_return_nothing_and_the_others_all():
 
 def test_each_laser_has_a_range_bias_of_its_own():
     degradation = degraded("beam-bias=0.03")
-    found = degradation.degrade_firings(shots(), 1, 0)
+    found = degradation.degrade_firings(shots(), 1, 0, pattern=VLP16)
 
     off_m = 0.002 * (found.distance.astype(float) - 2000.0)
     np.testing.assert_allclose(off_m[0, 0], degradation.range_bias_m[1], atol=0.0021)
     np.testing.assert_allclose(off_m.mean(axis=(0, 1)), degradation.range_bias_m[1], atol=1e-4)
     assert np.std(degradation.range_bias_m) == pytest.approx(0.03, rel=0.4)
     nothing = replace_distance(shots(), 0)
-    assert not degradation.degrade_firings(nothing, 1, 0).distance.any()
+    assert not degradation.degrade_firings(nothing, 1, 0, pattern=VLP16).distance.any()
 
 
 def test_the_true_rig_corrects_what_the_beams_measure_wrong():
@@ -150,13 +152,12 @@ def test_the_true_rig_corrects_what_the_beams_measure_wrong():
     perfect = replace(LidarModel.perfect(), beam_angle_sd_rad=models.lidar.beam_angle_sd_rad)
     surroundings = walls(6.0)
     lidars = [
-        Lidar.drawn(sensor, perfect, np.random.default_rng([5, 1, row]))
+        Lidar.drawn(sensor, VLP16, model=perfect, rng=np.random.default_rng([5, 1, row]))
         for row, sensor in enumerate(RIG.sensors)
     ]
     degradation = degraded(*words)
-    fired = degradation.degrade_firings(
-        lidars[0].fire(range(76), still(), surroundings, rng=np.random.default_rng(1)), 0, 0
-    )
+    firings = lidars[0].fire(range(76), still(), surroundings, rng=np.random.default_rng(1))
+    fired = degradation.degrade_firings(firings, 0, 0, pattern=VLP16)
     xyz, ring = points_of(fired)
     setup = SimpleNamespace(lidars=lidars, rig=RIG)
 
@@ -174,7 +175,7 @@ def points_of(fired):
     tables, hit = MODELS["VLP-16"], fired.distance > 0
     up = np.broadcast_to(tables.elevation_rad, hit.shape)[hit]
     above = np.broadcast_to(tables.height_m, hit.shape)[hit]
-    range_m, around = 0.002 * fired.distance[hit], fired.azimuth_rad[hit]
+    range_m, around = 0.002 * fired.distance[hit], fired.turn_rad[hit]
     flat = range_m * np.cos(up)
     z = range_m * np.sin(up) + above
     xyz = np.stack([flat * np.cos(around), -flat * np.sin(around), z], axis=1)
@@ -195,7 +196,7 @@ def replace_distance(firings, value):
 def test_packets_are_lost_in_runs():
     marked = replace(shots(), t_ns=np.broadcast_to(np.arange(400)[:, None, None], (400, 24, 16)))
     kept = [
-        degraded("packet-loss=0.25").degrade_firings(marked, 0, second).t_ns[:, 0, 0]
+        degraded("packet-loss=0.25").degrade_firings(marked, 0, second, pattern=VLP16).t_ns[:, 0, 0]
         for second in range(40)
     ]
 

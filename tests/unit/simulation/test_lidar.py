@@ -18,7 +18,7 @@ def returns(shots):
     shape = shots.distance.shape
     return (
         0.002 * shots.distance[hit],
-        shots.azimuth_rad[hit],
+        shots.turn_rad[hit],
         np.broadcast_to(TABLES.elevation_rad, shape)[hit],
         np.broadcast_to(TABLES.height_m, shape)[hit],
     )
@@ -55,7 +55,7 @@ def test_every_shot_is_fired_at_its_own_time():
 
     assert np.all(np.diff(flat, axis=1) == 2_304)
     assert np.all(np.diff(flat[:, 0]) == 55_296)
-    turned = np.diff(np.unwrap(shots.azimuth_rad.ravel())) / np.diff(1e-9 * shots.t_ns.ravel())
+    turned = np.diff(np.unwrap(shots.turn_rad.ravel())) / np.diff(1e-9 * shots.t_ns.ravel())
     np.testing.assert_allclose(turned, 20.0 * np.pi, rtol=1e-6)
 
 
@@ -116,7 +116,7 @@ def test_dark_and_distant_surfaces_are_lost():
 
     def share(distance_m, reflectivity):
         shots = fire(model, walls(distance_m, reflectivity=reflectivity), still())
-        ahead = np.cos(shots.azimuth_rad) > 0.97
+        ahead = np.cos(shots.turn_rad) > 0.97
         return np.mean(shots.distance[ahead] > 0)
 
     assert share(5.0, 0.1) > 0.98
@@ -158,8 +158,8 @@ def test_the_person_hides_what_is_in_front_of_the_vertical_sensor():
 def test_intensity_tells_paint_from_plaster_and_falls_with_incidence():
     def seen(reflectivity):
         shots = fire(PERFECT, walls(4.0, reflectivity=reflectivity), still())
-        square = shots.intensity[np.cos(shots.azimuth_rad) > 0.995]
-        slanted = shots.intensity[np.abs(np.cos(shots.azimuth_rad) - 0.5) < 0.02]
+        square = shots.intensity[np.cos(shots.turn_rad) > 0.995]
+        slanted = shots.intensity[np.abs(np.cos(shots.turn_rad) - 0.5) < 0.02]
         return np.median(square), np.median(slanted[slanted > 0])
 
     (dark, _), (plaster, slanted), (retro, _) = seen(0.12), seen(0.55), seen(2.2)
@@ -172,7 +172,7 @@ def test_intensity_tells_paint_from_plaster_and_falls_with_incidence():
 def test_beams_differ_in_gain_and_the_truth_does_not():
     shots = fire(replace(PERFECT, gain_spread=0.25), walls(4.0), still())
 
-    ahead = np.cos(shots.azimuth_rad[:, :, 0]) > 0.99
+    ahead = np.cos(shots.turn_rad[:, :, 0]) > 0.99
     means = shots.intensity[ahead].mean(axis=0)
 
     assert means.max() / means.min() > 1.2

@@ -21,6 +21,10 @@ from recon4.simulation.worlds import build_world
 from recon4.store.frames import FrameStore
 
 SECONDS = 5.0
+NO_MODEL = replace(
+    load_rig("single-vlp16"),
+    sensors=(replace(load_rig("single-vlp16").sensors[0], model="generic"),),
+)
 
 
 @pytest.fixture(scope="module")
@@ -235,7 +239,7 @@ def test_a_rig_with_clock_offsets_stamps_its_packets_with_them(tmp_path):
         ({"seconds": 4.0}, "a walk takes 5 s to 1e6 s, got 4.0"),
         ({"seconds": float("nan")}, "a walk takes 5 s to 1e6 s, got nan"),
         ({"seed": -1}, "the seed must not be negative, got -1"),
-        ({"rig": load_rig("single-hdl32e")}, "only VLP-16 can be simulated, got HDL-32E"),
+        ({"rig": NO_MODEL}, "a LiDAR 'generic' is not simulated; simulated: VLP-16, "),
     ],
 )
 def test_what_cannot_be_simulated_is_refused(change, message):

@@ -1,0 +1,117 @@
+"""Livox LiDARs: patterns that do not repeat, and their built-in IMUs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cache
+
+import numpy as np
+
+from recon4.model.lidars import lidar_model
+from recon4.model.samples import ImuSamples
+from recon4.model.trajectory import Times
+from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.livox.encode import ShotReturns, encode_imu, encode_points
+from recon4.recording.packets.livox.models import LAYOUTS, MODELS, LivoxModel, PointLayout
+from recon4.simulation.families.family import BuiltInImu
+from recon4.simulation.lidar import Firings, Lidar
+from recon4.simulation.patterns import BeamMotion, FiringPattern, even_shots
+from recon4.simulation.rosette import Prisms, SwingingMirror
+
+_LINE_RAD = float(np.deg2rad(0.4))
+"""From one laser to the next."""
+_MIRROR_LINE_RAD = float(np.deg2rad(3.7))
+_TURN_HZ, _SWING_HZ = 21.703, 173.117
+"""Of the mirror: its web is as dense as that in the user manual of the Mid-360."""
+_DATA_PORT = {1: 57000, 2: 56301}
+_IMU_PORT = {1: 57001, 2: 56401}
+"""By protocol: chosen by the host (SDK1), or fixed (SDK2)."""
+_IMU_HZ = 200
+
+
+def _layout(model: LivoxModel) -> PointLayout:
+    """Cartesian, single return: what the models send if nothing else is set."""
+    data_type = 1 if model.sdk == 2 else 0 if model.lines == 1 else 2
+    return next(one for one in LAYOUTS if (one.sdk, one.data_type) == (model.sdk, data_type))
+
+
+def _motion(model: LivoxModel) -> BeamMotion:
+    facts = lidar_model(model.name)
+    lowest, highest = np.deg2rad(facts.elevation_deg).tolist()
+    if facts.azimuth_deg == 360.0:
+        return SwingingMirror(
+            lowest_rad=lowest,
+            highest_rad=highest,
+            turn_hz=_TURN_HZ,
+            swing_hz=_SWING_HZ,
+            lines=model.lines,
+            line_rad=_MIRROR_LINE_RAD,
+        )
+    return Prisms(
+        half_azimuth_rad=float(np.deg2rad(0.5 * facts.azimuth_deg)),
+        half_elevation_rad=0.5 * (highest - lowest),
+        lines=model.lines,
+        line_rad=_LINE_RAD,
+    )
+
+
+@cache
+def _pattern(name: str) -> FiringPattern:
+    model = MODELS[name]
+    layout, shot_ns = _layout(model), 1e9 * model.shot_s
+    return FiringPattern(
+        model=name,
+        packet_ns=round(layout.shots * shot_ns),
+        offset_ns=even_shots(
+            sequences=layout.shots // model.lines,
+            sequence_ns=model.lines * shot_ns,
+            laser_ns=shot_ns * np.arange(model.lines),
+            lasers=model.lines,
+        ),
+        ring=np.arange(model.lines, dtype=np.uint8),
+        motion=_motion(model),
+        unit_m=layout.unit_m,
+        most_units=2**31 - 1,
+    )
+
+
+class SimulatedLivox:
+    """Single return, clock by PTP."""
+
+    name = "Livox"
+
+    def pattern(self, model: str) -> FiringPattern | None:
+        """The outline of the data sheet, filled by an equation."""
+        return _pattern(model) if model in MODELS else None
+
+    def port(self, model: str) -> int:
+        """Of the host."""
+        return _DATA_PORT[MODELS[model].sdk]
+
+    def imu(self, model: str) -> BuiltInImu | None:
+        """Of the models whose manual tells where it is."""
+        made = MODELS[model]
+        if made.imu_m is None:
+            return None
+        return BuiltInImu(np.array(made.imu_m), _IMU_HZ, _IMU_PORT[made.sdk])
+
+    def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
+        """Points; the frame is that of the sensor."""
+        model = MODELS[lidar.pattern.model]
+        layout = _layout(model)
+        xyz_m = lidar.points(firings) * (firings.distance > 0)[..., None]
+        shape = (len(t_ns), layout.shots, 1)
+        shots = ShotReturns(xyz_m.reshape(*shape, 3), firings.intensity.reshape(shape))
+        return encode_points(t_ns, shots, layout=layout, model=model)
+
+    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
+        """One packet for each sample."""
+        sdk = MODELS[lidar.pattern.model].sdk
+        return encode_imu(samples.t_ns, samples.gyro_rad_s, samples.accel_m_s2, sdk=sdk)
+
+    def companions(self, lidar: Lidar) -> Mapping[str, bytes]:
+        """None: the packets have coordinates."""
+        return {}
+
+
+LIVOX = SimulatedLivox()
