@@ -12,9 +12,9 @@ from recon4.model.rig import Sensor
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.datagrams import NO_DATAGRAMS, Datagrams, datagrams_of
 from recon4.recording.packets.family import Companion, PacketSensor
+from recon4.recording.packets.hesai.angles import Angles
 from recon4.recording.packets.hesai.data_packets import HesaiFormat, HesaiPackets
 from recon4.recording.packets.hesai.family import HESAI
-from recon4.recording.packets.hesai.models import MODELS
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
@@ -62,7 +62,7 @@ def without_turn(made: HesaiFormat, sensor: PacketSensor, directions: object) ->
     packets = made.packets
     still = replace(packets.model, speed_rpm=0.0)
     return HesaiFormat(
-        HesaiPackets(still, packets.layout, packets.header, packets.returns), directions, sensor
+        HesaiPackets(still, packets.layout, packets.header, packets.mode), directions, sensor
     )
 
 
@@ -72,5 +72,8 @@ def decoded(payloads: np.ndarray, made: HesaiFormat):
     return made.decode(made.stamps_ns(payloads), payloads)
 
 
-def model_names() -> list[str]:
-    return list(MODELS)
+def table_of(angles: Angles, name: str = "correction.csv") -> Companion:
+    """A correction file."""
+    degrees = np.rad2deg(np.column_stack([angles.elevation_rad, angles.azimuth_rad]))
+    rows = [f"{row},{e:.5f},{a:.5f}" for row, (e, a) in enumerate(degrees.tolist(), start=1)]
+    return Companion(name, "\n".join(["Channel,Elevation,Azimuth", *rows]).encode())

@@ -19,7 +19,12 @@ from recon4.recording.packets.family import PacketSamples, PacketSensor, Payload
 from recon4.recording.packets.hesai import stamps
 from recon4.recording.packets.hesai.angles import Angles
 from recon4.recording.packets.hesai.fields import Fields, sound_packets
-from recon4.recording.packets.hesai.firing import FiringVariants, firing_mode
+from recon4.recording.packets.hesai.firing import (
+    FiringMode,
+    FiringVariants,
+    firing_mode,
+    packet_s,
+)
 from recon4.recording.packets.hesai.inertial import inertial_of
 from recon4.recording.packets.hesai.layouts import HesaiLayout
 from recon4.recording.packets.hesai.mirrors import MirrorTable
@@ -36,8 +41,8 @@ class HesaiPackets:
     layout: HesaiLayout
     header: bytes
     """First bytes of its packets."""
-    returns: int
-    """Returns of a shot in its first packets."""
+    mode: FiringMode
+    """Of its first packets."""
 
 
 class HesaiFormat:
@@ -57,7 +62,7 @@ class HesaiFormat:
         """
         layout, model = packets.layout, packets.model
         self.size = layout.size
-        self.packet_s = model.packet_s(layout.blocks, packets.returns)
+        self.packet_s = packet_s(model, layout.blocks, packets.mode)
         self.packets, self._sensor = packets, sensor
         self._firing = FiringVariants(model, layout)
         self._inertial = inertial_of(packets.layout, packets.header)
@@ -75,7 +80,8 @@ class HesaiFormat:
         speed_rpm = packets.model.speed_rpm
         sound = sound_packets(fields, packets.header, speed_rpm, report=self._sensor.report)
         if sound.any():
-            self.packet_s = self._packet_s(fields, sound)
+            mode = firing_mode(int(fields.firing_key()[sound.argmax()]), fields.layout.blocks)
+            self.packet_s = packet_s(packets.model, fields.layout.blocks, mode)
         return sound
 
     def stamps_ns(self, payloads: Payloads) -> Times:
@@ -117,12 +123,6 @@ class HesaiFormat:
         t_ns = t_ns[later] + round(self._sensor.sensor.time_offset_s * stamps.SECOND_NS)
         imu = ImuSamples(t_ns, found.gyro_rad_s[later], found.accel_m_s2[later])
         return PacketSamples(imu=imu)
-
-    def _packet_s(self, fields: Fields, sound: NDArray[np.bool_]) -> float:
-        """Usual time from one packet to the next in the mode of the first of sound ones [s]."""
-        mode = firing_mode(int(fields.firing_key()[sound.argmax()]), fields.layout.blocks)
-        packet_s = self.packets.model.packet_s(fields.layout.blocks, mode.returns)
-        return packet_s if mode.high_resolution else 2.0 * packet_s
 
     def _fields(self, payloads: Payloads) -> Fields:
         return Fields(payloads, self.packets.layout)

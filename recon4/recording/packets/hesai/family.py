@@ -21,6 +21,7 @@ from recon4.recording.packets.family import (
 from recon4.recording.packets.hesai.angles import Angles, angles_of, is_table
 from recon4.recording.packets.hesai.data_packets import HesaiFormat, HesaiPackets
 from recon4.recording.packets.hesai.fields import Fields, sound_packets
+from recon4.recording.packets.hesai.firing import firing_mode, packet_s
 from recon4.recording.packets.hesai.layouts import (
     HEADER,
     JT16_IMU_SIZE,
@@ -90,7 +91,7 @@ class Hesai:
             kind="data",
             model=model.name,
             mode=RETURN_MODES.get(mode, ("", 1))[0],
-            packet_s=model.packet_s(found.layout.blocks, found.returns),
+            packet_s=packet_s(model, found.layout.blocks, found.mode),
             rotation_hz=speed if speed > 0 and model.name != "AT128" else float("nan"),
             size=found.layout.size,
             remarks=_remarks(mode),
@@ -126,7 +127,7 @@ class Hesai:
             sensor.report.warn(
                 f"{name}: its packets are those of a {packets.model.name}; decoded as {model.name}"
             )
-            packets = HesaiPackets(model, packets.layout, packets.header, packets.returns)
+            packets = HesaiPackets(model, packets.layout, packets.header, packets.mode)
         return HesaiFormat(packets, _directions(model, sensor), sensor)
 
     def _samples(self, payloads: Payloads) -> Recognized | None:
@@ -161,8 +162,9 @@ def _data_packets(payloads: Payloads) -> HesaiPackets | None:
         layout = read_layout(payloads[row])
         model = model_of(payloads[row], layout) if layout else None
         if layout is not None and model is not None:
-            returns = int(np.median(Fields(payloads, layout).returns))
-            return HesaiPackets(model, layout, head.tobytes(), returns)
+            key = int(np.bincount(Fields(payloads, layout).firing_key()).argmax())
+            mode = firing_mode(key, layout.blocks)
+            return HesaiPackets(model, layout, head.tobytes(), mode)
     return None
 
 
@@ -173,7 +175,9 @@ def _sound(payloads: Payloads, found: HesaiPackets) -> NDArray[np.bool_]:
 
 def _usual(model: HesaiModel) -> HesaiPackets:
     """What a sensor sends that has not sent anything yet."""
-    return HesaiPackets(model, model.layout, model.header.ljust(HEADER, b"\0"), 1)
+    layout = model.layout
+    header = model.header.ljust(HEADER, b"\0")
+    return HesaiPackets(model, layout, header, firing_mode(1, layout.blocks))
 
 
 def _remarks(mode: int) -> tuple[str, ...]:

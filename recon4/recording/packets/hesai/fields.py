@@ -136,6 +136,5 @@ def _same_header(fields: Fields, header: bytes) -> NDArray[np.bool_]:
     wanted = np.frombuffer(header[:HEADER], np.uint8)
     fixed = np.ones(HEADER, dtype=np.bool_)
     fixed[[4, 5, _ECHO, _RETURNED]] = False
-    if layout.blocks_at < HEADER:
-        fixed[layout.blocks_at :] = False
+    fixed[min(layout.blocks_at, layout.tail_at) :] = False
     return np.asarray((payloads[:, :HEADER] == wanted)[:, fixed].all(axis=1))

@@ -60,6 +60,12 @@ def rows_of(model: HesaiModel, mode: FiringMode, rounds: int) -> NDArray[np.int6
     return np.zeros(rounds, dtype=np.int64)
 
 
+def packet_s(model: HesaiModel, blocks: int, mode: FiringMode) -> float:
+    """Usual time from one data packet to the next [s]."""
+    round_us = model.round_us(high_resolution=mode.high_resolution)
+    return 1e-6 * round_us * max(blocks // mode.returns, 1)
+
+
 def shot_times_us(model: HesaiModel, blocks: int, mode: FiringMode) -> Array:
     """When each channel fires after the stamp in each round of firing [µs], (rounds, C)."""
     rounds = max(blocks // mode.returns, 1)

@@ -53,6 +53,8 @@ class HesaiModel:
     """Start of the block of the stamp after the stamp [µs]."""
     step_us: float
     """From the start of one block to the next in single return mode [µs]."""
+    is_slower: bool = False
+    """Whether it fires half as often unless it is in `HIGH_RESOLUTION`."""
     stamp_of_first: bool = False
     """Whether the stamp is that of the first block, not of the last."""
     firing_us: Array
@@ -76,14 +78,14 @@ class HesaiModel:
         """Number of beams."""
         return self.firing_us.shape[1]
 
-    def packet_s(self, blocks: int, returns: int) -> float:
-        """Usual time from one data packet to the next [s]."""
-        return 1e-6 * self.step_us * max(blocks // returns, 1)
+    def round_us(self, *, high_resolution: bool) -> float:
+        """From the start of one round of firing to the next [µs]."""
+        return self.step_us * (2.0 if self.is_slower and not high_resolution else 1.0)
 
     def start_us(self, groups: int, *, high_resolution: bool = True) -> Array:
         """When the rounds of firing of a packet begin after its stamp [µs], (groups,)."""
         count = np.arange(groups) - (0 if self.stamp_of_first else groups - 1)
-        step_us = self.step_us * (1.0 if high_resolution else 2.0)
+        step_us = self.round_us(high_resolution=high_resolution)
         return np.asarray(self.first_us + step_us * count, dtype=np.float64)
 
 
@@ -163,6 +165,7 @@ _PANDAR128 = HesaiModel(
     size=861,
     first_us=3.148,
     step_us=27.778,
+    is_slower=True,
     firing_us=firing_times.PANDAR_128,
     angles=None,
 )
