@@ -58,9 +58,12 @@ def opened(model, payloads, **kwargs):
 
 def decoded(model, payloads, **kwargs):
     made, sensor = opened(model, payloads, **kwargs)
-    sound = made.sound(payloads)
-    assert sound.all(), sensor.report.counts
-    return made.decode(made.stamps_ns(payloads), payloads), sensor.report
+    return decoded_with(made, payloads), sensor.report
+
+
+def decoded_with(made, payloads):
+    assert made.sound(payloads).all()
+    return made.decode(made.stamps_ns(payloads), payloads)
 
 
 def expected(model, stamp_us, blocks, mode, key, *, rpm=600.0, sense=1):

@@ -67,7 +67,7 @@ class HesaiFormat:
         self._firing = FiringVariants(model, layout)
         self._inertial = inertial_of(packets.layout, packets.header)
         self.sample_sizes = frozenset({self._inertial.size} if self._inertial.size else ())
-        self._imu_ns = np.iinfo(np.int64).min
+        self._imu_ns = 0
         self._points: SpinningPoints | MirrorPoints
         if isinstance(directions, MirrorTable):
             self._points = MirrorPoints(self._firing, directions, sensor)
