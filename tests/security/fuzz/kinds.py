@@ -37,6 +37,7 @@ from tests.security.fuzz import seeds_clouds as clouds
 from tests.security.fuzz import seeds_recordings as recordings
 from tests.security.fuzz import seeds_tables as tables
 from tests.security.fuzz.kind import Kind, Reading
+from tests.security.fuzz.kinds_hesai import HESAI_KINDS
 from tests.security.fuzz.kinds_live import LIVE_KINDS
 from tests.security.fuzz.kinds_livox import LIVOX_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
@@ -352,6 +353,9 @@ def _made(makers: tuple[Callable[[], bytes], ...]) -> tuple[bytes, ...]:
 
 KINDS: dict[str, Kind] = {
     kind.name: kind
-    for kind in (*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS, *LIVOX_KINDS, *ROBOSENSE_KINDS)
+    for kind in (
+        *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
+        *(*HESAI_KINDS, *LIVOX_KINDS, *ROBOSENSE_KINDS),
+    )
 }
 """By name."""

@@ -122,7 +122,7 @@ def test_inertial_samples_in_the_tails_come_once_each_at_the_time_of_their_packe
     stamp_us, _, payloads = spin(model, packets=60)
     of_packet = np.arange(60) // 5  # a sample every 5 packets
     values = inertial_values(12)
-    write_inertial(payloads, model.layout, 40 * of_packet, values[of_packet])
+    write_inertial(payloads, model.layout, clock=40 * of_packet, values=values[of_packet])
     with PcapWriter(tmp_path / "walk.pcap") as file:
         file.write(stamp_us * 1000 + 300_000, payloads, source="192.168.1.201")
 

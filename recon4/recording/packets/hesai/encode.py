@@ -75,14 +75,14 @@ def encode_packets(
     packets = np.zeros((len(stamp_us), layout.size), dtype=np.uint8)
     packets[:, : len(model.header)] = np.frombuffer(model.header, np.uint8)
     _write_blocks(packets, layout, blocks)
-    _write_tail(packets, layout, model, mode)
+    _write_tail(packets, model, mode)
     seconds, micros = np.divmod(np.asarray(stamp_us, dtype=np.int64), _MICROS)
     date = stamps.date_of(seconds)
     if layout.tail.date == 16:  # Pandar40P and Pandar64 count years from 2000
         date[:, 0] -= 100
     at = layout.tail_at
     packets[:, at + layout.tail.date : at + layout.tail.date + 6] = date
-    _write(packets, at + layout.tail.micros, micros, "<u4")
+    _write(packets, at + layout.tail.micros, micros, kind="<u4")
     checksums.write(packets, layout)
     return packets
 
@@ -95,7 +95,7 @@ def _write_blocks(packets: Payloads, layout: HesaiLayout, blocks: HesaiBlocks) -
         if layout.azimuth_at == 2:
             packets[:, start : start + 2] = np.frombuffer(PANDAR40P_BLOCK, np.uint8)
         coarse = azimuth[:, block] // 256 if fine else azimuth[:, block]
-        _write(packets, start + layout.azimuth_at, coarse, "<u2")
+        _write(packets, start + layout.azimuth_at, coarse, kind="<u2")
         if fine:
             packets[:, start + 2] = azimuth[:, block] % 256
         at = start + layout.returns_at + layout.return_bytes * np.arange(layout.channels)
@@ -104,14 +104,15 @@ def _write_blocks(packets: Payloads, layout: HesaiLayout, blocks: HesaiBlocks) -
         packets[:, at + 2] = np.asarray(blocks.intensity)[:, block]
 
 
-def _write_tail(packets: Payloads, layout: HesaiLayout, model: HesaiModel, mode: HesaiMode) -> None:
+def _write_tail(packets: Payloads, model: HesaiModel, mode: HesaiMode) -> None:
+    layout = model.layout
     at, tail, ones = layout.tail_at, layout.tail, np.ones(len(packets), dtype=np.int64)
     if tail.mode >= 0:
         packets[:, at + tail.mode] = mode.return_mode
-        _write(packets, at + tail.speed, ones * round(mode.rpm / model.speed_rpm), "<u2")
+        _write(packets, at + tail.speed, ones * round(mode.rpm / model.speed_rpm), kind="<u2")
     if tail.azimuth_flag >= 0:
         packets[:, at + tail.state] = mode.state
-        _write(packets, at + tail.azimuth_flag, ones * mode.azimuth_flag, "<u2")
+        _write(packets, at + tail.azimuth_flag, ones * mode.azimuth_flag, kind="<u2")
     if tail.sequence >= 0:
         packets[:, at + tail.sequence] = mode.sequence
 
@@ -119,6 +120,7 @@ def _write_tail(packets: Payloads, layout: HesaiLayout, model: HesaiModel, mode:
 def write_inertial(
     packets: Payloads,
     layout: HesaiLayout,
+    *,
     clock: NDArray[np.integer],
     values: NDArray[np.integer],
 ) -> None:
@@ -156,7 +158,7 @@ def encode_jt16_inertial(stamp_us: NDArray[np.integer], values: NDArray[np.integ
     return payloads
 
 
-def _write(packets: Payloads, at: int, values: NDArray[np.integer], kind: str) -> None:
+def _write(packets: Payloads, at: int, values: NDArray[np.integer], *, kind: str) -> None:
     """Numbers of one field, one a packet."""
     rows = np.asarray(values).astype(kind).view(np.uint8).reshape(len(packets), -1)
     packets[:, at : at + rows.shape[1]] = rows
