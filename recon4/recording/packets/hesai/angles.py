@@ -17,8 +17,6 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.recording.packets.family import Companion, PacketSensor
 
-_LARGEST = 1 << 20
-"""Longer files are no tables of angles [bytes]."""
 _SAME_MODEL_RAD = np.deg2rad(2.5)
 """Elevations of two units of one model differ by less [rad]."""
 _LIMITS_DEG = (90.0, 360.0)
@@ -71,8 +69,6 @@ def read_angles(companion: Companion) -> Angles | None:
 
 def _lines(companion: Companion) -> list[str]:
     """The lines behind the head of a table of angles; none = it is another file."""
-    if len(companion.content) > _LARGEST:
-        return []
     try:
         lines = companion.content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:

@@ -30,7 +30,7 @@ from recon4.recording.packets.hesai.layouts import HesaiLayout
 from recon4.recording.packets.hesai.mirrors import MirrorTable
 from recon4.recording.packets.hesai.models import HesaiModel
 from recon4.recording.packets.hesai.points import MirrorPoints, SpinningPoints
-from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -111,6 +111,8 @@ class HesaiFormat:
 
     def samples(self, datagrams: Datagrams, clock: SensorClock) -> PacketSamples | None:
         """Inertial samples in the data packets, or in own ones (JT16); counts ``imu_samples``."""
+        if not self.sample_sizes:
+            return None
         rows = np.flatnonzero(datagrams.length == self._inertial.size)
         payloads = datagrams.payloads(rows, self._inertial.size)
         found, taken = self._inertial.samples(payloads)
@@ -120,7 +122,7 @@ class HesaiFormat:
             return None
         self._imu_ns = int(t_ns[later][-1])
         self._sensor.report.count("imu_samples", int(later.sum()))
-        t_ns = t_ns[later] + round(self._sensor.sensor.time_offset_s * stamps.SECOND_NS)
+        t_ns = t_ns[later] + round(self._sensor.sensor.time_offset_s * SECOND_NS)
         imu = ImuSamples(t_ns, found.gyro_rad_s[later], found.accel_m_s2[later])
         return PacketSamples(imu=imu)
 

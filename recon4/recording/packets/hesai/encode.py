@@ -22,8 +22,6 @@ from recon4.recording.packets.hesai.layouts import (
 )
 from recon4.recording.packets.hesai.models import HesaiModel
 
-_MICROS = 1_000_000
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class HesaiBlocks:
@@ -76,7 +74,7 @@ def encode_packets(
     packets[:, : len(model.header)] = np.frombuffer(model.header, np.uint8)
     _write_blocks(packets, layout, blocks)
     _write_tail(packets, model, mode)
-    seconds, micros = np.divmod(np.asarray(stamp_us, dtype=np.int64), _MICROS)
+    seconds, micros = np.divmod(np.asarray(stamp_us, dtype=np.int64), stamps.MICROS)
     date = stamps.date_of(seconds)
     if layout.tail.date == 16:  # Pandar40P and Pandar64 count years from 2000
         date[:, 0] -= 100
@@ -150,7 +148,7 @@ def encode_jt16_inertial(stamp_us: NDArray[np.integer], values: NDArray[np.integ
     """
     packets = np.zeros(len(stamp_us), dtype=JT16_SAMPLE)
     packets["start"] = np.frombuffer(START + bytes((1, 8, 0, 1)), np.uint8)
-    seconds, packets["micros"] = np.divmod(np.asarray(stamp_us, dtype=np.int64), _MICROS)
+    seconds, packets["micros"] = np.divmod(np.asarray(stamp_us, dtype=np.int64), stamps.MICROS)
     packets["date"] = stamps.date_of(seconds)
     packets["accel"], packets["gyro"] = values[:, :3], values[:, 3:]
     payloads = packets.view(np.uint8).reshape(-1, JT16_IMU_SIZE)

@@ -84,7 +84,7 @@ class Fields:
             key = key + (self.payloads[:, at + tail.sequence] & 1).astype(np.int64) * 4
         if tail.azimuth_flag >= 0:
             flags = self._u2(at + tail.azimuth_flag).astype(np.int64) >> 12
-            state = (self.payloads[:, at + tail.state] & 0x0F != 0).astype(np.int64)
+            state = (self.payloads[:, at + tail.state] & 0x0F != 0).astype(np.int64)  # 0 = high
             key = key + 4 * flags + 64 * state
         return key
 

@@ -33,8 +33,6 @@ RETURN_MODES = {
 RETURNS = np.ones(256, dtype=np.int64)
 RETURNS[list(RETURN_MODES)] = [count for _, count in RETURN_MODES.values()]
 """Returns of a shot by return mode byte; 1 = unknown."""
-HIGH_RESOLUTION = 0
-"""Operational state in which a Pandar128 or OT128 fires twice as often."""
 _FIRST_OT128, _FIRST_JT128 = 128, 137
 """Versions of the status of protocol 1.4 from which on the packets are of these."""
 
@@ -54,7 +52,7 @@ class HesaiModel:
     step_us: float
     """From the start of one block to the next in single return mode [µs]."""
     is_slower: bool = False
-    """Whether it fires half as often unless it is in `HIGH_RESOLUTION`."""
+    """Whether it fires half as often unless it is in high resolution."""
     stamp_of_first: bool = False
     """Whether the stamp is that of the first block, not of the last."""
     firing_us: Array

@@ -6,9 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.packets.sensor_clock import SECOND_NS
 
-SECOND_NS = 1_000_000_000
-_MICROS = 1_000_000
+MICROS = 1_000_000
+"""Microseconds of a second."""
 _FIRST, _LAST = (1, 1, 0, 0, 0), (12, 31, 23, 59, 60)
 """Least and largest month, day, hour, minute and second."""
 _LATEST_S = 1 << 33
@@ -25,7 +26,7 @@ def is_date(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> NDArray[np.b
     calendar = ((date[:, 1:] >= _FIRST) & (date[:, 1:] <= _LAST)).all(axis=1)
     counted = _seconds(date) < _LATEST_S
     dated = np.where(date[:, 0] == 0, counted, calendar)
-    return np.asarray(dated & (micros < _MICROS))
+    return np.asarray(dated & (micros < MICROS))
 
 
 def time_ns(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> Times:
