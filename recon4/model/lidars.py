@@ -111,8 +111,8 @@ _HESAI = (  # user manuals of Hesai, chapter "Specifications"; not all state a d
     replace(_XT32, name="XT32M2X", elevation_deg=(-20.8, 19.5), min_range_m=0.5),
     _PANDAR40P,
     replace(_PANDAR40P, name="Pandar64", beams=64),
-    replace(_PANDAR40P, name="Pandar128", beams=128),
-    replace(_PANDAR40P, name="OT128", beams=128),
+    replace(_PANDAR40P, name="Pandar128", beams=128, has_imu=True),
+    replace(_PANDAR40P, name="OT128", beams=128, has_imu=True),
     _QT64,
     replace(_QT64, name="QT128", beams=128, elevation_deg=(-52.6, 52.6), min_range_m=0.05),
     replace(
@@ -124,8 +124,8 @@ _HESAI = (  # user manuals of Hesai, chapter "Specifications"; not all state a d
         azimuth_deg=120.0,
         min_range_m=0.5,
     ),
-    replace(_QT64, name="JT16", beams=16, elevation_deg=(0.6, 40.7), range_m=30.0),
-    replace(_QT64, name="JT128", beams=128, elevation_deg=(-5.0, 90.0), range_m=30.0),
+    replace(_QT64, name="JT16", beams=16, elevation_deg=(0.6, 40.7), range_m=30.0, has_imu=True),
+    replace(_QT64, name="JT128", beams=128, elevation_deg=(-5.0, 90.0), range_m=30.0, has_imu=True),
 )
 
 _AVIA = LidarFacts(

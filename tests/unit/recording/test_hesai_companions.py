@@ -111,7 +111,7 @@ def samples_and_points(path, companions=()):
     capture = PacketCapture([path, *companions], None, settings=WIDE, report=report)
     parts = list(capture.read())
     shots = [part for part in parts if isinstance(part, Shots)]
-    imu = [part.imu for part in parts if not isinstance(part, Shots)]
+    imu = [part.imu for part in parts if not isinstance(part, Shots) and part.imu is not None]
     names = ("t_ns", "gyro_rad_s", "accel_m_s2")
     columns = [np.concatenate([getattr(one, name) for one in imu]) for name in names]
     return shots, columns, report
