@@ -98,12 +98,13 @@ def agreement(graph: PoseGraph, model: ErrorModel) -> GraphAgreement:
     xi = (of.T_i_j.inverse() @ graph.T_map_body[of.i].inverse() @ graph.T_map_body[of.j]).log()
     registered = of.in_graph & (of.j > of.i + 1)
     ratio: Array = np.ones(2)
-    if registered.sum() >= ERROR_MODEL.min_edges:
+    if registered.any():
         sizes = [
             np.linalg.norm(xi[registered][:, part], axis=1) for part in (ROTATION, TRANSLATION)
         ]
         usual = np.array([model.usual_rad, model.usual_m])
-        ratio = np.clip(np.median(sizes, axis=1) / usual, ERROR_MODEL.least, ERROR_MODEL.most)
+        measured = np.clip(np.median(sizes, axis=1) / usual, ERROR_MODEL.least, ERROR_MODEL.most)
+        ratio = measured ** min(registered.sum() / ERROR_MODEL.enough_edges, 1.0)
     moved, weight = np.zeros((len(graph) - 1, 6, 6)), np.zeros(len(graph) - 1)
     for edge, residual in zip(graph.edges, xi, strict=True):
         if edge.kind is EdgeKind.ODOMETRY and edge.j == edge.i + 1 and _is_strong(edge, model):
