@@ -48,8 +48,13 @@ JT16_SAMPLE = np.dtype(
     ]
 )
 _JT16_START = np.frombuffer(START + bytes((1, 8)), np.uint8)
-_ACCEL_G, _GYRO_DEG_S = 1e-6, 1e-5
-_JT16_G, _JT16_DEG_S = 1 / 8192, 1 / 32.8
+
+
+class _Units:
+    """Of accelerations [g] and angular rates [°/s]: of the units in a tail, and of a JT16."""
+
+    TAIL_G, TAIL_DEG_S = 1e-6, 1e-5
+    JT16_G, JT16_DEG_S = 1 / 8192, 1 / 32.8
 
 
 class Inertial(Protocol):
@@ -97,8 +102,8 @@ class TailInertial:
         if len(rows):
             self._clock = int(clock[rows[-1]])
         found = found[new]
-        accel_g = found["accel"] * (_ACCEL_G * found["accel_unit"][:, None])
-        gyro_deg_s = found["gyro"] * (_GYRO_DEG_S * found["gyro_unit"][:, None])
+        accel_g = found["accel"] * (_Units.TAIL_G * found["accel_unit"][:, None])
+        gyro_deg_s = found["gyro"] * (_Units.TAIL_DEG_S * found["gyro_unit"][:, None])
         t_ns = stamps.time_ns(fields.date[new], fields.micros[new])
         return _samples(t_ns, accel_g, gyro_deg_s), new
 
@@ -116,7 +121,9 @@ class Jt16Inertial:
         sound &= jt16_sums(payloads) == found["crc"]
         found = found[sound]
         t_ns = stamps.time_ns(found["date"], found["micros"])
-        return _samples(t_ns, found["accel"] * _JT16_G, found["gyro"] * _JT16_DEG_S), sound
+        return _samples(
+            t_ns, found["accel"] * _Units.JT16_G, found["gyro"] * _Units.JT16_DEG_S
+        ), sound
 
 
 def jt16_sums(payloads: Payloads) -> NDArray[np.uint32]:

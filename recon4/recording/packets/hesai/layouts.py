@@ -100,6 +100,16 @@ class HesaiLayout:
         return 0 if self.tail is _JT16 else self.tail_at
 
 
+class _Bytes:
+    """Sizes of optional parts of a packet [bytes]."""
+
+    CRC = 4
+    SAFETY = 17
+    SIGNATURE = 32
+    SEQUENCE = 4
+    IMU = 22
+
+
 @dataclass(frozen=True, slots=True)
 class _Protocol:
     """What is alike in the packets of one version."""
@@ -123,7 +133,6 @@ _PROTOCOLS = {
 }
 _PANDAR64 = _Protocol(_PANDAR, header=8, return_bytes=3)
 _PANDAR64_SIZES = (1194, 1198)
-_CRC, _SAFETY, _SIGNATURE, _SEQUENCE, _IMU = 4, 17, 32, 4, 22
 _MAX_SHOTS = 1024
 """More returns do not fit into a datagram of Ethernet."""
 
@@ -162,7 +171,12 @@ def _with_header(size: int, protocol: _Protocol, header: bytes) -> HesaiLayout |
     returns_at = 3 if protocol.fine_azimuth else 2
     block_bytes = returns_at + return_bytes * channels
     safety = protocol.sums and not protocol.fine_azimuth and bool(flags & Flag.SAFETY)
-    tail_at = protocol.header + block_bytes * blocks + _CRC * protocol.sums + _SAFETY * int(safety)
+    tail_at = (
+        protocol.header
+        + block_bytes * blocks
+        + _Bytes.CRC * protocol.sums
+        + _Bytes.SAFETY * int(safety)
+    )
     rest = size - tail_at - protocol.tail.size
     layout = HesaiLayout(
         size=size,
@@ -185,19 +199,19 @@ def _behind_tail(at: int, protocol: _Protocol, flags: Flag) -> dict[str, int]:
     """Offsets of the optional parts behind the tail, by field of `HesaiLayout`."""
     if not protocol.sums:
         return {}
-    at += _SEQUENCE * bool(flags & Flag.SEQUENCE)
+    at += _Bytes.SEQUENCE * bool(flags & Flag.SEQUENCE)
     has_imu = protocol.tail is _PANDAR128 and bool(flags & Flag.IMU)
-    return {"imu_at": at if has_imu else -1, "crc_at": at + _IMU * has_imu}
+    return {"imu_at": at if has_imu else -1, "crc_at": at + _Bytes.IMU * has_imu}
 
 
 def _rests(protocol: _Protocol, flags: Flag) -> tuple[int, ...]:
     """Bytes that may follow the tail."""
     if not protocol.sums:  # old firmware leaves the flag of the sequence number at 0
-        return (0, _SEQUENCE)
-    sequence = _SEQUENCE * bool(flags & Flag.SEQUENCE)
-    imu = _IMU * (protocol.tail is _PANDAR128 and bool(flags & Flag.IMU))
-    least = sequence + imu + _CRC
-    return (least + _SIGNATURE * bool(flags & Flag.SIGNATURE),)
+        return (0, _Bytes.SEQUENCE)
+    sequence = _Bytes.SEQUENCE * bool(flags & Flag.SEQUENCE)
+    imu = _Bytes.IMU * (protocol.tail is _PANDAR128 and bool(flags & Flag.IMU))
+    least = sequence + imu + _Bytes.CRC
+    return (least + _Bytes.SIGNATURE * bool(flags & Flag.SIGNATURE),)
 
 
 def _pandar40p(size: int) -> HesaiLayout:
@@ -229,5 +243,5 @@ def _jt16() -> HesaiLayout:
         unit_mm=4,
         tail_at=6,
         tail=_JT16,
-        crc_at=JT16_SIZE - _CRC,
+        crc_at=JT16_SIZE - _Bytes.CRC,
     )

@@ -22,10 +22,17 @@ CIRCLE = 360 * 100 * 256
 """Units of azimuth in a full turn of the drum."""
 NODES = 180
 """Corrections a channel, one every 2°."""
-_HEADER = 16
-_VERSION = (1, 5)
-_SIGNATURE = 32
-_CHANNELS = 128
+
+
+class _TableFile:
+    """The binary file."""
+
+    HEADER = 16
+    """Bytes in front of the tables."""
+    VERSION = (1, 5)
+    SIGNATURE = 32
+    """Bytes behind them."""
+    CHANNELS = 128
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,15 +54,19 @@ class MirrorTable:
 def read_mirrors(companion: Companion) -> MirrorTable | None:
     """The angle table in a file; None = it is another file, or of another version."""
     content = companion.content
-    if content[:2] != START or tuple(content[2:4]) != _VERSION or len(content) < _HEADER:
+    if (
+        content[:2] != START
+        or tuple(content[2:4]) != _TableFile.VERSION
+        or len(content) < _TableFile.HEADER
+    ):
         return None
     channels, frames, resolution = content[4], content[6], content[15]
     sizes = (4 * frames, 4 * frames, 4 * channels, 4 * channels, NODES * channels, NODES * channels)
-    if channels != _CHANNELS or not 0 < frames <= 8 or not resolution:
+    if channels != _TableFile.CHANNELS or not 0 < frames <= 8 or not resolution:
         return None
-    if len(content) != _HEADER + sum(sizes) + _SIGNATURE:
+    if len(content) != _TableFile.HEADER + sum(sizes) + _TableFile.SIGNATURE:
         return None
-    cuts = np.cumsum((_HEADER, *sizes))
+    cuts = np.cumsum((_TableFile.HEADER, *sizes))
     parts = [content[a:b] for a, b in pairwise(cuts)]
     start = np.frombuffer(parts[0], "<u4").astype(np.int64) * resolution
     azimuth, elevation = (np.frombuffer(p, "<i4").astype(np.int64) * resolution for p in parts[2:4])
