@@ -195,3 +195,36 @@ class CalibrationStageTuning:
 
 
 CALIBRATION_STAGE = CalibrationStageTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrajectoryPairTuning:
+    """Mount and clock from two trajectories (docs/explanation/calibration.md)."""
+
+    shortest_s: float = 20.0
+    """A shorter walk has too few turns [s]."""
+    step_s: float = 0.1
+    """From one motion to the next [s]."""
+    turn_s: float = 0.5
+    """Duration of the rotations that are correlated [s]."""
+    motion_s: float = 1.0
+    """Duration of a motion: long enough for turns above the noise of a LiDAR odometry, short enough
+    for its drift [s]."""
+    most_refined_s: float = 0.5
+    """How far the correlation may be off [s]."""
+    least_turn_deg: float = 1.0
+    """Rotation about a second axis that shows the mount [°]."""
+    sd_rad: float = 0.02
+    """Usual error of a motion [rad]."""
+    sd_m: float = 0.05
+    """Usual error of a motion [m]."""
+    most_rad: float = 0.2
+    most_m: float = 0.4
+    """A motion that differs by more was lost by one of the two [rad, m]."""
+    most_rounds: int = 40
+    """Steps of the least squares; trajectories of two walks never settle."""
+    least_agreeing: float = 0.5
+    """Ratio of motions that must agree."""
+
+
+TRAJECTORY_PAIR = TrajectoryPairTuning()

@@ -20,7 +20,8 @@ calibration = typer.Typer()
 @calibration.command()
 def calibrate(  # noqa: PLR0913 - an argument for each option
     recordings: Annotated[
-        list[Path], typer.Argument(help="pcap, bag or folder of clouds; for pairs: a CSV.")
+        list[Path],
+        typer.Argument(help="pcap, bag or folder of clouds; pairs: CSV; trajectories: 2 TUM."),
     ],
     *,
     rig: Annotated[str, typer.Option(help="Rig preset or .toml to begin with.")],
@@ -29,10 +30,11 @@ def calibrate(  # noqa: PLR0913 - an argument for each option
     gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
     method: Annotated[
         str,
-        typer.Option(help="joint, maps, gravity, entropy or pairs; page calibration of the docs."),
+        typer.Option(help="joint, maps, gravity, entropy, pairs, trajectories; page calibration."),
     ] = "joint",
     sensors: Annotated[
-        str, typer.Option(help="Only these, as vertical,imu,gnss; for pairs: the sensor.")
+        str,
+        typer.Option(help="Only these, as vertical,imu,gnss; pairs: one; trajectories: both."),
     ] = "",
     beams: Annotated[
         bool, typer.Option("--beams", help="Also range, elevation and azimuth of single beams.")

@@ -55,7 +55,7 @@ def _of_sensor(
     if not sensor.enabled or len(rows) < 2:
         return None
     xyz = np.ascontiguousarray(frame.xyz[rows])
-    band = _bands(xyz, frame.ring[rows], lidar_model(sensor.model), settings.most_bands)
+    band = _bands(xyz, frame.ring[rows], lidar_model(sensor.model), most=settings.most_bands)
     pairs = draw_pairs(
         xyz, band, int(band.max()) + 1, settings.azimuth_bins, settings.generated,
         settings.preserved, settings.max_length_per_range, _seed(settings.seed, frame, row),
@@ -68,7 +68,7 @@ def _of_sensor(
 
 
 def _bands(
-    xyz: NDArray[np.float32], ring: NDArray[np.uint8], model: LidarFacts, most: int
+    xyz: NDArray[np.float32], ring: NDArray[np.uint8], model: LidarFacts, *, most: int
 ) -> NDArray[np.uint8]:
     """Bands of elevation between which segments are drawn, (N,): the rings of the sensor.
 

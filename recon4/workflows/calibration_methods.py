@@ -26,6 +26,7 @@ from recon4.calibration.pose_pairs import (
     read_pose_pairs,
 )
 from recon4.calibration.slices import slice_points
+from recon4.calibration.trajectory_pair import align_trajectories
 from recon4.calibration.tuning import CalibrationTuning, EntropyTuning
 from recon4.calibration.walk import RecordedWalk
 from recon4.errors import CalibrationError, ConfigError
@@ -36,6 +37,7 @@ from recon4.model.calibration_figures import CalibrationFigures, ParameterFigure
 from recon4.model.rig import Rig
 from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.sources import Sources
 from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, CloudSlice
 from recon4.report.rig import DISPLAY_UNITS
@@ -79,7 +81,7 @@ class CalibrationChoice:
     """What is calibrated, and how."""
 
     method: str = "joint"
-    """``joint``, ``maps``, ``gravity``, ``entropy`` or ``pairs``."""
+    """``joint``, ``maps``, ``gravity``, ``entropy``, ``pairs`` or ``trajectories``."""
     sensors: str = ""
     """Names of the sensors to calibrate; empty = all."""
     beams: bool = False
@@ -106,7 +108,8 @@ def calibrate_by(
 
     Args:
         choice: The method, and what it calibrates.
-        sources: The recording, or a CSV file for ``pairs`` and ``gravity``, and the rig.
+        sources: The recording, or a CSV file for ``pairs`` and ``gravity``, two TUM files for
+            ``trajectories``, and the rig.
         folder: Project folder for multiframes and odometry.
         progress: Who watches.
 
@@ -301,12 +304,36 @@ def _known_to(found: PairAlignment) -> tuple[str, ...]:
     )
 
 
+def _trajectories(task: _Task) -> MethodResult:
+    rig, files = task.sources.rig, task.sources.recordings
+    assert rig is not None
+    if len(files) != 2:
+        raise ConfigError(f"expected the trajectories of two sensors (TUM), got {len(files)} files")
+    rows = {sensor.name: row for row, sensor in enumerate(rig.sensors)}
+    names = task.sensors.split(",") if task.sensors else list(rows)[:2]
+    if len(names) != 2 or not set(names) <= set(rows):
+        raise ConfigError(
+            f"expected --sensors A,B: the two sensors of the trajectories, of {', '.join(rows)}; "
+            f"got {task.sensors!r:.80}"
+        )
+    first, second = (rig.sensors[rows[name]] for name in names)
+    found = align_trajectories(*(read_tum(file) for file in files))
+    mounted = with_mount(rig, rows[second.name], first.T_body_sensor @ found.T_a_b)
+    clocked = replace(
+        mounted.sensors[rows[second.name]], time_offset_s=first.time_offset_s + found.offset_s
+    )
+    sensors = [clocked if sensor.name == second.name else sensor for sensor in mounted.sensors]
+    outcome = f"mount and clock of {second.name!r} against {first.name!r} from their trajectories"
+    return MethodResult(replace(mounted, sensors=tuple(sensors)), outcome, found.report_lines)
+
+
 _METHODS: dict[str, Callable[[_Task], MethodResult]] = {
     "joint": _joint,
     "maps": _maps,
     "gravity": _gravity,
     "entropy": _entropy,
     "pairs": _pairs,
+    "trajectories": _trajectories,
 }
 
 
