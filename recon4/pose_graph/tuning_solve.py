@@ -21,7 +21,7 @@ class ErrorModelTuning:
     """What a graph shows of its own errors."""
 
     enough_edges: int = 8
-    """So many registered edges show how wrong a walk is; fewer show a part of it, none nothing."""
+    """Registered edges that show how wrong a walk is; fewer show a part of it, none nothing."""
     least: float = 0.15
     most: float = 30.0
     """Bounds of the ratio of the errors of a walk to the usual ones."""

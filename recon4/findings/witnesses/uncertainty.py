@@ -19,17 +19,28 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.uncertainty import PoseUncertainty
 from recon4.pose_graph.uncertainty_files import uncertainty_figures
 
-_KNOWN_M, _KNOWN_PER_METER = 0.05, 0.001
-"""A shape is known well if twice its expected RMS is at most 5 cm and 0.1 % of the path [m] …"""
-_WORST = 3.0
-"""… and the 2σ of each single position at most this multiple of it."""
-_PLACED_M = 0.10
-"""A place on the earth is known well if twice its expected RMS is at most this [m]."""
-_UNKNOWN = 10.0
-"""What exceeds its limit by this factor is unknown."""
-_ANYWHERE_M = 100.0
-_HELPS = 0.8
-"""A control point is proposed if it leaves less than this ratio of the largest deviation."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class KnownLimits:
+    """How well a map must be known: as the proving ground judges what is right."""
+
+    shape_m: float = 0.05
+    shape_per_meter: float = 0.001
+    """A shape is known well if twice its expected RMS is at most this, and this part of the path …
+    """
+    worst: float = 3.0
+    """… and the 2σ of each single position at most this multiple of it."""
+    placed_m: float = 0.10
+    """A place on the earth is known well if twice its expected RMS is at most this [m]."""
+    unknown: float = 10.0
+    """What exceeds its limit by this factor is unknown."""
+    anywhere_m: float = 100.0
+    """A larger 2σ is quoted as above this [m]."""
+    helps: float = 0.8
+    """A control point is proposed if it leaves less than this ratio of the largest deviation."""
+
+
+LIMITS = KnownLimits()
 
 
 class Uncertainty:
@@ -42,7 +53,7 @@ class Uncertainty:
             return
         found = uncertainty_figures(walk.uncertainty, walk.final)
         known_m = 2.0 * found.largest_sd_m
-        helps = not known.fine and found.point_sd_m < _HELPS * found.largest_sd_m
+        helps = not known.fine and found.point_sd_m < LIMITS.helps * found.largest_sd_m
         point = {
             "point_from_s": found.point_from_s,
             "point_to_s": found.point_to_s,
@@ -55,8 +66,8 @@ class Uncertainty:
             "known_m": known_m,
             "at_s": found.at_s,
             "frame": "earth" if found.on_earth else "start",
-            "limited": known_m < _ANYWHERE_M,
-            "unlimited": known_m >= _ANYWHERE_M,
+            "limited": known_m < LIMITS.anywhere_m,
+            "unlimited": known_m >= LIMITS.anywhere_m,
         }
         yield finding(
             FindingKind.UNCERTAINTY,
@@ -94,8 +105,8 @@ class _Known:
     @property
     def excess(self) -> float:
         """The largest of them as a multiple of its limit."""
-        shape = max(self.shape_m, self.worst_m / _WORST) / self.limit_m
-        return max(shape, self.placed_m / _PLACED_M)
+        shape = max(self.shape_m, self.worst_m / LIMITS.worst) / self.limit_m
+        return max(shape, self.placed_m / LIMITS.placed_m)
 
     @property
     def fine(self) -> bool:
@@ -107,7 +118,7 @@ class _Known:
         """What it means for the map."""
         if self.fine:
             return Level.GOOD
-        return Level.CHECK if self.excess <= _UNKNOWN else Level.DO_NOT_USE
+        return Level.CHECK if self.excess <= LIMITS.unknown else Level.DO_NOT_USE
 
 
 def _known(walk: WalkRecord) -> _Known | None:
@@ -128,4 +139,4 @@ def _placed_m(stated: PoseUncertainty) -> float:
 
 
 def _limit_m(final: Trajectory) -> float:
-    return _KNOWN_M + _KNOWN_PER_METER * float(path_length_m(final)[-1])
+    return LIMITS.shape_m + LIMITS.shape_per_meter * float(path_length_m(final)[-1])
