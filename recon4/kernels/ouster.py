@@ -28,31 +28,44 @@ def _checksum_tables() -> NDArray[np.uint64]:
 CHECKSUM_TABLES = _checksum_tables()
 
 
+_LANES = 4
+"""Rows whose sums are computed side by side: each step waits for the one before it."""
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
-def checksums(payloads: NDArray[np.uint8], tables: NDArray[np.uint64]) -> NDArray[np.uint64]:
-    """CRC-64/XZ of each row, eight bytes at a time, (N,).
+def checksums(
+    words: NDArray[np.uint64], rest: NDArray[np.uint8], tables: NDArray[np.uint64]
+) -> NDArray[np.uint64]:
+    """CRC-64/XZ of each row, (N,).
 
     Args:
-        payloads: Rows of bytes, (N, S).
+        words: The rows, eight bytes at a time, (N, W).
+        rest: What is left of them, (N, K).
         tables: `CHECKSUM_TABLES`.
     """
-    out = np.empty(payloads.shape[0], np.uint64)
     low = np.uint64(0xFF)
-    for row in range(payloads.shape[0]):
-        payload = payloads[row]
-        crc, at = _ALL_ONES, 0
-        while at + 8 <= payload.shape[0]:
-            mixed = np.uint64(0)
-            for k in range(8):
-                index = (crc >> np.uint64(8 * k) ^ np.uint64(payload[at + k])) & low
-                mixed ^= tables[7 - k, index]
-            crc = mixed
-            at += 8
-        while at < payload.shape[0]:
-            crc = crc >> np.uint64(8) ^ tables[0, (crc ^ np.uint64(payload[at])) & low]
-            at += 1
-        out[row] = crc ^ _ALL_ONES
-    return out
+    out = np.empty(words.shape[0], np.uint64)
+    out[:] = _ALL_ONES
+    for first in range(0, words.shape[0], _LANES):
+        last = min(first + _LANES, words.shape[0])
+        for w in range(words.shape[1]):
+            for row in range(first, last):
+                x = out[row] ^ words[row, w]
+                out[row] = (
+                    tables[7, x & low]
+                    ^ tables[6, x >> np.uint64(8) & low]
+                    ^ tables[5, x >> np.uint64(16) & low]
+                    ^ tables[4, x >> np.uint64(24) & low]
+                    ^ tables[3, x >> np.uint64(32) & low]
+                    ^ tables[2, x >> np.uint64(40) & low]
+                    ^ tables[1, x >> np.uint64(48) & low]
+                    ^ tables[0, x >> np.uint64(56)]
+                )
+        for row in range(first, last):
+            for k in range(rest.shape[1]):
+                x = out[row]
+                out[row] = x >> np.uint64(8) ^ tables[0, (x ^ np.uint64(rest[row, k])) & low]
+    return out ^ _ALL_ONES
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")

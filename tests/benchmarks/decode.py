@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 import velodyne_decoder
 
+from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.packets.decoder import open_decoder
 from recon4.recording.packets.family import PacketSensor
@@ -23,11 +24,15 @@ from recon4.recording.packets.livox.models import LAYOUTS, PointLayout
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.sound import sound_points
 from recon4.recording.packets.livox.sound import stamps_ns as livox_stamps_ns
+from recon4.recording.packets.ouster.encode import metadata_json
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.security.fuzz.kinds_livox import model_of as livox_model
 from tests.security.fuzz.kinds_livox import packets_of as livox_packets
+from tests.security.fuzz.kinds_ouster import metadata_of as ouster_metadata
+from tests.security.fuzz.kinds_ouster import opened as ouster_format
+from tests.security.fuzz.kinds_ouster import packets_of as ouster_packets
 from tests.unit.recording.packet_builders import sensor, spin
 
 SENSORS = 2
@@ -35,6 +40,13 @@ PACKETS = 754
 """Packets of a VLP-16 per second."""
 LIVOX_PACKETS = 100
 """Different packets of a Livox, sent again and again."""
+OUSTERS = (
+    ("LEGACY", "OS0-32"),
+    ("RNG19_RFL8_SIG16_NIR16", "OS1-64"),
+    ("RNG15_RFL8_NIR8", "OS1-128"),
+    ("RNG19_RFL8_SIG16_NIR16_DUAL", "OS1-128"),
+)
+"""Profile and model."""
 BATCH = 76
 """Packets of a revolution: as they come in the messages of a bag."""
 
@@ -87,6 +99,25 @@ def livox(layout: PointLayout) -> Callable[[], int]:
     return work
 
 
+def ouster(profile: str, model: str) -> Callable[[], int]:
+    """One second of an Ouster at 10 Hz and 1024 columns: filter, clock's stamps and decode."""
+    metadata = ouster_metadata(profile, model)
+    packets = round(10 * metadata.columns_per_turn / metadata.layout.columns)
+    payloads = ouster_packets(metadata, packets)
+    head = datagrams_of(range(8), [row.tobytes() for row in payloads[:8]])
+    layout = ouster_format(metadata_json(metadata), head, ImportReport())
+
+    def work() -> int:
+        points = 0
+        for batch in np.array_split(payloads, 10):
+            assert layout.sound(batch).all()
+            layout.azimuth_cdeg(batch)
+            points += len(layout.decode(layout.stamps_ns(batch), batch))
+        return points
+
+    return work
+
+
 def from_file(path: Path) -> int:
     """Read a pcap of both sensors; returns the datagrams."""
     return sum(len(batch) for batch in read_pcap(path, ImportReport()))
@@ -130,6 +161,10 @@ def main(rounds: int) -> None:
     for layout in LAYOUTS:
         median, best, result = milliseconds(rounds, livox(layout))
         name = f"Livox SDK{layout.sdk}, data type {layout.data_type}"
+        print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
+    for profile, model in OUSTERS:
+        median, best, result = milliseconds(rounds, ouster(profile, model))
+        name = f"{model} {profile}"
         print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
 
 

@@ -40,6 +40,7 @@ from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.kinds_hesai import HESAI_KINDS
 from tests.security.fuzz.kinds_live import LIVE_KINDS
 from tests.security.fuzz.kinds_livox import LIVOX_KINDS
+from tests.security.fuzz.kinds_ouster import OUSTER_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
 from tests.security.fuzz.kinds_robosense import ROBOSENSE_KINDS
 
@@ -355,7 +356,7 @@ KINDS: dict[str, Kind] = {
     kind.name: kind
     for kind in (
         *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
-        *(*HESAI_KINDS, *LIVOX_KINDS, *ROBOSENSE_KINDS),
+        *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS),
     )
 }
 """By name."""

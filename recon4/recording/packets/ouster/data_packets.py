@@ -198,7 +198,7 @@ class OusterPackets:
 
     def _checksum_fits(self, payloads: Payloads) -> NDArray[np.bool_]:
         stated = self._layout.records(payloads)["crc"]
-        return np.asarray(checksums(payloads[:, :-_CHECKSUM_BYTES]) == stated)
+        return np.asarray(checksums(payloads) == stated)
 
     def _limits(self) -> NDArray[np.int64]:
         """Smallest and largest range that is kept [units]."""
@@ -208,8 +208,14 @@ class OusterPackets:
 
 
 def checksums(payloads: Payloads) -> NDArray[np.uint64]:
-    """CRC-64 of each row, as the footers of firmware 3.1 and later have it, (N,)."""
-    return kernel.checksums(np.ascontiguousarray(payloads), kernel.CHECKSUM_TABLES)
+    """CRC-64 of all but the last 8 bytes of each row, where firmware 3.1 and later has it, (N,)."""
+    size = payloads.shape[1] - _CHECKSUM_BYTES
+    if payloads.shape[1] % 8 == 0:
+        words = np.ascontiguousarray(payloads).view("<u8")[:, :-1]
+    else:
+        words = np.ascontiguousarray(payloads[:, : size // 8 * 8]).view("<u8")
+    rest = np.ascontiguousarray(payloads[:, size // 8 * 8 : size])
+    return kernel.checksums(words, rest, kernel.CHECKSUM_TABLES)
 
 
 def _pixel_arguments(

@@ -97,7 +97,7 @@ def encode_packets(metadata: OusterMetadata, returns: ColumnReturns) -> NDArray[
     packets["columns"] = columns
     payloads = packets.view(np.uint8).reshape(len(packets), layout.size)
     if profile.name != LEGACY:
-        packets["crc"] = checksums(payloads[:, :-8])
+        packets["crc"] = checksums(payloads)
     return payloads
 
 
