@@ -27,7 +27,11 @@ _DEGRADED_MATCH_RATIO, _DEGRADED_ERROR_M, _DEGRADED_OFFSET_M = 0.4, 0.08, 0.25
 
 @dataclass(frozen=True, slots=True)
 class CaptureFinding:
-    """One line on the phone."""
+    """One line on the phone about the capture now: what fails, and what the operator can do.
+
+    It has no code: it ends with its cause. What stays true of the map is a finding with a code,
+    which `WalkSoFar` keeps and puts into a line of its own.
+    """
 
     level: Level
     text: str

@@ -24,7 +24,6 @@ from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig, parse_rig
 from recon4.recording.formats.cloud_files import read_cloud
-from recon4.recording.formats.poses import read_kitti
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.info import describe
 from recon4.recording.samples.csv_files import IMU_HEADER, read_gnss_csv, read_imu_csv
@@ -82,10 +81,6 @@ def sparse(path: Path, head: bytes | str, size: int = SPARSE) -> Path:
     return path
 
 
-def kitti(path: Path) -> object:
-    return read_kitti(path, np.arange(3, dtype=np.int64))
-
-
 SPARSE_FILES = {
     "pcd": ("a.pcd", _PCD.format(count=SPARSE // 12, data="binary"), read_points, "400000000"),
     "pcd-frame": ("a.pcd", _PCD.format(count=SPARSE // 13, data="binary"), read_cloud, "frame"),
@@ -138,7 +133,6 @@ SPARSE_FILES = {
     "markers": ("m.csv", "name,x_m,y_m,z_m\n", read_markers, "at most 16777216 bytes"),
     "tum": ("a.tum", "1 0 0 0 0 0 0 1\n", find_trajectory, "at most 1073741824 bytes"),
     "tum-line": ("a.tum", "1 0 0 0 0 0 0 1\n", find_trajectory, "line 2"),
-    "kitti": ("a.txt", "1 0 0 0 0 1 0 0 0 0 1 0\n", kitti, "at most 1073741824 bytes"),
     "rig": ("rig.toml", 'name = "a"\n', load_rig, "expected at most 131072 bytes, got 7516192768"),
 }
 SIZES = {"obj-4-gib": 3 << 30, "csv-imu-line": 1 << 30, "tum-line": 1 << 30}

@@ -58,7 +58,7 @@ def read_tum(path: Path, report: ImportReport | None = None) -> Trajectory:
     """
     report = report or ImportReport()
     damaged = DamagedLines(report, "poses_damaged")
-    table = _Table.read(path, damaged, width=8, head=True)
+    table = _Table.read(path, damaged)
     order = _tum_order(path)
     unit_ns = _unit_ns(float(np.median(table.values[:, order[0]]))) if len(table.values) else 1
     rows, times = [], []
@@ -113,35 +113,6 @@ def write_tum(path: Path, trajectory: Trajectory) -> None:
             file.write(f"{_seconds(t)} {place} {turn}\n")
 
 
-def read_kitti(path: Path, t_ns: Times, report: ImportReport | None = None) -> Trajectory:
-    """Read lines of twelve numbers, the upper rows of 4x4 matrices.
-
-    Args:
-        path: The file.
-        t_ns: The times that the file does not hold [ns], as many as lines.
-        report: As for `read_tum`.
-
-    Raises:
-        CorruptFile: If too many lines are damaged, naming the first and what is wrong with it.
-        EmptyRecording: If there is no pose.
-    """
-    report = report or ImportReport()
-    damaged = DamagedLines(report, "poses_damaged")
-    table = _Table.read(path, damaged, width=12)
-    if table.total != len(t_ns):
-        raise CorruptFile(f"{path.name}: {len(t_ns)} poses expected, got {table.total}")
-    matrices = table.values.reshape(-1, 3, 4)
-    R = matrices[..., :3]
-    off = np.abs(R @ np.swapaxes(R, -1, -2) - np.eye(3)).max(axis=(1, 2))
-    sound = (off <= _ROTATION_TOLERANCE) & (np.linalg.det(R) > 0.0)
-    for row in np.flatnonzero(~sound):
-        damaged.add(CorruptFile(f"{table.where(int(row))}: not a rotation"))
-    damaged.finish(int(np.count_nonzero(sound)))
-    report.count("poses", int(np.count_nonzero(sound)))
-    times = t_ns[np.array(table.places, np.intp)[sound]]
-    return Trajectory(times, SE3(R[sound], matrices[sound, :, 3]))
-
-
 def _check_length(quaternion: Array, where: str) -> None:
     norm = float(np.linalg.norm(quaternion))
     if not abs(norm - 1.0) <= _ROTATION_TOLERANCE:
@@ -184,54 +155,48 @@ class _Table:
     """First word of each row, as text: a float64 cannot hold nanoseconds since 1970."""
     lines: array[int]
     """Line number of each row."""
-    places: array[int]
-    """Place of each row among all rows of the file, damaged ones too, from 0."""
-    total: int
-    """Number of all rows."""
     values: Array
-    """(N, width), finite."""
+    """(N, 8), finite."""
 
     @staticmethod
-    def read(path: Path, damaged: DamagedLines, *, width: int, head: bool = False) -> _Table:
-        """Rows of ``width`` numbers, separated by blanks or commas; ``#`` starts a comment.
+    def read(path: Path, damaged: DamagedLines) -> _Table:
+        """Rows of eight numbers, separated by blanks or commas; ``#`` starts a comment.
 
-        With ``head`` the first line may be names of columns.
+        The first line may be names of columns.
 
         Raises:
             EmptyRecording: If there is no row.
         """
         first: list[str] = []
-        lines, places, values = array("q"), array("q"), array("d")
+        lines, values = array("q"), array("d")
         for number, cells in _cells(path, damaged):
-            if head and not first and _order_of(cells) is not None:
+            if not first and _order_of(cells) is not None:
                 continue
             try:
-                values.extend(_numbers(cells, width, f"{path.name}: line {number}"))
+                values.extend(_numbers(cells, f"{path.name}: line {number}"))
             except CorruptFile as error:
                 damaged.add(error)
                 continue
-            places.append(len(first) + damaged.number)
             first.append(cells[0])
             lines.append(number)
         if not first:
             damaged.check(0)
             raise EmptyRecording(f"{path.name}: no poses")
-        total = len(first) + damaged.number
-        return _Table(path.name, first, lines, places, total, np.array(values).reshape(-1, width))
+        return _Table(path.name, first, lines, np.array(values).reshape(-1, 8))
 
     def where(self, row: int) -> str:
         """File and line of a row, for messages."""
         return f"{self.name}: line {self.lines[row]}"
 
 
-def _numbers(cells: list[str], width: int, where: str) -> list[float]:
+def _numbers(cells: list[str], where: str) -> list[float]:
     try:
-        if len(cells) != width or any("_" in cell for cell in cells):
+        if len(cells) != 8 or any("_" in cell for cell in cells):
             raise ValueError(f"{len(cells)} columns")
         row = [float(cell) for cell in cells]
     except ValueError as error:
         raise CorruptFile(
-            f"{where}: expected {width} numbers, got {len(cells)}: {' '.join(cells)[:80]!r}"
+            f"{where}: expected 8 numbers, got {len(cells)}: {' '.join(cells)[:80]!r}"
         ) from error
     if not all(map(math.isfinite, row)):
         raise CorruptFile(f"{where}: expected finite numbers, got one that is not")

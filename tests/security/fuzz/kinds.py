@@ -19,7 +19,6 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.rig import load_rig
 from recon4.pose_graph.files import load_graph
 from recon4.recording.folders import list_frames, read_frames
-from recon4.recording.formats.poses import read_kitti
 from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
@@ -93,10 +92,6 @@ def _lines(read: Callable[[Path, ImportReport], Sized], path: Path) -> Reading:
     _info(path)
     report = ImportReport()
     return Reading(len(read(path, report)), salvaged=bool(report.lost()))
-
-
-def _kitti(path: Path, report: ImportReport) -> Sized:
-    return read_kitti(path, np.arange(25, dtype=np.int64), report)
 
 
 def _rig(path: Path) -> Reading:
@@ -244,7 +239,6 @@ _ALL = (
         read=partial(_lines, find_trajectory),
         knows_end=False,
     ),
-    Kind(name="kitti", file_name="poses.txt", seeds=tables.kitti, read=partial(_lines, _kitti)),
     Kind(
         name="npz-trajectory",
         file_name="trajectory.npz",

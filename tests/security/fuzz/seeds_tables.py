@@ -17,7 +17,7 @@ from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
-from recon4.recording.formats.poses import write_kitti, write_tum
+from recon4.recording.formats.poses import write_tum
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.slices.imports import write_tiles
 from recon4.store.arrays import save_trajectory
@@ -106,11 +106,6 @@ def tum() -> tuple[bytes, ...]:
 
 
 @cache
-def kitti() -> tuple[bytes, ...]:
-    """Twelve numbers a line."""
-    return (_file(lambda path: write_kitti(path, walk())),)
-
-
 def rig() -> Rig:
     """The thesis's rig."""
     return load_rig("4recon")

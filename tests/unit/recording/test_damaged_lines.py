@@ -7,7 +7,7 @@ from recon4.errors import CorruptFile
 from recon4.evaluation.evaluate import evaluate
 from recon4.model.samples import ImuSamples
 from recon4.recording.formats.columns import read_columns
-from recon4.recording.formats.poses import read_kitti, read_tum
+from recon4.recording.formats.poses import read_tum
 from recon4.recording.frame_times import frame_times, read_times
 from recon4.recording.info import describe
 from recon4.recording.report import ImportReport
@@ -110,17 +110,6 @@ def test_one_wrong_pose_is_left_out(tmp_path, pose):
 
     assert np.setdiff1d(np.arange(ROWS), poses.t_ns // 10**9).tolist() == [40]
     assert "line 41" in report.text("poses_damaged")
-
-
-def test_poses_without_times_keep_theirs_when_a_line_is_damaged(tmp_path):
-    rows = [f"1 0 0 {k} 0 1 0 0 0 0 1 0" for k in range(ROWS)]
-    damaged = {20: b"1 0 0", 40: b"2 0 0 40 0 1 0 0 0 0 1 0", 60: b"\0\0\0"}
-    report = ImportReport()
-
-    poses = read_kitti(file_of(tmp_path / "p.txt", rows, "", damaged), np.arange(ROWS), report)
-
-    assert len(poses) == ROWS - 3 and report.counts["poses_damaged"] == 3
-    assert poses.T_a_b.t[:, 0].tolist() == poses.t_ns.tolist()
 
 
 def test_damaged_poses_are_said_by_the_evaluation(tmp_path):
