@@ -5,6 +5,7 @@ import re
 import pytest
 from playwright.sync_api import expect
 
+from tests.e2e.test_accessibility import AXE, RULES
 from tests.served import served
 
 pytestmark = pytest.mark.e2e
@@ -49,3 +50,23 @@ def test_the_site_leads_back_to_the_projects(server, page):
     page.get_by_role("link", name="Projects of this server").click()
 
     expect(page).to_have_url(f"{server.url}/")
+
+
+@pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")
+@pytest.mark.parametrize(
+    "path",
+    [
+        "index.html",  # headings, lists, cards
+        "how-to/slices.html",  # wide tables
+        "reference/python-api.html",  # code in colors
+        "explanation/odometry.html",  # equations
+    ],
+)
+def test_a_page_has_no_barrier_that_axe_finds(server, page, path):
+    page.goto(f"{server.url}/docs/{path}")
+    page.wait_for_function(SEARCH_IS_READY)
+    page.evaluate(AXE.read_text("utf-8"))
+
+    found = page.evaluate("(tags) => axe.run(document, { runOnly: tags })", RULES)["violations"]
+
+    assert [(one["id"], node["html"][:120]) for one in found for node in one["nodes"]] == []
