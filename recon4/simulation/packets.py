@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.lidars import lidar_model
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.velodyne.encode import (
@@ -67,12 +68,12 @@ def pack_imu(
     """Packets of the IMU in a LiDAR, which arrive a tenth of a millisecond after their sample."""
     lidar, sensor = setup.lidars[row], setup.rig.sensors[row]
     family = family_of(sensor.model)
-    built_in = family.imu(sensor.model)
-    assert built_in is not None
+    facts = lidar_model(sensor.model)
+    port = facts.sample_ports[0] if facts.sample_ports else sensor.port
     stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
     stamped = replace(samples, t_ns=setup.epoch_ns + stamps)
     payloads = family.imu_packets(lidar, stamped)
-    return Packets(row, samples.t_ns + _LATENCY_NS, payloads, built_in.port)
+    return Packets(row, samples.t_ns + _LATENCY_NS, payloads, port)
 
 
 def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup) -> None:

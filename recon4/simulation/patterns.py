@@ -16,9 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
 
-UINT16_UNITS = 65_535
-"""Longest distance in packets with 16 bits for it, in units."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Directions:
@@ -84,8 +81,8 @@ class FiringPattern:
     motion: BeamMotion
     unit_m: float
     """Of a distance in a packet [m]."""
-    most_units: int = UINT16_UNITS
-    """Longest distance that a packet can hold."""
+    most_units: int = 65_535
+    """Longest distance that a packet can hold; most have 16 bits for it."""
     added_m: float = 0.0
     """The sensor states a range from another place than where the beam begins: larger by this."""
     turn_hz: float = 10.0

@@ -19,11 +19,6 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.simulation.patterns import Directions
 
-FIRST_HZ, SECOND_HZ = 7294.0 / 60.0, -4664.0 / 60.0
-"""Prisms of a Mid-40 (Brazeal et al. 2021, section 2): no common period within minutes."""
-_MOTOR_HZ = 10.0
-"""Rate of the imaginary motor whose turn measures time."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prisms:
@@ -34,12 +29,15 @@ class Prisms:
     """Half of the field of view [rad]."""
     lines: int
     """Lasers, side by side."""
-    line_rad: float = 0.0
+    line_rad: float = 0.007
     """From one laser to the next, in azimuth and elevation alike [rad]."""
+    turns: tuple[float, float] = (12.1567, -7.7733)
+    """Of both prisms in a turn of the motor of 0.1 s: those of a Mid-40, 7294 and -4664 rpm
+    (Brazeal et al. 2021, section 2)."""
 
     def directions(self, turn_rad: Array, laser: NDArray[np.int64]) -> Directions:
         """Sum of the deflections by both prisms."""
-        first, second = (turn_rad * hz / _MOTOR_HZ for hz in (FIRST_HZ, SECOND_HZ))
+        first, second = (turn_rad * turns for turns in self.turns)
         spread = self.line_rad * (laser - 0.5 * (self.lines - 1))
         margin = 0.5 * self.line_rad * (self.lines - 1)
         across = 0.5 * (self.half_azimuth_rad - margin)
@@ -56,20 +54,20 @@ class SwingingMirror:
     lowest_rad: float
     highest_rad: float
     """Elevations [rad]."""
-    turn_hz: float
-    swing_hz: float
-    """Their ratio is no ratio of small numbers."""
     lines: int
     """Lasers, above each other."""
-    line_rad: float
+    line_rad: float = 0.065
     """From one laser to the next [rad]."""
+    turns: float = 2.1703
+    swings: float = 17.3117
+    """In a turn of the motor of 0.1 s. Their ratio is no ratio of small numbers, and the web is as
+    dense as that in the user manual of the Mid-360."""
 
     def directions(self, turn_rad: Array, laser: NDArray[np.int64]) -> Directions:
         """Azimuth grows evenly, elevation is a sine."""
-        motor = turn_rad / _MOTOR_HZ
         middle = 0.5 * (self.lowest_rad + self.highest_rad)
         margin = self.line_rad * (self.lines - 1)
         reach = 0.5 * (self.highest_rad - self.lowest_rad - margin)
-        swing = reach * np.sin(motor * self.swing_hz)
+        swing = reach * np.sin(turn_rad * self.swings)
         elevation = middle + swing + self.line_rad * (laser - 0.5 * (self.lines - 1))
-        return Directions(motor * self.turn_hz, elevation, np.zeros((len(laser), 3)))
+        return Directions(turn_rad * self.turns, elevation, np.zeros((len(laser), 3)))

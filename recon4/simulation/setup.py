@@ -28,8 +28,6 @@ from recon4.simulation.worlds import build_world
 
 EPOCH_NS = 1_780_308_000_000_000_000
 """Start of every simulated walk: 2026-06-01T10:00:00Z."""
-_SAME_M, _SAME_RAD = 1e-3, 2e-3
-"""An IMU that is nearer to the place of a built-in one is that one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -106,6 +104,7 @@ def prepare(
     used, errors = _addressed(rig or load_rig("4recon")), models or Models()
     row = imu_row(used)
     if row is not None:
+        used = replace(used, T_body_imu=_imu_mount(used.sensors[row]))
         rate_hz = _built_in(used.sensors[row]).rate_hz
         errors = replace(errors, imu=replace(errors.imu, rate_hz=rate_hz))
     place = build_world(world) if isinstance(world, str) else world
@@ -138,9 +137,11 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
     used: set[int] = set()
     sensors: list[Sensor] = []
     for model, mount in zip(models, mounts.sensors, strict=False):
-        port = next(k for k in count(family_of(model).port(model)) if k not in used)
-        used.add(port)
-        if sensors and lidar_model(model).azimuth_deg < 360.0:
+        family_of(model)
+        facts = lidar_model(model)
+        port = next(k for k in count(facts.port) if k not in used)
+        used |= {port, *facts.sample_ports}
+        if sensors and facts.azimuth_deg < 360.0:
             back = SE3.from_rpy(0.0, 0.0, np.pi, t=mount.T_body_sensor.t)
             mount = replace(mount, name="back", T_body_sensor=back)
         sensors.append(replace(mount, model=model, port=port))
@@ -152,11 +153,19 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
 
 
 def imu_row(rig: Rig) -> int | None:
-    """Row of the LiDAR in which the IMU of the rig is, by its place; None = in none."""
+    """Row of the LiDAR in which the IMU of the rig is: named, or at this place; None = in none.
+
+    Raises:
+        ConfigError: If a LiDAR is not simulated, or the named one has no IMU that is.
+    """
     for row, sensor in enumerate(rig.sensors):
+        if sensor.name == rig.imu_sensor:
+            if family_of(sensor.model).imu(sensor.model) is None:
+                raise ConfigError(f"the IMU of a {sensor.model} is not simulated ({sensor.name})")
+            return row
         if family_of(sensor.model).imu(sensor.model) is not None:
             off = _imu_mount(sensor).inverse() @ rig.T_body_imu
-            if np.linalg.norm(off.t) < _SAME_M and float(off.angle()) < _SAME_RAD:
+            if np.allclose(off.matrix(), np.eye(4), atol=1e-3):
                 return row
     return None
 

@@ -5,11 +5,14 @@ from __future__ import annotations
 from recon4.errors import ConfigError
 from recon4.model.lidars import LIDARS, lidar_model
 from recon4.simulation.families.family import SimulatedFamily
+from recon4.simulation.families.hesai import HESAIS
 from recon4.simulation.families.livox import LIVOX
+from recon4.simulation.families.ouster import OUSTERS
+from recon4.simulation.families.robosense import ROBOSENSE
 from recon4.simulation.families.velodyne import VELODYNES
 from recon4.simulation.patterns import FiringPattern
 
-FAMILIES: tuple[SimulatedFamily, ...] = (VELODYNES, LIVOX)
+FAMILIES: tuple[SimulatedFamily, ...] = (VELODYNES, OUSTERS, HESAIS, ROBOSENSE, LIVOX)
 """By name as in `recon4.recording.packets.families`."""
 
 

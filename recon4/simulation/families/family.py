@@ -26,9 +26,7 @@ class BuiltInImu:
 
     p_sensor_imu: Array
     """Its place [m], (3,)."""
-    rate_hz: int
-    port: int
-    """UDP port of its packets."""
+    rate_hz: int = 200
 
 
 class SimulatedFamily(Protocol):
@@ -41,10 +39,6 @@ class SimulatedFamily(Protocol):
 
     def pattern(self, model: str) -> FiringPattern | None:
         """How a model fires; None = it is not simulated."""
-        ...
-
-    def port(self, model: str) -> int:
-        """UDP port of its data packets."""
         ...
 
     def imu(self, model: str) -> BuiltInImu | None:

@@ -18,16 +18,6 @@ from recon4.simulation.lidar import Firings, Lidar
 from recon4.simulation.patterns import BeamMotion, FiringPattern, even_shots
 from recon4.simulation.rosette import Prisms, SwingingMirror
 
-_LINE_RAD = float(np.deg2rad(0.4))
-"""From one laser to the next."""
-_MIRROR_LINE_RAD = float(np.deg2rad(3.7))
-_TURN_HZ, _SWING_HZ = 21.703, 173.117
-"""Of the mirror: its web is as dense as that in the user manual of the Mid-360."""
-_DATA_PORT = {1: 57000, 2: 56301}
-_IMU_PORT = {1: 57001, 2: 56401}
-"""By protocol: chosen by the host (SDK1), or fixed (SDK2)."""
-_IMU_HZ = 200
-
 
 def _layout(model: LivoxModel) -> PointLayout:
     """Cartesian, single return: what the models send if nothing else is set."""
@@ -42,16 +32,12 @@ def _motion(model: LivoxModel) -> BeamMotion:
         return SwingingMirror(
             lowest_rad=lowest,
             highest_rad=highest,
-            turn_hz=_TURN_HZ,
-            swing_hz=_SWING_HZ,
             lines=model.lines,
-            line_rad=_MIRROR_LINE_RAD,
         )
     return Prisms(
         half_azimuth_rad=float(np.deg2rad(0.5 * facts.azimuth_deg)),
         half_elevation_rad=0.5 * (highest - lowest),
         lines=model.lines,
-        line_rad=_LINE_RAD,
     )
 
 
@@ -84,16 +70,12 @@ class SimulatedLivox:
         """The outline of the data sheet, filled by an equation."""
         return _pattern(model) if model in MODELS else None
 
-    def port(self, model: str) -> int:
-        """Of the host."""
-        return _DATA_PORT[MODELS[model].sdk]
-
     def imu(self, model: str) -> BuiltInImu | None:
         """Of the models whose manual tells where it is."""
         made = MODELS[model]
         if made.imu_m is None:
             return None
-        return BuiltInImu(np.array(made.imu_m), _IMU_HZ, _IMU_PORT[made.sdk])
+        return BuiltInImu(np.array(made.imu_m))
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Points; the frame is that of the sensor."""

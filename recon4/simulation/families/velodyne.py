@@ -48,10 +48,6 @@ class SimulatedVelodynes:
         """By the tables of the decoder."""
         return _pattern(model) if model in MODELS else None
 
-    def port(self, model: str) -> int:
-        """As delivered."""
-        return 2368
-
     def imu(self, model: str) -> BuiltInImu | None:
         """None: those in the position packets of an HDL-32E are too coarse for odometry."""
         return None
