@@ -163,7 +163,8 @@ class PacketCapture:
         to_data = from_sensor & (datagrams.port == stream.port)
         whole = to_data & (datagrams.length == decoder.size)
         beside = from_sensor & np.isin(datagrams.length, list(decoder.sample_sizes))
-        self._report.count("packets_wrong_length", int((to_data & ~whole & ~beside).sum()))
+        other = to_data & ~whole & ~beside & ~np.isin(datagrams.length, self._sizes_at(stream))
+        self._report.count("packets_wrong_length", int(other.sum()))
         rows = np.flatnonzero(whole)
         if len(rows):  # first: they tell the clock best
             yield decoder.push(datagrams.t_ns[rows], datagrams.payloads(rows, decoder.size))
@@ -173,6 +174,12 @@ class PacketCapture:
         if len(rows) and channel.sensor.name in self._report.ahead_ns:
             ahead_ns = self._report.ahead_ns[channel.sensor.name] - self._report.utc_ahead_ns
             self._report.note_lag(LIDAR, -ahead_ns)
+
+    def _sizes_at(self, stream: PacketStream) -> list[int]:
+        """Bytes of the data packets of all sensors behind an address and port."""
+        here = (stream.source, stream.port)
+        at = [(c.decoder.size, c.streams[0]) for c in self._channels]
+        return [size for size, other in at if (other.source, other.port) == here]
 
     def _decode_samples(self, datagrams: Datagrams) -> Iterator[PacketSamples]:
         """Samples of an IMU or a GNSS receiver on separate ports."""
@@ -256,7 +263,7 @@ def _sensors_of(streams: list[PacketStream]) -> list[tuple[PacketStream, ...]]:
     groups: list[list[PacketStream]] = []
     for stream in sorted((s for s in streams if s.kind == "data"), key=lambda s: s.t_first_ns):
         for group in groups:
-            same = (group[-1].source, group[-1].port) == (stream.source, stream.port)
+            same = _place(group[-1]) == _place(stream)
             if same and stream.t_first_ns >= group[-1].t_end_ns:
                 group.append(stream)
                 break
@@ -264,6 +271,10 @@ def _sensors_of(streams: list[PacketStream]) -> list[tuple[PacketStream, ...]]:
             groups.append([stream])
     order = {id(stream): place for place, stream in enumerate(streams)}
     return sorted((tuple(group) for group in groups), key=lambda group: order[id(group[0])])
+
+
+def _place(stream: PacketStream) -> tuple[str, int, str]:
+    return stream.source, stream.port, stream.shared
 
 
 def _rig_of(groups: list[tuple[PacketStream, ...]]) -> Rig:
@@ -274,6 +285,7 @@ def _rig_of(groups: list[tuple[PacketStream, ...]]) -> Rig:
             T_body_sensor=SE3.identity(),
             address=streams[0].source,
             port=streams[0].port,
+            serial=streams[0].found.serial if streams[0].found and streams[0].shared else "",
         )
         for number, streams in enumerate(groups)
     )
@@ -295,6 +307,7 @@ def _match(
     left = list(groups)
     for row in sorted(range(len(sensors)), key=lambda row: not sensors[row].address):
         fitting = [s for s in left if fits(sensors[row], s[0].source, s[0].port)]
+        fitting = [s for s in fitting if _is_of(s[0], sensors[row])] or fitting
         if fitting:
             chosen[row] = _full(fitting, fitting)[0]
             left.remove(chosen[row])
@@ -313,6 +326,11 @@ def _match(
     for streams in left:
         report.warn(f"{streams[0].label}: the rig has no sensor for these packets; not read")
     return chosen
+
+
+def _is_of(stream: PacketStream, sensor: Sensor) -> bool:
+    """Whether a stream of an address and port that several sensors share is of this one."""
+    return not stream.shared or sensor.serial == (stream.found.serial if stream.found else "")
 
 
 def _full(

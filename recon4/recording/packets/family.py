@@ -82,6 +82,10 @@ class Recognized:
     """UTC minus time of arrival, where positions prove that GPS drives the sensor's clock."""
     remarks: tuple[str, ...] = ()
     """Warnings, as about a model byte that contradicts the data."""
+    rows: NDArray[np.bool_] | None = None
+    """Which of the datagrams are of this sensor, (N,); None = all."""
+    others: tuple[Recognized, ...] = ()
+    """Further sensors that send from the same address to the same port, with their rows."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

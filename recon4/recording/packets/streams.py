@@ -86,9 +86,18 @@ class PacketStream:
         return self.found.remarks if self.found else ()
 
     @property
+    def shared(self) -> str:
+        """Serial number (or size of the packets) where several sensors send from its address to
+        its port; else empty.
+        """
+        if self.found is None or self.found.rows is None:
+            return ""
+        return self.found.serial or f"{self.found.size} bytes"
+
+    @property
     def label(self) -> str:
         """Sender and port, for messages."""
-        return f"{self.source} to port {self.port}"
+        return f"{self.source} to port {self.port}{f' ({self.shared})' if self.shared else ''}"
 
     @property
     def text(self) -> str:
@@ -122,7 +131,11 @@ def scan_pcap(
     keys = head.datagrams.source.astype(np.int64) << 16 | head.datagrams.port
     _, first, packets = np.unique(keys, return_index=True, return_counts=True)
     first = first[np.argsort(-packets, kind="stable")[:MAX_STREAMS]]
-    streams = [_stream(head, keys == keys[row], companions) for row in sorted(first.tolist())]
+    streams = [
+        stream
+        for row in sorted(first.tolist())
+        for stream in _streams(head, keys == keys[row], companions)
+    ]
     streams.sort(key=lambda stream: KINDS.index(stream.kind))
     offsets = {s.source: s.utc_offset_ns for s in streams if s.kind == "samples"}
     return [_with_utc(stream, offsets.get(stream.source)) for stream in streams]
@@ -234,11 +247,33 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
     return _Head(path, join_datagrams(parts), read_ratio)
 
 
-def _stream(head: _Head, mine: NDArray[np.bool_], companions: Sequence[Companion]) -> PacketStream:
+def _streams(
+    head: _Head, mine: NDArray[np.bool_], companions: Sequence[Companion]
+) -> list[PacketStream]:
+    """What one sender sends to one port: one stream, or one of each sensor behind its address."""
     datagrams = head.datagrams.take(mine)
+    found = recognized(datagrams, companions)
+    if found is None:
+        kind = _samples_kind(datagrams.take(slice(_SAMPLES_TRIED)))
+        refused = _lengths_text(datagrams.length) if kind == "other" else ""
+        return [replace(_stream(head, datagrams), kind=kind, refused=refused)]
+    return [
+        replace(
+            _stream(head, datagrams if one.rows is None else datagrams.take(one.rows)),
+            kind=one.kind,
+            found=one,
+            utc_offset_ns=one.utc_offset_ns,
+            refused="; ".join(one.remarks) if one.kind == "other" else "",
+        )
+        for one in (found, *found.others)
+    ]
+
+
+def _stream(head: _Head, datagrams: Datagrams) -> PacketStream:
+    """The stream of some datagrams, whatever they are."""
     first, last = int(datagrams.t_ns[0]), int(datagrams.t_ns[-1])
     whole = head.read_ratio > 0.999
-    stream = PacketStream(
+    return PacketStream(
         file=head.file,
         source=address_text(int(datagrams.source[0])),
         port=int(datagrams.port[0]),
@@ -249,16 +284,6 @@ def _stream(head: _Head, mine: NDArray[np.bool_], companions: Sequence[Companion
         t_end_ns=last if whole else first + round((last - first) / head.read_ratio),
         whole=whole,
         head=datagrams.take(slice(_KEPT_PACKETS)),
-    )
-    found = recognized(datagrams, companions)
-    if found is None:
-        kind = _samples_kind(datagrams.take(slice(_SAMPLES_TRIED)))
-        return replace(
-            stream, kind=kind, refused=_lengths_text(datagrams.length) if kind == "other" else ""
-        )
-    refused = "; ".join(found.remarks) if found.kind == "other" else ""
-    return replace(
-        stream, kind=found.kind, found=found, utc_offset_ns=found.utc_offset_ns, refused=refused
     )
 
 

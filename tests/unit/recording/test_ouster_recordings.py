@@ -13,8 +13,14 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
+from recon4.recording.packets.family import Companion
+from recon4.recording.packets.ouster.encode import metadata_json
+from recon4.recording.packets.ouster.models import nominal_metadata
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
-from tests.unit.recording.ouster_packets import WIDE
+from tests.builders import T0_NS
+from tests.security.fuzz.kinds_ouster import packets_of
+from tests.unit.recording.ouster_packets import WIDE, datagrams_of, opened
 from tests.unit.recording.packet_builders import rig
 
 
@@ -127,3 +133,41 @@ def test_metadata_of_other_packets_is_named_with_both_sizes(beside):
 
     with pytest.raises(ConfigError, match=r"of packets of 12608 bytes .*those here have 6464"):
         read(path)
+
+
+def test_sensors_behind_one_address_and_port_are_told_apart(tmp_path):
+    one = nominal_metadata("OS1-32", serial="111")
+    same_size = nominal_metadata("OS0-32", serial="222")
+    larger = nominal_metadata("OS1-64", profile="LEGACY", serial="333")
+    path = tmp_path / "relay.pcap"
+    sent = {metadata.serial: packets_of(metadata, 40) for metadata in (one, same_size, larger)}
+    with PcapWriter(path) as file:
+        for k in range(40):
+            for place, payloads in enumerate(sent.values()):
+                t_ns = np.array([T0_NS + 1_562_500 * (k + 1) + 1000 * place])
+                file.write(t_ns, payloads[k : k + 1], source="10.0.0.7", port=7502)
+    for metadata in (one, same_size, larger):
+        (tmp_path / f"{metadata.serial}.json").write_bytes(metadata_json(metadata))
+    alike = {"T_body_sensor": SE3.identity(), "port": 7502}
+    sensors = [
+        Sensor(name="c", model="OS1-64", serial="333", **alike),
+        Sensor(name="b", model="OS0-32", serial="222", **alike),
+        Sensor(name="a", model="OS1-32", serial="111", **alike),
+    ]
+
+    report, shots, _ = read(path, sensors)
+
+    returns = [opened_alone(m, sent[m.serial]) for m in (larger, same_size, one)]
+    assert [points(shots[row]) for row in range(3)] == returns
+    assert report.warnings == []
+    assert report.counts["packets"] == 120
+    assert report.counts["packets_wrong_length"] == 0
+    steepest = [max(elevation_deg(p).max() for p in shots[row] if len(p)) for row in range(3)]
+    assert steepest == pytest.approx([21.0, 45.0, 21.0], abs=1.0)
+    found = {one.model: one.count for one in describe(path).sensors}
+    assert found == {"OS1-32": 40, "OS0-32": 40, "OS1-64": 40}
+
+
+def opened_alone(metadata, payloads):
+    packets = opened(datagrams_of(payloads), Companion("os.json", metadata_json(metadata)))
+    return len(packets.decode(packets.stamps_ns(payloads), payloads))

@@ -14,9 +14,20 @@ from recon4.model.rig import Sensor
 from recon4.recording.formats.datagrams import Datagrams, address_text
 from recon4.recording.packets.family import Companion, Payloads, same_start
 from recon4.recording.packets.ouster.columns import sound_columns
-from recon4.recording.packets.ouster.layouts import PacketLayout, numbers
+from recon4.recording.packets.ouster.layouts import (
+    FUSA_HEADER,
+    HEADER_BYTES,
+    STANDARD_HEADER,
+    TYPE_DATA,
+    PacketLayout,
+    numbers,
+)
 from recon4.recording.packets.ouster.metadata import OusterMetadata, read_metadata
 
+_SMALLEST_BYTES = 1000
+"""Data packets are larger, other packets are not."""
+_MOST_SENSORS, _FEWEST_RATIO = 8, 10
+"""Sensors behind one address; each sends more than a tenth of the packets."""
 _TRIED = 200
 """Packets at the head that are compared."""
 NEEDED = (
@@ -183,3 +194,31 @@ def _sender(head: Datagrams, sensor: Sensor | None) -> str:
     if sensor is not None:
         return sensor.name
     return address_text(int(head.source[0])) if len(head) else "a sensor"
+
+
+def parts_by_sensor(head: Datagrams) -> list[NDArray[np.bool_]]:
+    """Rows of the datagrams of each sensor behind one address, if several send data packets.
+
+    They differ by the serial numbers in the headers, or by the size of their packets.
+    """
+    data = head.length >= _SMALLEST_BYTES
+    serial = np.full(len(head), -1, dtype=np.int64)
+    rows = np.flatnonzero(data)
+    begin = head.payloads(rows, HEADER_BYTES)
+    for header in (STANDARD_HEADER, FUSA_HEADER):
+        record = np.ascontiguousarray(begin).view(header)[:, 0]
+        known = (record["type"] == TYPE_DATA) & (serial[rows] < 0)
+        serial[rows[known]] = numbers(record["serial"][known])
+    _, of, count = np.unique(
+        np.column_stack([serial, head.length])[data],
+        axis=0,
+        return_inverse=True,
+        return_counts=True,
+    )
+    usual = np.flatnonzero(_FEWEST_RATIO * count > data.sum())
+    if not 1 < len(usual) <= _MOST_SENSORS:
+        return [np.ones(len(head), dtype=np.bool_)]
+    parts = [np.zeros(len(head), dtype=np.bool_) for _ in usual]
+    for part, key in zip(parts, usual.tolist(), strict=True):
+        part[rows[of.reshape(-1) == key]] = True
+    return parts

@@ -102,15 +102,17 @@ class OusterPackets:
         if self._serial is None:
             self._judge(payloads[~wrong_type(self._layout, payloads)])
         columns = columns_of(self._layout, payloads)
+        foreign = wrong_type(self._layout, payloads)
+        other = self._is_other(payloads) & ~foreign
         faults = {
-            "packets_wrong_header": wrong_type(self._layout, payloads),
-            "packets_of_another_sensor": self._is_other(payloads),
+            "packets_wrong_header": foreign,
+            "packets_of_another_sensor": other,
             "packets_wrong_crc": self._is_damaged(payloads),
             "packets_wrong_columns": wrong_numbers(columns, self._turn),
             "packets_wrong_stamp": wrong_times(columns),
             _WITHOUT_COLUMNS: ~columns.valid.any(axis=1),
         }
-        self._report.count("packets", len(payloads))
+        self._report.count("packets", int((~other).sum()))
         sound = np.ones(len(payloads), dtype=np.bool_)
         for name, fault in faults.items():
             self._report.count(name, int((sound & fault).sum()))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from recon4.recording.packets.ouster.choice import (
     find_metadata,
     layout_fits,
     missing_text,
+    parts_by_sensor,
     sound_head,
     usual_serial,
 )
@@ -59,16 +61,14 @@ class OusterFamily:
 
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """What the datagrams of one sender to one port are; None = not of an Ouster."""
-        if not len(head):
-            return None
-        found = find_metadata(companions)
-        try:
-            fit = choose(head, found)
-        except ConfigError as error:
-            return _unknown(head, str(error))
-        if fit is not None and _most_are_known(head, fit.metadata.layout.size):
-            return _recognized(head, fit)
-        return _unknown(head, "; ".join([NEEDED, *found.damaged]))
+        parts = parts_by_sensor(head)
+        found = [_recognized_part(head.take(rows), companions) for rows in parts]
+        if len(parts) > 1 and all(one is not None and one.kind == "data" for one in found):
+            several = [
+                replace(one, rows=rows) for one, rows in zip(found, parts, strict=True) if one
+            ]
+            return replace(several[0], others=tuple(several[1:]))
+        return _recognized_part(head, companions)
 
     def describes(self, companion: Companion) -> bool:
         """Whether a file is the metadata of a sensor, sound or not."""
@@ -92,6 +92,20 @@ class OusterFamily:
             )
         _say(sensor, fit, found, columns=turning.columns)
         return OusterPackets(sensor, fit.metadata, turning)
+
+
+def _recognized_part(head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
+    """What the datagrams of one sensor are."""
+    if not len(head):
+        return None
+    found = find_metadata(companions)
+    try:
+        fit = choose(head, found)
+    except ConfigError as error:
+        return _unknown(head, str(error))
+    if fit is not None and _most_are_known(head, fit.metadata.layout.size):
+        return _recognized(head, fit)
+    return _unknown(head, "; ".join([NEEDED, *found.damaged]))
 
 
 def _recognized(head: Datagrams, fit: ChosenMetadata) -> Recognized:
