@@ -195,9 +195,15 @@ def _contradicted(knots_s: Array, extra: Array, usual: float) -> list[HeightCont
 
 
 def _rise_m(extra: Array) -> float:
-    """Height with the largest size that a stretch of accelerations leads to, from rest [m]."""
-    height_m = np.cumsum(np.cumsum(extra)) * RIDES.knot_s**2
-    return float(height_m[np.argmax(np.abs(height_m))])
+    """Height with the largest size that a stretch of accelerations leads to, from rest [m].
+
+    A speed that is left at its end carries on until the LiDARs correct it.
+    """
+    speed_m_s = np.cumsum(extra) * RIDES.knot_s
+    height_m = np.cumsum(speed_m_s) * RIDES.knot_s
+    carried_m = height_m[-1] + RIDES.same_ride_s * speed_m_s[-1]
+    reached_m = np.append(height_m, carried_m)
+    return float(reached_m[np.argmax(np.abs(reached_m))])
 
 
 def _contradiction(

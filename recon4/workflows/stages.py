@@ -285,7 +285,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 30, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    40,
+    41,
     OdometryReads,
     _odometry,
     OdometryFigures,

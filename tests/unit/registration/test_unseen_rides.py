@@ -129,6 +129,8 @@ def test_a_vertical_speed_that_changes_at_once_contradicts_an_imu_that_did_not_f
 
     assert [type(one) for one in contradictions] == found * [HeightContradiction]
     assert all(abs(one.start_s - 9.0) < 0.6 for one in contradictions)
+    # In the three seconds until the LiDARs may correct it.
+    assert all(one.rise_m == pytest.approx(3.5 * speed_m_s, rel=0.15) for one in contradictions)
 
 
 def test_a_step_of_a_lift_is_announced_but_forbids_nothing() -> None:
