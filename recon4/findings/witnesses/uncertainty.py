@@ -53,6 +53,8 @@ class Uncertainty:
             return
         found = uncertainty_figures(walk.uncertainty, walk.final)
         known_m = 2.0 * found.largest_sd_m
+        # Relative to the start it matters only where a control point may mend it.
+        stated = found.on_earth or not known.fine
         helps = not known.fine and found.point_sd_m < LIMITS.helps * found.largest_sd_m
         point = {
             "point_from_s": found.point_from_s,
@@ -66,8 +68,8 @@ class Uncertainty:
             "known_m": known_m,
             "at_s": found.at_s,
             "frame": "earth" if found.on_earth else "start",
-            "limited": known_m < LIMITS.anywhere_m,
-            "unlimited": known_m >= LIMITS.anywhere_m,
+            "limited": stated and known_m < LIMITS.anywhere_m,
+            "unlimited": stated and known_m >= LIMITS.anywhere_m,
         }
         yield finding(
             FindingKind.UNCERTAINTY,

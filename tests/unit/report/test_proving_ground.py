@@ -125,7 +125,7 @@ def test_what_cannot_be_observed_is_not_silent(tunnel):
     for run in tunnel.values():
         assert run.outcome in {"right", "announced"}, run
         assert run.verdict != "good"
-        said = ("hardly observes", "The positions are known to ±")
+        said = ("hardly observes", "The shape of the map is known to ±")
         assert any(text in reason for reason in run.reasons for text in said)
 
 
