@@ -32,29 +32,31 @@ class Shape(NamedTuple):
 
 
 class Drum(NamedTuple):
-    """Directions of M mirrors and C channels [1/25600°]."""
+    """Directions of M mirrors and C channels."""
 
     start: NDArray[np.int64]
-    """Azimuth where each mirror begins, ascending, (M,)."""
-    azimuth: NDArray[np.int64]
-    """Subtracted from twice the angle since the start of the mirror, (C,)."""
-    elevation: NDArray[np.int64]
-    """Above the horizontal plane, (C,)."""
-    azimuth_correction: NDArray[np.int64]
-    """Added to the azimuth at every 2° of the drum, (C, 180)."""
-    elevation_correction: NDArray[np.int64]
-    """Added to the elevation, (C, 180)."""
+    """Azimuth where each mirror begins [1/25600°], ascending, (M,)."""
+    azimuth: NDArray[np.float32]
+    """Cosine and sine of what each channel adds to twice the angle since then, (C, 2)."""
+    elevation: NDArray[np.float32]
+    """Cosine and sine of the elevation of each channel, (C, 2)."""
+    azimuth_correction: NDArray[np.float32]
+    """Added to the azimuth at every 2° of the drum [rad], (180, C)."""
+    elevation_correction: NDArray[np.float32]
+    """Added to the elevation [rad], (180, C)."""
     ring: NDArray[np.uint8]
     """Ring, 0 = lowest elevation, (C,)."""
 
 
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _cos_sin(angle: int, circle: NDArray[np.float32]) -> tuple[np.float32, np.float32]:
-    """Cosine and sine of an angle [1/25600°]."""
-    angle %= _TURN
-    row = circle[angle // 256]
-    rest = np.float32(angle % 256) * _UNIT_RAD
-    return row[0] - row[1] * rest, row[1] + row[0] * rest
+@njit(cache=True, nogil=True, fastmath=True, error_model="numpy", inline="always")
+def _turned(
+    cosine: np.float32, sine: np.float32, by_rad: np.float32
+) -> tuple[np.float32, np.float32]:
+    """Cosine and sine of an angle that a correction of up to 2.6° is added to."""
+    half = np.float32(0.5) * by_rad * by_rad
+    cos_by = np.float32(1.0) - half
+    sin_by = by_rad * (np.float32(1.0) - half * np.float32(1.0 / 3.0))
+    return cosine * cos_by - sine * sin_by, sine * cos_by + cosine * sin_by
 
 
 @njit(cache=True, nogil=True, fastmath=True, error_model="numpy")
@@ -102,9 +104,12 @@ def decode_mirrors(
             for m in range(len(drum.start)):
                 if drum.start[m] <= azimuth:
                     mirror = m
-            angle = 2 * ((azimuth - drum.start[mirror]) % _TURN)
-            node, along = azimuth // _NODE, azimuth % _NODE
-            after = (node + 1) % drum.azimuth_correction.shape[1]
+            angle = 2 * ((azimuth - drum.start[mirror]) % _TURN) % _TURN
+            start = circle[angle // 256]
+            cos_block, sin_block = _turned(start[0], start[1], np.float32(angle % 256) * _UNIT_RAD)
+            node = azimuth // _NODE
+            after = (node + 1) % drum.azimuth_correction.shape[0]
+            weight = np.float32(azimuth % _NODE) / np.float32(_NODE)
             t = t_ns[p] + block_ns[b // group]
             for c in range(channels):
                 at = shape.first + b * shape.block + shape.channel_first + c * shape.channel
@@ -125,12 +130,17 @@ def decode_mirrors(
                 if distance == 0:
                     counts[0] += 1
                     continue
-                turned = drum.azimuth_correction[c, node] * (_NODE - along)
-                turned = (turned + drum.azimuth_correction[c, after] * along) // _NODE
-                raised = drum.elevation_correction[c, node] * (_NODE - along)
-                raised = (raised + drum.elevation_correction[c, after] * along) // _NODE
-                cos_az, sin_az = _cos_sin(angle - drum.azimuth[c] + turned, circle)
-                cos_el, sin_el = _cos_sin(drum.elevation[c] + raised, circle)
+                cos_c, sin_c = drum.azimuth[c, 0], drum.azimuth[c, 1]
+                by_rad = drum.azimuth_correction[node, c]
+                by_rad += (drum.azimuth_correction[after, c] - by_rad) * weight
+                cos_az, sin_az = _turned(
+                    cos_block * cos_c - sin_block * sin_c,
+                    sin_block * cos_c + cos_block * sin_c,
+                    by_rad,
+                )
+                by_rad = drum.elevation_correction[node, c]
+                by_rad += (drum.elevation_correction[after, c] - by_rad) * weight
+                cos_el, sin_el = _turned(drum.elevation[c, 0], drum.elevation[c, 1], by_rad)
                 echo = np.uint8(0)
                 while distance != 0:
                     if distance < distances.least:

@@ -20,6 +20,7 @@ from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.packets.decoder import open_decoder
 from recon4.recording.packets.family import PacketSensor
+from recon4.recording.packets.hesai.models import MODELS as HESAI_MODELS
 from recon4.recording.packets.livox.models import LAYOUTS, PointLayout
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.sound import sound_points
@@ -34,6 +35,8 @@ from tests.security.fuzz.kinds_ouster import metadata_of as ouster_metadata
 from tests.security.fuzz.kinds_ouster import opened as ouster_format
 from tests.security.fuzz.kinds_ouster import packets_of as ouster_packets
 from tests.unit.recording.packet_builders import sensor, spin
+from tests.unit.recording.test_hesai_packets import opened as hesai_opened
+from tests.unit.recording.test_hesai_packets import spin as hesai_spin
 
 SENSORS = 2
 PACKETS = 754
@@ -118,6 +121,23 @@ def ouster(profile: str, model: str) -> Callable[[], int]:
     return work
 
 
+def hesai(name: str) -> Callable[[], int]:
+    """One second of a Hesai: filter and decode."""
+    model = HESAI_MODELS[name]
+    packet_s = np.diff(hesai_spin(model, packets=2)[0])[0] * 1e-6
+    payloads = hesai_spin(model, packets=round(1.0 / packet_s))[2]
+    made, _ = hesai_opened(model, payloads[:100])
+
+    def work() -> int:
+        points = 0
+        for batch in np.array_split(payloads, 10):
+            assert made.sound(batch).all()
+            points += len(made.decode(made.stamps_ns(batch), batch))
+        return points
+
+    return work
+
+
 def from_file(path: Path) -> int:
     """Read a pcap of both sensors; returns the datagrams."""
     return sum(len(batch) for batch in read_pcap(path, ImportReport()))
@@ -166,6 +186,9 @@ def main(rounds: int) -> None:
         median, best, result = milliseconds(rounds, ouster(profile, model))
         name = f"{model} {profile}"
         print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
+    for name in HESAI_MODELS:
+        median, best, result = milliseconds(max(rounds // 4, 1), hesai(name))
+        print(f"{'Hesai ' + name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
 
 
 if __name__ == "__main__":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.geometry.se3 import Array
 from recon4.kernels import spinning as kernel
 from recon4.kernels.mirrors import Drum, Shape, decode_mirrors
 from recon4.model.trajectory import Times
@@ -122,10 +123,10 @@ class MirrorPoints:
         )
         self._drum = Drum(
             start=mirrors.start,
-            azimuth=mirrors.azimuth,
-            elevation=mirrors.elevation,
-            azimuth_correction=mirrors.azimuth_correction,
-            elevation_correction=mirrors.elevation_correction,
+            azimuth=_cos_sin(-_rad(mirrors.azimuth)),
+            elevation=_cos_sin(_rad(mirrors.elevation)),
+            azimuth_correction=_rad(mirrors.azimuth_correction.T).astype(np.float32),
+            elevation_correction=_rad(mirrors.elevation_correction.T).astype(np.float32),
             ring=np.unique(mirrors.elevation, return_inverse=True)[1].astype(np.uint8),
         )
         self._distances = distances(1e-3 * layout.unit_mm, sensor.settings)
@@ -145,6 +146,16 @@ class MirrorPoints:
             kernel.CIRCLE,
         )
         return Shots(self._sensor.row, *count_points(decoded, self._sensor.report))
+
+
+def _rad(fine: NDArray[np.int64]) -> Array:
+    """Angles in 1/25600° as radians, in rows."""
+    return np.ascontiguousarray(np.deg2rad(fine / 25600.0))
+
+
+def _cos_sin(angle_rad: Array) -> NDArray[np.float32]:
+    """Cosines and sines, (C, 2)."""
+    return np.column_stack([np.cos(angle_rad), np.sin(angle_rad)]).astype(np.float32)
 
 
 def _kernel_layout(layout: HesaiLayout) -> kernel.Layout:
