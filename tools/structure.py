@@ -26,7 +26,11 @@ NUMBERS = "numeric constants of modules"
 
 FOREIGN = (
     "recon4/recording/formats/",
+    "recon4/recording/packets/robosense/models.py",
+    "recon4/recording/packets/robosense/solid.py",
+    "recon4/recording/packets/velodyne/laser_calibration.py",
     "recon4/recording/packets/velodyne/models.py",
+    "recon4/recording/packets/velodyne/wide_models.py",
     "recon4/sandbox/kernel.py",
     "recon4/sandbox/namespaces.py",
     "recon4/sandbox/seccomp.py",

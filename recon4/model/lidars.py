@@ -61,7 +61,7 @@ _VLP16 = LidarFacts(
     divergence_rad=0.003,
     sample_ports=(8308,),
 )
-_VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3)
+_VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3), 63-9483 (VLS-128)
     _VLP16,
     replace(_VLP16, name="VLP-16 Hi-Res", elevation_deg=(-10.0, 10.0)),
     replace(_VLP16, name="VLP-32C", beams=32, elevation_deg=(-25.0, 15.0), range_m=80.0),
@@ -72,6 +72,15 @@ _VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3)
         elevation_deg=(-30.67, 10.67),
         accuracy_m=0.02,
         has_imu=True,
+    ),
+    replace(_VLP16, name="Puck LITE"),
+    replace(
+        _VLP16,
+        name="VLS-128",
+        beams=128,
+        elevation_deg=(-25.0, 15.0),
+        min_range_m=0.5,
+        range_m=220.0,
     ),
     replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), accuracy_m=0.02),
 )

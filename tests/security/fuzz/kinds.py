@@ -42,6 +42,7 @@ from tests.security.fuzz.kinds_livox import LIVOX_KINDS
 from tests.security.fuzz.kinds_ouster import OUSTER_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
 from tests.security.fuzz.kinds_robosense import ROBOSENSE_KINDS
+from tests.security.fuzz.kinds_wide import WIDE_KINDS
 
 
 def _info(path: Path) -> None:
@@ -350,7 +351,7 @@ KINDS: dict[str, Kind] = {
     kind.name: kind
     for kind in (
         *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
-        *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS),
+        *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS, *WIDE_KINDS),
     )
 }
 """By name."""

@@ -25,6 +25,7 @@ from recon4.recording.packets.family import (
 from recon4.recording.packets.packet_rotation import Rotation
 from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
 from recon4.recording.packets.velodyne.data_packets import PacketSource, decode_packets
+from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
 from recon4.recording.packets.velodyne.models import (
     BLOCK_FLAG,
     DATA_SIZE,
@@ -41,9 +42,12 @@ from recon4.recording.packets.velodyne.models import (
 )
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder, utc_offset_ns
 from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
+from recon4.recording.packets.velodyne.wide_models import VLS128
+from recon4.recording.packets.velodyne.wide_packets import WideFormat, dual_packets, sound_wide
 from recon4.recording.report import ImportReport
 
 NAME = "Velodyne"
+HDL64 = "HDL-64E"
 SCAN = "velodyne_msgs/msg/VelodyneScan"
 
 
@@ -66,9 +70,8 @@ class VelodyneFamily:
     )
 
     def describes(self, companion: Companion) -> bool:
-        """None does: the data sheets are enough."""
-        del companion
-        return False
+        """The calibration of an HDL-64E; for the other models the data sheets are enough."""
+        return calibration_of_file(companion) is not None
 
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:
         """Data packets or position packets of a Velodyne; None = neither."""
@@ -91,7 +94,8 @@ class VelodyneFamily:
         Raises:
             ConfigError: If those of its model are not decoded.
         """
-        return VelodyneFormat(sensor)
+        wide = sensor.sensor.model in (HDL64, VLS128.name)
+        return WideFormat(sensor) if wide else VelodyneFormat(sensor)
 
 
 VELODYNE = VelodyneFamily()
@@ -188,10 +192,9 @@ def _first_mode(head: Datagrams) -> int:
 
 
 def _recognized_data(payloads: Payloads) -> Recognized | None:
-    flags = as_packets(payloads)["blocks"]["flag"]
     found = Recognized(family=NAME, kind="data", size=DATA_SIZE)
-    if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() > 0.3:
-        return replace(found, model="HDL-64E")
+    if (wide := _recognized_wide(payloads)) is not None:
+        return wide
     report = ImportReport()
     rows = np.flatnonzero(sound_packets(payloads, report))
     if len(rows) < len(payloads) // 2 or not len(rows):
@@ -214,6 +217,24 @@ def _recognized_data(payloads: Payloads) -> Recognized | None:
         packet_s=packet_s,
         rotation_hz=rotation.hz,
         remarks=remarks,
+    )
+
+
+def _recognized_wide(payloads: Payloads) -> Recognized | None:
+    """A model whose firing takes several blocks, by the flags of most packets."""
+    flags = as_packets(payloads)["blocks"]["flag"]
+    if ((flags == LOWER_BLOCK_FLAG).any(axis=1) & (flags == BLOCK_FLAG).any(axis=1)).mean() <= 0.3:
+        return None
+    found = Recognized(family=NAME, kind="data", size=DATA_SIZE, model=HDL64)
+    sound = payloads[sound_wide(payloads, VLS128, ImportReport())]
+    if 2 * len(sound) <= len(payloads):
+        return found
+    dual = bool(np.median(dual_packets(sound, VLS128)) > 0.5)
+    return replace(
+        found,
+        model=VLS128.name,
+        mode=RETURN_MODES.get(int(sound[0, -2]), ""),
+        packet_s=VLS128.packet_s(dual=dual),
     )
 
 

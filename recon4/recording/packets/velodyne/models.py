@@ -193,9 +193,12 @@ _HDL32E = VelodyneModel(
     sequence_s=46.08e-6,
 )
 
-MODELS = {model.name: model for model in (_VLP16, _HIRES, _VLP32C, _HDL32E)}
-"""Models whose packets are decoded, by name."""
-PRODUCTS = {model.product: model.name for model in MODELS.values()}
+_PUCK_LITE = replace(_VLP16, name="Puck LITE")
+"""The packets of a VLP-16; it is lighter."""
+
+MODELS = {model.name: model for model in (_VLP16, _HIRES, _VLP32C, _HDL32E, _PUCK_LITE)}
+"""Models whose blocks hold whole firings, by name."""
+PRODUCTS = {model.product: model.name for model in (_VLP16, _HIRES, _VLP32C, _HDL32E)}
 """Product byte to name."""
 
 
@@ -213,11 +216,6 @@ def velodyne_model(name: str) -> VelodyneModel:
     if name in MODELS:
         return MODELS[name]
     known = ", ".join(MODELS)
-    if name == "HDL-64E":
-        raise ConfigError(
-            "packets of an HDL-64E need the calibration of the very sensor, which is not read yet; "
-            f"decoded: {known}; give it as PointCloud2 or as a folder of frames instead"
-        )
     raise ConfigError(f"no packet decoder for sensor model {name!r}; decoded: {known}")
 
 

@@ -1,0 +1,102 @@
+"""Packets of Velodynes whose firing takes several blocks, and the calibration of an HDL-64E."""
+
+from __future__ import annotations
+
+from functools import cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from recon4.model.rig import Sensor
+from recon4.recording.formats.datagrams import datagrams_of
+from recon4.recording.packets.family import Companion, PacketSensor
+from recon4.recording.packets.velodyne.family import VELODYNE
+from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
+from recon4.recording.packets.velodyne.models import DATA_SIZE
+from recon4.recording.packets.velodyne.wide_encode import encode_wide
+from recon4.recording.packets.velodyne.wide_models import VLS128, WideModel, hdl64_model
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+from tests.builders import T0_NS
+from tests.security.fuzz import seeds_tables as tables
+from tests.security.fuzz.kind import Kind, Reading
+
+_PACKETS = 12
+_YAML = "lasers:\n" + "".join(
+    f"- {{laser_id: {k}, rot_correction: 0.01, vert_correction: {-0.4 + 0.006 * k:.3f}, "
+    f"dist_correction: 1.2, dist_correction_x: 1.3, dist_correction_y: 1.25, "
+    f"vert_offset_correction: 0.2, horiz_offset_correction: 0.026, focal_distance: 10.0, "
+    f"focal_slope: 1.1}}\n"
+    for k in range(64)
+)
+CALIBRATION = Companion("HDL64.yaml", _YAML.encode())
+
+
+def _model(name: str) -> WideModel:
+    calibration = calibration_of_file(CALIBRATION)
+    assert calibration is not None
+    return VLS128 if name == VLS128.name else hdl64_model(calibration, s3=False)
+
+
+@cache
+def _seeds(name: str) -> tuple[bytes, ...]:
+    model = _model(name)
+    blocks = 12 // model.rows
+    t_us = np.arange(_PACKETS) * round(1e6 * model.packet_s(dual=False))
+    azimuth = 20 * (np.arange(_PACKETS)[:, None] * blocks + np.arange(blocks))
+    returns = np.full((_PACKETS, blocks, model.lasers, 2), [3000, 90])
+    return (encode_wide(t_us, azimuth, returns, model=model).tobytes(),)
+
+
+def _read(name: str, path: Path) -> Reading:
+    """Packets of one sensor, one behind the other."""
+    data = np.frombuffer(path.read_bytes(), dtype=np.uint8)
+    payloads = data[: len(data) // DATA_SIZE * DATA_SIZE].reshape(-1, DATA_SIZE)
+    head = datagrams_of([T0_NS] * len(payloads), [row.tobytes() for row in payloads])
+    VELODYNE.recognize(head, ())
+    pose = tables.rig().sensors[0].T_body_sensor
+    report, settings = ImportReport(), IngestSettings()
+    layout = VELODYNE.open(
+        PacketSensor(
+            row=0,
+            sensor=Sensor(name="a", model=name, T_body_sensor=pose),
+            head=head,
+            companions=(CALIBRATION,),
+            settings=settings,
+            report=report,
+        )
+    )
+    sound = payloads[layout.sound(payloads)]
+    shots = layout.decode(layout.stamps_ns(sound), sound)
+    assert np.isfinite(shots.xyz).all()
+    assert np.abs(shots.xyz).max(initial=0) <= 2 * settings.max_range_m
+    return Reading(len(shots), salvaged=len(sound) < _PACKETS or len(data) % DATA_SIZE > 0)
+
+
+def _calibration(path: Path) -> Reading:
+    """A file beside a recording: a calibration, or none."""
+    found = calibration_of_file(Companion(path.name, path.read_bytes()))
+    return Reading(0 if found is None else len(found.far_m), salvaged=found is None)
+
+
+WIDE_KINDS = (
+    *(
+        Kind(
+            name=f"velodyne-{name.lower()}",
+            file_name="packets.bin",
+            seeds=partial(_seeds, name),
+            read=partial(_read, name),
+            # A run of packets has no end mark.
+            knows_end=False,
+        )
+        for name in (VLS128.name, "HDL-64E")
+    ),
+    Kind(
+        name="velodyne-calibration",
+        file_name="hdl64.yaml",
+        seeds=lambda: (CALIBRATION.content,),
+        read=_calibration,
+        knows_end=False,
+    ),
+)
+"""Data packets, and the file that they need."""
