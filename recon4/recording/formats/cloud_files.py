@@ -134,7 +134,7 @@ def _layout(file: BinaryIO, path: Path) -> CloudLayout:
         return pcd_layout(head, path.name)
     if path.suffix.lower() == ".bin":
         return _bin_layout(_size(file), path.name)
-    raise UnknownFormat(f"{path.name}: expected a PCD, PLY or KITTI BIN file")
+    raise UnknownFormat(f"{path.name}: expected a {CLOUD_FORMATS} file")
 
 
 def _check_size(file: BinaryIO, layout: CloudLayout, name: str) -> None:
