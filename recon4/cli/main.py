@@ -79,14 +79,21 @@ def info(
         Path, typer.Argument(help="pcap, bag, folder of clouds, CARMEN log or table.")
     ],
     as_json: JsonOption = False,
+    rig_out: Annotated[
+        Path | None, typer.Option(help="Write a first rig file of its sensors, .toml.")
+    ] = None,
 ) -> None:
     """Say what a recording holds, what will be derived and what is missing."""
-    confine_command()
+    confine_command(write=[rig_out.parent] if rig_out else [])
     from dataclasses import asdict
 
     from recon4.recording.info import describe
 
     found = describe(recording)
+    if rig_out:
+        from recon4.recording.first_rig import write_first_rig
+
+        write_first_rig(found.first_rig, rig_out)
     if as_json:
         _write_json(asdict(found))
     else:

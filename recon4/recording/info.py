@@ -17,6 +17,7 @@ from recon4.recording.bag_messages import cloud_table
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
+from recon4.recording.first_rig import first_rig_text
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
@@ -40,6 +41,7 @@ from recon4.recording.open import KINDS, open_recording
 from recon4.recording.openers.frames import frames_model
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import UnknownMounts
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
@@ -269,6 +271,27 @@ def _describe_samples(info: RecordingInfo, path: Path, kind: RecordingKind) -> R
 # -- head
 
 
+def _with_rotation(
+    sensors: tuple[SensorInfo, ...], rig: Rig | None, head: RecordingHead
+) -> tuple[SensorInfo, ...]:
+    """The sensors with the rotation of their points, where their packets do not tell it."""
+    if rig is None or len(sensors) != len(rig.sensors):
+        return sensors
+    return tuple(
+        s
+        if np.isfinite(s.rotation_hz)
+        else replace(s, rotation_hz=head.rotation_hz.get(k, float("nan")))
+        for k, s in enumerate(sensors)
+    )
+
+
+def _first_rig(found: Rig | None, to_complete: Rig | None, recording: str) -> str:
+    """A rig file of the sensors, as text; empty = none is known."""
+    if to_complete is not None:
+        return first_rig_text(to_complete, recording, mounted=False)
+    return first_rig_text(found, recording, mounted=True) if found is not None else ""
+
+
 def _with_head(
     info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
 ) -> RecordingInfo:
@@ -276,6 +299,7 @@ def _with_head(
     head = RecordingHead()
     missing = list(info.missing)
     rig: Rig | None = None
+    to_complete: Rig | None = None
     try:
         recording = open_recording(OpenRequest((path,), None, settings, report))
         rig = recording.rig
@@ -285,6 +309,7 @@ def _with_head(
             report.warn(report.why_no_points())
         judge_samples(head, rig, settings, whole=whole, report=report)
     except ConfigError as error:
+        to_complete = error.rig if isinstance(error, UnknownMounts) else None
         missing.append(f"rig: {error}")
     except RecordingError as error:
         missing.append(str(error))
@@ -298,14 +323,7 @@ def _with_head(
     if not head.gnss and "GNSS" not in texts:
         beside = samples_beside(path, RecordingKind.GNSS_CSV)
         missing.append("GNSS positions" + f" ({beside})" * bool(beside))
-    sensors = info.sensors
-    if rig is not None and len(sensors) == len(rig.sensors):
-        sensors = tuple(
-            s
-            if np.isfinite(s.rotation_hz)
-            else replace(s, rotation_hz=head.rotation_hz.get(k, float("nan")))
-            for k, s in enumerate(sensors)
-        )
+    sensors = _with_rotation(info.sensors, rig, head)
     report.count("clock_jumps_back", len(head.jumps))
     return replace(
         info,
@@ -317,4 +335,5 @@ def _with_head(
         lost=tuple(report.lost()),
         repaired=tuple(report.repaired()),
         warnings=tuple(report.warnings),
+        first_rig=_first_rig(rig, to_complete, path.name),
     )

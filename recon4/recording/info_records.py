@@ -58,6 +58,8 @@ class RecordingInfo:
     repaired: tuple[str, ...] = ()
     """Counts of repaired data."""
     warnings: tuple[str, ...] = ()
+    first_rig: str = ""
+    """A rig file of its sensors, as text; empty = no sensor is known."""
 
     @property
     def seconds(self) -> float:

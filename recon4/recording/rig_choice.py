@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.recording.report import ImportReport
 
@@ -40,6 +41,20 @@ class Stream:
         return self.detail, self.model != "generic", self.points
 
 
+class UnknownMounts(ConfigError):
+    """Several LiDARs, and nothing says how they are mounted."""
+
+    def __init__(self, text: str, rig: Rig) -> None:
+        """Prepare.
+
+        Args:
+            text: What is missing, and what to do.
+            rig: The LiDARs, all at the origin of the body.
+        """
+        super().__init__(text)
+        self.rig = rig
+
+
 def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = "") -> Rig:
     """Choose the rig of a recording without a given one; noted in the report.
 
@@ -49,7 +64,7 @@ def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = ""
         why: Why the recording itself does not say how they are mounted.
 
     Raises:
-        ConfigError: If there are several LiDARs of unknown mounting.
+        UnknownMounts: If there are several LiDARs of unknown mounting.
     """
     if len(streams) == 1:
         rig = single_rig(streams[0])
@@ -61,7 +76,7 @@ def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = ""
             f"no rig given: {_names(streams)} match the preset {thesis.name}, its mounting is used"
         )
         return thesis
-    raise ConfigError(_remedy(streams, why))
+    raise UnknownMounts(_remedy(streams, why), rig_to_complete(streams))
 
 
 def _remedy(streams: Sequence[Stream], why: str) -> str:
@@ -90,6 +105,25 @@ def _remedy(streams: Sequence[Stream], why: str) -> str:
             name = f"lidar_{stream.address}_{stream.port}"
         lines += _skeleton(stream, name)
     return "\n".join(lines)
+
+
+def rig_to_complete(streams: Sequence[Stream]) -> Rig:
+    """The LiDARs of a recording at the origin of the body, to be completed by their mounts.
+
+    The IMU is that of the first LiDAR that has one.
+    """
+    sensors = []
+    for number, stream in enumerate(streams):
+        name = stream.topic.strip("/").replace("/", "_") or f"lidar{number}"
+        one = single_rig(stream).sensors[0]
+        sensors.append(replace(one, name=name, address=stream.address))
+    with_imu = [s.name for s in sensors if lidar_model(s.model).has_imu]
+    return replace(
+        single_rig(streams[0]),
+        name="found in the recording",
+        sensors=tuple(sensors),
+        imu_sensor=next(iter(with_imu), ""),
+    )
 
 
 def _described(stream: Stream) -> str:

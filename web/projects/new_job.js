@@ -48,6 +48,15 @@ const field = (text, control, hint = nothing) =>
     ><span>${text}</span>${control}${hint ? html`<small>${hint}</small>` : nothing}</label
   >`;
 
+/**
+ * A choice of the field Rig: value and caption.
+ * @param {import("../shared/http_types").RigCard} card
+ * @returns {[string, string]}
+ */
+function rigOption({ id, path, shipped, version }) {
+  return [path, shipped ? id : `${id}, version ${version}`];
+}
+
 export class NewJob extends HTMLElement {
   #state = {
     recording: "",
@@ -105,7 +114,7 @@ export class NewJob extends HTMLElement {
         )}
         <button type="button" @click=${browse}>Browse…</button>
         <folder-browser @pick=${pick}></folder-browser>
-        <recording-look @pick=${pick}></recording-look>
+        <recording-look @pick=${pick} @rig=${() => this.#awaitMounts()}></recording-look>
         ${field("Project name", this.#text("project", true), again ? REPEATS : nothing)}
         ${field(
           "Preset",
@@ -200,12 +209,20 @@ export class NewJob extends HTMLElement {
     state.presets = choices?.presets ?? [];
     state.presetTexts = choices?.preset_texts ?? {};
     state.values.preset ||= state.presets[0] ?? "";
-    state.rigs = (rigs ?? []).map(({ id, path, shipped, version }) => [
-      path,
-      shipped ? id : `${id}, version ${version}`,
-    ]);
+    state.rigs = (rigs ?? []).map(rigOption);
     if (this.#again) this.#fill(this.#again);
     else this.#suggest({ project: state.values.project || undefined }); // may be taken
+  }
+
+  /** A rig was made of the recording: its mounts are filled in on another page, as a version. */
+  #awaitMounts() {
+    const readAgain = async () => {
+      const rigs = await attempt(this.#message, listRigs);
+      if (rigs) this.#state.rigs = rigs.map(rigOption);
+      this.#draw();
+    };
+    window.addEventListener("focus", readAgain);
+    void readAgain();
   }
 
   /** A job to repeat; set before the form is shown. */

@@ -1,6 +1,6 @@
 // <recording-look>: the contents of a recording as a list.
 
-import { lookAt } from "../shared/api.js";
+import { createRig, lookAt, rigUrl } from "../shared/api.js";
 import { asError, html, nothing, render, showError, within } from "../shared/dom.js";
 import { bytes, count, seconds } from "../shared/format.js";
 
@@ -23,11 +23,39 @@ export class RecordingLook extends HTMLElement {
     try {
       const found = await lookAt(path);
       if (mine !== this.#asked) return null;
-      render(summary(found), this);
+      render(html`${summary(found)}${this.#rigOffer(found)}`, this);
       return found;
     } catch (error) {
       if (mine === this.#asked) this.#refuse(path, error);
       return null;
+    }
+  }
+
+  /** A button that makes a rig of the sensors, where the recording does not say their mounts. */
+  #rigOffer(/** @type {RecordingSummary} */ found) {
+    if (!found.first_rig) return nothing;
+    return html`<p class="rig-offer">
+      <button type="button" @click=${() => this.#makeRig(found)}>
+        Make a rig of these sensors
+      </button>
+      <span class="error"></span>
+    </p>`;
+  }
+
+  /** Stores the rig under the name of the recording, and offers its page to fill in the mounts. */
+  async #makeRig(/** @type {RecordingSummary} */ { first_rig: toml, project }) {
+    const id = project.replace(/[^A-Za-z0-9._-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "") || "rig";
+    const place = within(this, ".rig-offer");
+    try {
+      const saved = await createRig({ id: id.slice(0, 64), toml, note: "made of a recording" });
+      render(
+        html`Rig <a href=${rigUrl(saved.id)} target="_blank">${saved.id}</a> is made:
+          <strong>fill in the mounts</strong> on its page, then choose it below.`,
+        place,
+      );
+      this.dispatchEvent(new CustomEvent("rig"));
+    } catch (error) {
+      showError(within(this, ".rig-offer .error"), error);
     }
   }
 

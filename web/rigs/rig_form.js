@@ -156,6 +156,11 @@ export class RigForm extends HTMLElement {
 
   #imu(/** @type {RigImu} */ imu) {
     return group("IMU", [
+      this.#text(imu, "sensor", {
+        label: "Inside of the LiDAR",
+        path: "imu.sensor",
+        hint: "none: mounted by itself",
+      }),
       this.#triple(imu.xyz_m, { label: "Position", path: "imu.xyz_m" }, XYZ),
       this.#triple(imu.rpy_deg, { label: "Rotation", path: "imu.rpy_deg" }, RPY),
       this.#numbers(imu, "imu", this.#text(imu, "topic", { label: "Topic", path: "imu.topic" })),

@@ -785,6 +785,7 @@ export interface RecordingSummary {
   rig: string;
   imu: string;
   gnss: string;
+  first_rig: string;
 }
 
 export interface ReferenceFile {

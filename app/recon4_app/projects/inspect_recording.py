@@ -50,6 +50,8 @@ class RecordingSummary:
     """An IMU file in the same folder."""
     gnss: str
     """A GNSS file in the same folder."""
+    first_rig: str
+    """A rig file of the sensors, as text, where nothing says how they are mounted; else empty."""
 
 
 def files_beside(path: Path) -> tuple[Path, ...]:
@@ -108,6 +110,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
         rig=suited.get("rig", ""),
         imu=suited.get("IMU", ""),
         gnss=suited.get("GNSS", ""),
+        first_rig=info.first_rig if _needs_rig(info.missing) and "rig" not in suited else "",
     )
 
 
@@ -131,6 +134,10 @@ def _suited(files: tuple[Path, ...]) -> dict[str, str]:
         except Recon4Error:
             continue  # another kind of file
     return found
+
+
+def _needs_rig(missing: tuple[str, ...]) -> bool:
+    return any(text.startswith("rig") for text in missing)
 
 
 def _is_in(text: str, beside: dict[str, str]) -> bool:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 from fastapi import APIRouter, Depends, Request
 from fastapi.responses import FileResponse, HTMLResponse, PlainTextResponse, Response
 from starlette.concurrency import run_in_threadpool
 
+from recon4.model.lidars import LIDARS
 from recon4.model.rig import SENSOR_MODELS, format_rig, load_rig, rig_presets
-from recon4.recording.packets.velodyne.models import MODELS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Who, needs
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
@@ -237,8 +236,5 @@ def _shipped_content(name: str) -> RigContent:
 
 
 def _elevation(name: str) -> tuple[float, float] | None:
-    model = MODELS.get(name)
-    if model is None:
-        return None
-    degrees = np.rad2deg(model.elevation_rad)
-    return round(float(degrees.min()), 3), round(float(degrees.max()), 3)
+    facts = LIDARS[name]
+    return facts.elevation_deg if facts.maker else None

@@ -6,7 +6,7 @@ import pytest
 from recon4.live.mapper.notes import NotesWatch
 from recon4.live.newest import Newest
 from recon4.live.session import CaptureSession
-from recon4.model.rig import format_rig, load_rig
+from recon4.model.rig import format_rig, load_rig, rig_presets
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from recon4_app.live.current_capture import marks_of
@@ -144,7 +144,7 @@ def test_own_rig_files_come_first_and_a_broken_one_has_its_problem(tmp_path):
     assert "VLP-99" in broken.problem
     assert (ours.rig, ours.problem) == (str(tmp_path / "rigs" / "ours.toml"), "")
     assert ours.sensors == ["horizontal", "vertical"]
-    assert [one.rig for one in shipped] == ["4recon", "single-hdl32e", "single-vlp16", "wuerzburg"]
+    assert [one.rig for one in shipped] == rig_presets()
 
 
 def test_marks_are_read_up_to_the_line_that_was_being_written(tmp_path):

@@ -1,0 +1,46 @@
+"""A first rig file, written from what a recording shows of its sensors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from recon4.errors import ConfigError
+from recon4.model.rig import Rig, format_rig
+from recon4.store.atomic import write_text
+
+
+def first_rig_text(rig: Rig, recording: str, *, mounted: bool) -> str:
+    """A rig as TOML text, with what remains to be measured as comments.
+
+    Args:
+        rig: The sensors of the recording.
+        recording: Its name.
+        mounted: Whether the recording says how they are mounted.
+    """
+    lines = [
+        f"# Sensors of {' '.join(recording.split())}. Body: x forward, y left, z up.",
+    ]
+    if not mounted:
+        names = ", ".join(sensor.name for sensor in rig.sensors)
+        lines += [
+            f"# Measure xyz_m [m] and rpy_deg (roll, pitch, yaw) [°] of {names}: all are 0 here.",
+            "# A centimeter and a degree are enough; recon4 calibrate finds the rest.",
+        ]
+    text = format_rig(rig)
+    if not mounted:
+        text = text.replace("quat_xyzw = [0.0, 0.0, 0.0, 1.0]", "rpy_deg = [0.0, 0.0, 0.0]")
+    return "\n".join([*lines, text])
+
+
+def write_first_rig(text: str, path: Path) -> None:
+    """Write a rig file that is not there yet.
+
+    Raises:
+        ConfigError: If there is nothing to write, or the file exists.
+        StoreError: If it cannot be written.
+    """
+    if not text:
+        raise ConfigError(f"{path.name}: no sensor is known to write a rig file of")
+    if path.exists():
+        raise ConfigError(f"{path} exists: give a new file")
+    write_text(path, text)
