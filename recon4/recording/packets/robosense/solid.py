@@ -31,6 +31,9 @@ SOLID_UNIT_M = 0.005
 SECOND_RETURN = 2
 """Of ``returned`` in the blocks of an M1: a further return of the shots of the packet before."""
 
+_ANGLES = np.deg2rad(0.01 * (np.arange(65536) - MIDDLE))
+_COS, _SIN = np.cos(_ANGLES).astype(np.float32), np.sin(_ANGLES).astype(np.float32)
+
 _M1_POINT = np.dtype(
     [
         *[("distance", ">u2"), ("pitch", ">u2"), ("yaw", ">u2"), ("intensity", "u1")],
@@ -138,26 +141,24 @@ def decode_solid(t_ns: Times, payloads: Payloads, model: SolidModel, *, of: Pack
     if "returned" in (model.block.names or ()):
         echo = (blocks["returned"] == SECOND_RETURN).astype(np.uint8)
     chosen = points[kept]
-    range_m = SOLID_UNIT_M * chosen["distance"].astype(np.float64)
+    range_m = np.float32(SOLID_UNIT_M) * chosen["distance"].astype(np.float32)
     rays = _vectors(chosen) if model.directions == "vectors" else _rays(chosen)
     return Shots(
         of.row,
         np.broadcast_to(time[:, :, None], shape)[kept],
-        (range_m[:, None] * rays).astype(np.float32),
+        range_m[:, None] * rays,
         chosen["intensity"].astype(np.uint16),
         np.broadcast_to(np.arange(shape[2], dtype=np.uint8), shape)[kept],
         np.broadcast_to(echo[:, :, None], shape)[kept],
     )
 
 
-def _rays(points: NDArray[np.void]) -> NDArray[np.float64]:
+def _rays(points: NDArray[np.void]) -> NDArray[np.float32]:
     """Unit vectors from angles of 0.01°."""
-    pitch, yaw = (
-        np.deg2rad(0.01 * (points[name].astype(np.float64) - MIDDLE)) for name in ("pitch", "yaw")
-    )
-    flat = np.cos(pitch)
-    return np.column_stack([flat * np.cos(yaw), flat * np.sin(yaw), np.sin(pitch)])
+    pitch, yaw = points["pitch"], points["yaw"]
+    flat = _COS[pitch]
+    return np.column_stack([flat * _COS[yaw], flat * _SIN[yaw], _SIN[pitch]])
 
 
-def _vectors(points: NDArray[np.void]) -> NDArray[np.float64]:
-    return points["vector"].astype(np.float64) / MIDDLE
+def _vectors(points: NDArray[np.void]) -> NDArray[np.float32]:
+    return points["vector"].astype(np.float32) / np.float32(MIDDLE)

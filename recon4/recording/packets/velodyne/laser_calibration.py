@@ -15,6 +15,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.kernels.laser_corrections import (
+    ASIDE,
+    COS_EL,
+    FAR,
+    FOCUS,
+    LEAST,
+    LESS_X,
+    LESS_Y,
+    MOST,
+    NUMBERS,
+    SIN_EL,
+    SLOPE,
+)
 from recon4.recording.packets.family import Companion, Payloads
 
 LASERS = 64
@@ -199,44 +212,22 @@ def _of_status(block: bytes) -> LaserCalibration | None:
     return _calibration(table, "the status bytes of its packets")
 
 
-def near_far_correction(
-    xyz: NDArray[np.float32], laser: NDArray[np.int64], calibration: LaserCalibration
-) -> NDArray[np.float32]:
-    """Points moved by what is interpolated between the near and the far correction.
+def correction_table(calibration: LaserCalibration) -> NDArray[np.float32]:
+    """The numbers that `laser_corrections.correct` needs of each laser, (L, NUMBERS).
 
-    The correction differs along x and y; upwards it is their mean, as in velodyne-decoder (the
-    manual takes that along x).
-
-    Args:
-        xyz: Points with the far correction [m], (N, 3).
-        laser: Laser of each, (N,).
-        calibration: Of the sensor.
+    Between near and far points the correction of the range is interpolated, along x and y on their
+    own; upwards it is their mean, as in velodyne-decoder (the manual takes that along x).
     """
-    aside = calibration.aside_m.astype(np.float32)[laser]
-    elevation = calibration.elevation_rad[laser]
-    cos_el, sin_el = np.cos(elevation).astype(np.float32), np.sin(elevation).astype(np.float32)
-    square = xyz[:, 0] ** 2 + xyz[:, 1] ** 2
-    flat = np.sqrt(np.maximum(square - aside**2, 1e-6))
-    cos_az = (xyz[:, 0] * flat + xyz[:, 1] * aside) / np.maximum(square, 1e-6)
-    sin_az = (xyz[:, 0] * aside - xyz[:, 1] * flat) / np.maximum(square, 1e-6)
-    less = (calibration.far_m[:, None] - calibration.near_m).astype(np.float32)[laser]
-    along_y = less[:, 0] * ((np.abs(xyz[:, 1]) - 2.4) / 22.64 - 1.0)
-    along_x = less[:, 1] * ((np.abs(xyz[:, 0]) - 1.93) / 23.11 - 1.0)
-    up = 0.5 * (along_x + along_y) * sin_el
-    return xyz + np.column_stack([along_x * cos_el * cos_az, -along_y * cos_el * sin_az, up])
-
-
-def focal_intensity(
-    intensity: NDArray[np.uint16], range_units: Array, focal: Array
-) -> NDArray[np.uint16]:
-    """Intensities corrected for the focus of their laser.
-
-    Args:
-        intensity: As measured, (N,).
-        range_units: Distances on the wire, (N,).
-        focal: Rows of `LaserCalibration.focal`, (N, 4).
-    """
-    focus = 256.0 * (1.0 - focal[:, 0] / _FARTHEST_M) ** 2
-    here = 256.0 * (1.0 - range_units / 65535.0) ** 2
-    value = intensity + focal[:, 1] * np.abs(focus - here)
-    return np.rint(np.clip(value, focal[:, 2], focal[:, 3])).astype(np.uint16)
+    less = calibration.far_m[:, None] - calibration.near_m
+    focal = calibration.focal
+    table = np.zeros((len(less), NUMBERS))
+    table[:, COS_EL], table[:, SIN_EL] = (
+        np.cos(calibration.elevation_rad),
+        np.sin(calibration.elevation_rad),
+    )
+    table[:, ASIDE], table[:, FAR] = calibration.aside_m, calibration.far_m
+    table[:, LESS_Y], table[:, LESS_X] = less.T
+    table[:, FOCUS] = 256.0 * (1.0 - focal[:, 0] / _FARTHEST_M) ** 2
+    table[:, SLOPE] = focal[:, 1]
+    table[:, LEAST], table[:, MOST] = np.clip(focal[:, 2:], 0.0, 255.0).T
+    return table.astype(np.float32)

@@ -6,13 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.kernels.laser_corrections import correct
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketSamples, PacketSensor, Payloads
 from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
 from recon4.recording.packets.spinning import (
-    Columns,
     SpinningPackets,
     SpinningTables,
     beams,
@@ -22,8 +22,7 @@ from recon4.recording.packets.spinning import (
 from recon4.recording.packets.velodyne.laser_calibration import (
     calibration_in_status,
     calibration_of,
-    focal_intensity,
-    near_far_correction,
+    correction_table,
 )
 from recon4.recording.packets.velodyne.models import DATA_SIZE, DUAL, POSITION_SIZE
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder
@@ -101,7 +100,7 @@ class WideFormat:
         self._dual = False
         self._see(head)
         self._tables = _tables(self._model, of)
-        self._laser = np.argsort(self._tables.channels.ring[0])
+        self._lasers = _by_ring(self._model, self._tables)
         self._positions: PositionDecoder | None = None
 
     @property
@@ -138,7 +137,10 @@ class WideFormat:
             blocks[rows] = merged(payloads[rows], self._model, dual=is_dual)
         packets = SpinningPackets(t_ns, blocks, dual.astype(np.uint8), turn_rad)
         columns = points_of(packets, tables=self._tables, report=self._report)
-        return Shots(self._of.row, *self._corrected(columns))
+        if self._lasers is not None:
+            _, xyz, intensity, ring, _ = columns
+            correct(xyz, intensity, ring, self._lasers)
+        return Shots(self._of.row, *columns)
 
     def likely_models(self, usual_s: float) -> tuple[str, ...]:
         """The flags tell the model."""
@@ -173,19 +175,6 @@ class WideFormat:
         usual = float(np.median(step[joined])) if joined.any() else 0.0
         turn = np.where(joined, step, usual)
         return np.deg2rad(0.01 * np.append(turn, usual)).astype(np.float32)
-
-    def _corrected(self, columns: Columns) -> Columns:
-        """Points of an HDL-64E with what its calibration has besides constants."""
-        calibration = self._model.calibration
-        if calibration is None:
-            return columns
-        t_ns, xyz, intensity, ring, echo = columns
-        laser = self._laser[ring]
-        elevation = self._model.elevation_rad[laser]
-        flat = np.hypot(xyz[:, 0], xyz[:, 1]) / np.cos(elevation)
-        units = (flat - self._model.range_m[laser]) / self._model.distance_unit_m
-        intensity = focal_intensity(intensity, units, calibration.focal[laser])
-        return t_ns, near_far_correction(xyz, laser, calibration), intensity, ring, echo
 
 
 def _hdl64(of: PacketSensor, head: Payloads) -> WideModel:
@@ -224,3 +213,10 @@ def _tables(model: WideModel, of: PacketSensor) -> SpinningTables:
         channels=channels._replace(ring=order.astype(np.uint8)[None]),
         distances=distances(model.distance_unit_m, of.settings),
     )
+
+
+def _by_ring(model: WideModel, tables: SpinningTables) -> NDArray[np.float32] | None:
+    """What points of each ring are corrected by besides; None = nothing."""
+    if model.calibration is None:
+        return None
+    return correction_table(model.calibration)[np.argsort(tables.channels.ring[0])]
