@@ -283,8 +283,6 @@ _HELIOS = LidarFacts(
     range_m=110.0,
     accuracy_m=0.02,
     divergence_rad=0.0026,
-    port=6699,
-    sample_ports=(7788,),
 )
 _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0, M1 2.0, E1 1.0
     _HELIOS,
