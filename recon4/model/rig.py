@@ -41,7 +41,7 @@ DEFAULT_PORTS: dict[SensorKind, int] = {
 `recon4.model.lidars`."""
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
-    "name", "model", "address", "topic", "enabled", "serial", "kind", "head_topic",
+    "name", "model", "address", "topic", "enabled", "serial", "description", "kind", "head_topic",
     "head_rate_deg_s", "beams",
 }  # fmt: skip
 _IMU_KEYS = _MOUNTING_KEYS | {"topic", "sensor"}
@@ -81,6 +81,9 @@ class Sensor:
     """Off = its points are read and stored but neither registered nor mapped (V §3.4)."""
     serial: str = ""
     """Serial number; empty = not known."""
+    description: str = ""
+    """Metadata or table of angles of this very sensor, as its maker writes them; empty = in a file
+    beside the recording, or not needed."""
     beams: BeamCorrections | None = None
     """Corrections of its single beams; None = those of the data sheet."""
 
@@ -277,6 +280,8 @@ def format_rig(rig: Rig) -> str:
         lines += [f"time_offset_s = {sensor.time_offset_s!r}", f"port = {sensor.port}"]
         lines += [f"address = {_quoted(sensor.address)}", f"topic = {_quoted(sensor.topic)}"]
         lines += [f"serial = {_quoted(sensor.serial)}"] if sensor.serial else []
+        described = sensor.description
+        lines += [f"description = {_quoted(described)}"] if described else []
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
         lines += format_beams(sensor.beams)
     lines += ["[imu]"]
@@ -345,6 +350,7 @@ def _sensor(row: TomlTable) -> Sensor:
         topic=row.text("topic"),
         enabled=row.flag("enabled", default=True),
         serial=row.text("serial"),
+        description=row.text("description", most=MAX_RIG_BYTES),
         beams=parse_beams(row.get("beams"), f"{row.where}: beams", model=model),
     )
 

@@ -71,12 +71,12 @@ class TomlTable:
             )
         return np.asarray(value, dtype=np.float64)
 
-    def text(self, key: str, default: str = "") -> str:
-        """A text of limited length."""
+    def text(self, key: str, default: str = "", *, most: int = _MAX_TEXT) -> str:
+        """A text of at most ``most`` characters."""
         value = self.get(key, default)
-        if not isinstance(value, str) or len(value) > _MAX_TEXT:
+        if not isinstance(value, str) or len(value) > most:
             raise ConfigError(
-                f"{self.where}: {key} must be a text of at most {_MAX_TEXT} characters, "
+                f"{self.where}: {key} must be a text of at most {most} characters, "
                 f"got {value!r:.80}"
             )
         return value

@@ -14,7 +14,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
-from recon4.recording.packets.companions import companions_of
+from recon4.recording.packets.companions import companions_of, described_in
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import Companion, PacketSensor, same_start
 from recon4.recording.packets.lidar_imu import LidarImu
@@ -54,7 +54,7 @@ class PacketTopics:
         """
         self._bag, self._rig, self._settings, self._report = bag, rig, settings, report
         self._imu = LidarImu(rig, other=imu_topic, report=report)
-        self._companions = bag_companions(bag)
+        self._companions = [*described_in(rig), *bag_companions(bag)]
 
     def readers(self, row: int, sensor: Sensor) -> dict[str, PacketReader]:
         """The reader of a sensor's packets, by topic: those with points, and the others.

@@ -985,6 +985,7 @@ export interface SensorContent {
   head_rate_deg_s?: number;
   enabled?: boolean;
   serial?: string;
+  description?: string;
   beams?: BeamsContent | null;
 }
 

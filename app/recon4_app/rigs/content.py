@@ -232,6 +232,7 @@ def _sensor(content: SensorContent) -> Sensor:
         topic=content.topic.strip(),
         enabled=content.enabled,
         serial=content.serial.strip(),
+        description=content.description,
         beams=_beams(content),
     )
 
@@ -256,6 +257,7 @@ def _sensor_content(sensor: Sensor) -> SensorContent:
         head_rate_deg_s=math.degrees(sensor.head_rate_rad_s),
         enabled=sensor.enabled,
         serial=visible(sensor.serial),
+        description=sensor.description,
         beams=_beams_content(sensor.beams),
     )
 

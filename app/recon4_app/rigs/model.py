@@ -61,6 +61,8 @@ class SensorContent(RigPart):
     enabled: bool = True
     """False: its points are stored, but neither registered nor mapped."""
     serial: Name = Field(default="", max_length=LONGEST_TEXT)
+    description: str = Field(default="", max_length=MAX_RIG_BYTES)
+    """Metadata or table of angles of this very sensor, as its maker writes them."""
     """Serial number; empty = not known."""
     beams: BeamsContent | None = None
     """Corrections of single beams; null = none."""

@@ -16,7 +16,7 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.datagrams import Datagrams, address_number, join_datagrams
 from recon4.recording.formats.pcap import OpenFile, open_plain
-from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_of
+from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_of, described_in
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import PacketSamples, PacketSensor
@@ -88,7 +88,7 @@ class PacketCapture:
         """
         self._report = report
         heads = ImportReport()
-        self._companions = companions_of(paths)
+        self._companions = [*described_in(rig), *companions_of(paths)]
         self._paths = [path for path in paths if path.suffix.lower() not in COMPANION_SUFFIXES]
         scans = (
             scan_pcap(path, open_file=open_file, report=heads, companions=self._companions)

@@ -5,12 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from recon4.model.rig import Rig
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, same_start
 
 COMPANION_SUFFIXES = frozenset({".json", ".csv", ".yaml", ".yml", ".xml", ".dat", ".cal"})
 MAX_COMPANION_BYTES = 1 << 20
 _MOST_FILES = 100
+
+
+def described_in(rig: Rig | None) -> list[Companion]:
+    """The descriptions of sensors in a rig file."""
+    sensors = rig.sensors if rig is not None else ()
+    return [
+        Companion(f"{s.name} (rig file)", s.description.encode()) for s in sensors if s.description
+    ]
 
 
 def is_companion(path: Path) -> bool:
