@@ -19,14 +19,19 @@ import velodyne_decoder
 from recon4.recording.formats.datagrams import datagrams_of
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.packets.decoder import open_decoder
-from recon4.recording.packets.family import PacketSensor
+from recon4.recording.packets.family import PacketFormat, PacketSensor
 from recon4.recording.packets.hesai.models import MODELS as HESAI_MODELS
 from recon4.recording.packets.livox.models import LAYOUTS, PointLayout
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.sound import sound_points
 from recon4.recording.packets.livox.sound import stamps_ns as livox_stamps_ns
 from recon4.recording.packets.ouster.encode import metadata_json
+from recon4.recording.packets.robosense.models import MODELS as ROBOSENSE_MODELS
+from recon4.recording.packets.robosense.packets import packet_s as robosense_packet_s
 from recon4.recording.packets.velodyne.encode import PcapWriter
+from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
+from recon4.recording.packets.velodyne.wide_encode import encode_wide
+from recon4.recording.packets.velodyne.wide_models import VLS128, WideModel, hdl64_model
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from tests.security.fuzz.kinds_livox import model_of as livox_model
@@ -37,6 +42,11 @@ from tests.security.fuzz.kinds_ouster import packets_of as ouster_packets
 from tests.unit.recording.packet_builders import sensor, spin
 from tests.unit.recording.test_hesai_packets import opened as hesai_opened
 from tests.unit.recording.test_hesai_packets import spin as hesai_spin
+from tests.unit.recording.test_robosense_packets import datagrams, device_of
+from tests.unit.recording.test_robosense_packets import opened as robosense_opened
+from tests.unit.recording.test_robosense_packets import spin as robosense_spin
+from tests.unit.recording.test_velodyne_wide import decoded as wide_decoded
+from tests.unit.recording.test_velodyne_wide import hdl64_yaml, wall
 
 SENSORS = 2
 PACKETS = 754
@@ -138,6 +148,31 @@ def hesai(name: str) -> Callable[[], int]:
     return work
 
 
+def robosense(name: str) -> Callable[[], int]:
+    """One second of a RoboSense that spins: filter, stamps and decode."""
+    model = ROBOSENSE_MODELS[name]
+    payloads = robosense_spin(model, round(1.0 / robosense_packet_s(model, dual=False)))[1]
+    return _decoding(robosense_opened(name, beside=datagrams(device_of(model))), payloads)
+
+
+def wide(model: WideModel) -> Callable[[], int]:
+    """One second of a Velodyne whose firing takes several blocks: filter, stamps and decode."""
+    payloads = encode_wide(*wall(round(1.0 / model.packet_s(dual=False)), model), model=model)
+    layout, _, _ = wide_decoded(model.name, payloads[:100], [hdl64_yaml()])
+    return _decoding(layout, payloads)
+
+
+def _decoding(layout: PacketFormat, payloads: np.ndarray) -> Callable[[], int]:
+    def work() -> int:
+        points = 0
+        for batch in np.array_split(payloads, 10):
+            assert layout.sound(batch).all()
+            points += len(layout.decode(layout.stamps_ns(batch), batch))
+        return points
+
+    return work
+
+
 def from_file(path: Path) -> int:
     """Read a pcap of both sensors; returns the datagrams."""
     return sum(len(batch) for batch in read_pcap(path, ImportReport()))
@@ -182,13 +217,19 @@ def main(rounds: int) -> None:
         median, best, result = milliseconds(rounds, livox(layout))
         name = f"Livox SDK{layout.sdk}, data type {layout.data_type}"
         print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
-    for profile, model in OUSTERS:
-        median, best, result = milliseconds(rounds, ouster(profile, model))
-        name = f"{model} {profile}"
+    for profile, kind in OUSTERS:
+        median, best, result = milliseconds(rounds, ouster(profile, kind))
+        name = f"{kind} {profile}"
         print(f"{name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
     for name in HESAI_MODELS:
         median, best, result = milliseconds(max(rounds // 4, 1), hesai(name))
         print(f"{'Hesai ' + name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
+    for name in ROBOSENSE_MODELS:
+        median, best, result = milliseconds(max(rounds // 4, 1), robosense(name))
+        print(f"{'RoboSense ' + name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
+    for model in (VLS128, hdl64_model(calibration_of_file(hdl64_yaml()), s3=True)):
+        median, best, result = milliseconds(max(rounds // 4, 1), wide(model))
+        print(f"{model.name:34} {median:9.2f} {best:8.2f} {result:8d}  {1e3 / median:.0f}")
 
 
 if __name__ == "__main__":
