@@ -1,25 +1,34 @@
 """The rig page, and the rig of a project, in a real browser."""
 
 import re
+import shutil
 
 import pytest
 from playwright.sync_api import expect
 
 from recon4.model.rig import load_rig
+from recon4.review.trusted_keys import STATE
 from tests.e2e.conftest import leave_out_viewer, looks
 from tests.e2e.test_pages import fits
 from tests.rig_projects import TOML, calibrated_project, tilted
-from tests.service.running import SLOW, recording_with_gate, server_thread, wait_for
+from tests.served import served
+from tests.service.running import SLOW, recording_with_gate, wait_for
 
 pytestmark = pytest.mark.e2e
 
 
+running = served(worker_module=SLOW)
+
+
 @pytest.fixture
-def server(tmp_path):
-    with server_thread(tmp_path, worker_module=SLOW) as running:
-        answer = running.post("/api/rigs", json={"id": "field", "copy_of": "4recon"})
-        assert answer.status_code == 201
-        yield running
+def server(running):
+    """The server that all tests share, with nothing but a new rig ``field``."""
+    for folder in running.root.iterdir():
+        if folder.name != STATE:
+            shutil.rmtree(folder)
+    answer = running.post("/api/rigs", json={"id": "field", "copy_of": "4recon"})
+    assert answer.status_code == 201
+    return running
 
 
 def field_of(server):
@@ -203,24 +212,26 @@ def test_a_project_shows_what_its_recording_says_of_the_rig(server, page, look, 
 
 
 @looks("desktop light")
-def test_a_project_is_mapped_again_with_calibration(server, page, tmp_path):
-    recording = recording_with_gate(tmp_path / "recording")
-    calibrated_project(server.root / "walk", rig=field_of(server), found=None)
-    body = {"project": "walk", "recordings": [str(recording)], "settings": ["map.voxel_m=0.02"]}
+def test_a_project_is_mapped_again_with_calibration(server, page):
+    recording = recording_with_gate(server.root / "recording")
+    calibrated_project(server.root / "again", rig=field_of(server), found=None)
+    body = {"project": "again", "recordings": [str(recording)], "settings": ["map.voxel_m=0.02"]}
     job = server.post("/api/jobs", json=body).json()["job"]["id"]
     server.post(f"/api/jobs/{job}/cancel")
     server.wait_state(job, "cancelled")
     leave_out_viewer(page)
-    page.goto(f"{server.url}/projects/walk/")
+    page.goto(f"{server.url}/projects/again/")
 
     page.get_by_role("button", name="Calibrate and map again").click()
     jobs = wait_for(
-        lambda: len(jobs := server.get("/api/projects/walk/jobs").json()) == 2 and jobs, "no job"
+        lambda: len(jobs := server.get("/api/projects/again/jobs").json()) == 2 and jobs, "no job"
     )
 
     newest = jobs[0]["job"]["inputs"]
     assert newest["recordings"] == [str(recording)]
     assert newest["settings"] == ["map.voxel_m=0.02", "calibration.mode=auto"]
+    server.post(f"/api/jobs/{jobs[0]['job']['id']}/cancel")
+    server.wait_state(jobs[0]["job"]["id"], "cancelled")
 
 
 @looks("desktop dark", "phone light")

@@ -57,8 +57,14 @@ def calibrated(wrong):
     return run(wrong, AUTO)
 
 
-def test_a_rig_file_that_is_right_is_confirmed(right):
-    found = run(right)
+@pytest.fixture(scope="module")
+def confirmed(right):
+    """A calibration is requested: it ends with the audit, as nothing contradicts the rig file."""
+    return run(right, AUTO)
+
+
+def test_a_rig_file_that_is_right_is_confirmed(confirmed):
+    found = confirmed
 
     assert not rig_texts(found.figures)
     assert found.figures.outcome.rig is RigOutcome.AGREES
@@ -140,8 +146,8 @@ def test_a_mount_that_slips_during_the_walk_is_announced_and_not_calibrated(danc
     assert not figures.applied
 
 
-def test_a_right_rig_file_is_not_changed_on_request(right, tmp_path):
-    figures = run(right, AUTO).save(tmp_path)
+def test_a_right_rig_file_is_not_changed_on_request(right, confirmed, tmp_path):
+    figures = confirmed.save(tmp_path)
 
     assert not figures.applied
     assert not (tmp_path / "rig.toml").exists()
