@@ -16,6 +16,7 @@ from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
 from recon4.recording.packets.companions import companions_of, described_in
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
+from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor, same_start
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import PACKET_MESSAGES
@@ -156,8 +157,17 @@ def has_samples(bag: Bag, topic: BagTopic) -> bool:
     return row.samples or (found is not None and found.kind == "samples")
 
 
+def describing_topics(bag: Bag) -> set[str]:
+    """Topics whose text describes a LiDAR."""
+    return {one.name for one in _texts(bag) if any(family.describes(one) for family in FAMILIES)}
+
+
 def bag_companions(bag: Bag) -> list[Companion]:
     """Files beside a bag, and the texts of its drivers, as the metadata of an Ouster."""
+    return [*_texts(bag), *companions_of(bag.paths)]
+
+
+def _texts(bag: Bag) -> list[Companion]:
     texts = [topic for topic in bag.topics if topic.type == _STRING and topic.messages]
     found = []
     for topic in texts:
@@ -165,7 +175,7 @@ def bag_companions(bag: Bag) -> list[Companion]:
             content = bag.decode(message)
             if content is not None and len(content.data) <= _MOST_TEXT:
                 found.append(Companion(topic.name, content.data.encode()))
-    return [*found, *companions_of(bag.paths)]
+    return found
 
 
 def _most_alike(name: str, others: list[str]) -> str:

@@ -14,6 +14,7 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.bag_messages import cloud_table
+from recon4.recording.bag_packets import describing_topics
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
 from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
@@ -40,6 +41,7 @@ from recon4.recording.nearby_samples import samples_beside
 from recon4.recording.open import KINDS, open_recording
 from recon4.recording.openers.frames import frames_model
 from recon4.recording.openers.request import OpenRequest
+from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import UnknownMounts
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
@@ -109,12 +111,13 @@ def _describe_bag(
             gaps += _bag_gaps(bag, [topic.name for topic, _, _ in lines.sensors])
         known = {s.label for s in sensors}
         other = [t for t in bag.topics if t.name not in known]
+        describing = describing_topics(bag)
         return replace(
             info,
             t_first_ns=bag.t_first_ns,
             t_last_ns=bag.t_last_ns,
             sensors=sensors,
-            samples=tuple(_topic_line(t, bag.seconds) for t in other if t.messages),
+            samples=tuple(_topic_line(t, bag.seconds, describing) for t in other if t.messages),
             gaps=gaps,
             missing=lines.missing if lines else () if streams else ("LiDAR data",),
         )
@@ -165,13 +168,15 @@ def _gaps(name: str, t_ns: Times) -> list[TimeGap]:
     return [TimeGap(name, int(t_ns[k]), float(steps[k]) / 1e9) for k in wide]
 
 
-def _topic_line(topic: BagTopic, seconds: float) -> str:
+def _topic_line(topic: BagTopic, seconds: float, describing: set[str]) -> str:
     names = {IMU: "IMU", NAVSATFIX: "GNSS positions", ODOMETRY: "poses (kept for comparison)"}
     names |= dict.fromkeys(TRANSFORMS, "transforms between frames")
+    names |= dict.fromkeys(PACKET_MESSAGES, "other packets of a LiDAR")
     rate = f", {topic.messages / seconds:.1f} a second" if seconds > 0 else ""
-    return (
-        f"{topic.name}: {names.get(topic.type, f'{topic.type}, not read')}, {topic.messages}{rate}"
-    )
+    what = names.get(topic.type, f"{topic.type}, not read")
+    if topic.name in describing:
+        what = "describes a LiDAR"
+    return f"{topic.name}: {what}, {topic.messages}{rate}"
 
 
 # -- 2-D lasers

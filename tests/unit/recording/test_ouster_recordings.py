@@ -83,6 +83,8 @@ def test_a_bag_of_the_driver_is_read_with_the_metadata_in_it(data):
         ("/os_node0/lidar_packets", "OS0-128")
     ]
     assert info.sensors[0].rotation_hz == pytest.approx(10.0, abs=0.1)
+    assert "/os_node0/imu_packets: other packets of a LiDAR" in info.samples[0]
+    assert "/os_node0/metadata: describes a LiDAR" in info.samples[1]
 
 
 def test_two_sensors_that_send_to_one_port_get_the_metadata_of_their_own(beside):
