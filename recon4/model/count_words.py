@@ -84,8 +84,8 @@ _CAPTURES = {
 }
 _PACKETS = {
     "packets": _read("data packets"),
-    "packets_wrong_length": _lost("packets", "not 1206 bytes long, dropped", apart=True),
-    "packets_wrong_flag": _lost("packets", "blocks without the flag 0xEEFF, dropped"),
+    "packets_wrong_length": _lost("packets", "another length than those of the sensor, dropped", apart=True),
+    "packets_wrong_flag": _lost("packets", "blocks without their flag, dropped"),
     "packets_hdl64": _lost("packets", "blocks of the lower lasers of an HDL-64E, dropped"),
     "packets_wrong_azimuth": _lost("packets", "an azimuth above 360°, dropped"),
     "packets_other_product": _lost("packets", "another product byte than the first ones, dropped"),
