@@ -84,7 +84,9 @@ _CAPTURES = {
 }
 _PACKETS = {
     "packets": _read("data packets"),
-    "packets_wrong_length": _lost("packets", "another length than those of the sensor, dropped", apart=True),
+    "packets_wrong_length": _lost(
+        "packets", "not as long as those of the sensor, dropped", apart=True
+    ),
     "packets_wrong_flag": _lost("packets", "blocks without their flag, dropped"),
     "packets_hdl64": _lost("packets", "blocks of the lower lasers of an HDL-64E, dropped"),
     "packets_wrong_azimuth": _lost("packets", "an azimuth above 360°, dropped"),
