@@ -14,6 +14,7 @@ from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.ouster.metadata import read_metadata
 from recon4.recording.packets.ouster.models import nominal_metadata
 from tests.unit.recording.ouster_packets import companion, datagrams_of
+from tests.unit.recording.packet_builders import sensor
 from tests.unit.recording.test_ouster_packets import turn_of
 
 FILES = {
@@ -183,7 +184,21 @@ def test_without_serial_numbers_names_decide_or_nobody():
     by_address = choose(
         head, find_metadata([_named("os_10.0.0.1.json", one), _named("b.json", other, 3)])
     )
+    neighbor = choose(
+        head, find_metadata([_named("os_10.0.0.12.json", one), _named("b.json", other, 3)])
+    )
+    assert (neighbor.metadata.name, neighbor.passed_over) == ("b.json", "os_10.0.0.12.json")
     assert (alike.metadata.name, alike.passed_over) == ("b.json", "a.json")
     assert (by_address.metadata.name, by_address.passed_over) == ("os_10.0.0.1.json", "")
     same = choose(head, find_metadata([_named("a.json", one), _named("c.json", one)]))
     assert (same.metadata.name, same.passed_over) == ("a.json", "")
+
+
+def test_the_topic_of_the_packets_is_most_like_that_of_their_metadata():
+    one, other = (nominal_metadata(name, profile="LEGACY") for name in ("OS1-32", "OS0-32"))
+    head = datagrams_of(encode_packets(one, turn_of(one, 4)), port=0, source=0)
+    found = find_metadata([_named("/os_left/metadata", one), _named("/os_right/metadata", other)])
+
+    for side in ("left", "right"):
+        fit = choose(head, found, sensor("x", topic=f"/os_{side}/lidar_packets"))
+        assert fit.metadata.name == f"/os_{side}/metadata"

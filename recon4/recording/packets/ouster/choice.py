@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeVar
@@ -159,9 +160,15 @@ def _rank(head: Datagrams, item: OusterMetadata, sensor: Sensor | None) -> tuple
     return (
         bool(serial) and serial == item.serial,
         bool(init_id) and init_id == item.init_id,
-        any(name and name in item.name for name in names),
+        any(name and _is_in(name, item.name) for name in names),
         ports == {0} or item.port in {0, *ports},
     )
+
+
+def _is_in(name: str, file_name: str) -> bool:
+    """Whether a name stands in that of a file, not as a part of another: 10.0.0.1, 10.0.0.12."""
+    around = "[A-Za-z0-9]"
+    return bool(re.search(f"(?<!{around}){re.escape(name)}(?!{around})", file_name))
 
 
 def _doubts(head: Datagrams, item: OusterMetadata) -> tuple[str, ...]:
