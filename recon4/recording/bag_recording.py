@@ -195,11 +195,13 @@ def lidar_streams(
         require_topic(settings.lidar_topic, there, "ingest.lidar_topic")
         scans = [t for t in scans if t.name == settings.lidar_topic]
         clouds = [t for t in clouds if t.name == settings.lidar_topic]
-    if scans:
-        if clouds:
-            report.derive(f"raw packets are read, not {', '.join(t.name for t in clouds)}")
-        return [Stream(t.name, _model(bag, t), topic=t.name) for t in scans]
     by_rig = {sensor.topic for sensor in rig.sensors} if rig is not None else set()
+    if scans:
+        # The clouds of a driver repeat its packets; another make's are a LiDAR of their own.
+        others = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
+        if repeated := [t.name for t in clouds if t not in others]:
+            report.derive(f"raw packets are read, not {', '.join(repeated)}")
+        return [Stream(t.name, _model(bag, t), topic=t.name) for t in (*scans, *others)]
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
     used = [one for one in found if not one.why_not]
     if unread := unread_text(bag.topics):
