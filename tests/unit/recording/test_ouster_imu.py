@@ -102,3 +102,16 @@ def test_packets_to_the_port_of_another_sensor_are_left_alone():
 
     assert len(samples_of(mine, metadata_of())[0].imu) == 2
     assert len(samples_of(elsewhere, metadata_of())[0].imu) == 4
+
+
+def test_of_two_serial_numbers_only_its_own_samples_are_of_a_sensor(data):
+    folder = data("packets/ouster")
+    head = of_port(folder / "imu_zm_no_lidar.pcap", 7513)
+    payloads = head.payloads(np.arange(len(head)), 452)
+    payloads[::2, 7:12] = 9
+    both = datagrams_of(payloads, port=7513, t_ns=head.t_ns)
+
+    found, report = samples_of(both, companion(folder / "imu_zm_no_lidar_0.json"))
+
+    assert len(found.imu) == 32
+    assert report.counts["samples_out_of_order"] == 0

@@ -20,6 +20,7 @@ from recon4.recording.packets.ouster.layouts import (
     STANDARD_HEADER,
     TYPE_IMU,
     TYPE_ZONES,
+    numbers,
 )
 from recon4.recording.packets.ouster.metadata import OusterMetadata
 from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
@@ -103,7 +104,7 @@ class ImuPackets:
         """
         self._R_sensor_imu, self._report = metadata.R_sensor_imu, sensor.report
         self._offset_ns = round(sensor.sensor.time_offset_s * SECOND_NS)
-        self._stated_port = metadata.imu_port
+        self._stated_port, self._serial = metadata.imu_port, metadata.serial
         self._port: int | None = None
         self._last_ns = np.iinfo(np.int64).min
 
@@ -151,6 +152,9 @@ class ImuPackets:
         """Times of the rig [ns], accelerations [m/s²] and rates [rad/s] of packets of one size."""
         rows = np.flatnonzero(datagrams.length == size)
         payloads = datagrams.payloads(rows, size)
+        if size != LEGACY_IMU.itemsize and self._serial:
+            mine = numbers(_header(payloads)["serial"]) == int(self._serial)
+            rows, payloads = (rows[mine], payloads[mine]) if mine.any() else (rows, payloads)
         sound = sound_imu(payloads)
         self._report.count("sample_datagrams", len(payloads))
         self._report.count("samples_damaged", int((~sound).sum()))
@@ -219,5 +223,8 @@ def _sound(t_ns: NDArray[np.uint64], accel_m_s2: Array, gyro_rad_s: Array) -> ND
 
 
 def _is_type(payloads: Payloads, kind: int) -> NDArray[np.bool_]:
-    header = np.ascontiguousarray(payloads[:, :HEADER_BYTES]).view(STANDARD_HEADER)[:, 0]
-    return np.asarray(header["type"] == kind)
+    return np.asarray(_header(payloads)["type"] == kind)
+
+
+def _header(payloads: Payloads) -> NDArray[np.void]:
+    return np.ascontiguousarray(payloads[:, :HEADER_BYTES]).view(STANDARD_HEADER)[:, 0]
