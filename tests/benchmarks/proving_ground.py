@@ -1,12 +1,14 @@
 """The proving ground: walks through many worlds with errors the rig file does not know.
 
     python -m tests.benchmarks.proving_ground OUT [--walks W,…] [--degradations D,…] [--seconds S]
+    python -m tests.benchmarks.proving_ground OUT --drawn 60 [--seed N]
     python -m tests.benchmarks.proving_ground OUT --table
 
 Every walk is simulated once and written with every degradation. Each recording goes through the
 stages up to the final trajectory and the verdict; no map is made. Each run is one line of
 ``OUT/runs.jsonl``; runs that are there are not repeated, so a stopped table continues. The table
-is ``OUT/table.md``. What the classes mean is in `judge` and in ``docs/studies/proving-ground.md``.
+is ``OUT/table.md``. ``--drawn`` draws runs with sensors of all families. What the
+classes mean is in `judge` and in ``docs/studies/proving-ground.md``.
 """
 
 from __future__ import annotations
@@ -44,6 +46,7 @@ from recon4.workflows.lidar import LIDAR, to_trajectory
 from recon4.workflows.map_results import report_facts
 from recon4.workflows.summary import About
 from recon4.workflows.workflow import Run as WorkflowRun
+from tests.benchmarks.proving_draws import applies, drawn_runs, rig_of
 from tests.benchmarks.proving_errors import Errors, measure
 
 WALKS = (
@@ -61,7 +64,6 @@ DEGRADATIONS = (
 )  # fmt: skip
 OF_LIDARS = {"extrinsics", "lidar-clock", "swap-lidars", "wrong-model"}
 """What the audit of the rig finds of a LiDAR is part of the covariances."""
-ONLY_OUTDOORS = {"lever-arm", "gnss-clock", "no-gnss", "vehicles"}
 GENERIC = {FindingKind.LOOPS_NONE, FindingKind.IMU_MISSING, FindingKind.HEIGHTS_UNSTATED}
 """Findings that say only what the walk or the recording lacks, right or wrong."""
 _REASON_LENGTH = 160
@@ -192,11 +194,6 @@ def _inputs(recording: Path, rig: Rig) -> dict[str, Input | None]:
     } | {n: Input(n, path) if path.exists() else None for n, path in samples.items()}
 
 
-def applies(degradation: str, *, outdoors: bool) -> bool:
-    """Whether a degradation changes anything in a world."""
-    return outdoors or degradation not in ONLY_OUTDOORS
-
-
 def values_of(degradation: str) -> dict[str, float]:
     """``none`` or degradations joined by ``+``, as ``--degrade`` reads them."""
     return {} if degradation == "none" else parse_degradations(degradation.split("+"))
@@ -287,9 +284,9 @@ def run_walk(
     With ``keep`` the recordings stay in ``OUT/recordings``, where the next run finds them, and the
     artifacts without points in ``OUT/kept``, for studies of the errors.
     """
-    outdoors = build_world(walk.split("/")[0]).outdoors
-    wanted = [d for d in degradations if applies(d, outdoors=outdoors)]
-    name = f"{walk}_{seconds:g}s".replace("/", "-").replace(":", "v")
+    outdoors, rig = build_world(walk.split("/")[0]).outdoors, rig_of(walk)
+    wanted = [d for d in degradations if applies(d, outdoors=outdoors, rig=rig)]
+    name = f"{walk}_{seconds:g}s".translate(str.maketrans("/: +", "-v__"))
     folders = {d: out / "recordings" / name / d.replace("+", "_") for d in wanted}
     _simulate(walk, {d: f for d, f in folders.items() if not f.exists()}, seconds=seconds)
     for degradation, recording in folders.items():
@@ -305,13 +302,13 @@ def run_walk(
 
 def _simulate(walk: str, folders: Mapping[str, Path], *, seconds: float) -> None:
     """Write the recordings of a walk; the rays are cast once for all that do not change them."""
-    world, seed = walk.split("/")
+    world, seed = walk.split("/")[:2]
     values = {degradation: values_of(degradation) for degradation in folders}
     for crowd in {Crowd.of(of_one) for of_one in values.values()}:
         same = {folders[d]: v for d, v in values.items() if Crowd.of(v) == crowd}
         for folder in same:
             folder.parent.mkdir(parents=True, exist_ok=True)
-        setup = prepare(world, seconds=seconds, seed=int(seed), crowd=crowd)
+        setup = prepare(world, seconds=seconds, seed=int(seed), rig=rig_of(walk), crowd=crowd)
         record(setup, same, bag=False, progress=Silent())
 
 
@@ -335,13 +332,19 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=20.0)
     parser.add_argument("--keep", action="store_true", help="keep recordings and artifacts")
     parser.add_argument("--quick", action="store_true", help="audit the rig of wrong walks only")
+    parser.add_argument("--drawn", type=int, default=0, help="runs with drawn sensors")
+    parser.add_argument("--seed", type=int, default=1, help="of the drawn runs")
     parser.add_argument("--table", action="store_true", help="only write the table")
     a = parser.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
     path = a.out / "runs.jsonl"
-    for walk in [] if a.table else a.walks.split(","):
+    degradations = a.degradations.split(",")
+    plan = [(walk, degradations) for walk in a.walks.split(",")]
+    if a.drawn:
+        plan = [(walk, [d]) for walk, d in drawn_runs(a.drawn, a.seed, degradations)]
+    for walk, wanted in [] if a.table else plan:
         done = {(r["walk"], r["degradation"], r["seconds"]) for r in read_lines(path)}
-        missing = [d for d in a.degradations.split(",") if (walk, d, a.seconds) not in done]
+        missing = [d for d in wanted if (walk, d, a.seconds) not in done]
         runs = (
             run_walk(walk, missing, a.out, seconds=a.seconds, keep=a.keep, quick=a.quick)
             if missing

@@ -8,11 +8,18 @@ from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
 from recon4.simulation.degradation import KINDS
 from recon4.simulation.worlds import build_world
+from tests.benchmarks.proving_draws import (
+    ONLY_OUTDOORS,
+    SENSORS,
+    applies,
+    drawn_runs,
+    is_outdoors,
+    rig_of,
+)
 from tests.benchmarks.proving_errors import Errors
 from tests.benchmarks.proving_ground import (
     DEGRADATIONS,
     GENERIC,
-    ONLY_OUTDOORS,
     WALKS,
     judge,
     matrix,
@@ -63,6 +70,21 @@ def test_the_plan_has_240_runs_of_walks_and_degradations_that_exist():
 
     assert len(runs) == len(set(runs)) >= 240
     assert all(set(values_of(d)) <= set(KINDS) for d in DEGRADATIONS)
+
+
+def test_drawn_runs_have_all_sensors_and_only_errors_that_these_can_have():
+    runs = drawn_runs(26, 1, DEGRADATIONS)
+
+    assert runs == drawn_runs(26, 1, DEGRADATIONS) != drawn_runs(26, 2, DEGRADATIONS)
+    assert {walk.split("/")[2] for walk, _ in runs} == set(SENSORS)
+    for walk, degradation in runs:
+        outdoors = is_outdoors(walk.split("/")[0])
+        assert applies(degradation, outdoors=outdoors, rig=rig_of(walk))
+    one = rig_of("office/1/Mid-360")
+    assert not any(
+        applies(d, outdoors=True, rig=one) for d in ("swap-lidars", "wrong-model", "dead-beams")
+    )
+    assert applies("wrong-model", outdoors=False, rig=rig_of("office/1"))
 
 
 def test_a_line_that_was_cut_off_is_run_again(tmp_path):
