@@ -16,6 +16,7 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.formats.bags import Bag, BagMessage
 from recon4.recording.formats.cloud_files import Table
 from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
+from recon4.recording.formats.point_messages import PointMessage
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured import declared_absent
 from recon4.recording.stamps import StampClock
@@ -33,11 +34,13 @@ _NOTHING = (np.nan,) * 3
 
 
 def cloud_table(cloud: Any) -> Table:
-    """Fields of a ``PointCloud2`` by lower-case name.
+    """Fields of a ``PointCloud2``, or of another message of points, by lower-case name.
 
     Raises:
         CorruptFile: If the data are shorter than the layout.
     """
+    if isinstance(cloud, PointMessage):
+        return cloud.table
     order = ">" if cloud.is_bigendian else "<"
     known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
     step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)

@@ -198,10 +198,10 @@ def lidar_streams(
     by_rig = {sensor.topic for sensor in rig.sensors} if rig is not None else set()
     if scans:
         # The clouds of a driver repeat its packets; another make's are a LiDAR of their own.
-        others = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
-        if repeated := [t.name for t in clouds if t not in others]:
+        apart = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
+        if repeated := [t.name for t in clouds if t not in apart]:
             report.derive(f"raw packets are read, not {', '.join(repeated)}")
-        return [Stream(t.name, _model(bag, t), topic=t.name) for t in (*scans, *others)]
+        return [Stream(t.name, _model(bag, t), topic=t.name) for t in (*scans, *apart)]
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
     used = [one for one in found if not one.why_not]
     if unread := unread_text(bag.topics):
@@ -234,7 +234,7 @@ def _model(bag: Bag, topic: BagTopic) -> str:
         content = bag.decode(message)
         if content is None:
             continue
-        if topic.type == CLOUD and content.width * content.height:
+        if content.width * content.height:
             try:
                 return model_of_points(cloud_table(content))
             except RecordingError:

@@ -15,26 +15,25 @@ from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.exact_times import ExactClock
 from recon4.recording.formats.cloud_files import Table
 from recon4.recording.packets.velodyne.models import MODELS
+from recon4.recording.point_fields import (
+    EXACT_TIME,
+    INTENSITY_FIELDS,
+    RING_FIELDS,
+    TIME_FIELDS,
+    find_field,
+)
 from recon4.recording.point_times import PointClock
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
-
-TIME_FIELDS = ("t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "t_us")
-RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")
-INTENSITY_FIELDS = ("intensity", "i", "reflectivity", "signal", "scalar_intensity")
 
 _BANDS = 64
 _MANY_POINTS = 100
 """Fewer points may have one intensity or ring."""
 _ONE_BEAM_RAD = np.deg2rad(5.0)
 """A tilted beam spreads over less elevation."""
-
-
-def find_field(names: Any, aliases: tuple[str, ...]) -> str:
-    """The first alias found in the names; empty = none."""
-    return next((alias for alias in aliases if alias in names), "")
 
 
 _DEFAULTS = IngestSettings()
@@ -65,6 +64,7 @@ class CloudDecoder:
         self._row, self._report = sensor_row, report
         self._name, self._model = sensor.name, sensor.model
         self._clock = PointClock(sensor.name, report, points_lead=points_lead)
+        self._exact = ExactClock(sensor.name, report)
         self._deskewed, self._unit_m = settings.deskewed, settings.points_unit_m
         self._ring_of: NDArray[np.uint8] | None = None
         self.absolute = False
@@ -85,6 +85,7 @@ class CloudDecoder:
         xyz = _xyz(table, self._name) * np.float32(self._unit_m)
         valid = np.flatnonzero(np.all(np.isfinite(xyz), axis=1) & np.any(xyz != 0.0, axis=1))
         self._report.count("points_invalid", len(xyz) - len(valid))
+        valid = self._without_noise(table, valid)
         table = {key: column[valid] for key, column in table.items()}
         xyz = xyz[valid]
         self._report.count("clouds")
@@ -100,8 +101,16 @@ class CloudDecoder:
             xyz[order],
             self._intensity(table, len(xyz))[order],
             self._rings(table, xyz)[order],
-            np.zeros(len(xyz), np.uint8),
+            table.get("echo", np.zeros(len(xyz), np.uint8))[order],
         )
+
+    def _without_noise(self, table: Table, rows: NDArray[np.intp]) -> NDArray[np.intp]:
+        """The rows of points that the sensor itself does not call noise."""
+        if "noise" not in table:
+            return rows
+        kept = rows[~table["noise"][rows].astype(np.bool_)]
+        self._report.count("points_noise", len(rows) - len(kept))
+        return kept
 
     def nothing(self) -> Shots:
         """No shots of this sensor."""
@@ -195,9 +204,16 @@ class CloudDecoder:
         if self._deskewed:
             self._report.count(CLOUDS_UNTIMED)
             return at_stamp
+        if EXACT_TIME in table:
+            self.absolute = True
+            return self._exact.times(table[EXACT_TIME], t_ns=t_ns, period_ns=period_ns)
         if key:
             found = self._clock.times(
-                key, table[key], t_ns=t_ns, period_ns=period_ns, full_turn=full_turn
+                key,
+                table[key],
+                t_ns=t_ns,
+                period_ns=period_ns,
+                full_turn=full_turn,
             )
             if found is not None:
                 self.absolute = found.absolute

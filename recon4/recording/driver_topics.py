@@ -9,12 +9,10 @@ from recon4.recording.packets.messages import DATA_MESSAGES
 
 _BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
 _REMEDIES = (
-    (("livox",), "set xfer_format to 0 in the driver's launch file: it then publishes PointCloud2"),
     (("ouster", "os_ros"), _BY_REPLAY),
     (("pandar", "hesai"), _BY_REPLAY),
     (("rslidar", "robosense"), _BY_REPLAY),
     (("sick_scan", "cepton", "innovusion", "seyond", "blickfeld"), _BY_REPLAY),
-    (("sensor_msgs/msg/pointcloud",), "convert it to PointCloud2 with point_cloud_converter"),
 )
 """Beginnings of names of types, and what gives a topic that is read."""
 _NOT_LIDARS = ("imu", "info", "status", "diagnos", "string", "metadata", "laserscan")
@@ -26,7 +24,7 @@ def driver_topics(topics: Sequence[BagTopic]) -> list[tuple[BagTopic, str]]:
     found = []
     for topic in topics:
         kind = topic.type.lower()
-        if not topic.messages or topic.type in (CLOUD):
+        if not topic.messages or topic.is_points:
             continue
         remedy = next((text for starts, text in _REMEDIES if kind.startswith(starts)), "")
         if remedy and not any(word in kind for word in _NOT_LIDARS):

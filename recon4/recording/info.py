@@ -17,10 +17,9 @@ from recon4.recording.bag_messages import cloud_table
 from recon4.recording.bag_packets import describing_topics
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
-from recon4.recording.cloud_points import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.first_rig import first_rig_text
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
-from recon4.recording.formats.bags import CLOUD, IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
+from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
 from recon4.recording.info_head import RecordingHead, judge_samples, read_head
@@ -42,6 +41,7 @@ from recon4.recording.open import KINDS, open_recording
 from recon4.recording.openers.frames import frames_model
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.messages import PACKET_MESSAGES
+from recon4.recording.point_fields import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import UnknownMounts
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
@@ -134,10 +134,10 @@ def _bag_sensor(bag: Bag, topic: BagTopic, model: str) -> SensorInfo:
     return SensorInfo(
         label=topic.name,
         model=model,
-        content="clouds" if topic.type == CLOUD else "scans of packets",
+        content="clouds" if topic.is_points else "scans of packets",
         count=topic.messages,
         rate_hz=(topic.messages - 1) / bag.seconds if bag.seconds > 0 else float("nan"),
-        fields=_message_fields(bag, topic) if topic.type == CLOUD else (),
+        fields=_message_fields(bag, topic) if topic.is_points else (),
     )
 
 

@@ -15,12 +15,13 @@ from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
 from recon4.model.trajectory import Trajectory
 from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row, stamp_clock
-from recon4.recording.formats.bags import CLOUD, LASER_SCAN, Bag
+from recon4.recording.formats.bags import LASER_SCAN, Bag
 from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_carmen
 from recon4.recording.kinds import RecordingKind, bag_paths, capture_files, recognize
 from recon4.recording.laser_mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.laser_tables import is_laser_table, read_laser_table
 from recon4.recording.line_recording import profiler_rig
+from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.packets.streams import require_one_capture
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
@@ -60,7 +61,8 @@ def is_laser2d(path: Path, kind: RecordingKind | None = None) -> bool:
     with Bag(bag_paths(path), report) as bag:
         kinds = {topic.type for topic in bag.topics if topic.messages}
         has_lines = profiler_rig(bag.topics, None, report) is not None
-        return LASER_SCAN in kinds and not kinds & {CLOUD} and not has_lines
+        lidars = any(t.is_points or t.type in DATA_MESSAGES for t in bag.topics if t.messages)
+        return LASER_SCAN in kinds and not lidars and not has_lines
 
 
 def read_laser2d(

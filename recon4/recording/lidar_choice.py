@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from recon4.errors import RecordingError
 from recon4.recording.bag_messages import cloud_table
-from recon4.recording.cloud_points import RING_FIELDS, TIME_FIELDS, find_field
-from recon4.recording.formats.bags import CLOUD, IMU, ODOMETRY, Bag, BagTopic
+from recon4.recording.formats.bags import IMU, ODOMETRY, Bag, BagTopic
 from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
+from recon4.recording.point_fields import EXACT_TIME, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
 from recon4.recording.topic_contents import Contents, read_contents
 from recon4.recording.transform_messages import frame_name, has_frames, read_frames
@@ -22,6 +22,7 @@ _WIDEST_CAMERA_RAD = np.deg2rad(65.0)
 """Half of the widest view of a depth camera."""
 _COLORS = ("rgb", "rgba", "bgr", "r", "red")
 _INTENSITIES = ("intensity", "reflectivity", "signal", "i")
+_TIMES = (EXACT_TIME, *TIME_FIELDS)
 _FEWER = 0.9
 _SAME_STAMPS = 0.5
 _SAME_STEP_M, _SAME_STEPS = 2e-3, 0.99
@@ -66,7 +67,7 @@ class CloudTopic:
         Negative = a camera.
         """
         return -self.is_camera + sum(
-            bool(find_field(self.fields, names)) for names in (TIME_FIELDS, RING_FIELDS)
+            bool(find_field(self.fields, names)) for names in (_TIMES, RING_FIELDS)
         )
 
 
@@ -186,7 +187,7 @@ def _rank(one: CloudTopic) -> tuple[object, ...]:
 
 def _is_camera(found: Contents, fields: Collection[str]) -> bool:
     """Whether clouds are of a camera: a narrow view, and colors or an image without intensities."""
-    kinds: Mapping[str, tuple[str, ...]] = {"time": TIME_FIELDS, "ring": RING_FIELDS}
+    kinds: Mapping[str, tuple[str, ...]] = {"time": _TIMES, "ring": RING_FIELDS}
     if any(find_field(fields, names) for names in kinds.values()):
         return False
     image = any(int(m.height) > 1 for m in found.messages)
@@ -222,4 +223,4 @@ def _points(message: Any) -> NDArray[np.float64]:
 
 def is_cloud(topic: BagTopic) -> bool:
     """Whether a topic has clouds."""
-    return topic.type == CLOUD and topic.messages > 0
+    return topic.is_points and topic.messages > 0

@@ -10,7 +10,7 @@ import numpy as np
 
 from recon4.model.samples import ImuSamples
 from recon4.recording.bag_messages import imu_row, pose_row, stamp_ns
-from recon4.recording.formats.bags import CLOUD, Bag, BagTopic
+from recon4.recording.formats.bags import Bag, BagTopic
 from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.samples.measured import imu_channels
 from recon4.recording.samples.units import FASTEST_RAD_S
@@ -72,7 +72,8 @@ class Fault:
 
 def read_contents(bag: Bag, topics: Sequence[BagTopic]) -> dict[str, Contents]:
     """Decode the first messages of some topics, in one pass over the head of an open bag."""
-    most = dict.fromkeys((CLOUD, *DATA_MESSAGES), _PROBED_CLOUDS)
+    large = {*DATA_MESSAGES, *(topic.type for topic in topics if topic.is_points)}
+    most = dict.fromkeys(large, _PROBED_CLOUDS)
     waiting = {
         t.name: min(t.messages, most.get(t.type, _PROBED_MESSAGES)) for t in topics if t.messages
     }

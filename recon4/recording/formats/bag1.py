@@ -25,6 +25,7 @@ from recon4.recording.formats.limits import (
     MAX_TOPICS,
     RecordFile,
     clean_name,
+    definition_text,
 )
 from recon4.recording.report import ImportReport
 
@@ -132,7 +133,11 @@ def _topic(header: Fields, about: Fields) -> Topic:
     name = clean_name(header.get(b"topic", b""))
     parts = "/".join(part for part in name.split("/") if part)
     kind = clean_name(about.get(b"type", b""))
-    return Topic(f"/{parts}" if name.startswith("/") else parts, kind.replace("/", "/msg/", 1))
+    return Topic(
+        f"/{parts}" if name.startswith("/") else parts,
+        kind.replace("/", "/msg/", 1),
+        definition=definition_text(about.get(b"message_definition", b"")),
+    )
 
 
 class _Info(NamedTuple):

@@ -1,7 +1,8 @@
 """ROS bags of every kind as one stream of messages; damaged files are salvaged.
 
-Only the message types below are decoded, with definitions from here: code is never generated from
-definitions found inside a bag. What a file may ask for is in `recon4.recording.formats.limits`.
+Code is never generated from definitions found inside a bag: types of points that a bag defines are
+read by `recon4.recording.formats.message_schema`, the other types below with definitions from here.
+What a file may ask for is in `recon4.recording.formats.limits`.
 """
 
 from __future__ import annotations
@@ -31,6 +32,7 @@ from recon4.recording.formats.limits import (
 )
 from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
+from recon4.recording.formats.point_messages import PointReader, point_readers
 from recon4.recording.formats.scratch import scratch_folder
 from recon4.recording.formats.zstd_file import decompress_file
 from recon4.recording.packets.messages import DATA_MESSAGES, DEFINITIONS
@@ -62,6 +64,10 @@ class BagTopic:
     type: str
     """ROS 2 spelling, as ``sensor_msgs/msg/Imu``."""
     messages: int
+    columns: tuple[str, ...] = ()
+    """Fields of a point, lower case, if the type is one of points that the bag itself defines."""
+    is_points: bool = False
+    """Whether its messages are points whose fields are known."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +112,8 @@ class Bag:
         """Of each source: its file, or the folder whose description names it."""
         self._compressed_messages = False
         self._stored_bytes = 0
+        self._points: dict[str, PointReader] = {}
+        """Of the types of points other than ``PointCloud2``."""
         self.ros1 = False
         self.topics: tuple[BagTopic, ...] = ()
         self.t_first_ns, self.t_last_ns = 0, 0
@@ -154,6 +162,8 @@ class Bag:
         """Decode a message to an object with its fields; None (counted) if it is damaged."""
         store = _typestore(self.ros1)
         try:
+            if message.type in self._points:
+                return self._points[message.type].read(message.data, ros1=self.ros1)
             check_message(message.type, message.data, ros1=self.ros1)
             if self.ros1:
                 return store.deserialize_ros1(message.data, message.type)
@@ -276,11 +286,14 @@ class Bag:
 
     def _summarize(self) -> None:
         counts: dict[tuple[str, str], int] = {}
+        definitions: dict[str, str] = {}
         for source in self._sources:
             for topic in source.index.topics.values():
                 key = (topic.topic, topic.msgtype)
                 counts[key] = counts.get(key, 0) + topic.msgcount
-        self.topics = tuple(BagTopic(n, t, c) for (n, t), c in sorted(counts.items()))
+                definitions[topic.msgtype] = definitions.get(topic.msgtype) or topic.definition
+        self._points = point_readers(definitions)
+        self.topics = tuple(self._topic(n, t, c) for (n, t), c in sorted(counts.items()))
         filled = [s.index for s in self._sources if s.index.message_count]
         require_one_walk(
             [
@@ -297,10 +310,17 @@ class Bag:
         first = self._first_measured()
         self.t_first_ns = first.t_ns if first is not None else self.t_first_ns
 
+    def _topic(self, name: str, kind: str, messages: int) -> BagTopic:
+        reader = self._points.get(kind)
+        if reader is None:
+            return BagTopic(name, kind, messages, is_points=kind == CLOUD)
+        return BagTopic(name, kind, messages, reader.columns, reader.is_known)
+
     def _first_measured(self) -> BagMessage | None:
         report, self.report = self.report, ImportReport()  # damage is reported when it is read
         try:
-            names = [topic.name for topic in self.topics if topic.type in _MEASURED]
+            kinds = {*_MEASURED, *(topic.type for topic in self.topics if topic.is_points)}
+            names = [topic.name for topic in self.topics if topic.type in kinds]
             return next(self.messages(names), None) if names else None
         except CorruptFile:
             return None

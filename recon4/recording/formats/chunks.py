@@ -47,6 +47,8 @@ class Topic:
     msgtype: str
     """ROS 2 spelling, as ``sensor_msgs/msg/Imu``."""
     msgcount: int = 0
+    definition: str = ""
+    """Of the type, in ROS's language; empty = the file has none."""
 
 
 @dataclass(frozen=True, slots=True)

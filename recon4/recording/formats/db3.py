@@ -11,7 +11,8 @@ import os
 from array import array
 from collections import Counter
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,12 @@ import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.recording.formats.chunks import BagIndex, RawMessage, Topic
-from recon4.recording.formats.limits import MAX_MESSAGE_BYTES, MAX_TOPICS, clean_name
+from recon4.recording.formats.limits import (
+    MAX_MESSAGE_BYTES,
+    MAX_TOPICS,
+    clean_name,
+    definition_text,
+)
 from recon4.recording.formats.sqlite_tree import check_table_tree
 from recon4.recording.report import ImportReport
 
@@ -43,7 +49,13 @@ _LIMITS = {
     apsw.SQLITE_LIMIT_WORKER_THREADS: 0,
 }
 _READ = {apsw.SQLITE_SELECT, apsw.SQLITE_READ}
-_COLUMNS = {"topics": ("id", "name", "type"), "messages": ("topic_id", "timestamp", "data")}
+_DEFINITIONS = "message_definitions"
+"""Table of bags since ROS 2 Iron."""
+_COLUMNS = {
+    "topics": ("id", "name", "type"),
+    "messages": ("topic_id", "timestamp", "data"),
+    _DEFINITIONS: ("topic_type", "encoded_message_definition"),
+}
 
 
 class Db3:
@@ -67,8 +79,10 @@ class Db3:
             self._database = self._open(path, whole=whole)
         try:
             with _reading(path.name):
-                for root in _require_tables(self._database, path.name):
+                roots = _require_tables(self._database, path.name)
+                for root in roots.values():
                     check_table_tree(path, root, page_bytes)
+                self._defines = _DEFINITIONS in roots
                 self._database.set_authorizer(_authorize)
                 topics = self._topics()
                 self._rows = self._scan()
@@ -125,14 +139,27 @@ class Db3:
 
     def _topics(self) -> dict[int, Topic]:
         found: dict[int, Topic] = {}
+        texts = self._definitions()
         for number, name, kind in self._execute("SELECT id, name, type FROM topics NOT INDEXED"):
             if not isinstance(number, int) or len(found) >= MAX_TOPICS or number in found:
                 raise CorruptFile(
                     f"{self._name}: table topics: expected at most {MAX_TOPICS} topics, each with "
                     f"a number of its own, got {number!r} after {len(found)}"
                 )
-            found[number] = Topic(clean_name(str(name)), clean_name(str(kind)))
+            text = texts.get(str(kind), "")
+            found[number] = Topic(clean_name(str(name)), clean_name(str(kind)), definition=text)
         return found
+
+    def _definitions(self) -> dict[str, str]:
+        """Definitions of types; files before ROS 2 Iron have none."""
+        if not self._defines:
+            return {}
+        query = f"SELECT topic_type, encoded_message_definition FROM {_DEFINITIONS} NOT INDEXED"
+        try:
+            rows = islice(self._execute(query), MAX_TOPICS)
+            return {str(kind): definition_text(str(text)) for kind, text in rows}
+        except (apsw.Error, MemoryError, ValueError):
+            return {}
 
     def _scan(self) -> tuple[np.ndarray[Any, Any], ...]:
         """Times, row numbers and topics of the messages, up to the first damage."""
@@ -215,7 +242,7 @@ def _reading(name: str) -> Iterator[None]:
 
 
 def _authorize(action: int, table: str | None, *_: str | None) -> int:
-    """Allow reading of the two tables, nothing else."""
+    """Allow reading of the tables of a bag, nothing else."""
     if action == apsw.SQLITE_SELECT:
         return apsw.SQLITE_OK
     if action == apsw.SQLITE_READ and table in _COLUMNS:
@@ -223,30 +250,39 @@ def _authorize(action: int, table: str | None, *_: str | None) -> int:
     return apsw.SQLITE_DENY
 
 
-def _require_tables(database: apsw.Connection, name: str) -> list[int]:
-    """Check that both tables are plain tables with plain columns; gives their root pages.
+def _require_tables(database: apsw.Connection, name: str) -> dict[str, int]:
+    """Root pages of the tables; that of the definitions may be missing.
 
     Raises:
         CorruptFile: If one is a view, a virtual table, missing, or computes a column.
     """
-    roots = []
-    for table, columns in _COLUMNS.items():
-        query = "SELECT type, rootpage FROM sqlite_schema WHERE name = ?"
-        found = [*database.execute(query, (table,))]
-        if len(found) != 1 or found[0][0] != "table" or not found[0][1]:
-            kinds = ", ".join(f"a {kind}" for kind, _ in found) or "nothing"
-            kinds = kinds if kinds != "a table" else "a virtual table"
-            raise CorruptFile(f"{name}: expected a table {table}, got {kinds} of that name")
-        query = "SELECT name, hidden FROM pragma_table_xinfo(?)"
-        hidden = dict(database.execute(query, (table,)))
-        for column in columns:
-            if hidden.get(column) != 0:
-                got = "none" if column not in hidden else "one that is computed"
-                raise CorruptFile(f"{name}: expected a column {column} in {table}, got {got}")
-        if {"rowid", "oid", "_rowid_"} & {str(column).lower() for column in hidden}:
-            raise CorruptFile(f"{name}: table {table} hides the numbers of its rows")
-        roots.append(int(found[0][1]))
+    roots = {table: _root(database, table, name) for table in _COLUMNS if table != _DEFINITIONS}
+    with suppress(CorruptFile):
+        roots[_DEFINITIONS] = _root(database, _DEFINITIONS, name)
     return roots
+
+
+def _root(database: apsw.Connection, table: str, name: str) -> int:
+    """Check that a table is a plain one with plain columns; gives its root page.
+
+    Raises:
+        CorruptFile: As `_require_tables`.
+    """
+    query = "SELECT type, rootpage FROM sqlite_schema WHERE name = ?"
+    found = [*database.execute(query, (table,))]
+    if len(found) != 1 or found[0][0] != "table" or not found[0][1]:
+        kinds = ", ".join(f"a {kind}" for kind, _ in found) or "nothing"
+        kinds = kinds if kinds != "a table" else "a virtual table"
+        raise CorruptFile(f"{name}: expected a table {table}, got {kinds} of that name")
+    query = "SELECT name, hidden FROM pragma_table_xinfo(?)"
+    hidden = dict(database.execute(query, (table,)))
+    for column in _COLUMNS[table]:
+        if hidden.get(column) != 0:
+            got = "none" if column not in hidden else "one that is computed"
+            raise CorruptFile(f"{name}: expected a column {column} in {table}, got {got}")
+    if {"rowid", "oid", "_rowid_"} & {str(column).lower() for column in hidden}:
+        raise CorruptFile(f"{name}: table {table} hides the numbers of its rows")
+    return int(found[0][1])
 
 
 # -- files that were cut off

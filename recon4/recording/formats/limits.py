@@ -16,6 +16,8 @@ MAX_MESSAGE_BYTES = 64 << 20
 """One message, compressed or not; a cloud of 128 beams x 2048 columns has 12 MB."""
 MAX_RECORD_HEADER_BYTES = 1 << 20
 MAX_TOPICS = 10_000
+MAX_DEFINITION_CHARACTERS = 64 * 1024
+"""Of a type of messages; the longest ones have some kilobytes."""
 MAX_RATIO = 200
 """Largest expansion of a compressed byte, beyond `RATIO_FLOOR_BYTES`."""
 RATIO_FLOOR_BYTES = 16 << 20
@@ -209,6 +211,12 @@ def _zstd(data: bytes, most: int) -> bytes:
                 break
             found += piece
     return bytes(found)
+
+
+def definition_text(text: bytes | str) -> str:
+    """The definition of a message from a file; none that is longer than any real one."""
+    whole = text.decode("utf-8", "replace") if isinstance(text, bytes) else text
+    return whole if len(whole) <= MAX_DEFINITION_CHARACTERS else ""
 
 
 def clean_name(name: bytes | str) -> str:

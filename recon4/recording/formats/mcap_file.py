@@ -25,10 +25,13 @@ from recon4.recording.formats.limits import (
     MAX_TOPICS,
     RecordFile,
     clean_name,
+    definition_text,
 )
 from recon4.recording.report import ImportReport
 
 MAGIC = b"\x89MCAP0\r\n"
+_ROS = ("ros1msg", "ros2msg")
+"""Encodings of definitions in ROS's language."""
 _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK = 2, 3, 4, 5, 6
 _CHUNK_INDEX, _STATISTICS, _DATA_END = 8, 11, 15
 _RECORD = struct.Struct("<BQ")
@@ -93,10 +96,11 @@ class _Topics:
 
     def __init__(self) -> None:
         self.types: dict[int, str] = {}
+        self.definitions: dict[int, str] = {}
         self.channels: dict[int, Topic] = {}
 
     def add(self, op: int, body: bytes, where: str) -> None:
-        """Add a schema or a channel; definitions are not read."""
+        """Add a schema or a channel."""
         from mcap.data_stream import ReadDataStream
         from mcap.records import Channel, Schema
 
@@ -106,10 +110,14 @@ class _Topics:
         if op == _SCHEMA:
             schema = _parsed(lambda: read(Schema), where)
             self.types[schema.id] = clean_name(schema.name)
+            if schema.encoding in _ROS:
+                self.definitions[schema.id] = definition_text(schema.data)
         elif op == _CHANNEL and len(self.channels) < MAX_TOPICS:
             channel = _parsed(lambda: read(Channel), where)
             kind = self.types.get(channel.schema_id, "")
-            self.channels.setdefault(channel.id, Topic(clean_name(channel.topic), kind))
+            text = self.definitions.get(channel.schema_id, "")
+            topic = Topic(clean_name(channel.topic), kind, definition=text)
+            self.channels.setdefault(channel.id, topic)
 
 
 def _parsed(read: Callable[[], _T], where: str) -> _T:

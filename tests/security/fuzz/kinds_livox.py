@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from functools import cache, partial
 from pathlib import Path
 
@@ -18,6 +19,7 @@ from tests.builders import T0_NS
 from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.seeds_recordings import read_recording
 from tests.unit.recording.lvx_files import lvx
+from tests.unit.recording.test_point_messages import livox_bag
 
 _PACKETS = 12
 _TYPES = tuple(LAYOUTS[row] for row in (1, 4, 7, 8, 9))
@@ -80,6 +82,12 @@ def _read_file(path: Path) -> Reading:
     return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.warnings))
 
 
+@cache
+def _bag_seeds() -> tuple[bytes, ...]:
+    with tempfile.TemporaryDirectory() as place:
+        return (livox_bag(Path(place), "bag1").read_bytes(),)
+
+
 _FILES = {"lvx1.0": (1, 0), "lvx1.1": (1, 1), "lvx2": (2, 0)}
 LIVOX_KINDS = tuple(
     Kind(
@@ -101,5 +109,14 @@ LIVOX_KINDS = tuple(
         knows_end=False,
     )
     for name, version in _FILES.items()
+)
+LIVOX_KINDS += (
+    Kind(
+        name="bag1-livox",
+        file_name="a.bag",
+        seeds=_bag_seeds,
+        read=_read_file,
+        header_bytes=4096,
+    ),
 )
 """Data packets, and the files of the maker's viewer."""

@@ -151,7 +151,7 @@ def imu(bag, t_ns, k):
 @pytest.mark.parametrize(
     ("kind", "remedy"),
     [
-        ("livox_ros_driver2/msg/CustomMsg", "set xfer_format to 0"),
+        ("cepton_messages/msg/Points", "play the bag back through the driver"),
         ("cepton_messages/msg/CeptonPacket", "play the bag back through the driver"),
         ("innovusion/msg/InnovusionScan", "play the bag back through the driver"),
     ],
@@ -187,9 +187,9 @@ def camera(bag, t_ns, k):
 
 @pytest.mark.parametrize("others", [(camera,), (registered,), (camera, registered)])
 def test_no_camera_or_map_stands_in_for_a_lidar_that_is_not_read(tmp_path, others):
-    path = write(tmp_path, driver("livox_ros_driver/msg/CustomMsg"), *others)
+    path = write(tmp_path, driver("cepton_messages/msg/Points"), *others)
 
-    with pytest.raises(EmptyRecording, match=r"set xfer_format to 0.*ingest\.lidar_topic"):
+    with pytest.raises(EmptyRecording, match=r"play the bag back.*ingest\.lidar_topic"):
         opened(path)
 
     topic = "/camera/points" if camera in others else "/cloud_registered"
@@ -199,7 +199,7 @@ def test_no_camera_or_map_stands_in_for_a_lidar_that_is_not_read(tmp_path, other
 
 
 def test_a_lidar_in_messages_of_its_driver_beside_one_that_is_read_is_no_warning(tmp_path):
-    _, report = opened(write(tmp_path, driver("livox_ros_driver/msg/CustomMsg"), lidar()))
+    _, report = opened(write(tmp_path, driver("cepton_messages/msg/Points"), lidar()))
 
     assert not any("is of a LiDAR" in text for text in report.warnings)
     assert any("/livox/lidar is of a LiDAR" in text for text in report.derived)

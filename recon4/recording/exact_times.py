@@ -1,0 +1,88 @@
+"""Times of points that are nanoseconds of one clock by the definition of their message."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.trajectory import Times
+from recon4.recording.clock_names import described
+from recon4.recording.report import ImportReport
+
+_SAME_CLOCK_NS = 500_000_000
+"""Points this near to their stamp are on its clock."""
+_JUMP_NS = 1_000_000_000
+"""A stamp farther from where the points' clock says is wrong, or that clock has jumped."""
+_CONFIRM = 3
+"""Clouds that must agree on a jump."""
+_FAR_NS = 1_000_000_000
+"""Points farther from the others of their cloud are damaged."""
+_MANY_POINTS = 100
+"""Fewer points may have one time."""
+
+
+class ExactClock:
+    """Moves the times of one sensor's points to the clock of the stamps of its clouds.
+
+    The points' own clock counts: drivers repeat stamps, or give a frame that of its end. Only the
+    offset of the two clocks is taken from the stamps, once, and again if it jumps.
+    """
+
+    def __init__(self, name: str, report: ImportReport) -> None:
+        """Start without an offset.
+
+        Args:
+            name: Of the sensor.
+            report: Receives the counts ``clock_jumps``, ``clouds_wrong_times`` and
+                ``points_wrong_time``.
+        """
+        self._name, self._report = name, report
+        self._offset_ns: int | None = None
+        self._others: list[int] = []
+        """Offsets by the last clouds that contradict the known one [ns]."""
+
+    def times(self, values: Times, *, t_ns: int, period_ns: int) -> tuple[Times, NDArray[np.bool_]]:
+        """Times of the points of a cloud [ns], and which are sound, (N,) each.
+
+        Args:
+            values: In firing order where all are equal, which is a fault: then they are spread over
+                the time to the next cloud; (N,), N > 0.
+            t_ns: Stamp of the cloud.
+            period_ns: Time from cloud to cloud.
+        """
+        middle = int(np.sort(values)[len(values) // 2])
+        sound = np.abs(values - middle) <= _FAR_NS
+        self._report.count("points_wrong_time", len(values) - int(np.count_nonzero(sound)))
+        first = int(values[sound].min())
+        if len(values) >= _MANY_POINTS and first == int(values[sound].max()):
+            self._report.count("clouds_wrong_times")
+            self._report.details.setdefault(
+                "clouds_wrong_times",
+                f"{self._name}: all points of a cloud have one time: spread in their order",
+            )
+            values = first + (np.arange(len(values)) * period_ns) // len(values)
+        return values + self._offset(first, t_ns), sound
+
+    def _offset(self, first_ns: int, t_ns: int) -> int:
+        """Clock of the stamps minus that of the points [ns]."""
+        ahead = t_ns - first_ns
+        if self._offset_ns is None:
+            self._offset_ns = 0 if abs(ahead) < _SAME_CLOCK_NS else ahead
+            if self._offset_ns:
+                self._report.derive(
+                    f"{self._name}: the points' clock is not the stamps' clock, it is ahead by "
+                    f"{described(-ahead * 1e-9)}; first stamp = first point"
+                )
+        if abs(ahead - self._offset_ns) <= _JUMP_NS:
+            self._others = []
+            return self._offset_ns
+        self._others = [*self._others, ahead][-_CONFIRM:]
+        if len(self._others) == _CONFIRM and np.ptp(self._others) < _JUMP_NS:
+            jump_s = (self._offset_ns - ahead) * 1e-9
+            self._report.count("clock_jumps")
+            self._report.warn(
+                f"{self._name}: the points' clock jumped by {jump_s:+.3f} s against that of the "
+                "stamps; times go on by the stamps"
+            )
+            self._offset_ns, self._others = ahead, []
+        return self._offset_ns
