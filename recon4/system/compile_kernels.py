@@ -34,6 +34,7 @@ from recon4.slices.slice_plane import SlicePlane
 from recon4.store.frames import FrameStore
 from recon4.store.locks import open_lock_file, wait_for_lock
 from recon4.store.project import read_artifacts
+from recon4.system.compile_packets import compile_packets
 from recon4.system.runtime_folder import runtime_folder
 
 _LIDAR_S, _PROFILER_S = 5.0, 8.0
@@ -69,7 +70,8 @@ def compile_kernels(progress: Progress) -> bool:
 
 
 def _lidars(folder: Path) -> None:
-    """A map of LiDARs, its slices, a live map, and odometry without an IMU."""
+    """Packets, a map of LiDARs, its slices, a live map, and odometry without an IMU."""
+    compile_packets()
     walk, project = folder / "walk", folder / "map"
     simulate(prepare("office", seconds=_LIDAR_S, seed=1), walk, bag=False, progress=Silent())
     sources = Sources((walk / "recording.pcap",), None, walk / "imu.csv", None)

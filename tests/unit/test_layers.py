@@ -29,6 +29,7 @@ MAY_IMPORT = {
     "recon4/untrusted": {"recon4.errors"},
     "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
     "recon4/system/compile_kernels.py": {"recon4"},
+    "recon4/system/compile_packets.py": {"recon4"},
     "recon4/archive": STAGE | {"recon4.archive", "recon4.review"},
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
