@@ -226,6 +226,16 @@ def lidar_streams(
     ]
 
 
+def _beside_packets(
+    clouds: Sequence[BagTopic], by_rig: set[str], report: ImportReport
+) -> list[BagTopic]:
+    """Clouds that do not repeat packets: named by the rig, or in messages of another make."""
+    read = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
+    if repeated := [t.name for t in clouds if t not in read]:
+        report.derive(f"raw packets are read, not {', '.join(repeated)}")
+    return read
+
+
 def _model(bag: Bag, topic: BagTopic) -> str:
     """Detect the sensor of a topic from its first readable messages."""
     if topic.type in DATA_MESSAGES:

@@ -32,7 +32,7 @@ def _decode(sensor: Sensor) -> None:
     start_ns = pattern.packet_ns * np.arange(_PACKETS, dtype=np.int64)
     t_ns = start_ns[:, None, None] + pattern.offset_ns
     nothing = np.zeros(t_ns.shape, np.uint8)
-    turn = 2.0 * np.pi * lidar.turn_rate_hz * 1e-9 * t_ns
+    turn = np.asarray(2.0 * np.pi * lidar.turn_rate_hz * 1e-9 * t_ns, np.float64)
     firings = Firings(t_ns, turn, nothing.astype(np.uint32), nothing, nothing)
     payloads = family.data_packets(lidar, firings, _START_NS + start_ns)
     of = PacketSensor(
