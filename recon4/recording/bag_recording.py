@@ -37,7 +37,7 @@ from recon4.recording.formats.bags import (
     BagMessage,
     BagTopic,
 )
-from recon4.recording.lidar_choice import is_cloud, judged_clouds
+from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
 from recon4.recording.packets.messages import DATA_MESSAGES
@@ -213,17 +213,19 @@ def lidar_streams(
         names = ", ".join(one.topic.name for one in used)
         others = ", ".join(f"{one.topic.name} ({one.why_not})" for one in found if one.why_not)
         report.derive(f"LiDAR: {names} is read, not {others}")
-    return [
-        Stream(
-            one.topic.name,
-            _model(bag, one.topic),
-            topic=one.topic.name,
-            frame=one.frame,
-            points=one.points,
-            detail=one.detail,
-        )
-        for one in used
-    ]
+    return [_cloud_stream(bag, one) for one in used]
+
+
+def _cloud_stream(bag: Bag, one: CloudTopic) -> Stream:
+    name = one.topic.name
+    return Stream(
+        name,
+        _model(bag, one.topic),
+        topic=name,
+        frame=one.frame,
+        points=one.points,
+        detail=one.detail,
+    )
 
 
 def _beside_packets(
