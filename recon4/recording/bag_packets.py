@@ -26,7 +26,7 @@ from recon4.settings import IngestSettings
 
 _STRING = "std_msgs/msg/String"
 _PROBED_MESSAGES = 50
-_PROBED_PACKETS = 2000
+_PROBED_PACKETS = 4500
 """Packets at the beginning of a topic from which its sensor is known: more than a second, as some
 send their angles once a second."""
 _MOST_TEXT = 1 << 20

@@ -40,8 +40,9 @@ _TIMED_PACKETS = 1000
 MAX_STREAMS = 256
 """Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
 _HEAD_BYTES = 64 << 20
-_KEPT_PACKETS = 200
-"""First packets of a sensor that its family looks at to prepare the decoder."""
+_KEPT_BYTES = 8 << 20
+"""Of the first packets of a sensor, which its family looks at to prepare the decoder: more than a
+second of most LiDARs, in which some send all that packets say of their lasers."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -109,7 +110,7 @@ class PacketStream:
 def scan_pcap(
     path: Path,
     *,
-    max_packets: int = 4000,
+    max_packets: int = 4500,
     open_file: OpenFile = open_plain,
     report: ImportReport | None = None,
     companions: Sequence[Companion] = (),
@@ -212,7 +213,7 @@ def late_stream(
             t_end_ns=int(mine.t_ns[-1]),
             whole=False,
             found=found,
-            head=mine.take(slice(_KEPT_PACKETS)),
+            head=_first(mine),
         )
     return None
 
@@ -283,7 +284,7 @@ def _stream(head: _Head, datagrams: Datagrams) -> PacketStream:
         t_last_ns=last,
         t_end_ns=last if whole else first + round((last - first) / head.read_ratio),
         whole=whole,
-        head=datagrams.take(slice(_KEPT_PACKETS)),
+        head=_first(datagrams),
     )
 
 
@@ -305,3 +306,9 @@ def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:
     if stream.kind != "data" or offset_ns is None:
         return stream
     return replace(stream, utc_offset_ns=offset_ns)
+
+
+def _first(datagrams: Datagrams) -> Datagrams:
+    """As many as `_KEPT_BYTES` hold."""
+    kept = np.cumsum(datagrams.length) <= _KEPT_BYTES
+    return datagrams.take(kept)

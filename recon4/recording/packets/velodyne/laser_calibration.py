@@ -58,6 +58,8 @@ _XML_UNITS = {
 }
 _STATUS_BYTES = 1820
 """One byte a packet: 64 lasers and what is around them, in rows of 7; then they come again."""
+_STATUS_STEP = 91
+"""Where to begin to look for it, if a packet is missing [bytes]."""
 _CYCLE = b"HMSDNYGTV"
 """Types of the 9 bytes between the rows of 7: time, GPS, temperature, firmware."""
 _ROW = np.dtype(
@@ -168,7 +170,9 @@ def _calibration(rows: dict[int, dict[str, float]], source: str) -> LaserCalibra
 
 
 def calibration_in_status(payloads: Payloads) -> LaserCalibration | None:
-    """The calibration in the last byte but none of packets that follow each other; None = not yet.
+    """The calibration in the last bytes of packets; None = it is not there as a whole.
+
+    It takes 4160 packets, from any one on, because it comes again and again.
 
     Args:
         payloads: Data packets in order, without a gap where the calibration is, (P, 1206).
@@ -176,12 +180,12 @@ def calibration_in_status(payloads: Payloads) -> LaserCalibration | None:
     kinds, values = payloads[:, -2], payloads[:, -1]
     carries = ~np.isin(kinds, np.frombuffer(_CYCLE, np.uint8))
     stream = values[carries].tobytes()
-    start = stream.find(b"UNIT#")
-    while start >= 0:
-        table = _of_status(stream[start : start + _STATUS_BYTES])
+    for first in range(0, max(len(stream) - _STATUS_BYTES + 1, 0), _STATUS_STEP):
+        around = stream[first : first + _STATUS_BYTES]
+        start = (around + around[:4]).find(b"UNIT#")
+        table = _of_status(around[start:] + around[:start]) if start >= 0 else None
         if table is not None:
             return table
-        start = stream.find(b"UNIT#", start + 1)
     return None
 
 
