@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from recon4.errors import ConfigError
-from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import NO_DATAGRAMS, datagrams_of
 from recon4.recording.formats.message_limits import check_message
-from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.robosense.angles import angles_of_csv
@@ -23,7 +21,6 @@ from recon4.recording.packets.robosense.models import HELIOS_16P_DUAL, MODELS
 from recon4.recording.packets.robosense.packets import packet_s
 from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
 from recon4.recording.packets.sensor_clock import SensorClock
-from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, WIDE, sensor
 
@@ -371,38 +368,3 @@ def test_the_interval_of_the_packets_contradicts_a_wrong_model():
     assert opened("Helios 16P").likely_models(0.000667) == ("Helios 32", "Helios 5515")
     assert opened("Helios 16P").likely_models(0.001333) == ("Helios 16P",)
     assert opened("Helios 5515").likely_models(0.005) == ()
-
-
-def test_a_capture_reads_angles_from_the_device_packets_at_another_port(tmp_path):
-    model = MODELS["Ruby Plus"]
-    t_ns, payloads = spin(model, 400)
-    with PcapWriter(tmp_path / "walk.pcap") as file:
-        file.write(t_ns + 300_000, payloads, source="192.168.1.200", port=6699)
-        file.write(t_ns[-1:] + 400_000, device_of(model), source="192.168.1.200", port=7788)
-    report = ImportReport()
-
-    capture = PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=report)
-    shots = [part for part in capture.read() if isinstance(part, Shots)]
-
-    assert [s.model for s in capture.rig.sensors] == ["Ruby Plus"]
-    assert sum(map(len, shots)) == 400 * 3 * 128
-    assert any("device packets (DIFOP)" in text for text in report.derived)
-    assert not report.warnings
-
-
-def test_a_capture_reads_angles_from_a_file_beside_it(tmp_path):
-    model = MODELS["Airy"]
-    t_ns, payloads = spin(model, 200)
-    with PcapWriter(tmp_path / "walk.pcap") as file:
-        file.write(t_ns + 300_000, payloads, source="192.168.1.200", port=6699)
-    angles = angles_of(model) / 100
-    with pytest.raises(ConfigError, match="csv file with a row of elevation and azimuth"):
-        PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=ImportReport())
-
-    rows = "\n".join(f"{elevation:.2f},{azimuth:.2f}" for elevation, azimuth in np.abs(angles))
-    (tmp_path / "airy.csv").write_text(rows)
-    report = ImportReport()
-    capture = PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=report)
-
-    assert sum(len(part) for part in capture.read() if isinstance(part, Shots)) == 200 * 8 * 48
-    assert any("from airy.csv" in text for text in report.derived)

@@ -1,0 +1,48 @@
+"""Captures of RoboSense LiDARs: angles of the lasers at another port, or in a file beside it."""
+
+import numpy as np
+import pytest
+
+from recon4.errors import ConfigError
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.packets.capture import PacketCapture
+from recon4.recording.packets.robosense.models import MODELS
+from recon4.recording.packets.velodyne.encode import PcapWriter
+from recon4.recording.report import ImportReport
+from tests.unit.recording.packet_builders import WIDE
+from tests.unit.recording.test_robosense_packets import angles_of, device_of, spin
+
+
+def test_a_capture_reads_angles_from_the_device_packets_at_another_port(tmp_path):
+    model = MODELS["Ruby Plus"]
+    t_ns, payloads = spin(model, 400)
+    with PcapWriter(tmp_path / "walk.pcap") as file:
+        file.write(t_ns + 300_000, payloads, source="192.168.1.200", port=6699)
+        file.write(t_ns[-1:] + 400_000, device_of(model), source="192.168.1.200", port=7788)
+    report = ImportReport()
+
+    capture = PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=report)
+    shots = [part for part in capture.read() if isinstance(part, Shots)]
+
+    assert [s.model for s in capture.rig.sensors] == ["Ruby Plus"]
+    assert sum(map(len, shots)) == 400 * 3 * 128
+    assert any("device packets (DIFOP)" in text for text in report.derived)
+    assert not report.warnings
+
+
+def test_a_capture_reads_angles_from_a_file_beside_it(tmp_path):
+    model = MODELS["Airy"]
+    t_ns, payloads = spin(model, 200)
+    with PcapWriter(tmp_path / "walk.pcap") as file:
+        file.write(t_ns + 300_000, payloads, source="192.168.1.200", port=6699)
+    angles = angles_of(model) / 100
+    with pytest.raises(ConfigError, match="csv file with a row of elevation and azimuth"):
+        PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=ImportReport())
+
+    rows = "\n".join(f"{elevation:.2f},{azimuth:.2f}" for elevation, azimuth in np.abs(angles))
+    (tmp_path / "airy.csv").write_text(rows)
+    report = ImportReport()
+    capture = PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=report)
+
+    assert sum(len(part) for part in capture.read() if isinstance(part, Shots)) == 200 * 8 * 48
+    assert any("from airy.csv" in text for text in report.derived)
