@@ -17,6 +17,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.exact_times import ExactClock
 from recon4.recording.formats.cloud_files import Table
+from recon4.recording.packets.livox.recognition import livox_of_points
 from recon4.recording.packets.velodyne.models import MODELS
 from recon4.recording.point_fields import (
     EXACT_TIME,
@@ -241,9 +242,11 @@ class CloudDecoder:
 
 
 def model_of_points(table: Table) -> str:
-    """Detect the Velodyne model from the elevations of the points; else ``generic``."""
+    """Detect a Livox by its lines and view, a Velodyne by its elevations; else ``generic``."""
     xyz = _xyz(table, "cloud")
     valid = np.all(np.isfinite(xyz), axis=1) & np.any(xyz != 0.0, axis=1)
+    if {"tag", "line"} <= set(table) and valid.any():
+        return livox_of_points(xyz[valid], int(table["line"][valid].max()) + 1)
     x, y, z = xyz[valid].T
     return _fitting_model(np.arctan2(z, np.hypot(x, y))) or "generic"
 

@@ -15,6 +15,7 @@ from recon4.recording.packets.livox.encode import ShotReturns, encode_imu, encod
 from recon4.recording.packets.livox.family import LIVOX
 from recon4.recording.packets.livox.models import LAYOUTS, MODELS
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
+from recon4.recording.packets.livox.recognition import livox_of_points
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from tests.unit.recording.packet_builders import T0_NS, WIDE, sensor
@@ -297,3 +298,22 @@ def test_packets_of_other_makers_in_bags_are_not_taken(folder, flag, size, data)
 
     assert len(whole) > 20
     assert LIVOX.recognize(datagrams(whole), ()) is None
+
+
+@pytest.mark.parametrize(
+    ("name", "lines", "view_deg"),
+    [
+        ("Mid-40", 1, (19.0, 19.0)),
+        ("Mid-70", 1, (35.0, 35.0)),
+        ("Avia", 6, (35.0, 38.0)),
+        ("Horizon", 6, (40.8, 12.5)),
+        ("Tele-15", 6, (7.2, 8.1)),
+        ("HAP", 6, (60.0, 12.0)),
+        ("Mid-360", 4, (180.0, 50.0)),
+        ("generic", 3, (20.0, 20.0)),
+    ],
+)
+def test_models_are_known_from_the_points_of_a_driver_too(name, lines, view_deg):
+    xyz = walls(AVIA, 300, view_deg=view_deg).xyz_m.reshape(-1, 3).astype(np.float32)
+
+    assert livox_of_points(xyz, lines) == name

@@ -172,8 +172,9 @@ def read(path, **settings):
 @pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
 def test_points_of_a_livox_driver_have_their_own_times(kind, tmp_path):
     path = livox_bag(tmp_path, kind)
-    _, shots, report = read(path)
+    recording, shots, report = read(path)
 
+    assert recording.rig.sensors[0].model == "Mid-360"
     assert [len(one) for one in shots] == [300, 300, 300]
     assert report.counts["points_noise"] == 300
     kept = np.flatnonzero(np.arange(400) % 4 != 1)

@@ -18,6 +18,8 @@ _EVERYTHING = IngestSettings(min_range_m=0.0, max_range_m=1000.0)
 _WIDE_DEG, _HIGH_DEG, _TELE_DEG = 37.0, 14.0, 9.5
 """Half of the view: a Horizon sees 40.9° to the sides and 12.6° up, an Avia 35.2° and 38.6°, a
 Tele-15 7.3° and 8.1°."""
+_MID_40_DEG, _HAP_DEG = 21.0, 43.0
+"""A Mid-40 sees 19.2° around its axis, a Mid-70 35.2°; a HAP 60° to the sides."""
 _ENOUGH_POINTS = 20_000
 """From which the view is known: 0.1 s."""
 
@@ -52,6 +54,25 @@ def likely_model(layout: PointLayout, payloads: Payloads) -> tuple[LivoxModel, s
     return MODELS[_by_view(layout, payloads)], ""
 
 
+def livox_of_points(xyz: NDArray[np.float32], lines: int) -> str:
+    """The model of points that a driver has published; ``generic`` = not known.
+
+    Args:
+        xyz: Points of a frame [m], (N, 3), N > 0.
+        lines: Number of lasers.
+    """
+    azimuth_deg, elevation_deg = _extent_deg(xyz)
+    if lines == MODELS["Mid-360"].lines:
+        return "Mid-360"
+    if lines == 1:
+        return "Mid-70" if max(azimuth_deg, elevation_deg) > _MID_40_DEG else "Mid-40"
+    if lines != MODELS["Avia"].lines:
+        return "generic"
+    if azimuth_deg > _HAP_DEG:
+        return "HAP"
+    return _of_view(azimuth_deg, elevation_deg, len(xyz))
+
+
 def _packet_s(layout: PointLayout, payloads: Payloads) -> float:
     """Usual time of the shots of a packet [s]."""
     if layout.sdk == 2:
@@ -65,7 +86,11 @@ def _packet_s(layout: PointLayout, payloads: Payloads) -> float:
 def _by_view(layout: PointLayout, payloads: Payloads) -> str:
     """Horizon, Avia or Tele-15."""
     azimuth_deg, elevation_deg, points = _view(layout, payloads)
-    if layout.returns == 3 or elevation_deg > _HIGH_DEG:
+    return "Avia" if layout.returns == 3 else _of_view(azimuth_deg, elevation_deg, points)
+
+
+def _of_view(azimuth_deg: float, elevation_deg: float, points: int) -> str:
+    if elevation_deg > _HIGH_DEG:
         return "Avia"
     if azimuth_deg > _WIDE_DEG:
         return "Horizon"
@@ -79,11 +104,14 @@ def _view(layout: PointLayout, payloads: Payloads) -> tuple[float, float, int]:
     source = LivoxSource(0, MODELS["Avia"], layout, _EVERYTHING)
     none_ns = np.zeros(len(payloads), np.int64)
     xyz = decode_points(none_ns, payloads, source, report=ImportReport()).xyz
-    if not len(xyz):
-        return 0.0, 0.0, 0
+    return (*_extent_deg(xyz), len(xyz)) if len(xyz) else (0.0, 0.0, 0)
+
+
+def _extent_deg(xyz: NDArray[np.float32]) -> tuple[float, float]:
+    """Largest directions of points to the side and up or down [°]."""
     azimuth = np.abs(np.arctan2(xyz[:, 1], xyz[:, 0]))
     elevation = np.abs(np.arctan2(xyz[:, 2], np.hypot(xyz[:, 0], xyz[:, 1])))
-    return _largest_deg(azimuth), _largest_deg(elevation), len(xyz)
+    return _largest_deg(azimuth), _largest_deg(elevation)
 
 
 def _largest_deg(angles_rad: NDArray[np.floating]) -> float:
