@@ -8,13 +8,11 @@ from typing import Literal
 import numpy as np
 
 from recon4.errors import OutOfRange
+from recon4.evaluation.tuning import ATE
 from recon4.geometry.se3 import SE3, Array, align_points, quat_from_matrix
 from recon4.model.trajectory import Times, Trajectory
 
 Alignment = Literal["svd", "first", "none"]
-
-_MIN_SPREAD_M = 0.05
-"""Below this lateral extent of the positions the rotation of the fit is undetermined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,7 +143,7 @@ def _align(pairs: PosePairs, alignment: Alignment) -> tuple[SE3, bool]:
         return pairs.T_true_body[0] @ pairs.T_map_body[0].inverse(), True
     p = pairs.T_true_body.t - pairs.T_true_body.t.mean(axis=0)
     spread_m = np.linalg.svd(p, compute_uv=False)[1] / np.sqrt(len(p))
-    return align_points(pairs.T_true_body.t, pairs.T_map_body.t), bool(spread_m > _MIN_SPREAD_M)
+    return align_points(pairs.T_true_body.t, pairs.T_map_body.t), bool(spread_m > ATE.min_spread_m)
 
 
 def _twist_about_z(R: Array) -> Array:

@@ -11,28 +11,18 @@ import numpy as np
 from recon4.evaluation.ate import AbsoluteError, PosePairs, absolute_error, pair_poses
 from recon4.evaluation.density import SurfaceDensity, surface_density
 from recon4.evaluation.floor import ErrorFloor, map_onto_model, relative_error_floor
-from recon4.evaluation.kitti import (
-    OFFICIAL_M,
-    THESIS_FRAMES,
-    WALK_M,
-    Drift,
-    official_drift,
-    thesis_drift,
-)
+from recon4.evaluation.kitti import OFFICIAL_M, WALK_M, Drift, official_drift, thesis_drift
 from recon4.evaluation.reference_mesh import TriangleMesh, distance_to
 from recon4.evaluation.sharpness import Sharpness, around, draw_places, sharpness, thin
 from recon4.evaluation.slices import RelativeError, relative_error, spread_slices
 from recon4.evaluation.text import evaluation_text
 from recon4.evaluation.trajectories import trajectory_with_hints
+from recon4.evaluation.tuning import EVALUATION, SEGMENT_DRIFT
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.frames import Frames
 from recon4.model.plain import finite_or_none
 from recon4.model.trajectory import Trajectory
 
-_EVERY = 10
-"""Of the multiframes, every tenth is placed by the estimate and by the truth."""
-FRAME_NS = 100_000_000
-"""Dense trajectories are evaluated at one pose per multiframe of 10 Hz [ns]."""
 Chunks = Callable[[], Iterable[Array]]
 """Makes a fresh pass over the points of the map [m], arrays of (N, 3)."""
 
@@ -124,7 +114,7 @@ def evaluate(
     aligned = absolute_error(pairs)
     floor = relative = as_measured = None
     if model is not None and frames is not None:
-        tenth = [frames[row] for row in range(0, len(frames), _EVERY)]
+        tenth = [frames[row] for row in range(0, len(frames), EVALUATION.every)]
         floor = relative_error_floor(tenth, frames.rig, model, estimate=estimate, truth=true)
     if model is not None and chunks is not None:
         relative = _relative(chunks.delivered, model, start=aligned.T_true_map)
@@ -149,7 +139,7 @@ def evaluate(
     )
 
 
-def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajectory:
+def at_frames(trajectory: Trajectory, *, period_ns: int = EVALUATION.frame_ns) -> Trajectory:
     """A denser trajectory at one pose a frame; a sparser one as it is."""
     if len(trajectory) < 2 or np.median(np.diff(trajectory.t_ns)) > 0.75 * period_ns:
         return trajectory
@@ -160,7 +150,7 @@ def at_frames(trajectory: Trajectory, *, period_ns: int = FRAME_NS) -> Trajector
 def drifts(pairs: PosePairs) -> tuple[Drift, ...]:
     """V's metric, the official KITTI metric, and the latter with lengths for short walks."""
     return (
-        thesis_drift(pairs, lengths=THESIS_FRAMES),
+        thesis_drift(pairs, lengths=SEGMENT_DRIFT.thesis_frames),
         official_drift(pairs, lengths_m=OFFICIAL_M),
         official_drift(pairs, lengths_m=WALK_M),
     )

@@ -12,14 +12,12 @@ from recon4.evaluation.ate import absolute_error, pair_poses
 from recon4.evaluation.reference_mesh import TriangleMesh, align_to_mesh, distance_to
 from recon4.evaluation.sharpness import thin
 from recon4.evaluation.slices import RelativeError, Slice, relative_error, spread_slices
+from recon4.evaluation.tuning import SENSOR_FLOOR
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.place import place
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
-
-_MAX_RANGE_M = 60.0
-"""As for the map [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,7 +45,7 @@ class _Points:
     def __iter__(self) -> Iterator[Array]:
         for frame in self.frames:
             used = np.array([sensor.enabled for sensor in self.rig.sensors])[frame.sensor]
-            near = np.linalg.norm(frame.xyz, axis=1) <= _MAX_RANGE_M
+            near = np.linalg.norm(frame.xyz, axis=1) <= SENSOR_FLOOR.max_range_m
             yield place(frame.take(used & near), self.trajectory, self.rig)
 
 
@@ -65,7 +63,7 @@ def relative_error_floor(
     poses relative to the noise of the sensor.
 
     Args:
-        frames: Some multiframes; all points within `_MAX_RANGE_M` are used, several times.
+        frames: Some multiframes; points within `SENSOR_FLOOR.max_range_m` are used, several times.
         rig: Mountings; sensors switched off are left out.
         mesh: The true model, in the frame of ``truth``.
         estimate: ``T_map_body``.

@@ -9,15 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.evaluation.ate import PosePairs
+from recon4.evaluation.tuning import SEGMENT_DRIFT
 from recon4.geometry.se3 import SE3, Array
 
 Rows = NDArray[np.integer]
 
-_MIN_PATH_M = 0.1
-"""Shorter pieces are stationary and have no drift per meter; they are left out."""
 
-THESIS_FRAMES = tuple(range(100, 801, 100))
-"""Lengths of the pieces in V §3.1 [frames]."""
 OFFICIAL_M = tuple(float(length) for length in range(100, 801, 100))
 """Lengths of the pieces in the official benchmark [m]."""
 WALK_M = tuple(float(length) for length in range(5, 41, 5))
@@ -54,7 +51,7 @@ class Drift:
 
 
 def thesis_drift(
-    pairs: PosePairs, *, lengths: Sequence[int] = THESIS_FRAMES, step: int = 10
+    pairs: PosePairs, *, lengths: Sequence[int] = SEGMENT_DRIFT.thesis_frames, step: int = 10
 ) -> Drift:
     """V Eq. 3.1: ``|E_s - C_s| / l_s`` over pieces of n frames.
 
@@ -108,7 +105,7 @@ def _drift(
     for length, end in ends.items():
         first, last = starts[end >= 0], end[end >= 0]
         covered_m = path_length_m[last] - path_length_m[first]
-        moved = covered_m > _MIN_PATH_M
+        moved = covered_m > SEGMENT_DRIFT.min_path_m
         first, last, covered_m = first[moved], last[moved], covered_m[moved]
         length_m = covered_m if unit == "frames" else np.full(len(last), length)
         error = _end_errors(pairs, first, last)

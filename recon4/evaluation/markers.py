@@ -9,13 +9,13 @@ from typing import Literal
 import numpy as np
 
 from recon4.errors import CorruptFile
+from recon4.evaluation.tuning import MARKER_FILES
 from recon4.geometry.se3 import Array
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, raise_question
 from recon4.recording.tables.points import TablePoint, read_point_table
 from recon4.untrusted.bounded import read_bytes_limited
 
 Role = Literal["control", "check"]
-_MAX_BYTES = 16 << 20
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -45,7 +45,7 @@ def read_markers(
         CorruptFile: Naming the line, what was expected and what was found.
         ConfigError: With a question, if the columns are not certain.
     """
-    data = read_bytes_limited(path, _MAX_BYTES)
+    data = read_bytes_limited(path, MARKER_FILES.max_bytes)
     found = read_point_table(data, path.name, choice=choice, purpose="markers", partial=partial)
     raise_question(found.preview, path.name)
     if found.skipped:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile
+from recon4.evaluation.tuning import MESH_FILES
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.recording.formats.cloud_headers import HEADER_BYTES, is_ply, ply_layout, whole
@@ -25,9 +26,6 @@ from recon4.untrusted.bounded import lines_limited, open_regular
 Corners = tuple[Array, NDArray[np.int64]]
 """Vertices [m], (V, 3), and triangles as rows of them, (T, 3)."""
 
-MAX_TRIANGLES = 20_000_000
-MAX_TEXT_BYTES = 4 << 30
-_MAX_SIDES = 1000
 _INTEGERS = {
     **dict.fromkeys(("uchar", "uint8"), "u1"),
     **dict.fromkeys(("char", "int8"), "i1"),
@@ -256,7 +254,7 @@ def _behind_vertices(path: Path, vertices: int) -> Iterator[tuple[int, list[str]
 
 
 def _lines(path: Path) -> Iterator[tuple[int, str]]:
-    return enumerate(lines_limited(path, max_bytes=MAX_TEXT_BYTES), start=1)
+    return enumerate(lines_limited(path, max_bytes=MESH_FILES.max_text_bytes), start=1)
 
 
 def _numbers(words: Sequence[str], count: int, where: str) -> list[float]:
@@ -271,8 +269,10 @@ def _numbers(words: Sequence[str], count: int, where: str) -> list[float]:
 
 
 def _fan(triangles: array[int], corners: Sequence[int], where: str) -> None:
-    if not 3 <= len(corners) <= _MAX_SIDES:
-        raise CorruptFile(f"{where}: expected 3 to {_MAX_SIDES} corners, got {len(corners)}")
+    if not 3 <= len(corners) <= MESH_FILES.max_sides:
+        raise CorruptFile(
+            f"{where}: expected 3 to {MESH_FILES.max_sides} corners, got {len(corners)}"
+        )
     if max(corners) >= 1 << 62:
         raise CorruptFile(f"{where}: expected numbers of vertices, got {max(corners)}")
     for b, c in pairwise(corners[1:]):
@@ -288,5 +288,7 @@ def _arrays(vertices: array[float], triangles: array[int]) -> Corners:
 
 
 def _refuse_many(triangles: int, where: str) -> None:
-    if triangles > MAX_TRIANGLES:
-        raise CorruptFile(f"{where}: expected at most {MAX_TRIANGLES} triangles, got {triangles}")
+    if triangles > MESH_FILES.max_triangles:
+        raise CorruptFile(
+            f"{where}: expected at most {MESH_FILES.max_triangles} triangles, got {triangles}"
+        )

@@ -11,16 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import CorruptFile, RecordingError
+from recon4.evaluation.tuning import MESH_ALIGNMENT
 from recon4.geometry.se3 import SE3, Array
 
 if TYPE_CHECKING:
     from recon4.geometry.raycast import Scene
-
-_KERNEL_M = 0.05
-"""Scale of the Cauchy kernel: points of moving people must not pull the map."""
-_MAX_SAMPLES = 400_000
-_STILL = 1e-4
-"""Convergence: largest step [m and rad]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -106,7 +101,7 @@ def sample_mesh(mesh: TriangleMesh, *, spacing_m: float, rng: np.random.Generato
     a, b, c = np.moveaxis(mesh.corners, 1, 0)
     cross = np.cross(b - a, c - a)
     double_area = np.linalg.norm(cross, axis=1)
-    count = int(np.clip(double_area.sum() / 2.0 / spacing_m**2, 1000, _MAX_SAMPLES))
+    count = int(np.clip(double_area.sum() / 2.0 / spacing_m**2, 1000, MESH_ALIGNMENT.max_samples))
     which = rng.choice(len(a), size=count, p=double_area / double_area.sum())
     u, v = rng.random(count), rng.random(count)
     over = u + v > 1.0
@@ -186,7 +181,7 @@ def fit_planes(
         length = float(np.linalg.norm(step.log()))
         if length < 1e-7:
             break
-    return PlaneFit(T_model_map, residual, length < _STILL)
+    return PlaneFit(T_model_map, residual, length < MESH_ALIGNMENT.still)
 
 
 def _point_to_plane_step(p: Array, q: Array, normals: Array) -> SE3:
@@ -194,7 +189,7 @@ def _point_to_plane_step(p: Array, q: Array, normals: Array) -> SE3:
     center = p.mean(axis=0)
     residual = np.einsum("ni,ni->n", normals, p - q)
     J = np.concatenate([np.cross(p - center, normals), normals], axis=1)
-    weight = 1.0 / (1.0 + (residual / _KERNEL_M) ** 2)
+    weight = 1.0 / (1.0 + (residual / MESH_ALIGNMENT.kernel_m) ** 2)
     H = (J * weight[:, None]).T @ J
     xi = -np.linalg.lstsq(H, J.T @ (weight * residual), rcond=1e-9)[0]
     to_center, back = SE3(np.eye(3), -center), SE3(np.eye(3), center)

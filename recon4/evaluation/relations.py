@@ -13,16 +13,12 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
+from recon4.evaluation.tuning import RELATIONS
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.trajectory import Times, Trajectory
 from recon4.untrusted.bounded import lines_limited, parse_float
 
-_MAX_BYTES = 256 << 20
 _COLUMNS = 8
-_LATEST_S = 2.0**33
-"""Times of this many nanoseconds still fit into 64 bits [s]."""
-_SLACK_NS = 1_000_000
-"""Times of relations may lie outside of the trajectory by this much: they are rounded [ns]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -64,7 +60,7 @@ def read_relations(path: Path) -> ReferenceRelations:
     """
     rows: list[list[float]] = []
     times: list[tuple[int, int]] = []
-    for number, line in enumerate(lines_limited(path, max_bytes=_MAX_BYTES), start=1):
+    for number, line in enumerate(lines_limited(path, max_bytes=RELATIONS.max_bytes), start=1):
         words = line.split("#", 1)[0].split()
         if not words:
             continue
@@ -76,7 +72,7 @@ def read_relations(path: Path) -> ReferenceRelations:
             raise CorruptFile(
                 f"{path.name}: line {number}: expected {_COLUMNS} finite numbers, got {line[:80]!r}"
             )
-        if max(abs(value) for value in values[:2]) > _LATEST_S:
+        if max(abs(value) for value in values[:2]) > RELATIONS.latest_s:
             raise CorruptFile(f"{path.name}: line {number}: expected seconds, got {line[:80]!r}")
         times.append((round(values[0] * 1e9), round(values[1] * 1e9)))
         rows.append(values[2:])
@@ -97,7 +93,7 @@ def relation_errors(trajectory: Trajectory, reference: ReferenceRelations) -> Re
     Raises:
         ConfigError: If the trajectory covers none of them.
     """
-    low, high = trajectory.t_ns[0] - _SLACK_NS, trajectory.t_ns[-1] + _SLACK_NS
+    low, high = trajectory.t_ns[0] - RELATIONS.slack_ns, trajectory.t_ns[-1] + RELATIONS.slack_ns
     both = np.stack([reference.t_i_ns, reference.t_j_ns])
     inside = np.all((both >= low) & (both <= high), axis=0)
     if not inside.any():
@@ -105,8 +101,8 @@ def relation_errors(trajectory: Trajectory, reference: ReferenceRelations) -> Re
             f"the trajectory ({low / 1e9:.3f} to {high / 1e9:.3f} s) covers none of the "
             f"{len(inside)} relations ({both.min() / 1e9:.3f} to {both.max() / 1e9:.3f} s)"
         )
-    T_i = trajectory.at(reference.t_i_ns[inside], slack_ns=_SLACK_NS)
-    T_j = trajectory.at(reference.t_j_ns[inside], slack_ns=_SLACK_NS)
+    T_i = trajectory.at(reference.t_i_ns[inside], slack_ns=RELATIONS.slack_ns)
+    T_j = trajectory.at(reference.t_j_ns[inside], slack_ns=RELATIONS.slack_ns)
     error = reference.T_i_j[inside].inverse() @ (T_i.inverse() @ T_j)
     shift_m: Array = np.linalg.norm(error.t, axis=1)
     turn_rad: Array = error.angle()

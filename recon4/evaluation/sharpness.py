@@ -14,15 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from recon4.evaluation.tuning import SHARPNESS
 from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import Array
-
-_MIN_NEIGHBORS = 10
-_PLANAR = 0.1
-"""A place is a plane where the middle eigenvalue is at least 1/0.1 times the smallest
-and at least 0.1 times the largest."""
-_BATCH = 500
-_MERGE_POINTS = 1_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,14 +54,15 @@ def sharpness(
         return Sharpness(float("nan"), float("nan"), 0, 0, radius_m, voxel_m)
     where, tree = places, cKDTree(p)
     parts = [
-        _covariances(tree, where[k : k + _BATCH], radius_m) for k in range(0, len(where), _BATCH)
+        _covariances(tree, where[k : k + SHARPNESS.batch], radius_m)
+        for k in range(0, len(where), SHARPNESS.batch)
     ]
     eigenvalues = np.linalg.eigvalsh(np.concatenate(parts))
     usable = eigenvalues[:, 0] > 1e-12
     variance = eigenvalues[usable]
     entropy = 0.5 * np.log((2.0 * np.pi * np.e) ** 3 * variance.prod(axis=1))
-    planar = (variance[:, 0] < _PLANAR * variance[:, 1]) & (
-        variance[:, 1] > _PLANAR * variance[:, 2]
+    planar = (variance[:, 0] < SHARPNESS.planar * variance[:, 1]) & (
+        variance[:, 1] > SHARPNESS.planar * variance[:, 2]
     )
     return Sharpness(
         entropy=_or_nan(np.mean, entropy),
@@ -129,7 +124,7 @@ def thin(chunks: Iterable[Array], *, voxel_m: float) -> Array:
         part = np.asarray(chunk, dtype=np.float64)
         waiting.append(part[_first_in_voxel(part, voxel_m)])
         points += len(waiting[-1])
-        if points > max(len(kept), _MERGE_POINTS):
+        if points > max(len(kept), SHARPNESS.merge_points):
             kept = _merged(kept, waiting, voxel_m)
             waiting, points = [], 0
     return _merged(kept, waiting, voxel_m)
@@ -148,7 +143,7 @@ def _covariances(tree: cKDTree, where: Array, radius_m: float) -> Array:
     """Sample covariances of the neighbors of each place that has enough, (<= M, 3, 3) [m²]."""
     lists = tree.query_ball_point(where, radius_m)
     counts = np.array([len(rows) for rows in lists])
-    enough = counts >= _MIN_NEIGHBORS
+    enough = counts >= SHARPNESS.min_neighbors
     if not enough.any():
         return np.empty((0, 3, 3))
     rows = np.concatenate([lists[k] for k in np.flatnonzero(enough)]).astype(np.intp)

@@ -9,16 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.evaluation.reference_mesh import TriangleMesh
+from recon4.evaluation.tuning import RELATIVE_ERROR
 from recon4.geometry.se3 import SE3, Array
 
 Distance = Callable[[Array], Array]
 """Points in the frame of the model (N, 3) -> distances to it (N,) [m]; see `mesh.distance_to`."""
-
-HISTOGRAM_STEP_M = 0.001
-"""Width of a class of the error histogram [m]."""
-OUTLIER_M = 0.5
-"""Points farther from the model than this are outliers [m]."""
-_BATCH = 500_000
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,7 +63,7 @@ class RelativeError:
     outlier_m: float
     """Outlier limit: points farther from the model are only counted [m]."""
     histogram: NDArray[np.int64]
-    """Points by distance in classes of `HISTOGRAM_STEP_M`, without outliers (V Fig. 3.2)."""
+    """Points by distance in classes of a millimeter, without outliers (V Fig. 3.2)."""
     alignment: str
     """How the map was aligned with the model, as text."""
 
@@ -109,8 +104,8 @@ def relative_error(
         chunks: Points of the map [m], arrays of (N, 3), of any length and number.
         slices: The slices, in the frame of the model.
         T_model_map: Moves the map onto the model.
-        distance: Distance of points to the model. Points beyond `OUTLIER_M` are counted, not
-            averaged.
+        distance: Distance of points to the model. Points beyond `RELATIVE_ERROR.outlier_m` are
+            counted, not averaged.
         alignment: How ``T_model_map`` was found, as text.
     """
     tallies = [_ErrorAccumulator(s, distance) for s in slices]
@@ -125,7 +120,7 @@ def relative_error(
         slices=rows,
         point_weighted=merge_slices(rows),
         plain_mean_m=float(np.mean(measured)) if measured else float("nan"),
-        outlier_m=OUTLIER_M,
+        outlier_m=RELATIVE_ERROR.outlier_m,
         histogram=histogram,
         alignment=alignment,
     )
@@ -135,18 +130,22 @@ class DistanceTally:
     """Counts and sums of distances to the model, without keeping them."""
 
     def __init__(self) -> None:
-        self.histogram = np.zeros(int(np.ceil(OUTLIER_M / HISTOGRAM_STEP_M)), dtype=np.int64)
+        self.histogram = np.zeros(
+            int(np.ceil(RELATIVE_ERROR.outlier_m / RELATIVE_ERROR.histogram_step_m)), dtype=np.int64
+        )
         self.sum_m = 0.0
         self.outliers = self.within_2cm = self.within_5cm = 0
 
     def add(self, distance_m: Array) -> None:
-        """Add distances [m], (N,); those beyond `OUTLIER_M` are only counted."""
-        near = distance_m[distance_m < OUTLIER_M]
+        """Add distances [m], (N,); those beyond `RELATIVE_ERROR.outlier_m` are only counted."""
+        near = distance_m[distance_m < RELATIVE_ERROR.outlier_m]
         self.outliers += len(distance_m) - len(near)
         self.sum_m += float(near.sum())
         self.within_2cm += int((near < 0.02).sum())
         self.within_5cm += int((near < 0.05).sum())
-        classes = np.minimum((near / HISTOGRAM_STEP_M).astype(np.int64), len(self.histogram) - 1)
+        classes = np.minimum(
+            (near / RELATIVE_ERROR.histogram_step_m).astype(np.int64), len(self.histogram) - 1
+        )
         self.histogram += np.bincount(classes, minlength=len(self.histogram))
 
     def row(self, name: str) -> SliceError:
@@ -176,7 +175,7 @@ class _ErrorAccumulator:
         inside = p_model[self.where.contains(p_model)]
         self.waiting.append(inside)
         self.waiting_points += len(inside)
-        if self.waiting_points >= _BATCH:
+        if self.waiting_points >= RELATIVE_ERROR.batch:
             self._measure()
 
     def row(self) -> SliceError:

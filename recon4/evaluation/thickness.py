@@ -10,21 +10,11 @@ from math import ceil
 
 import numpy as np
 
+from recon4.evaluation.tuning import THICKNESS
 from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.figures import PlaceThickness, PlaneThickness
-
-CELL_M = 0.3
-"""Edge of the cubes whose points are tested for a plane [m]."""
-_MOST_POINTS = 4_000_000
-"""Of a larger map an even sample of about this size is used."""
-_MIN_POINTS = 15
-_PLANAR = 0.1
-"""As in `recon4.evaluation.sharpness`: the middle eigenvalue is at least 1/0.1 times the smallest
-and at least 0.1 times the largest."""
-_MIN_CELLS = 10
-_PLACES = 10
 
 
 def plane_thickness(tiles: TileSet) -> PlaneThickness:
@@ -33,19 +23,19 @@ def plane_thickness(tiles: TileSet) -> PlaneThickness:
     Args:
         tiles: The map; it is read tile by tile.
     """
-    used = min(1.0, _MOST_POINTS / max(1, len(tiles)))
+    used = min(1.0, THICKNESS.most_points / max(1, len(tiles)))
     found: list[Array] = []
     places: list[PlaceThickness] = []
     cells = 0
     for tile in tiles:
         variance = _variances(tile.xyz_m(limit=ceil(used * len(tile))))
-        planar = (variance[:, 0] < _PLANAR * variance[:, 1]) & (
-            variance[:, 1] > _PLANAR * variance[:, 2]
+        planar = (variance[:, 0] < THICKNESS.planar * variance[:, 1]) & (
+            variance[:, 1] > THICKNESS.planar * variance[:, 2]
         )
         thickness = np.sqrt(np.maximum(variance[planar, 0], 0.0))
         cells += len(variance)
         found.append(thickness)
-        if len(thickness) >= _MIN_CELLS:
+        if len(thickness) >= THICKNESS.min_cells:
             x, y, z = (np.array(tile.low_m) + np.array(tile.high_m)) / 2.0
             share = len(thickness) / len(variance)
             middle = (round(float(x), 2), round(float(y), 2), round(float(z), 2))
@@ -57,7 +47,7 @@ def plane_thickness(tiles: TileSet) -> PlaneThickness:
         p50_m=p50,
         p95_m=p95,
         planar_coverage=len(every) / cells if cells else None,
-        thickest=tuple(places[:_PLACES]),
+        thickest=tuple(places[: THICKNESS.places]),
     )
 
 
@@ -65,11 +55,11 @@ def _variances(p: Array) -> Array:
     """Eigenvalues of the covariances of the cubes with enough points, ascending, (C, 3) [m²]."""
     if not len(p):
         return np.empty((0, 3))
-    cell = cubes_of(p, CELL_M)
+    cell = cubes_of(p, THICKNESS.cell_m)
     key = cube_keys(cell)
     n = np.bincount(key)
-    used = np.flatnonzero(n >= _MIN_POINTS)
-    local = p - (cell + 0.5) * CELL_M  # small numbers: sums of squares keep their digits
+    used = np.flatnonzero(n >= THICKNESS.min_points)
+    local = p - (cell + 0.5) * THICKNESS.cell_m  # small numbers: sums of squares keep their digits
     local -= local.mean(axis=0)
     first = np.stack([np.bincount(key, local[:, i])[used] for i in range(3)], axis=1)
     second = np.empty((len(used), 3, 3))

@@ -11,6 +11,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.export.cells import safe_cell
+from recon4.export.tuning import FINDING_EXPORT
 from recon4.findings.notes import SaidFinding, findings_in
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, to_geodetic
@@ -22,8 +23,6 @@ from recon4.store.atomic import write_text
 from recon4.store.project import read_artifacts
 
 ENDINGS = (".csv", ".geojson")
-_MAX_LINE_POINTS = 500
-"""A longer stretch is thinned out."""
 _STAGES = ("level", "map_2d")
 """Whose trajectory the map has, of each kind of walk."""
 _COLUMNS = ("kind", "level", "title", "start_s", "end_s", "sensor", "direction", "text", "remedy")
@@ -75,7 +74,7 @@ def _line(finding: SaidFinding, walk: Trajectory | None) -> Array:
     between = walk.T_a_b.t[(walk.t_ns > ends_ns[0]) & (walk.t_ns < ends_ns[1])]
     first, last = walk.at(ends_ns).t
     return np.concatenate(
-        [[first], between[:: max(1, -(-len(between) // _MAX_LINE_POINTS))], [last]]
+        [[first], between[:: max(1, -(-len(between) // FINDING_EXPORT.max_line_points))], [last]]
     )
 
 

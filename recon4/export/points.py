@@ -9,13 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
+from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
-
-BLOCK = 1_000_000
-"""Points in memory at once."""
 
 ToCrs = Callable[[Array], Array]
 """Map coordinates [m], (N, 3), to those of the CRS, (N, 3)."""
@@ -63,8 +61,8 @@ def blocks(
     for tile in tiles:
         columns = tile.read(["xyz", *fields])
         order = tile.spatial_order()
-        for first in range(0, len(tile), BLOCK):
-            rows = order[first : first + BLOCK]
+        for first in range(0, len(tile), POINT_EXPORT.block):
+            rows = order[first : first + POINT_EXPORT.block]
             xyz = np.take(columns["xyz"], rows, axis=0) + np.array(tile.origin_m)
             yield Block(
                 transform(xyz), {name: np.take(columns[name], rows, axis=0) for name in fields}

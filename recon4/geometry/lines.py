@@ -8,9 +8,7 @@ from typing import Any
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
-
-_PARALLEL_SIN2 = 1e-6
-"""Squared sine of the angle below which two lines count as parallel (0.06°)."""
+from recon4.geometry.tuning import LINES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +54,7 @@ def closest_points(a: Lines, b: Lines) -> tuple[Array, Array]:
     cos = np.sum(a.dir * b.dir, axis=1)
     sin2 = 1.0 - cos**2
     r_a, r_b = np.sum(r * a.dir, axis=1), np.sum(r * b.dir, axis=1)
-    skew = sin2 > _PARALLEL_SIN2
+    skew = sin2 > LINES.parallel_sin2
     s = np.where(skew, (cos * r_b - r_a) / np.where(skew, sin2, 1.0), np.nan)
     u = r_b + s * cos
     return a.mid + s[:, None] * a.dir, b.mid + u[:, None] * b.dir

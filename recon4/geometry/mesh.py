@@ -29,13 +29,8 @@ class WorldMesh:
     """Rows of ``vertices_m``, counter-clockwise from outside where there is one, (T, 3)."""
     reflectivity: NDArray[np.float32]
     """Diffuse reflectivity 0..1 of each triangle, (T,). Above 1: retro-reflective.
-    Below `GLASS`: a pane that reflects only at nearly perpendicular incidence. Up to `CLEAR`: a
-    pane that one sees through; up to `MIRROR`: a mirror."""
-
-
-GLASS = 0.02
-CLEAR = 0.004
-MIRROR = 0.001
+    Below `SURFACES.glass`: a pane that reflects only at nearly perpendicular incidence. Up to
+    `SURFACES.clear`: a pane that one sees through; up to `SURFACES.mirror`: a mirror."""
 
 
 @dataclass(slots=True)

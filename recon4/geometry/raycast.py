@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.mesh import WorldMesh
 from recon4.geometry.se3 import Array
-
-_NEAREST_BATCH = 1_000_000
+from recon4.geometry.tuning import RAYCASTING
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,10 +47,12 @@ class Scene:
         import open3d as o3d
 
         out = np.empty(len(points))
-        for start in range(0, len(points), _NEAREST_BATCH):
-            part = np.ascontiguousarray(points[start : start + _NEAREST_BATCH], dtype=np.float32)
+        for start in range(0, len(points), RAYCASTING.nearest_batch):
+            part = np.ascontiguousarray(
+                points[start : start + RAYCASTING.nearest_batch], dtype=np.float32
+            )
             distances = self._scene.compute_distance(o3d.core.Tensor.from_numpy(part))
-            out[start : start + _NEAREST_BATCH] = distances.numpy()
+            out[start : start + RAYCASTING.nearest_batch] = distances.numpy()
         return out
 
     def nearest(self, points: Array) -> tuple[Array, Array]:
@@ -59,8 +60,8 @@ class Scene:
         import open3d as o3d
 
         foot, normal = np.empty((len(points), 3)), np.empty((len(points), 3))
-        for start in range(0, len(points), _NEAREST_BATCH):
-            rows = slice(start, start + _NEAREST_BATCH)
+        for start in range(0, len(points), RAYCASTING.nearest_batch):
+            rows = slice(start, start + RAYCASTING.nearest_batch)
             part = np.ascontiguousarray(points[rows], dtype=np.float32)
             answer = self._scene.compute_closest_points(o3d.core.Tensor.from_numpy(part))
             foot[rows] = answer["points"].numpy()

@@ -13,7 +13,7 @@ from recon4.geometry.se3 import Array
 from recon4.intensity.diagnostics import Diagnostics, diagnose
 from recon4.intensity.surfaces import Observations, cells_of, learn_surfaces
 from recon4.intensity.table import table_of_sums, table_of_surfaces
-from recon4.intensity.tuning import IntensityTuning
+from recon4.intensity.tuning import SAMPLING, IntensityTuning
 from recon4.kernels.intensity import accumulate, bins_of
 from recon4.kernels.voxels import face_sensor
 from recon4.mapping.normals import local_normals
@@ -23,13 +23,6 @@ from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.store.arrays import save_intensity_table
-
-SAMPLES = 10
-"""Multiframes in a window."""
-STRIDE = 10
-"""Multiframes from one sample to the next: a window is 10 s long."""
-HELD_OUT = 5
-"""Every n-th sample is held out from learning and used for the diagnostics."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -76,7 +69,7 @@ def learn_intensity(
     for window in track(windows, progress, what="learn intensities", unit="windows"):
         samples = _sample(frames, trajectory, window, settings=settings)
         for k, sample in enumerate(samples):
-            (held_out if k % HELD_OUT == HELD_OUT - 1 else learned).add(sample)
+            (held_out if k % SAMPLING.held_out == SAMPLING.held_out - 1 else learned).add(sample)
     seen = learned.observations()
     surfaces = learn_surfaces(seen, shape, settings=settings)
     largest = max(learned.largest, held_out.largest)
@@ -119,8 +112,8 @@ def add_sample(sums: Array, sample: IntensitySample, settings: IntensityTuning) 
 
 def sample_windows(frames: int, windows: int) -> list[list[int]]:
     """Rows of the sampled multiframes, window by window, spread evenly over the walk."""
-    stride = max(1, min(STRIDE, frames // SAMPLES))
-    length = stride * SAMPLES
+    stride = max(1, min(SAMPLING.stride, frames // SAMPLING.samples))
+    length = stride * SAMPLING.samples
     count = min(windows, -(-frames // length))
     starts = np.linspace(0, max(0, frames - length), count).astype(int)
     return [list(range(start, min(start + length, frames), stride)) for start in starts]

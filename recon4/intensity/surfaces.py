@@ -15,17 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.intensity.tuning import IntensityTuning
+from recon4.intensity.tuning import INTENSITY_SURFACES, IntensityTuning
 from recon4.kernels.intensity import surface_equations
-
-ROUNDS = 12
-"""Limit of iterations of Newton's method; five are usual."""
-CONVERGED = 1e-4
-"""Relative change of a factor below which it has converged."""
-LONGEST_STEP = 1.0
-"""Largest change of the logarithm of a factor in one iteration."""
-GAUGE = 1e-3
-"""Weight of the prior on unobservable factors: the three groups have a common scale."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -144,19 +135,19 @@ def _log_factors(
     prior = _prior(groups, weight)
     scaled = intensity / max(float(intensity.mean()) if len(intensity) else 0.0, 1e-9)
     theta = np.zeros(ends[-1])
-    for _ in range(ROUNDS):
+    for _ in range(INTENSITY_SURFACES.rounds):
         H, g = np.zeros((len(theta), len(theta))), np.zeros(len(theta))
         surface_equations(starts, parameters, scaled, theta, H, g)
         step = np.linalg.solve(H + prior, g - prior @ theta)
-        theta += np.clip(step, -LONGEST_STEP, LONGEST_STEP)
-        if np.abs(step).max() < CONVERGED:
+        theta += np.clip(step, -INTENSITY_SURFACES.longest_step, INTENSITY_SURFACES.longest_step)
+        if np.abs(step).max() < INTENSITY_SURFACES.converged:
             break
     return np.split(theta, ends[:-1])
 
 
 def _prior(groups: tuple[int, int, int], weight: float) -> Array:
     """Information of the smoothness prior: neighboring bins are equal, worth ``weight`` points."""
-    out = GAUGE * np.eye(sum(groups))
+    out = INTENSITY_SURFACES.gauge * np.eye(sum(groups))
     channels, incidences, ranges = groups
     for first, size in ((channels, incidences - 1), (channels + incidences, ranges)):
         difference = np.diff(np.eye(size), axis=0)

@@ -7,11 +7,8 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.intensity.surfaces import Surfaces
-from recon4.intensity.tuning import IntensityTuning
+from recon4.intensity.tuning import INTENSITY_TABLE, IntensityTuning
 from recon4.model.intensity_table import SHIFT_ONLY, IntensityTable
-
-COARSER: tuple[tuple[int, int], ...] = ((1, 1), (5, 1), (5, 5), (15, 10), (0, 5), (0, 0))
-"""Numbers of bins of incidence and of range that are merged, from fine to coarse; 0 = all."""
 
 
 def table_of_sums(sums: Array, *, settings: IntensityTuning, largest: float) -> IntensityTable:
@@ -30,9 +27,9 @@ def table_of_sums(sums: Array, *, settings: IntensityTuning, largest: float) -> 
     target_mean, target_std = (float(v) for v in _moments(total))
     mean = np.full(sums.shape[:4], target_mean, np.float32)
     std = np.full(sums.shape[:4], target_std, np.float32)
-    level = np.full(sums.shape[:4], len(COARSER), np.uint8)
-    for row in range(len(COARSER) - 1, -1, -1):
-        merged = _merged(sums, *COARSER[row])
+    level = np.full(sums.shape[:4], len(INTENSITY_TABLE.coarser), np.uint8)
+    for row in range(len(INTENSITY_TABLE.coarser) - 1, -1, -1):
+        merged = _merged(sums, *INTENSITY_TABLE.coarser[row])
         enough = merged[..., 0] >= settings.min_count
         bin_mean, bin_std = _moments(merged)
         mean[enough], std[enough], level[enough] = bin_mean[enough], bin_std[enough], row
@@ -69,7 +66,7 @@ def table_of_surfaces(
     _require_points(total)
     target_mean, target_std = (float(v) for v in _moments(total))
     level = (surfaces.count < settings.min_count).astype(np.uint8)
-    level[surfaces.count.sum(axis=(2, 3)) == 0] = len(COARSER)
+    level[surfaces.count.sum(axis=(2, 3)) == 0] = len(INTENSITY_TABLE.coarser)
     return IntensityTable(
         mean=np.asarray(surfaces.factor * target_mean, dtype=np.float32),
         std=np.asarray(surfaces.factor * target_std, dtype=np.float32),

@@ -28,3 +28,46 @@ class IntensityTuning(IntensitySettings):
     """Edge of a cell for normals [m]; a neighborhood has three cells along each axis."""
     windows: int = 40
     """Largest number of sampled sections of the walk, ten multiframes each."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SampleTuning:
+    """What the table is learned from."""
+
+    samples: int = 10
+    """Multiframes in a window."""
+    stride: int = 10
+    """Multiframes from one sample to the next: a window is 10 s long."""
+    held_out: int = 5
+    """Every n-th sample is held out from learning and used for the diagnostics."""
+
+
+SAMPLING = SampleTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntensitySurfaceTuning:
+    """Effects learned from surfaces that are seen repeatedly."""
+
+    rounds: int = 12
+    """Limit of iterations of Newton's method; five are usual."""
+    converged: float = 1e-4
+    """Relative change of a factor below which it has converged."""
+    longest_step: float = 1.0
+    """Largest change of the logarithm of a factor in one iteration."""
+    gauge: float = 1e-3
+    """Weight of the prior on unobservable factors: the three groups have a common scale."""
+
+
+INTENSITY_SURFACES = IntensitySurfaceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntensityTableTuning:
+    """The table that normalizes intensities."""
+
+    coarser: tuple[tuple[int, int], ...] = ((1, 1), (5, 1), (5, 5), (15, 10), (0, 5), (0, 0))
+    """Numbers of bins of incidence and of range that are merged, from fine to coarse; 0 = all."""
+
+
+INTENSITY_TABLE = IntensityTableTuning()

@@ -9,16 +9,14 @@ import numpy as np
 
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Tile, in_voxel_order, joined
+from recon4.mapping.tuning import BUCKETS
 from recon4.mapping.voxel_runs import merged_runs
-
-BURST = 6_000_000
-"""Records held in memory before they are thinned and written (192 MB)."""
 
 
 class TileBuckets:
-    """Writes one file per tile into a folder; holds at most `BURST` records in memory."""
+    """Writes one file per tile into a folder; holds at most `BUCKETS.burst` records in memory."""
 
-    def __init__(self, folder: Path, grid: Grid, *, burst: int = BURST) -> None:
+    def __init__(self, folder: Path, grid: Grid, *, burst: int = BUCKETS.burst) -> None:
         self._folder = folder
         self._grid = grid
         self._burst = burst
@@ -27,7 +25,7 @@ class TileBuckets:
         self._counts: dict[Tile, list[int]] = {}
 
     def add(self, parts: dict[Tile, Records], pool: ThreadPoolExecutor) -> None:
-        """Add the records of a multiframe; write all when `BURST` is reached."""
+        """Add the records of a multiframe; write all when `BUCKETS.burst` is reached."""
         for tile, records in parts.items():
             self._pending.setdefault(tile, []).append(records)
             self._held += len(records)

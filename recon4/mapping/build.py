@@ -14,7 +14,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from recon4.mapping.buckets import BURST, TileBuckets
+from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs, MapNotes
@@ -24,15 +24,13 @@ from recon4.mapping.scratch import Scratch
 from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
+from recon4.mapping.tuning import BUCKETS, MAP_BUILD
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import MapSettings
-
-WORKERS = 2
-"""Threads; the kernels do not hold Python's lock."""
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -60,7 +58,7 @@ def build_map(
     *,
     settings: MapSettings,
     progress: Progress | None = None,
-    burst: int = BURST,
+    burst: int = BUCKETS.burst,
 ) -> TileSet:
     """Write ``tiles/`` and ``tiles.json`` into a folder.
 
@@ -126,7 +124,7 @@ def _distribute(
             frame, placed, grid, enabled=enabled, max_range_m=settings.max_range_m
         )
 
-    with ThreadPoolExecutor(WORKERS) as pool:
+    with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
         parts = _in_order(pool, split, range(len(frames)))
         for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
             buckets.add(part, pool)
@@ -169,7 +167,7 @@ def _finish_tiles(
     tiles: Sequence[Tile], finish: Callable[[_Turn], Counter[str]], *, progress: Progress
 ) -> Counter[str]:
     removed: Counter[str] = Counter()
-    with ThreadPoolExecutor(WORKERS) as pool:
+    with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
         parts = _in_order(pool, finish, _turns(tiles))
         for part in track(parts, progress, what="map", unit="tiles", total=len(tiles)):
             removed += part
@@ -184,7 +182,7 @@ def _in_order(
     try:
         for item in items:
             waiting.append(pool.submit(work, item))
-            if len(waiting) > WORKERS:
+            if len(waiting) > MAP_BUILD.workers:
                 yield waiting.popleft().result()
         while waiting:
             yield waiting.popleft().result()

@@ -10,9 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.kernels.normals import bounds, cell_keys, cell_moments, spread_to_points, window_normals
 from recon4.kernels.sorting import radix_sort
-
-MIN_POINTS = 6
-"""Fewer points in a neighborhood have no normal."""
+from recon4.mapping.tuning import NORMALS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,6 +51,6 @@ def local_normals(xyz_m: NDArray[np.float32], cell_m: float) -> Normals:
     cells, moments = np.empty(count, np.int64), np.empty((count, 10))
     cell_moments(xyz_m, order, shift, low, shape, cell_m, cells, moments)
     normals, support = np.empty((count, 3), np.float32), np.empty(count, np.int32)
-    window_normals(cells, moments, shape, cell_m, MIN_POINTS, normals, support)
+    window_normals(cells, moments, shape, cell_m, NORMALS.min_points, normals, support)
     spread_to_points(order, shift, normals, support, out.normal, out.support)
     return out

@@ -9,12 +9,10 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.deskew import place_sensor_points
+from recon4.mapping.tuning import POINT_PLACES
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times, Trajectory
-
-KNOT_NS = 1_000_000
-"""Interval of exactly interpolated poses [ns]; the poses of the trajectory are added."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -97,7 +95,7 @@ def _knots(frame: Multiframe, pose_ns: Times) -> Times:
     """Times from the first to the last point, with the poses between them, at most 1 ms apart."""
     first = frame.t_ns + int(frame.dt_ns.min())
     last = max(frame.t_ns + int(frame.dt_ns.max()), first + 1)
-    steps = -(-(last - first) // KNOT_NS)
+    steps = -(-(last - first) // POINT_PLACES.knot_ns)
     regular = first + (last - first) * np.arange(steps + 1, dtype=np.int64) // steps
     a, b = np.searchsorted(pose_ns, [first, last])
     return np.union1d(regular, pose_ns[a:b])

@@ -12,19 +12,7 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, Views
 from recon4.mapping.scratch import Scratch
 from recon4.mapping.surface_fit import TUNING, FittedSurfaces, Noise, fit_rows
-
-SCALE = 3
-"""Cells of the larger scale are as many times as large."""
-FEW = 60
-"""A neighborhood of fewer points is sparse."""
-SHARE = 0.02
-"""A tile with a smaller part of such points is dense; they are then things, not surfaces."""
-NOISE = 3.0
-"""Sparse points are far from the sensor or few recordings: poses and beams are less exact."""
-THICKER = 1.4
-"""Sparse surfaces this many times as thick as most of a tile are not trusted."""
-_REACH = 5
-"""Cells along a window of windows: what the planes of a cell depend on."""
+from recon4.mapping.tuning import SPARSE_SURFACES
 
 
 def with_sparse_places(
@@ -49,20 +37,20 @@ def with_sparse_places(
     """
     from scipy.ndimage import maximum_filter  # slow to import, and readers of maps need none
 
-    loose = ~found.on_surface & (found.support < FEW)
-    if loose.sum() <= SHARE * len(records):
+    loose = ~found.on_surface & (found.support < SPARSE_SURFACES.few)
+    if loose.sum() <= SPARSE_SURFACES.share * len(records):
         return found
-    coarse = Grid(
-        grid.voxel_m, SCALE * grid.cell_voxels, -(-grid.tile_cells // SCALE), grid.thin, 1
-    )
+    scale = SPARSE_SURFACES.scale
+    tile_cells = -(-grid.tile_cells // scale)
+    coarse = Grid(grid.voxel_m, scale * grid.cell_voxels, tile_cells, grid.thin, 1)
     array = (scratch or Scratch()).array
     cell, xyz = array("coarse_cells", (len(records),), np.int32), Views.of(records).f4
     number_cells(xyz, coarse.cell_m, coarse.side_cells, coarse.halo_cells, cell)
     marked = np.zeros((coarse.side_cells,) * 3, np.bool_)
     marked.flat[cell[loose]] = True
-    wanted = np.flatnonzero(maximum_filter(marked, _REACH).ravel()[cell])
+    wanted = np.flatnonzero(maximum_filter(marked, SPARSE_SURFACES.reach).ravel()[cell])
     rows = wanted[np.argsort(cell[wanted], kind="stable")]
-    noise = Noise(noise_m, NOISE * noise_m)
+    noise = Noise(noise_m, SPARSE_SURFACES.noise * noise_m)
     every = 0, coarse.side_cells
     made = fit_rows(np.take(records, rows), coarse, every, noise=noise, array=array)
     mine = loose[rows]
@@ -82,4 +70,6 @@ def _thin_enough(
     """Which points lie on a surface about as thick as the others; others may be two sheets."""
     sigma_m = made.surfaces[made.surface_of, 3]
     usual_m = float(np.median(sigma_m[moved])) if moved.any() else 0.0
-    return np.asarray(sigma_m < max(TUNING.strict.max_sigma * noise_m, THICKER * usual_m))
+    return np.asarray(
+        sigma_m < max(TUNING.strict.max_sigma * noise_m, SPARSE_SURFACES.thicker * usual_m)
+    )

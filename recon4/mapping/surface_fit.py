@@ -35,9 +35,9 @@ from recon4.kernels.surface_records import (
     Supported,
 )
 from recon4.mapping.grid import Grid
-from recon4.mapping.normals import MIN_POINTS
 from recon4.mapping.records import Records, Views
 from recon4.mapping.scratch import ScratchArray
+from recon4.mapping.tuning import NORMALS
 
 
 @dataclass(frozen=True, slots=True)
@@ -273,7 +273,7 @@ class _Fit:
         axis.fill(0.0)
         # Which sides: one normal a window, then the two sides of it.
         surface_windows.side_moments(returns, every, sides)
-        surface_windows.window_normals(returns, near, sides, MIN_POINTS, support)
+        surface_windows.window_normals(returns, near, sides, NORMALS.min_points, support)
         normals[:] = axis
         surface_windows.seen_from_behind(returns, axis, changed)
         surface_windows.side_moments(returns, changed, sides)

@@ -14,12 +14,7 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Views, joined
 from recon4.mapping.scratch import Scratch
 from recon4.mapping.surface_fit import FittedSurfaces, Noise, fit_rows
-
-SLAB = 400_000
-"""Records fitted at once: what is known of their cells is four times as large as themselves. With
-half as many, margins make the fit 1.2 times as expensive."""
-_MARGIN = 2
-"""Rows of cells beyond a slab that its surfaces depend on, as many as in the halo of a tile."""
+from recon4.mapping.tuning import TILE_SURFACES
 
 
 def fit_surfaces(
@@ -42,7 +37,7 @@ def fit_surfaces(
         array("support", (n,), np.int32),
     )
     noise = Noise(noise_m, noise_m)
-    if n < SLAB + SLAB // 2:
+    if n < TILE_SURFACES.slab + TILE_SURFACES.slab // 2:
         every = slice(0, n)
         part = fit_rows(records, grid, (0, grid.side_cells), noise=noise, array=array)
         part.copy(every, found, every, first=0)
@@ -51,7 +46,7 @@ def fit_surfaces(
     surfaces, count = [], 0
     for low, high in _slabs(np.diff(firsts).reshape(-1, grid.side_cells).sum(axis=0)):
         own = _runs(firsts, grid, (low, high))
-        rows = max(low - _MARGIN, 0), min(high + _MARGIN, grid.side_cells)
+        rows = max(low - TILE_SURFACES.margin, 0), min(high + TILE_SURFACES.margin, grid.side_cells)
         runs = _runs(firsts, grid, rows)
         slab = array("slab", (sum(run.stop - run.start for run in runs),), RECORD)
         joined([records[run] for run in runs], slab)
@@ -87,13 +82,16 @@ def _runs(firsts: NDArray[np.int64], grid: Grid, rows: tuple[int, int]) -> list[
 
 
 def _slabs(counts: NDArray[np.int64]) -> Iterator[tuple[int, int]]:
-    """First and last row (not included) of parts of about `SLAB` records.
+    """First and last row (not included) of parts of about `TILE_SURFACES.slab` records.
 
     Slabs are upright: a floor would put most of a tile into one of layers.
     """
     low, total = 0, np.concatenate([[0], np.cumsum(counts)])
     for row in range(1, len(total)):
-        full = total[row] - total[low] >= SLAB and total[-1] - total[row] >= SLAB // 2
+        full = (
+            total[row] - total[low] >= TILE_SURFACES.slab
+            and total[-1] - total[row] >= TILE_SURFACES.slab // 2
+        )
         if full or row == len(total) - 1:
             yield low, row
             low = row

@@ -24,6 +24,7 @@ from recon4.mapping.scratch import Scratch
 from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
+from recon4.mapping.tuning import TILES
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
@@ -52,12 +53,6 @@ FIELDS: dict[str, tuple[str, int]] = {
 SURFACE_FIELDS = ("raw_offset_m", "surface_returns", "surface_sd_m", "planarity")
 """Exist only in maps of fitted surfaces."""
 
-STRATA = 64
-"""Number of uniform samples of itself in which a tile is stored, one after the other."""
-BLOCK = 1 << 16
-"""Rows made at once: the columns of a whole tile take more memory than all else of it."""
-FAR_CELL_M = 1.0
-"""Size of the cubes of ``MapSettings.far_ratio`` [m]."""
 
 Columns = dict[str, NDArray[Any]]
 
@@ -83,7 +78,7 @@ class MadeTile:
     """Rows, stray returns included."""
     removed: Counter[str]
     blocks: Iterator[Columns]
-    """The columns, `BLOCK` rows at a time; valid until the same thread makes the next tile."""
+    """The columns, `TILES.block` rows at a time; valid until the thread makes its next tile."""
     strays: int = 0
     """How many of the last rows are stray returns."""
 
@@ -127,8 +122,8 @@ def _blocks(
     recipe: Recipe,
 ) -> Iterator[Columns]:
     origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
-    for first in range(0, len(rows), BLOCK):
-        columns = columns_of(rows[first : first + BLOCK])
+    for first in range(0, len(rows), TILES.block):
+        columns = columns_of(rows[first : first + TILES.block])
         if recipe.covariances:
             p_map = columns["xyz"] + origin_m
             columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
@@ -177,7 +172,7 @@ def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
     own = is_own(records)
     keep = own.copy()
     range_m = np.linalg.norm(to_sensor_m(records), axis=1)
-    seen_from_far(np.ascontiguousarray(records["xyz"]), range_m, FAR_CELL_M, ratio, keep)
+    seen_from_far(np.ascontiguousarray(records["xyz"]), range_m, TILES.far_cell_m, ratio, keep)
     return np.compress(keep | ~own, records), int(own.sum() - keep.sum())
 
 
@@ -188,7 +183,7 @@ def progressive(rows: NDArray[np.intp]) -> NDArray[np.intp]:
     that halves, quarters and eighths are regular samples too. Within a stratum the order stays
     spatial, which compresses well. `spatial_order` is the inverse.
     """
-    return rows[np.concatenate([np.arange(s, len(rows), STRATA) for s in _strata()])]
+    return rows[np.concatenate([np.arange(s, len(rows), TILES.strata) for s in _strata()])]
 
 
 def spatial_order(count: int) -> NDArray[np.intp]:
@@ -199,8 +194,8 @@ def spatial_order(count: int) -> NDArray[np.intp]:
 
 
 def _strata() -> list[int]:
-    bits = STRATA.bit_length() - 1
-    return [int(f"{s:0{bits}b}"[::-1], 2) for s in range(STRATA)]
+    bits = TILES.strata.bit_length() - 1
+    return [int(f"{s:0{bits}b}"[::-1], 2) for s in range(TILES.strata)]
 
 
 def _columns(

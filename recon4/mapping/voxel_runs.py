@@ -10,9 +10,7 @@ import numpy as np
 from recon4.kernels.voxel_runs import FULL, MERGED, merge_runs
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Views
-
-BUFFER = 8192
-"""Records of each run in memory."""
+from recon4.mapping.tuning import VOXEL_RUNS
 
 
 def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
@@ -28,11 +26,11 @@ def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
     runs = len(counts)
     left = np.array(counts, np.int64)
     at = np.cumsum(left) - left
-    head = BUFFER * np.arange(runs)
+    head = VOXEL_RUNS.buffer * np.arange(runs)
     stop, keys, state = head.copy(), np.full(runs, -1), np.array([0, -1])
-    buffer = np.empty(runs * BUFFER, RECORD)
+    buffer = np.empty(runs * VOXEL_RUNS.buffer, RECORD)
     memory = buffer.view(np.uint8).data
-    views, out = Views.of(buffer), np.empty(max(BUFFER, int(left.max())), RECORD)
+    views, out = Views.of(buffer), np.empty(max(VOXEL_RUNS.buffer, int(left.max())), RECORD)
     cells = grid.voxel_m, grid.cell_voxels, grid.side_cells, grid.halo_cells
     with path.open("rb") as file:
         while True:
@@ -48,9 +46,9 @@ def merged_runs(path: Path, counts: Sequence[int], grid: Grid) -> Records:
                 # Large arrays grow without being copied.
                 out.resize(len(out) + len(out) // 4, refcheck=False)
                 continue
-            count = min(BUFFER, int(left[run]))
+            count = min(VOXEL_RUNS.buffer, int(left[run]))
             file.seek(int(at[run]) * RECORD.itemsize)
-            head[run] = run * BUFFER
+            head[run] = run * VOXEL_RUNS.buffer
             stop[run] = head[run] + count
             file.readinto(memory[head[run] * RECORD.itemsize : stop[run] * RECORD.itemsize])
             at[run] += count

@@ -11,6 +11,7 @@ import numpy as np
 from recon4.model.calibration_figures import CalibrationFigures, ParameterFigures
 from recon4.report.figures import AMBER, BLUE, GRAY, GREEN, INK, ORANGE, PINK, SKY, Chart, add_bars
 from recon4.report.rig import DISPLAY_UNITS
+from recon4.report.tuning import BEAM_CHARTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,10 +28,6 @@ _QUANTITIES = (
     _Quantity("azimuth", *DISPLAY_UNITS["rad"], 4),
 )
 _COLORS = (BLUE, ORANGE, GREEN, PINK, SKY, AMBER, GRAY, INK)
-_APART = 0.6
-"""Width over which the LiDARs of one ring are spread."""
-_WIDTH_SD = 2.0
-"""Standard deviations that the bars extend to each side."""
 
 
 class BeamRow(NamedTuple):
@@ -89,8 +86,8 @@ def _chart(rows: Sequence[ParameterFigures], quantity: _Quantity) -> str:
     sensors = list(dict.fromkeys(one.sensor for one in rows))
     for k, sensor in enumerate(sensors):
         own = [one for one in rows if one.sensor == sensor]
-        at = [(int(one.axis) + _APART * k / len(sensors), one.change) for one in own]
-        half = [(0.0, _WIDTH_SD * (one.sd or 0.0)) for one in own]
+        at = [(int(one.axis) + BEAM_CHARTS.apart * k / len(sensors), one.change) for one in own]
+        half = [(0.0, BEAM_CHARTS.width_sd * (one.sd or 0.0)) for one in own]
         scale = [1.0, quantity.factor]
         color = _COLORS[k % len(_COLORS)]
         add_bars(chart, np.array(at) * scale, np.array(half) * scale, color=color, label=sensor)

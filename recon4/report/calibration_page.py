@@ -13,12 +13,10 @@ from recon4.report.chart_groups import framed
 from recon4.report.figures import BLUE, GREEN, ORANGE, PINK, Chart
 from recon4.report.html import environment
 from recon4.report.rig import rig_charts, rig_rows
+from recon4.report.tuning import CALIBRATION_PAGE
 from recon4.store.atomic import write_text
 
-THICKNESS_M = 0.2
-"""Of the slice [m]."""
 _COLORS = (BLUE, ORANGE, GREEN, PINK)
-_HEIGHT_IN = 4.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -63,7 +61,7 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
             beams=beam_rows(page.figures),
             beam_charts=framed(beam_charts(page.figures)),
             slices=framed([(_chart(one), one.name) for one in page.slices]),
-            thickness_m=THICKNESS_M,
+            thickness_m=CALIBRATION_PAGE.thickness_m,
             report_lines=page.report_lines,
         )
     )
@@ -71,7 +69,7 @@ def write_calibration_page(path: Path, page: CalibrationPage) -> None:
 
 
 def _chart(one: CloudSlice) -> str:
-    chart = Chart(f"slice-{one.name}", height=_HEIGHT_IN)
+    chart = Chart(f"slice-{one.name}", height=CALIBRATION_PAGE.height_in)
     for k, (name, p_m) in enumerate(one.p_m):
         color = _COLORS[k % len(_COLORS)]
         chart.axes.plot(*p_m.T, ".", ms=1.2, color=color, label=name, rasterized=True)

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.evaluation.evaluate import Evaluation
-from recon4.evaluation.slices import HISTOGRAM_STEP_M
+from recon4.evaluation.tuning import RELATIVE_ERROR
 from recon4.findings.drift import DriftClosed
 from recon4.findings.finding import Finding
 from recon4.findings.placement import GnssFacts
@@ -117,7 +117,11 @@ def accuracy_charts(found: Evaluation) -> Charts:
     out.append((svg, "Distance of the poses from the ground truth."))
     if found.relative is not None and found.relative.histogram.any():
         counts = found.relative.histogram.astype(np.float64)
-        distance_m = np.linspace(HISTOGRAM_STEP_M, len(counts) * HISTOGRAM_STEP_M, len(counts))
+        distance_m = np.linspace(
+            RELATIVE_ERROR.histogram_step_m,
+            len(counts) * RELATIVE_ERROR.histogram_step_m,
+            len(counts),
+        )
         svg = cumulative("er", distance_m, counts, marks_m=(0.02, 0.05))
         out.append((svg, "Ratio of the slice points within a distance of the model (V Fig. 3.2)."))
     return out

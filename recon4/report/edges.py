@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4.report.plan import PlanPath
+from recon4.report.tuning import EDGE_CHARTS
 
-_MAX_DRAWN = 4000
 _REASONS = {
     Reason.ERROR: "error > acceptance limit",
     Reason.NOT_CONVERGED: "no convergence",
@@ -129,4 +129,4 @@ def _verified_away(edge: Edge) -> bool:
 
 def _some(graph: PoseGraph, test: Callable[[Edge], bool]) -> list[Edge]:
     edges = [edge for edge in graph.edges if test(edge)]
-    return edges[:: max(1, -(-len(edges) // _MAX_DRAWN))]
+    return edges[:: max(1, -(-len(edges) // EDGE_CHARTS.max_drawn))]

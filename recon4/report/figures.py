@@ -10,12 +10,11 @@ from typing import Any
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.report.tuning import CHARTS
 
 BLUE, ORANGE, GREEN, GRAY, PINK = "#0072b2", "#d55e00", "#009e73", "#999999", "#cc79a7"
 SKY, AMBER = "#56b4e9", "#e69f00"
 """Okabe & Ito 2008: distinguishable for color-blind readers."""
-_MANY_BARS = 40
-"""More bars of a color are drawn finer."""
 INK = "#010203"
 """Placeholder of the page's text color until the SVG is written."""
 _STYLE: dict[Any, Any] = {
@@ -220,7 +219,7 @@ def add_bars(chart: Chart, middle: Array, half: Array, *, color: str, label: str
         color: Of dots and bars.
         label: Their name in the legend; empty = none.
     """
-    bar, dot = (1.3, 4.0) if len(middle) <= _MANY_BARS else (0.6, 2.4)
+    bar, dot = (1.3, 4.0) if len(middle) <= CHARTS.many_bars else (0.6, 2.4)
     _add_strokes(chart, middle - half, middle + half, color=color, width=bar)
     _add_strokes(chart, middle, middle, color=color, width=dot)
     if label:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from recon4.findings.finding import Finding, Level
 from recon4.findings.wording import title_of, whole_text
 from recon4.model.usability import Usability
+from recon4.report.tuning import FINDING_LISTS
 
 LEVELS = {Usability.GOOD: "good", Usability.CHECK: "warning", Usability.DO_NOT_USE: "bad"}
 """Style of the headline."""
@@ -18,7 +19,6 @@ _STYLES = {
     Level.CHECK: "warning",
     Level.DO_NOT_USE: "bad",
 }
-_MOST_OF_A_KIND = 12
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,10 +38,10 @@ def shown_findings(findings: Sequence[Finding]) -> list[ShownFinding]:
     lines = []
     for one in findings:
         seen[one.kind] += 1
-        if seen[one.kind] <= _MOST_OF_A_KIND:
+        if seen[one.kind] <= FINDING_LISTS.most_of_a_kind:
             lines.append(_line(one, whole_text(one)))
-        elif seen[one.kind] == _MOST_OF_A_KIND + 1:
-            more = sum(other.kind == one.kind for other in findings) - _MOST_OF_A_KIND
+        elif seen[one.kind] == FINDING_LISTS.most_of_a_kind + 1:
+            more = sum(other.kind == one.kind for other in findings) - FINDING_LISTS.most_of_a_kind
             lines.append(_line(one, f"{more} more of this kind stand in summary.json."))
     return lines
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.report.tuning import INTENSITY_CHARTS
 
-_MIN_POINTS = 100
 _NAMES = (
     ("channel", "beam (all sensors)"),
     ("range", "range [m]"),
@@ -78,7 +78,7 @@ def _curve(
     *,
     normalized: NDArray[np.floating],
 ) -> Curve | None:
-    used = (count >= _MIN_POINTS) & np.isfinite(raw) & np.isfinite(normalized)
+    used = (count >= INTENSITY_CHARTS.min_points) & np.isfinite(raw) & np.isfinite(normalized)
     if not used.any():
         return None
     raw, normalized, weight = raw[used], normalized[used], count[used]

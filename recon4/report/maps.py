@@ -12,13 +12,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
-
-MAX_PIXELS = 1300
-_LEVELS = 48
-"""Shades of an image: fewer compress better, more are not visible."""
-_BIN_M = 0.25
-_TRIM = 0.001
-"""Fraction of points cut off at either end of the image: reflections far away."""
+from recon4.report.tuning import MAP_IMAGES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -193,7 +187,7 @@ def _bounds(chunks: Iterable[MapChunk]) -> tuple[Array, Array] | None:
         if not len(chunk.xyz_m):
             continue
         for axis, counter in enumerate(bins):
-            key = np.floor(chunk.xyz_m[:, axis] / _BIN_M).astype(np.int64)
+            key = np.floor(chunk.xyz_m[:, axis] / MAP_IMAGES.bin_m).astype(np.int64)
             first = int(key.min())
             for step, count in enumerate(np.bincount(key - first).tolist()):
                 counter[first + step] += count
@@ -206,14 +200,14 @@ def _bounds(chunks: Iterable[MapChunk]) -> tuple[Array, Array] | None:
 def _trimmed(counter: Counter[int]) -> tuple[float, float]:
     keys = np.array(sorted(counter))
     ratio = np.cumsum([counter[key] for key in keys]) / counter.total()
-    first = keys[np.searchsorted(ratio, _TRIM)]
-    last = keys[np.searchsorted(ratio, 1.0 - _TRIM)]
-    return float(first - 1) * _BIN_M, float(last + 2) * _BIN_M
+    first = keys[np.searchsorted(ratio, MAP_IMAGES.trim)]
+    last = keys[np.searchsorted(ratio, 1.0 - MAP_IMAGES.trim)]
+    return float(first - 1) * MAP_IMAGES.bin_m, float(last + 2) * MAP_IMAGES.bin_m
 
 
 def _pixel_m(extent_m: float) -> float:
     """1, 2 or 5 times a power of ten, so that the extent fits into the image."""
-    wanted = max(extent_m / MAX_PIXELS, 0.01)
+    wanted = max(extent_m / MAP_IMAGES.max_pixels, 0.01)
     power = 10.0 ** np.floor(np.log10(wanted))
     return float(next(step * power for step in (1, 2, 5, 10) if step * power >= wanted * 0.999))
 
@@ -236,7 +230,7 @@ def _ends(values: Array, low: float, high: float) -> tuple[float, float]:
 
 
 def _steps(shade: Array) -> Array:
-    return np.round(np.nan_to_num(np.clip(shade, 0.0, 1.0)) * _LEVELS) / _LEVELS
+    return np.round(np.nan_to_num(np.clip(shade, 0.0, 1.0)) * MAP_IMAGES.levels) / MAP_IMAGES.levels
 
 
 def _png(rgba: Array) -> bytes:

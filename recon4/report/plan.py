@@ -10,10 +10,7 @@ import numpy as np
 from recon4.geometry.se3 import Array
 from recon4.report.figures import thinned
 from recon4.report.maps import ImageFrame, MapProjection
-
-_LONGEST = 1000.0
-"""Units of the longer side: a tall image is scaled down, and its text must stay readable."""
-_TICKS = 6
+from recon4.report.tuning import PLANS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,7 +53,7 @@ def plan_svg(
         overlay: What is drawn above the map.
         css: CSS class of the image (``ink`` is inverted on dark pages).
     """
-    scale = _LONGEST / (max(frame.width, frame.height) * frame.pixel_m)
+    scale = PLANS.longest / (max(frame.width, frame.height) * frame.pixel_m)
     width, height = (scale * n * frame.pixel_m for n in (frame.width, frame.height))
     place = _PlanTransform(view, frame, scale, width, height)
     out = [
@@ -120,7 +117,7 @@ class _PlanTransform:
 
 def _axes(place: _PlanTransform, view: MapProjection, frame: ImageFrame) -> str:
     extent = (frame.width * frame.pixel_m, frame.height * frame.pixel_m)
-    step = nice_step(max(extent), _TICKS)
+    step = nice_step(max(extent), PLANS.ticks)
     out = [f'<rect class="edge" width="{place.width:.1f}" height="{place.height:.1f}"/>']
     for value in _multiples(frame.left_m, extent[0], step):
         x = (value - frame.left_m) * place.scale

@@ -9,11 +9,10 @@ import msgspec
 from recon4.errors import StoreError
 from recon4.evaluation.evaluate import Evaluation
 from recon4.report.facts import ReportFacts, StageTiming
+from recon4.report.tuning import PROJECT_FACTS
 from recon4.store.json_files import read_object
 from recon4.store.project import ProjectDescription, read_artifacts
 from recon4.store.recipes import settings_in
-
-_MAX_BYTES = 16 << 20
 
 
 class _Stage(msgspec.Struct):
@@ -50,7 +49,7 @@ def project_facts(root: Path, evaluation: Evaluation) -> ReportFacts:
     """
     if not (root / "summary.json").is_file():
         raise StoreError(f"expected a project with a finished run, got {root}")
-    record = read_object(root / "summary.json", max_bytes=_MAX_BYTES)
+    record = read_object(root / "summary.json", max_bytes=PROJECT_FACTS.max_bytes)
     described = ProjectDescription.read(root)
     artifacts = read_artifacts(root)
     try:

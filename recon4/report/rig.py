@@ -14,14 +14,13 @@ from recon4.model.calibration_figures import CalibrationFigures, ParameterFigure
 from recon4.model.rig import RigCalibration
 from recon4.model.rig_origin import RigOrigin
 from recon4.report.figures import BLUE, GRAY, ORANGE, Chart, add_bars
+from recon4.report.tuning import RIG_CHARTS
 
 DISPLAY_UNITS = {"rad": (57.295779513082, "°"), "m": (1e3, "mm"), "s": (1e3, "ms")}
 """Factor and unit in which parameters are shown."""
 _COLORS = {"consistent": BLUE, "off": ORANGE, "not observable": GRAY}
 _TITLES = {"rad": "rotation [°]", "m": "position [mm]", "s": "clock [ms]"}
 _NO_SERIAL = "serial number not known"
-_WIDTH_SD = 2.0
-"""Standard deviations that the bars extend to each side."""
 
 
 class RigRow(NamedTuple):
@@ -102,7 +101,9 @@ def _chart(rows: Sequence[ParameterFigures], unit: str, title: str) -> str:
         own = [(at, one) for at, one in enumerate(rows) if one.status == status and one.sd]
         if own:
             middle = np.array([(factor * one.change, at) for at, one in own])
-            half = np.array([(_WIDTH_SD * factor * (one.sd or 0.0), 0.0) for _, one in own])
+            half = np.array(
+                [(RIG_CHARTS.width_sd * factor * (one.sd or 0.0), 0.0) for _, one in own]
+            )
             add_bars(chart, middle, half, color=color)
     chart.axes.axvline(0.0, color=GRAY, lw=1.0, ls="--")
     chart.axes.set(xlabel=title, ylim=(len(rows) - 0.5, -0.5))

@@ -16,9 +16,7 @@ from recon4.report.approval import add_to_block, is_draft
 from recon4.review.decisions import DecisionKind, SeenFinding
 from recon4.review.journal import JournalRow, read_rows
 from recon4.review.state import read_summary
-
-_HEAD_BYTES = 1 << 20
-"""The block with the approval is within the first bytes of a report."""
+from recon4.review.tuning import ACKNOWLEDGMENTS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -116,7 +114,7 @@ def report_with_notes(root: Path, report: Path) -> Iterator[bytes]:
         StoreError: If the journal or the summary is damaged.
     """
     with report.open("rb") as file:
-        page = file.read(_HEAD_BYTES).decode("utf-8", errors="surrogateescape")
+        page = file.read(ACKNOWLEDGMENTS.head_bytes).decode("utf-8", errors="surrogateescape")
     if is_draft(page):
         notes = signed_acknowledgments(read_rows(root), read_summary(root) or {})
         page = add_to_block(page, map(_line, notes))
@@ -126,8 +124,8 @@ def report_with_notes(root: Path, report: Path) -> Iterator[bytes]:
 def _with_rest(head: bytes, report: Path) -> Iterator[bytes]:
     yield head
     with report.open("rb") as file:
-        file.seek(_HEAD_BYTES)
-        while part := file.read(_HEAD_BYTES):
+        file.seek(ACKNOWLEDGMENTS.head_bytes)
+        while part := file.read(ACKNOWLEDGMENTS.head_bytes):
             yield part
 
 

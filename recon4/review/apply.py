@@ -19,11 +19,7 @@ from recon4.model.pose_graph import (
     Verdict,
 )
 from recon4.review.decisions import Measurement, Pair, Standing, pose_of
-
-CHANGED_M = 0.1
-"""Translation between the pose the reviewer saw and the edge that is reported [m]."""
-CHANGED_RAD = 0.02
-"""Rotation that is reported [rad]."""
+from recon4.review.tuning import CHANGES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,4 +113,4 @@ def _differs(edge: Edge, one: Standing) -> bool:
     if not one.T_i_j:
         return False
     apart = pose_of(one.T_i_j).inverse() @ edge.T_i_j
-    return bool(np.linalg.norm(apart.t) > CHANGED_M or apart.angle() > CHANGED_RAD)
+    return bool(np.linalg.norm(apart.t) > CHANGES.changed_m or apart.angle() > CHANGES.changed_rad)

@@ -27,6 +27,7 @@ from recon4.review.signature import sign
 from recon4.review.source import graph_key
 from recon4.review.stamp import NO_VERDICT, Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
+from recon4.review.tuning import APPROVALS
 from recon4.store.atomic import atomic_file, atomic_folder, make_folders, sweep, write_json
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.hashing import hash_file, hash_json
@@ -36,8 +37,6 @@ from recon4.store.seal import changing, check_sealed
 FORMAT = 4
 """Format of the statement. 2: it contains the manifest hash of every artifact. 3: the verdict.
 4: acknowledgments."""
-MIN_REASON_CHARACTERS = 10
-"""A shorter text is no reason to approve a map in spite of its verdict."""
 _FIGURES = (
     "points",
     "path_length_m",
@@ -275,10 +274,10 @@ def _refuse(root: Path, asked: _ApprovalRequest, *, confirmed: bool) -> None:
             "confirm them with a reason"
         )
     why_not = reason_needed(asked.verdict)
-    if why_not and len(asked.signer["why"].strip()) < MIN_REASON_CHARACTERS:
+    if why_not and len(asked.signer["why"].strip()) < APPROVALS.min_reason_characters:
         raise NotApprovable(
             f"{why_not}; to approve it in spite of that, give a reason of at least "
-            f"{MIN_REASON_CHARACTERS} characters"
+            f"{APPROVALS.min_reason_characters} characters"
         )
     for name, sha256 in asked.summary["hashes"]["results"].items():
         path = root / name

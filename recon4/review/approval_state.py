@@ -17,11 +17,9 @@ from recon4.review.journal import JournalRow, read_rows
 from recon4.review.newest_approval import Older
 from recon4.review.stamp import Stamp
 from recon4.review.trusted_keys import UnknownSigner
+from recon4.review.tuning import APPROVAL_NAMES
 from recon4.store.project import read_artifacts
 from recon4.untrusted.names import LONGEST_NOTE, visible
-
-MAX_NAME = 60
-"""A longer name of a signer is cut [characters]."""
 
 
 class ApprovalKind(StrEnum):
@@ -130,7 +128,7 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
         kind=ApprovalKind.APPROVED,
         text=_signed(stamp),
         version=stamp.version,
-        who=visible(stamp.who, most=MAX_NAME),
+        who=visible(stamp.who, most=APPROVAL_NAMES.max_name),
         time=stamp.time,
         hash=stamp.hash,
         verdict=stamp.verdict,
@@ -146,4 +144,5 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
 
 
 def _signed(stamp: Stamp) -> str:
-    return f"Approved v{stamp.version} · {visible(stamp.who, most=MAX_NAME)} · {stamp.time[:10]}"
+    who = visible(stamp.who, most=APPROVAL_NAMES.max_name)
+    return f"Approved v{stamp.version} · {who} · {stamp.time[:10]}"

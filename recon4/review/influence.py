@@ -22,10 +22,7 @@ from recon4.geometry.se3 import ARM_M, Array
 from recon4.kernels.selected_inverse import entries, selected_inverse
 from recon4.model.pose_graph import PoseGraph, Relations
 from recon4.pose_graph.relations import adjoint
-
-_NOTHING = 1e-12
-"""Weight of structural entries, as a fraction of the largest information."""
-_GAUGE = 1e9
+from recon4.review.tuning import INFLUENCE
 
 
 def influence_m(graph: PoseGraph, asked: NDArray[np.bool_]) -> Array:
@@ -103,7 +100,7 @@ def _hessian(of: Relations, A: Array, asked: NDArray[np.intp], *, nodes: int) ->
     """``H`` of the edges in the graph, the first node fixed, (6 N, 6 N).
 
     The sparse factor has entries only where ``H`` is not zero, so the blocks of all evaluated edges
-    and of all nodes get at least the tiny weight `_NOTHING`.
+    and of all nodes get at least the tiny weight `INFLUENCE.nothing`.
     """
     from scipy.sparse import csc_array
 
@@ -114,9 +111,11 @@ def _hessian(of: Relations, A: Array, asked: NDArray[np.intp], *, nodes: int) ->
     every = np.arange(nodes)
     a = np.concatenate([of.i[asked], of.j[asked], every])
     b = np.concatenate([of.j[asked], of.i[asked], every])
-    blocks.append((a, b, np.full((len(a), 6, 6), _NOTHING * float(np.abs(W).max(initial=1.0)))))
+    blocks.append(
+        (a, b, np.full((len(a), 6, 6), INFLUENCE.nothing * float(np.abs(W).max(initial=1.0))))
+    )
     first = np.zeros(1, np.intp)
-    blocks.append((first, first, _GAUGE * np.eye(6)[None]))
+    blocks.append((first, first, INFLUENCE.gauge * np.eye(6)[None]))
     row, column = np.meshgrid(np.arange(6), np.arange(6), indexing="ij")
     at_row = np.concatenate([(6 * a[:, None, None] + row).ravel() for a, _, _ in blocks])
     at_column = np.concatenate([(6 * b[:, None, None] + column).ravel() for _, b, _ in blocks])

@@ -18,13 +18,13 @@ from recon4.errors import StoreError
 from recon4.review.decisions import DecisionKind
 from recon4.review.journal import JournalRow, read_rows
 from recon4.review.trusted_keys import STATE, TRUSTED_KEYS
+from recon4.review.tuning import NEWEST_APPROVALS
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.checked import Altered
 from recon4.store.json_files import read_object
 
 APPROVALS = "approvals"
 FORMAT = 1
-MAX_RECORD_BYTES = 64 << 10
 
 
 class Older(Altered):
@@ -151,7 +151,7 @@ def _has(rows: Sequence[JournalRow], recorded: NewestApproval) -> bool:
 def _read(path: Path) -> NewestApproval | None:
     if not path.exists():
         return None
-    record = read_object(path, max_bytes=MAX_RECORD_BYTES)
+    record = read_object(path, max_bytes=NEWEST_APPROVALS.max_record_bytes)
     try:
         if record.pop("format", None) != FORMAT:
             raise msgspec.ValidationError(f"expected format {FORMAT}")

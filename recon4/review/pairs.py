@@ -27,9 +27,10 @@ from recon4.registration.tuning import OVERLAP
 from recon4.review.apply import is_measured, rows_by_pair
 from recon4.review.decisions import Measurement, Pair, numbers_of, pose_of
 from recon4.review.planar_pairs import align_keyframes, keyframe_points
-from recon4.review.queue import MAX_PATHS, AlternativePath, alternative_paths
+from recon4.review.queue import AlternativePath, alternative_paths
 from recon4.review.source import Source
 from recon4.review.sweep_pairs import align_sweeps, has_sweeps, multiframes_of
+from recon4.review.tuning import QUEUE, REVIEW_PAIRS
 from recon4.settings.reads import GraphReads, VerificationReads, part_of
 from recon4.store.arrays import load_arrays, load_trajectory
 
@@ -37,14 +38,6 @@ MAGIC = b"R4PP"
 LAYOUT = struct.Struct("<4sIII")
 """Header of the point data: magic, version 1, numbers of points of i and of j. Then float32 x y z
 of each point in the body frame of its multiframe [m], little-endian."""
-MAX_POINTS = 30_000
-"""Limit for each multiframe of the pair."""
-MAX_REACH = 10
-"""Largest number of multiframes shown before and after each one."""
-_VOXEL_M = 0.04
-_MAX_RANGE_M = 60.0
-_MIN_SPREAD_M = 0.1
-"""Smallest extent of picked points across their principal line [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +69,7 @@ class PairFacts:
     """Prediction offset: distance between predicted and measured pose [m]."""
     apart_rad: float
     paths: tuple[AlternativePath, ...]
-    """Worst first; at most `MAX_PATHS`."""
+    """Worst first; at most `QUEUE.max_paths`."""
     path_count: int
     """Number of all alternative paths."""
     history: tuple[Judgment, ...]
@@ -102,8 +95,8 @@ def pair_points(source: Source, pair: Pair, reach: int) -> bytes:
         ConfigError: If one of them is no node of the graph, or the reach is too large.
         StoreError: If artifacts are missing or damaged.
     """
-    if not 0 <= reach <= MAX_REACH:
-        raise ConfigError(f"reach must be 0 to {MAX_REACH} multiframes, got {reach}")
+    if not 0 <= reach <= REVIEW_PAIRS.max_reach:
+        raise ConfigError(f"reach must be 0 to {REVIEW_PAIRS.max_reach} multiframes, got {reach}")
     nodes = nodes_of(source.verified, pair)
     points = keyframe_points if source.is_2d else _points
     clouds = [_thinned(points(source, node, reach)) for node in nodes]
@@ -136,7 +129,7 @@ def pair_facts(source: Source, pair: Pair) -> PairFacts:
         upright=_upright(source, graph, i),
         apart_m=float(np.linalg.norm((predicted.inverse() @ T_i_j).t)),
         apart_rad=float((predicted.inverse() @ T_i_j).angle()),
-        paths=tuple(paths[:MAX_PATHS]),
+        paths=tuple(paths[: QUEUE.max_paths]),
         path_count=len(paths),
         history=source.history(pair),
     )
@@ -209,7 +202,7 @@ def fit_points(p_i: Array, p_j: Array) -> tuple[float, ...]:
         raise ConfigError(f"three pairs of points are needed, got {min(len(p_i), len(p_j))}")
     for name, points in (("first", p_i), ("second", p_j)):
         spread = np.linalg.svd(points - points.mean(axis=0), compute_uv=False)
-        if spread[1] < _MIN_SPREAD_M:
+        if spread[1] < REVIEW_PAIRS.min_spread_m:
             raise ConfigError(f"the points in the {name} place lie on a line; pick another one")
     return numbers_of(align_points(p_i, p_j))
 
@@ -257,16 +250,16 @@ def _points(source: Source, node: int, reach: int) -> Array:
     parts = [place(frames[k], odometry, frames.rig) for k in near]
     T_odom_body = odometry.at(frames.t_mid_ns[frame : frame + 1])[0]
     p_body = T_odom_body.inverse() @ np.concatenate(parts)
-    return np.asarray(p_body[np.linalg.norm(p_body, axis=1) < _MAX_RANGE_M])
+    return np.asarray(p_body[np.linalg.norm(p_body, axis=1) < REVIEW_PAIRS.max_range_m])
 
 
 def _thinned(p_body: Array) -> Array:
-    """One point per voxel, then an even sample of at most `MAX_POINTS`."""
-    keys = np.floor(p_body / _VOXEL_M).astype(np.int64) + (1 << 20)
+    """One point per voxel, then an even sample of at most `REVIEW_PAIRS.max_points`."""
+    keys = np.floor(p_body / REVIEW_PAIRS.voxel_m).astype(np.int64) + (1 << 20)
     packed = (keys[:, 0] << 42) | (keys[:, 1] << 21) | keys[:, 2]
     rows = np.sort(np.unique(packed, return_index=True)[1])
-    if len(rows) > MAX_POINTS:
-        rows = rows[np.linspace(0, len(rows) - 1, MAX_POINTS).astype(np.intp)]
+    if len(rows) > REVIEW_PAIRS.max_points:
+        rows = rows[np.linspace(0, len(rows) - 1, REVIEW_PAIRS.max_points).astype(np.intp)]
     return p_body[rows]
 
 

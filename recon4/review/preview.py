@@ -21,9 +21,9 @@ from recon4.review.solve import (
     review_figures,
 )
 from recon4.review.source import Source
+from recon4.review.tuning import PREVIEW
 from recon4.settings.reads import VerificationReads, part_of
 
-_REMEMBERED = 6
 _solved: OrderedDict[tuple[str, str], Reviewed] = OrderedDict()
 """Latest solutions of this process; the state before a decision is usually among them."""
 _sources: OrderedDict[str, Source] = OrderedDict()
@@ -98,7 +98,7 @@ def _review(source: Source, decided: Decided) -> Reviewed:
     if known not in _solved:
         settings = part_of(source.settings, VerificationReads)
         _solved[known] = review(source.verified, decided.standing, settings=settings)
-        if len(_solved) > _REMEMBERED:
+        if len(_solved) > PREVIEW.remembered:
             _solved.popitem(last=False)
     _solved.move_to_end(known)
     return _solved[known]
@@ -109,7 +109,7 @@ def _known(found: Source) -> Source:
     known = str(found.artifacts["verification"])
     if known not in _sources:
         _sources[known] = found
-        if len(_sources) > _REMEMBERED:
+        if len(_sources) > PREVIEW.remembered:
             _sources.popitem(last=False)
     return _sources[known]
 

@@ -22,8 +22,6 @@ from recon4.review.source import Source
 from recon4.settings.reads import VerificationReads, part_of
 from recon4.settings.tuning import tuned
 
-MAX_PATHS = 60
-"""Largest number of alternative paths listed for a pair, the worst first."""
 _GOOD, _WEAK, _PREDICTED_ONLY, _NO_OVERLAP = range(4)
 _WEAK_REASONS = (Reason.ERROR, Reason.FEW_MATCHES, Reason.DEGENERATE)
 """Reasons of a rejection that come from the registration itself, not from the graph."""

@@ -26,15 +26,11 @@ from recon4.pose_graph.verification import verify
 from recon4.progress import Progress, Silent
 from recon4.review.apply import apply_decisions
 from recon4.review.decisions import Pair, Standing
+from recon4.review.tuning import REVIEW_SOLVE
 from recon4.settings.reads import VerificationReads
 from recon4.settings.tuning import tuned
 from recon4.store.atomic import write_json
 
-MAX_MOVES = 10
-_APART_NODES = 5
-"""Nodes closer than this along the trajectory count as one move."""
-_MIN_MOVE_M = 1e-4
-_NAMED_PAIRS = 5
 UNVERIFIED_MODES = ("10", "overlap")
 """Modes of V Table 3.2 without verification."""
 
@@ -263,9 +259,9 @@ def _largest_moves(before: PoseGraph, after: PoseGraph) -> tuple[Move, ...]:
     moved_m = np.linalg.norm(after.T_map_body.t - before.T_map_body.t, axis=1)
     taken: list[int] = []
     for node in np.argsort(-moved_m, kind="stable").tolist():
-        if len(taken) == MAX_MOVES or moved_m[node] < _MIN_MOVE_M:
+        if len(taken) == REVIEW_SOLVE.max_moves or moved_m[node] < REVIEW_SOLVE.min_move_m:
             break
-        if all(abs(node - other) >= _APART_NODES for other in taken):
+        if all(abs(node - other) >= REVIEW_SOLVE.apart_nodes for other in taken):
             taken.append(node)
     return tuple(
         Move(node, int(after.frame_ids[node]), int(after.t_ns[node]), float(moved_m[node]))
@@ -279,4 +275,4 @@ def _residual(graph: PoseGraph, edge: Edge) -> SE3:
 
 
 def _first(pairs: Iterable[Pair]) -> tuple[str, ...]:
-    return tuple(f"multiframes {i} and {j}" for i, j in islice(pairs, _NAMED_PAIRS))
+    return tuple(f"multiframes {i} and {j}" for i, j in islice(pairs, REVIEW_SOLVE.named_pairs))

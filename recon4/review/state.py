@@ -7,11 +7,10 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.review.decisions import NOTHING_DECIDED
+from recon4.review.tuning import SUMMARIES
 from recon4.store.earlier_names import SUMMARY, current_names
 from recon4.store.json_files import read_object
 from recon4.store.stage import read_manifest
-
-MAX_SUMMARY_BYTES = 16 << 20
 
 
 def read_summary(root: Path) -> dict[str, Any] | None:
@@ -23,7 +22,7 @@ def read_summary(root: Path) -> dict[str, Any] | None:
     path = root / "summary.json"
     if not path.is_file():
         return None
-    return current_names(read_object(path, max_bytes=MAX_SUMMARY_BYTES), SUMMARY)
+    return current_names(read_object(path, max_bytes=SUMMARIES.max_summary_bytes), SUMMARY)
 
 
 def artifact_keys(summary: dict[str, Any]) -> dict[str, str]:

@@ -23,6 +23,7 @@ import msgspec
 
 from recon4.errors import ConfigError, StoreError
 from recon4.review.signature import ensure_key, fingerprint, public_key_of
+from recon4.review.tuning import KEY_LIMITS
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.checked import Altered
 from recon4.store.json_files import read_object
@@ -33,8 +34,6 @@ STATE = ".recon4"
 TRUSTED_KEYS = "trusted_keys"
 SIGNING_KEY = "signing.key"
 FORMAT = 1
-MAX_NAME_CHARACTERS = 100
-MAX_KEY_FILE_BYTES = 64 << 10
 _PUBLIC_KEY = re.compile(r"[0-9a-f]{64}")
 _OWN_NAME = "this server"
 
@@ -168,8 +167,10 @@ def add_key(trusted: TrustedKeys, name: str, public_key: str, *, by: str) -> Tru
             "expected a public key of 64 hexadecimal digits, as recon4 keys list shows it on the "
             f"signer's computer, got {visible(public_key, most=80)!r}"
         )
-    if not name or len(name) > MAX_NAME_CHARACTERS or visible(name) != name:
-        raise ConfigError(f"expected a name of 1 to {MAX_NAME_CHARACTERS} visible characters")
+    if not name or len(name) > KEY_LIMITS.max_name_characters or visible(name) != name:
+        raise ConfigError(
+            f"expected a name of 1 to {KEY_LIMITS.max_name_characters} visible characters"
+        )
     before = trusted.keys.get(public_key)
     own = before is not None and before.own
     key = TrustedKey(public_key=public_key, name=name, own=own, added=_now(), by=by)
@@ -266,7 +267,7 @@ def _own_key(folder: Path) -> TrustedKey | None:
 
 
 def _read(path: Path) -> TrustedKey:
-    record = read_object(path, max_bytes=MAX_KEY_FILE_BYTES)
+    record = read_object(path, max_bytes=KEY_LIMITS.max_key_file_bytes)
     if record.pop("format", None) != FORMAT:
         raise StoreError(f"expected format {FORMAT}")
     try:

@@ -32,19 +32,13 @@ from recon4.registration.segments import sample_segments
 from recon4.registration.submap import place_segments
 from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
-from recon4.semi_rigid.tuning import RefineTuning
+from recon4.semi_rigid.tuning import REFINE_RUN, RefineTuning
 from recon4.settings.reads import RefineReads
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_trajectory, save_record, save_trajectory
 from recon4.store.frames import FrameStore
 
 Result = TypeVar("Result")
-
-_CHUNK = 16
-"""Number of multiframes that are processed in parallel."""
-
-_SHORT = 3
-"""A recording shorter than this many time gaps is matched without a gap."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -226,7 +220,7 @@ class _Sweep:
         """Number of multiframes within the gap; 0 = a multiframe may match its own points."""
         durations = self._frames.index["duration_ns"]
         rows = int(np.ceil(self._tuning.min_gap_s * 1e9 / max(1, int(durations.min()))))
-        return rows if len(self._frames) >= _SHORT * rows else 0
+        return rows if len(self._frames) >= REFINE_RUN.short * rows else 0
 
     def _in_order(
         self,
@@ -241,8 +235,8 @@ class _Sweep:
         """
         rows = range(0, len(self._frames), stride)
         with ThreadPoolExecutor(self._settings.graph.workers) as pool:
-            for first in range(0, len(rows), _CHUNK):
-                chunk = rows[first : first + _CHUNK]
+            for first in range(0, len(rows), REFINE_RUN.chunk):
+                chunk = rows[first : first + REFINE_RUN.chunk]
                 before(chunk)
                 yield from pool.map(work, chunk)
                 self._progress.advance(len(chunk))

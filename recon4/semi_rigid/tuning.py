@@ -29,3 +29,16 @@ class RefineTuning(RefineSettings):
     """The same for its rotation [rad]."""
     converged_step_m: float = 4e-3
     """Stop if no multiframe moves farther than this [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RefineRunTuning:
+    """Work of the refinement."""
+
+    chunk: int = 16
+    """Number of multiframes that are processed in parallel."""
+    short: int = 3
+    """A recording shorter than this many time gaps is matched without a gap."""
+
+
+REFINE_RUN = RefineRunTuning()

@@ -8,7 +8,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.mesh import GLASS, WorldMesh
+from recon4.geometry.mesh import WorldMesh
+from recon4.geometry.tuning import SURFACES
 from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
@@ -326,7 +327,7 @@ def measure_hits(
         [
             model.range_sd_m, model.min_range_m, model.max_range_m, model.weakest_signal,
             model.mixed_step_m, model.loss, model.intensity_sd, model.intensity_sd_counts,
-            GLASS, unit.unit_m, unit.added_m,
+            SURFACES.glass, unit.unit_m, unit.added_m,
         ]
     )  # fmt: skip
     measure(

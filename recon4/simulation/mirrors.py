@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.mesh import CLEAR, MIRROR
 from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
+from recon4.geometry.tuning import SURFACES
 
 _MOST = 4
 """A beam is followed over this many mirrors and panes; then nothing returns."""
@@ -81,7 +81,7 @@ class _Beams:
 def _special(hits: Hits, reflectivity: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Hits on mirrors and clear panes."""
     found = np.isfinite(hits.range_m)
-    found[found] = reflectivity[hits.triangle[found]] <= CLEAR
+    found[found] = reflectivity[hits.triangle[found]] <= SURFACES.clear
     return found
 
 
@@ -89,7 +89,7 @@ def _beyond(beams: _Beams, met: Hits, reflectivity: NDArray[np.float32]) -> _Bea
     """The beams after the mirrors and panes that they met."""
     normal, along = met.normal.astype(np.float64), beams.rays[:, 3:]
     cosine = np.einsum("ni,ni->n", normal, along)
-    reflected = (reflectivity[met.triangle] <= MIRROR) | (np.abs(cosine) < _GRAZING)
+    reflected = (reflectivity[met.triangle] <= SURFACES.mirror) | (np.abs(cosine) < _GRAZING)
     leaving = along - 2.0 * (cosine * reflected)[:, None] * normal
     flip = np.eye(3) - 2.0 * reflected[:, None, None] * normal[:, :, None] * normal[:, None, :]
     origin = beams.rays[:, :3] + met.range_m[:, None] * along + _BEYOND_M * leaving

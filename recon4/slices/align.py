@@ -12,20 +12,7 @@ from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.tiles import TileSet
 from recon4.slices.fit import fit_of, sample_reference, sample_tiles
 from recon4.slices.reference import Reference
-
-_SAMPLES = 60_000
-_ROUNDS = 60
-_NEAR_M = 0.5
-_ON_M = 0.10
-_MIN_POINTS = 100
-_FLOOR_SAMPLES = 400_000
-_FLOOR_NEAR_M = 3.0
-_LEVEL = np.cos(np.deg2rad(30.0))
-_BIN_M = 0.05
-_MIN_NEAR = 0.02
-"""Smallest ratio of map points near the reference, which may be one room of a building."""
-_MIN_ON = 0.6
-"""Smallest inlier ratio among those points."""
+from recon4.slices.tuning import ALIGNMENT
 
 
 def align_by_pairs(p_map: Array, p_reference: Array) -> tuple[SE3, Array]:
@@ -82,7 +69,7 @@ def floor_offset(
     The lowest level of many points on level surfaces within 3 m of the points; 0 where there is
     none.
     """
-    ours = _floor_m(sample_tiles(tiles, _FLOOR_SAMPLES), p_map)
+    ours = _floor_m(sample_tiles(tiles, ALIGNMENT.floor_samples), p_map)
     theirs = _floor_m(sample_reference(reference, rng), p_reference)
     return 0.0 if ours is None or theirs is None else ours - theirs
 
@@ -90,14 +77,18 @@ def floor_offset(
 def _floor_m(surface: SurfacePoints, near: Array) -> float | None:
     from scipy.spatial import cKDTree
 
-    distance, _ = cKDTree(near[:, :2]).query(surface.p[:, :2], distance_upper_bound=_FLOOR_NEAR_M)
-    level = np.isfinite(distance) & (np.abs(surface.normals[:, 2]) > _LEVEL)
+    distance, _ = cKDTree(near[:, :2]).query(
+        surface.p[:, :2], distance_upper_bound=ALIGNMENT.floor_near_m
+    )
+    level = np.isfinite(distance) & (np.abs(surface.normals[:, 2]) > ALIGNMENT.level)
     z = surface.p[level, 2]
-    if len(z) < _MIN_POINTS:
+    if len(z) < ALIGNMENT.min_points:
         return None
-    count, edges = np.histogram(z, np.arange(z.min() - _BIN_M, z.max() + 2 * _BIN_M, _BIN_M))
+    count, edges = np.histogram(
+        z, np.arange(z.min() - ALIGNMENT.bin_m, z.max() + 2 * ALIGNMENT.bin_m, ALIGNMENT.bin_m)
+    )
     lowest = int(np.flatnonzero(count >= 0.3 * count.max())[0])
-    found = z[np.abs(z - edges[lowest : lowest + 2].mean()) <= _BIN_M]
+    found = z[np.abs(z - edges[lowest : lowest + 2].mean()) <= ALIGNMENT.bin_m]
     return float(np.median(found))
 
 
@@ -150,19 +141,21 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
     p_map = _sample_map(tiles, rng)
     surface = sample_reference(reference, rng)
     start = reference.T_map_reference.inverse()
-    fit = fit_planes(p_map, surface, T_model_map=start, rounds=_ROUNDS, max_distance_m=_NEAR_M)
+    fit = fit_planes(
+        p_map, surface, T_model_map=start, rounds=ALIGNMENT.rounds, max_distance_m=ALIGNMENT.near_m
+    )
     near = len(fit.distance_m)
-    on = fit.distance_m[fit.distance_m < _ON_M]
+    on = fit.distance_m[fit.distance_m < ALIGNMENT.on_m]
     near_ratio, inlier_ratio = near / max(1, len(p_map)), len(on) / max(1, near)
-    if near < _MIN_POINTS or near_ratio < _MIN_NEAR:
+    if near < ALIGNMENT.min_points or near_ratio < ALIGNMENT.min_near:
         raise ConfigError(
             f"ICP: the map and the reference do not overlap: {100.0 * near_ratio:.1f} % of "
-            f"the map is within {100.0 * _NEAR_M:.0f} cm of it; use Align by pairs"
+            f"the map is within {100.0 * ALIGNMENT.near_m:.0f} cm of it; use Align by pairs"
         )
-    if not fit.converged or inlier_ratio < _MIN_ON:
+    if not fit.converged or inlier_ratio < ALIGNMENT.min_on:
         why = f"inlier ratio (10 cm) {100.0 * inlier_ratio:.0f} %"
         if not fit.converged:
-            why = f"no convergence after {_ROUNDS} iterations"
+            why = f"no convergence after {ALIGNMENT.rounds} iterations"
         raise ConfigError(
             f"ICP did not align the reference with the map: {why}; use Align by pairs"
         )
@@ -175,7 +168,7 @@ def align_by_icp(tiles: TileSet, reference: Reference, *, rng: np.random.Generat
 
 
 def _sample_map(tiles: TileSet, rng: np.random.Generator) -> Array:
-    ratio = min(1.0, _SAMPLES / max(1, len(tiles)))
+    ratio = min(1.0, ALIGNMENT.samples / max(1, len(tiles)))
     parts = [tile.xyz_m(limit=int(np.ceil(ratio * len(tile)))) for tile in tiles]
     points = np.concatenate(parts or [np.empty((0, 3))])
-    return points[rng.permutation(len(points))[:_SAMPLES]]
+    return points[rng.permutation(len(points))[: ALIGNMENT.samples]]

@@ -10,23 +10,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.slices.tuning_files import SLICE_COLORS
 
 ColorBy = Literal["height", "intensity", "normalized", "time", "sensor", "distance"]
 Ground = Literal["light", "dark"]
 Rgb = tuple[int, int, int]
 
-REFERENCE_COLOR: Rgb = (22, 163, 74)
-"""The reference is green (V Fig. 3.3)."""
-DISTANCE_RANGE_M = (0.0, 0.10)
-"""Distances to the reference: blue 0, red 10 cm (V Fig. 3.3)."""
-SENSOR_COLORS: tuple[Rgb, ...] = (
-    (0, 114, 178),
-    (213, 94, 0),
-    (0, 158, 115),
-    (204, 121, 167),
-    (166, 134, 0),
-)
-"""Distinguishable for color-blind readers (after Okabe and Ito 2008)."""
 
 UNITS: dict[ColorBy, str] = {
     "height": "m",
@@ -44,7 +33,6 @@ LABELS: dict[ColorBy, str] = {
     "sensor": "Sensor",
     "distance": "Distance to reference",
 }
-_DISTANCE_STOPS: tuple[Rgb, ...] = ((32, 84, 255), (150, 60, 200), (232, 20, 20))
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,8 +48,8 @@ def table(color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
     """256 colors from low to high, (256, 3); all of them contrast with the ground."""
     steps = np.linspace(0.0, 1.0, 256)
     if color == "distance":
-        at = np.linspace(0.0, 1.0, len(_DISTANCE_STOPS))
-        stops = np.array(_DISTANCE_STOPS, dtype=np.float64)
+        at = np.linspace(0.0, 1.0, len(SLICE_COLORS.distance_stops))
+        stops = np.array(SLICE_COLORS.distance_stops, dtype=np.float64)
         channels = [np.interp(steps, at, stops[:, c]) for c in range(3)]
         return np.stack(channels, axis=1).round().astype(np.uint8)
     import matplotlib
@@ -75,7 +63,7 @@ def table(color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
 def paint(values: Array, span: Span, *, color: ColorBy, ground: Ground) -> NDArray[np.uint8]:
     """Colors of values, (…) -> (…, 3); beyond the ends the color of the end, NaN = the low end."""
     if color == "sensor":
-        sensors = np.array(SENSOR_COLORS, dtype=np.uint8)
+        sensors = np.array(SLICE_COLORS.sensor_colors, dtype=np.uint8)
         return sensors[np.nan_to_num(values).astype(np.int64) % len(sensors)]
     width = max(span.high - span.low, 1e-12)
     scaled = np.nan_to_num((values - span.low) * (255.0 / width)).clip(0.0, 255.0)
@@ -85,7 +73,7 @@ def paint(values: Array, span: Span, *, color: ColorBy, ground: Ground) -> NDArr
 def usual_span(values: Array, *, color: ColorBy) -> Span:
     """Fixed for distances; else from the 2nd to the 98th percentile of the values."""
     if color == "distance":
-        return Span(*DISTANCE_RANGE_M)
+        return Span(*SLICE_COLORS.distance_range_m)
     known = values[np.isfinite(values)]
     if not len(known):
         return Span(0.0, 1.0)

@@ -10,21 +10,18 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.evaluation.slices import OUTLIER_M, DistanceTally, SliceError, merge_slices
+from recon4.evaluation.slices import DistanceTally, SliceError, merge_slices
+from recon4.evaluation.tuning import RELATIVE_ERROR
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
 from recon4.slices.fit import ReferenceFit, fit_of
 from recon4.slices.points import points_in
 from recon4.slices.reference import Method, Reference
 from recon4.slices.residual_table import UNKNOWN
-from recon4.slices.signed import (
-    HISTOGRAM_END_M,
-    HISTOGRAM_STEP_M,
-    SignedFigures,
-    SignedTally,
-    merged,
-)
-from recon4.slices.slice_plane import ERROR_THICKNESS_M, SlicePlane
+from recon4.slices.signed import SignedFigures, SignedTally, merged
+from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning import SIGNED
+from recon4.slices.tuning_files import SLICE_PLANES
 
 _METHODS: dict[Method, str] = {
     "plane": "to the reference's surface",
@@ -109,10 +106,10 @@ def compare(
         slices=tuple(ComparedSlice.of(row, signed.figures()) for row, signed in found),
         point_weighted=ComparedSlice.of(merge_slices(rows), all_signed.figures()),
         plain_mean_m=float(np.mean(measured)) if measured else None,
-        outlier_m=OUTLIER_M,
+        outlier_m=RELATIVE_ERROR.outlier_m,
         histogram=tuple(all_signed.histogram.tolist()),
-        histogram_step_m=HISTOGRAM_STEP_M,
-        histogram_end_m=HISTOGRAM_END_M,
+        histogram_step_m=SIGNED.histogram_step_m,
+        histogram_end_m=SIGNED.histogram_end_m,
         fit=fit_of(tiles, reference, rng=rng),
         reference=reference.name,
         method=reference.method,
@@ -131,7 +128,7 @@ def _one(tiles: TileSet, plane: SlicePlane, reference: Reference) -> tuple[Slice
 
 
 def usual_planes(
-    tiles: TileSet, *, thickness_m: float = ERROR_THICKNESS_M
+    tiles: TileSet, *, thickness_m: float = SLICE_PLANES.error_thickness_m
 ) -> tuple[SlicePlane, ...]:
     """Eight slices spread evenly: four horizontal, two across x, two across y (V §3.2)."""
     low, high = tiles.bounds_m

@@ -8,13 +8,10 @@ from typing import Literal
 from recon4.errors import ConfigError, CorruptFile
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice, TablePreview
 from recon4.recording.tables.points import read_point_table
+from recon4.slices.tuning_files import CONTROL_FILES
 
 Role = Literal["control", "check"]
-MAX_POINTS = 5000
-MAX_BYTES = 4 << 20
 _ROLES: dict[str, Role] = {"control": "control", "check": "check", "": "check"}
-_MAX_SKIPPED = 100
-"""Largest number of skipped lines listed individually."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +53,10 @@ def read_control(
         CorruptFile: If no line is a point.
         ConfigError: If the chosen columns name no place.
     """
-    if len(data) > MAX_BYTES:
-        raise CorruptFile(f"{name}: expected at most {MAX_BYTES} bytes, got {len(data)}")
+    if len(data) > CONTROL_FILES.max_bytes:
+        raise CorruptFile(
+            f"{name}: expected at most {CONTROL_FILES.max_bytes} bytes, got {len(data)}"
+        )
     found = read_point_table(data, name, choice=choice)
     if "lat" in found.preview.columns:
         raise ConfigError(
@@ -70,8 +69,8 @@ def read_control(
             skipped.append(f"line {row.line}: point {row.name[:40]!r} is there already")
         elif row.role.lower() not in _ROLES:
             skipped.append(f"line {row.line}: expected control or check, got {row.role[:40]!r}")
-        elif len(points) >= MAX_POINTS:
-            skipped.append(f"line {row.line}: more than {MAX_POINTS} points")
+        elif len(points) >= CONTROL_FILES.max_points:
+            skipped.append(f"line {row.line}: more than {CONTROL_FILES.max_points} points")
             break
         else:
             points[row.name] = ControlPoint(
@@ -80,9 +79,9 @@ def read_control(
     if not points and not found.preview.question:
         raise CorruptFile(f"{name}: no line of ID,X,Y,Z found; {skipped[0] if skipped else ''}")
     skipped.sort(key=lambda text: int(text.partition(":")[0].removeprefix("line ")))
-    more = len(skipped) - _MAX_SKIPPED
+    more = len(skipped) - CONTROL_FILES.max_skipped
     return ControlPreview(
         points=tuple(points.values()),
         table=found.preview,
-        skipped=(*skipped[:_MAX_SKIPPED], *[f"{more} more lines"] * (more > 0)),
+        skipped=(*skipped[: CONTROL_FILES.max_skipped], *[f"{more} more lines"] * (more > 0)),
     )

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from recon4.slices.control_points import Role
-from recon4.slices.limits import LEAST_POINTS, ControlLimits
+from recon4.slices.limits import ControlLimits
+from recon4.slices.tuning import CONTROL_VERDICT
+from recon4.slices.tuning_files import CONTROL_LIMITS
 
 if TYPE_CHECKING:
     from recon4.slices.residuals import Residual
@@ -18,8 +20,6 @@ if TYPE_CHECKING:
 Component = Literal["horizontal", "east", "north", "height", "distances"]
 Level = Literal["good", "warning", "bad", "note"]
 _SIGNS = {True: "✓", False: "✕", None: "–"}
-_NAMED = 5
-"""Points named in the verdict."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +34,7 @@ class Requirement:
     """None = measured at no point."""
     limit_m: float
     holds: bool | None
-    """None = no verdict: fewer than `LEAST_POINTS` points."""
+    """None = no verdict: fewer than `CONTROL_LIMITS.least_points` points."""
     text: str
     """The result in words, with its sign."""
 
@@ -79,7 +79,10 @@ def _horizontal(rows: Sequence[Residual], limits: ControlLimits) -> list[Line]:
     flat = [row.d2_m for row in rows if row.d2_m is not None]
     east = [abs(row.east_m) for row in rows if row.east_m is not None]
     north = [abs(row.north_m) for row in rows if row.north_m is not None]
-    if len(flat) >= LEAST_POINTS or max(len(east), len(north)) < LEAST_POINTS:
+    if (
+        len(flat) >= CONTROL_LIMITS.least_points
+        or max(len(east), len(north)) < CONTROL_LIMITS.least_points
+    ):
         # A point that measured one component only may prove an excess, but never a limit kept.
         most_m = math.inf if limits.max_horizontal_m is None else limits.max_horizontal_m
         over = [d for d in (row.known_2d_m for row in rows) if d is not None and d > most_m]
@@ -106,9 +109,9 @@ def _line(line: Line) -> Requirement:
     text = "✕ exceeded" if over else "✓ holds"
     if value_m is None:
         holds, text = None, "– not measured"
-    elif points < LEAST_POINTS:
+    elif points < CONTROL_LIMITS.least_points:
         above = ", above the limit" if over else ""
-        holds, text = None, f"– {points} of {LEAST_POINTS} points needed{above}"
+        holds, text = None, f"– {points} of {CONTROL_LIMITS.least_points} points needed{above}"
     return Requirement(label, component, points, value_m, limit_m, holds, text)
 
 
@@ -156,8 +159,8 @@ def _components(lines: Sequence[Requirement]) -> list[str]:
         sign = _SIGNS[False if False in holds else (None if None in holds else True)]
         points = min(line.points for line in own)
         count = "not measured" if not points else f"{points} point{'s' if points > 1 else ''}"
-        if 0 < points < LEAST_POINTS:
-            count += f", {LEAST_POINTS} needed"
+        if 0 < points < CONTROL_LIMITS.least_points:
+            count += f", {CONTROL_LIMITS.least_points} needed"
         over = [line for line in own if line.value_m is not None and line.value_m > line.limit_m]
         said = "".join(
             f", {line.label} {_cm(line.value_m or 0.0)} of {_cm(line.limit_m)} cm" for line in over
@@ -172,8 +175,15 @@ def _outliers(found: Sequence[tuple[str, float, float]], tested: int) -> str:
         return " Outliers are not tested: the map states no σ."
     if not found:
         return ""
-    named = [f"{name} ({_cm(abs(d))} cm, {sigmas:.0f} σ)" for name, d, sigmas in found[:_NAMED]]
-    more = f" and {len(found) - _NAMED} more" if len(found) > _NAMED else ""
+    named = [
+        f"{name} ({_cm(abs(d))} cm, {sigmas:.0f} σ)"
+        for name, d, sigmas in found[: CONTROL_VERDICT.named]
+    ]
+    more = (
+        f" and {len(found) - CONTROL_VERDICT.named} more"
+        if len(found) > CONTROL_VERDICT.named
+        else ""
+    )
     said = f" ⚠ Far beyond the stated σ: {', '.join(named)}{more}."
     if tested > 2 and 2 * len(found) > tested:
         return f"{said} These are most points: map and survey differ by more than the map states."

@@ -9,12 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.plain import finite_or_none
-
-MAX_SURFACES = 3000
-_PLACE_M = 1.5
-"""Patches within this distance that face alike form one place [m]."""
-_MIN_PATCHES = 10
-"""Smallest number of patches of a place: an edge or a moved chair makes one or two."""
+from recon4.slices.tuning import DOUBLE_PLACES
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +46,7 @@ class DoubleReport:
     walls: tuple[DoubleWall, ...]
     """Double walls, the largest separation first."""
     surfaces: tuple[DoubleWall, ...]
-    """Other surfaces, the nearest to their limit first; at most `MAX_SURFACES`."""
+    """Other surfaces, the nearest to their limit first; at most `DOUBLE_PLACES.max_surfaces`."""
     patches: int
     """Flat patches with at least two visits: the only ones that can be checked."""
     double_patches: int
@@ -99,7 +94,7 @@ def report(found: list[Patches], points: int) -> DoubleReport:
     surfaces.sort(key=lambda one: (-one.separation_m / one.limit_m, one.middle_m))
     return DoubleReport(
         walls=tuple(sorted(walls.values(), key=lambda one: (-one.separation_m, one.middle_m))),
-        surfaces=tuple(surfaces[:MAX_SURFACES]),
+        surfaces=tuple(surfaces[: DOUBLE_PLACES.max_surfaces]),
         patches=len(separation),
         double_patches=double,
         share=double / len(separation) if len(separation) else 0.0,
@@ -129,7 +124,7 @@ def _places(every: Patches, chosen: NDArray[np.bool_]) -> dict[tuple[int, ...], 
     """Places of the chosen patches, by cell and axis they face."""
     rows = np.flatnonzero(chosen)
     facing = np.argmax(np.abs(every.normal[rows]), axis=1)
-    cell = np.floor(every.middle_m[rows] / _PLACE_M).astype(np.int64)
+    cell = np.floor(every.middle_m[rows] / DOUBLE_PLACES.place_m).astype(np.int64)
     keys, owner, count = np.unique(
         np.column_stack([cell, facing]), axis=0, return_inverse=True, return_counts=True
     )
@@ -138,7 +133,7 @@ def _places(every: Patches, chosen: NDArray[np.bool_]) -> dict[tuple[int, ...], 
     return {
         tuple(key): _wall(every, part)
         for key, part in zip(keys.tolist(), parts, strict=False)
-        if len(part) >= _MIN_PATCHES
+        if len(part) >= DOUBLE_PLACES.min_patches
     }
 
 

@@ -20,9 +20,7 @@ from recon4.kernels.doubles import COLUMNS, best_split, gather
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.progress import Progress, Silent
 from recon4.slices.double_places import DoubleReport, Patches, report
-
-_BLOCK = 2_000_000
-_FIRST_TABLE = 1 << 15
+from recon4.slices.tuning import DOUBLE_WALLS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,12 +113,12 @@ def _visits(tile: Tile, rule: DoubleRule, first_ns: int) -> _Visits:
     base = np.floor((np.array(tile.low_m) - 1e-4) / rule.cell_m).astype(np.int64) - rule.depth
     low = base.astype(np.float64) * rule.cell_m
     side = int(np.ceil(np.max(np.array(tile.high_m) - low) / rule.cell_m)) + rule.depth + 1
-    size, used = _FIRST_TABLE, -1
+    size, used = DOUBLE_WALLS.first_table, -1
     while used < 0:
         keys, sums = np.full(size, -1, np.int64), np.zeros((size, COLUMNS))
         used = 0
-        for first in range(0, len(tile), _BLOCK):
-            rows = slice(first, first + _BLOCK)
+        for first in range(0, len(tile), DOUBLE_WALLS.block):
+            rows = slice(first, first + DOUBLE_WALLS.block)
             used = gather(
                 columns["xyz"][rows],
                 columns["normal"][rows].view(np.uint16),

@@ -12,12 +12,7 @@ from recon4.geometry.se3 import Array, skew
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Times
-
-_NEAR_M = 0.1
-_SAMPLE = 200_000
-"""Most points of a tile that are looked at."""
-_POSES = 300
-"""Most points near a place whose poses are averaged."""
+from recon4.slices.tuning import ELLIPSES
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,13 +64,13 @@ def error_ellipse(cov: Array) -> ErrorEllipse:
 
 
 def _times_near(tiles: TileSet, p_map: Array) -> Times:
-    low, high = p_map - _NEAR_M, p_map + _NEAR_M
+    low, high = p_map - ELLIPSES.near_m, p_map + ELLIPSES.near_m
     found = [np.empty(0, np.int64)]
     for tile in tiles:
         if np.any(np.array(tile.low_m) > high) or np.any(np.array(tile.high_m) < low):
             continue
-        columns = tile.read(["xyz", "t_ns"], limit=_SAMPLE)
+        columns = tile.read(["xyz", "t_ns"], limit=ELLIPSES.sample)
         off = np.abs(columns["xyz"] - (p_map - tile.origin_m)).max(axis=1)
-        found.append(columns["t_ns"][off <= _NEAR_M])
+        found.append(columns["t_ns"][off <= ELLIPSES.near_m])
     t_ns = np.concatenate(found)
-    return t_ns[:: max(1, len(t_ns) // _POSES)]
+    return t_ns[:: max(1, len(t_ns) // ELLIPSES.poses)]

@@ -24,10 +24,8 @@ from recon4.slices.frames import MapFrame, jacobian
 from recon4.slices.points import SliceWindow, TilePart, points_in
 from recon4.slices.slice_image import SliceImage
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import SLICE_EXPORT
 from recon4.store.atomic import atomic_file
-
-MAX_DXF_POINTS = 2_000_000
-_DXF_CELL_M = 0.01
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +124,7 @@ def write_dxf(chosen: SliceSelection, path: Path, *, frame: MapFrame, flat: bool
         How many points the slices have, as of every other format; fewer are drawn.
 
     Raises:
-        ConfigError: If more than `MAX_DXF_POINTS` are to be drawn; before anything is written.
+        ConfigError: If more than `SLICE_EXPORT.max_dxf_points` are to be drawn; nothing is written.
         StoreError: If the file cannot be written.
     """
     layers = [layer_name(k, plane) for k, plane in enumerate(chosen.planes, start=1)]
@@ -157,7 +155,7 @@ def _drawn(chosen: SliceSelection, frame: MapFrame, *, flat: bool) -> DrawnPoint
     for number, part, p_map in chosen.parts([]):
         points += len(part)
         rows, cells[number - 1] = _first_of_cells(part.uvd, cells[number - 1])
-        if sum(map(len, cells)) > MAX_DXF_POINTS:
+        if sum(map(len, cells)) > SLICE_EXPORT.max_dxf_points:
             kept.clear()
         elif flat:
             kept.append((number, part.uvd[rows] * [1.0, 1.0, 0.0]))
@@ -165,10 +163,11 @@ def _drawn(chosen: SliceSelection, frame: MapFrame, *, flat: bool) -> DrawnPoint
             p = p_map[rows]
             kept.append((number, frame.to_crs(p) if frame.to_crs else p))
     drawn = sum(map(len, cells))
-    if drawn > MAX_DXF_POINTS:
+    if drawn > SLICE_EXPORT.max_dxf_points:
         raise ConfigError(
-            f"DXF: expected at most {MAX_DXF_POINTS} points (one per cm² of each slice), got "
-            f"{drawn}: export a smaller part or fewer slices, use a thinner slice, or export LAZ"
+            f"DXF: expected at most {SLICE_EXPORT.max_dxf_points} points (one per cm² of each "
+            f"slice), got {drawn}: export a smaller part or fewer slices, use a thinner slice, or "
+            "export LAZ"
         )
     return DrawnPoints(kept, drawn, points)
 
@@ -181,7 +180,7 @@ def _first_of_cells(
     Returns:
         Rows, and the keys of all squares that are taken after them, ascending.
     """
-    u, v = np.floor(uvd[:, :2] / _DXF_CELL_M).astype(np.int64).T
+    u, v = np.floor(uvd[:, :2] / SLICE_EXPORT.dxf_cell_m).astype(np.int64).T
     keys, first = np.unique((u << 32) + v, return_index=True)
     fresh = ~np.isin(keys, taken, assume_unique=True)
     return np.sort(first[fresh]), np.union1d(taken, keys[fresh])

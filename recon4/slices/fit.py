@@ -11,24 +11,11 @@ from numpy.typing import NDArray
 from recon4.evaluation.reference_mesh import SurfacePoints, sample_mesh
 from recon4.geometry.se3 import SE3
 from recon4.mapping.tiles import TileSet
-from recon4.slices.reference import FAR_M, Reference
+from recon4.slices.reference import Reference
+from recon4.slices.tuning import REFERENCE_FIT
+from recon4.slices.tuning_files import REFERENCES
 
-COMPARED = 60_000
-SAMPLES = 400_000
-_COVERED_M = 2.0
-"""Surfaces farther from the other are outside of it, and not compared [m]."""
-ON_M = 0.10
-"""A point within this of a surface of the same orientation agrees with it [m]."""
-LEAST_NEAR = 0.02
-"""Smallest ratio of the map near the reference, which may be one room of a building."""
-LEAST_AGREEING = 0.6
-"""Smallest ratio of agreeing points among those near the other."""
 _NOT_JUDGED = "– Not judged whether the reference fits: hardly any flat surface in both"
-_PARALLEL = 0.8
-_LEVEL = np.cos(np.deg2rad(30.0))
-_LEAST_POINTS = 100
-_LEAST_PART = 0.05
-"""Fewer of the points near the other are no group of their own."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,16 +61,18 @@ def _agreement(points: SurfacePoints, other: SurfacePoints) -> _Agreement:
     """How many of the points near another surface lie on it."""
     from scipy.spatial import cKDTree
 
-    every = max(1, len(points.p) // COMPARED)
+    every = max(1, len(points.p) // REFERENCE_FIT.compared)
     p, normals = points.p[::every], points.normals[::every]
-    distance, row = cKDTree(other.p).query(p, distance_upper_bound=_COVERED_M)
+    distance, row = cKDTree(other.p).query(p, distance_upper_bound=REFERENCE_FIT.covered_m)
     covered = np.isfinite(distance)
     n, m = normals[covered], other.normals[row[covered]]
     across = np.abs(np.einsum("ni,ni->n", m, p[covered] - other.p[row[covered]]))
-    agrees = (across < ON_M) & (np.abs(np.einsum("ni,ni->n", n, m)) > _PARALLEL)
-    agrees &= distance[covered] < FAR_M
-    level = np.abs(n[:, 2]) > _LEVEL
-    near_ratio = float((distance < FAR_M).mean())
+    agrees = (across < REFERENCE_FIT.on_m) & (
+        np.abs(np.einsum("ni,ni->n", n, m)) > REFERENCE_FIT.parallel
+    )
+    agrees &= distance[covered] < REFERENCES.far_m
+    level = np.abs(n[:, 2]) > REFERENCE_FIT.level
+    near_ratio = float((distance < REFERENCES.far_m).mean())
     return _Agreement(near_ratio, _ratio(agrees, ~level), _ratio(agrees, level))
 
 
@@ -93,7 +82,7 @@ def _best(a: float | None, b: float | None) -> float | None:
 
 def fit_of(tiles: TileSet, reference: Reference, *, rng: np.random.Generator) -> ReferenceFit:
     """How well a reference lies on the map at its present alignment."""
-    map_points = sample_tiles(tiles, SAMPLES)
+    map_points = sample_tiles(tiles, REFERENCE_FIT.samples)
     return reference_fit(map_points, sample_reference(reference, rng), reference.T_map_reference)
 
 
@@ -115,28 +104,28 @@ def sample_reference(reference: Reference, rng: np.random.Generator) -> SurfaceP
     if reference.mesh is not None:
         return sample_mesh(reference.mesh, spacing_m=0.05, rng=rng)
     assert reference.tiles is not None
-    return sample_tiles(reference.tiles, SAMPLES)
+    return sample_tiles(reference.tiles, REFERENCE_FIT.samples)
 
 
 def _ratio(agrees: NDArray[np.bool_], group: NDArray[np.bool_]) -> float | None:
     count = int(group.sum())
-    if count < max(_LEAST_POINTS, _LEAST_PART * len(group)):
+    if count < max(REFERENCE_FIT.least_points, REFERENCE_FIT.least_part * len(group)):
         return None
     return float(agrees[group].mean())
 
 
 def _judged(near: float, walls: float | None, level: float | None) -> ReferenceFit:
-    if near < LEAST_NEAR:
+    if near < REFERENCE_FIT.least_near:
         text = (
             f"✕ The reference does not fit: {100.0 * near:.1f} % of the map is within "
-            f"{100.0 * FAR_M:.0f} cm of it"
+            f"{100.0 * REFERENCES.far_m:.0f} cm of it"
         )
         return ReferenceFit(near, walls, level, False, text)
     groups = (("walls", walls), ("floors and ceilings", level))
     parts = [(name, ratio) for name, ratio in groups if ratio is not None]
     if not parts:
         return ReferenceFit(near, walls, level, None, _NOT_JUDGED)
-    fits = all(ratio >= LEAST_AGREEING for _, ratio in parts)
+    fits = all(ratio >= REFERENCE_FIT.least_agreeing for _, ratio in parts)
     agree = " and ".join(f"{100.0 * ratio:.0f} % of the {name}" for name, ratio in parts)
     start = "✓ The reference fits" if fits else "✕ The reference does not fit"
     return ReferenceFit(
@@ -144,6 +133,6 @@ def _judged(near: float, walls: float | None, level: float | None) -> ReferenceF
         walls,
         level,
         fits,
-        f"{start}: where both are, {agree} lie within {100.0 * ON_M:.0f} cm of a surface of "
-        "the same orientation",
+        f"{start}: where both are, {agree} lie within {100.0 * REFERENCE_FIT.on_m:.0f} cm of a "
+        "surface of the same orientation",
     )

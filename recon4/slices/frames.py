@@ -12,9 +12,7 @@ from recon4.export.points import ToCrs
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
-
-_STEP_M = 10.0
-_ROUNDS = 4
+from recon4.slices.tuning import MAP_FRAMES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,7 +46,7 @@ class MapFrame:
         p_map: Array = (p_crs - origin) @ back.T
         if len(p_map) and not np.abs(p_map).max() < 1e6:
             raise GeoreferenceError(f"these coordinates are not in {self.crs}: far from the map")
-        for _ in range(_ROUNDS):
+        for _ in range(MAP_FRAMES.rounds):
             off: Array = (p_crs - self.to_crs(p_map)) @ back.T
             p_map = p_map + off
             if not len(off) or np.abs(off).max() < 1e-6:
@@ -66,9 +64,9 @@ def jacobian(to_crs: ToCrs, p_map: Array) -> tuple[Array, Array]:
     Returns:
         Derivative (3, 3), columns are the map's axes; and the point in the CRS (3,).
     """
-    steps = np.concatenate([np.eye(3), -np.eye(3)]) * _STEP_M
+    steps = np.concatenate([np.eye(3), -np.eye(3)]) * MAP_FRAMES.step_m
     around = to_crs(np.concatenate([p_map + steps, p_map[None]]))
-    J: Array = ((around[:3] - around[3:6]) / (2.0 * _STEP_M)).T
+    J: Array = ((around[:3] - around[3:6]) / (2.0 * MAP_FRAMES.step_m)).T
     return J, around[6]
 
 

@@ -8,9 +8,8 @@ import numpy as np
 
 from recon4.model.samples import GEOID_SEPARATION_M
 from recon4.slices.control_points import ControlPoint
+from recon4.slices.tuning import HEIGHT_HINTS
 
-_NEARLY_M = 1.0
-"""Largest deviation from it, and largest horizontal error: heights alone are of another kind."""
 _TWO_HEIGHTS = (
     "This is as with a geoid: either the map or the survey has heights above sea level "
     "(orthometric), and the other above the ellipsoid."
@@ -22,9 +21,9 @@ def common_height(up_m: Sequence[float], horizontal_m: Sequence[float]) -> str:
     if not up_m:
         return ""
     usual_m = float(np.median(up_m))
-    alike = float(np.abs(np.array(up_m) - usual_m).max()) < _NEARLY_M
+    alike = float(np.abs(np.array(up_m) - usual_m).max()) < HEIGHT_HINTS.nearly_m
     low_m, high_m = GEOID_SEPARATION_M
-    in_place = max(horizontal_m, default=0.0) < _NEARLY_M
+    in_place = max(horizontal_m, default=0.0) < HEIGHT_HINTS.nearly_m
     if not (alike and in_place and low_m < abs(usual_m) < high_m):
         return ""
     points = f"All {len(up_m)} points are" if len(up_m) > 1 else "The point is"

@@ -26,15 +26,9 @@ from recon4.slices.frames import LOCAL, MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.placement import FilePlacement, FrameAsked, check_extent, place_file
 from recon4.slices.reference import EarlierAlignment, ReferenceFacts, read_facts
+from recon4.slices.tuning_files import REFERENCE_IMPORT
 from recon4.store.atomic import atomic_folder, write_json
 from recon4.untrusted.names import visible
-
-TILE_M = 5.0
-NORMAL_CELLS_M = (0.05, 0.10, 0.20)
-"""Cell sizes for normals: the smallest one with enough points is used."""
-_BURST = 4_000_000
-MAX_TILES = 100_000
-"""Limit of temporary tile files: points scattered over the Earth are no survey."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,7 +169,7 @@ def write_tiles(chunks: Iterable[Array], out: Path) -> TileSet:
     """
     with TemporaryDirectory(dir=out, prefix="buckets-") as place:
         names = _deal_out(chunks, Path(place))
-        with TileWriter(out, ["xyz", "normal"], tile_m=TILE_M) as writer:
+        with TileWriter(out, ["xyz", "normal"], tile_m=REFERENCE_IMPORT.tile_m) as writer:
             for ijk in sorted(names):
                 xyz = np.fromfile(names[ijk], np.float32).reshape(-1, 3)
                 xyz = xyz[progressive(_spatial(xyz))]
@@ -222,16 +216,16 @@ def _frame_of(points: Array, stated: StatedCrs, read_as: ReadAs, *, place: MapPl
 def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int], Path]:
     names: dict[tuple[int, int, int], Path] = {}
     for chunk in chunks:
-        for first in range(0, len(chunk), _BURST):
-            points = chunk[first : first + _BURST]
-            ijk = np.floor(points / TILE_M).astype(np.int64)
+        for first in range(0, len(chunk), REFERENCE_IMPORT.burst):
+            points = chunk[first : first + REFERENCE_IMPORT.burst]
+            ijk = np.floor(points / REFERENCE_IMPORT.tile_m).astype(np.int64)
             order = np.lexsort(ijk.T)
             _refuse_scattered(ijk, order, len(names))
             cuts = np.flatnonzero(np.any(np.diff(ijk[order], axis=0) != 0, axis=1)) + 1
             for rows in np.split(order, cuts) if len(points) else []:
                 i, j, k = (int(x) for x in ijk[rows[0]])
                 file = names.setdefault((i, j, k), place / f"{len(names)}.f4")
-                local = points[rows] - np.array([i, j, k]) * TILE_M
+                local = points[rows] - np.array([i, j, k]) * REFERENCE_IMPORT.tile_m
                 with file.open("ab") as out:
                     out.write(local.astype(np.float32).tobytes())
     return names
@@ -240,16 +234,16 @@ def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int]
 def _refuse_scattered(ijk: NDArray[np.int64], order: NDArray[np.intp], before: int) -> None:
     changes = np.any(np.diff(ijk[order], axis=0) != 0, axis=1)
     count = max(before, int(np.count_nonzero(changes)) + 1)
-    if count > MAX_TILES:
+    if count > REFERENCE_IMPORT.max_tiles:
         raise CorruptFile(
-            f"expected points in at most {MAX_TILES} cubes of {TILE_M:g} m, got {count} or more: "
-            "are the coordinates in meters?"
+            f"expected points in at most {REFERENCE_IMPORT.max_tiles} cubes of "
+            f"{REFERENCE_IMPORT.tile_m:g} m, got {count} or more: are the coordinates in meters?"
         )
 
 
 def _normals(xyz: NDArray[np.float32]) -> NDArray[np.float32]:
     out = np.zeros_like(xyz)
-    for cell_m in NORMAL_CELLS_M:
+    for cell_m in REFERENCE_IMPORT.normal_cells_m:
         missing = ~out.any(axis=1)
         if not missing.any():
             break

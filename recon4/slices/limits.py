@@ -5,11 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.slices.tuning_files import CONTROL_LIMITS
 from recon4.untrusted.bounded import parse_float
-
-LEAST_POINTS = 3
-"""Fewer points are no sample: there is no verdict on what they measured."""
-MOST_M = 100.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,8 +29,10 @@ class ControlLimits:
     def __post_init__(self) -> None:
         for name in self.__dataclass_fields__:
             value = getattr(self, name)
-            if value is not None and not 0.0 < value <= MOST_M:
-                raise ConfigError(f"{name}: expected more than 0 and at most {MOST_M:g} m")
+            if value is not None and not 0.0 < value <= CONTROL_LIMITS.most_m:
+                raise ConfigError(
+                    f"{name}: expected more than 0 and at most {CONTROL_LIMITS.most_m:g} m"
+                )
 
     @property
     def text(self) -> str:

@@ -9,9 +9,7 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
-
-_IN_SPAN = np.cos(np.deg2rad(10.0))
-"""A component counts as measured if a measured direction lies within 10° of its axis."""
+from recon4.slices.tuning import MEASURED
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +33,7 @@ class MeasuredPosition:
     @property
     def axes(self) -> tuple[bool, bool, bool]:
         """Whether east, north and up are measured."""
-        east, north, up = (np.linalg.norm(self.along, axis=0) >= _IN_SPAN).tolist()
+        east, north, up = (np.linalg.norm(self.along, axis=0) >= MEASURED.in_span).tolist()
         return east, north, up
 
     def offset(self, surveyed_m: Array) -> Array:

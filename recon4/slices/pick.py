@@ -10,11 +10,9 @@ from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.slice_plane import SlicePlane, Vector
+from recon4.slices.tuning import PICKS
 
 _DESCRIBED = ("intensity", "sensor", "ring", "frame_id", "t_ns")
-_PLANE_M = 0.10
-"""Radius within which a surface is fitted by a plane [m]."""
-_LEAST_POINTS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,12 +73,12 @@ def nearest_surface(tiles: TileSet, p_map: Array, *, radius_m: float = 0.3) -> S
     if not len(points):
         return None
     nearest = points[np.argmin(np.linalg.norm(points - p_map, axis=1))]
-    plane = _plane_at(_points_near(tiles, nearest, _PLANE_M))
+    plane = _plane_at(_points_near(tiles, nearest, PICKS.plane_m))
     if plane is None:
         return None
     middle, n = plane
     foot: Array = p_map - n * (n @ (p_map - middle))
-    if np.linalg.norm(foot - nearest) > _PLANE_M:
+    if np.linalg.norm(foot - nearest) > PICKS.plane_m:
         return None
     return SurfaceFoot(foot, n)
 
@@ -91,7 +89,7 @@ def measured_directions(tiles: TileSet, plane: SlicePlane, p_map: Array) -> Arra
     A person sees the two of the slice. Across it the point is any of the slab, unless it lies on
     a surface: then also across the surface.
     """
-    surface = _plane_at(_points_near(tiles, p_map, _PLANE_M))
+    surface = _plane_at(_points_near(tiles, p_map, PICKS.plane_m))
     seen = plane.axes[:2]
     return seen if surface is None else np.vstack([seen, surface[1]])
 
@@ -113,7 +111,7 @@ def _points_near(tiles: TileSet, p_map: Array, radius_m: float) -> Array:
 
 def _plane_at(around: Array) -> tuple[Array, Array] | None:
     """Middle and unit normal of points that lie on a plane; None if they do not."""
-    if len(around) < _LEAST_POINTS:
+    if len(around) < PICKS.least_points:
         return None
     middle = around.mean(axis=0)
     values, vectors = np.linalg.eigh(np.cov((around - middle).T))

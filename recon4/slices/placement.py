@@ -21,17 +21,10 @@ from recon4.recording.formats.cloud_crs import (
 )
 from recon4.recording.tables.column_names import UNIT_NAMES, UNITS_M, Unit
 from recon4.slices.frames import MapFrame
+from recon4.slices.tuning import PLACEMENT
 
 FrameAsked = Literal["auto", "map", "crs"]
 """Frame of a file's coordinates: as the file says (else the map's frame), map frame, map's CRS."""
-_EARTH_M = (6.2e6, 6.6e6)
-"""Distance of the surface of the Earth from its center [m]."""
-_ACCURATE_M = 0.05
-_TIMES = 30.0
-"""A reference that exceeds the map this many times in length, width and height is in another unit:
-a whole town around one building is as flat as a few of its storeys."""
-_SMALL_M = 0.1
-_BESIDE_M = 2.0
 _Convert = Callable[[Array], Array]
 
 
@@ -153,7 +146,7 @@ def _scaled(units: Array) -> _Convert:
 
 
 def _check_geocentric(p: Array, stated: StatedCrs) -> None:
-    low, high = _EARTH_M
+    low, high = PLACEMENT.earth_m
     distance = np.linalg.norm(p, axis=1)
     if len(p) and not (low < distance.min() and distance.max() < high):
         raise ConfigError(
@@ -195,7 +188,7 @@ def _transform(
     goal = target.to_3d() if geocentric else horizontal_part(target)
     transformer = _transformer(source, goal, own, name=stated.name)
     accuracy = float(transformer.accuracy)
-    if accuracy > _ACCURATE_M:
+    if accuracy > PLACEMENT.accurate_m:
         notes.append(
             f"The transformation is accurate to {accuracy:g} m ({transformer.description})."
         )
@@ -264,14 +257,14 @@ def check_extent(
     if not certain and size[2] > 0.0:
         _ask_unit(size, own)
     gap = np.maximum(found[0] - of_map[1], of_map[0] - found[1]).max()
-    if gap > _BESIDE_M:
+    if gap > PLACEMENT.beside_m:
         return (f"It lies {_far(gap)} beside the map: align it, or choose another frame.",)
     return ()
 
 
 def _ask_unit(size: Array, own: Array) -> None:
     """Ask if a reference exceeds the map in every direction by more than a larger place would."""
-    if np.all(size > _TIMES * np.maximum(own, _SMALL_M)):
+    if np.all(size > PLACEMENT.times * np.maximum(own, PLACEMENT.small_m)):
         here, there = (
             " × ".join(f"{v:.0f}" if v > 100.0 else f"{v:.1f}" for v in sizes[::-1])
             for sizes in (own, size)

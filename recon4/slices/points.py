@@ -13,9 +13,7 @@ from recon4.kernels.slices import project, select
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import Tile, TileSet
 from recon4.slices.slice_plane import SlicePlane
-
-BLOCK = 2_000_000
-"""Points processed at once: memory does not depend on the size of a tile."""
+from recon4.slices.tuning_files import SLICE_POINTS
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,8 +63,8 @@ def points_in(
             continue
         columns = tile.read(["xyz", *fields])
         shift = plane.to_plane(np.array([tile.origin_m]))[0]
-        for first in range(0, len(tile), BLOCK):
-            xyz = columns["xyz"][first : first + BLOCK]
+        for first in range(0, len(tile), SLICE_POINTS.block):
+            xyz = columns["xyz"][first : first + SLICE_POINTS.block]
             rows = np.empty(len(xyz), np.int32)
             rows = rows[: select(xyz, plane.axes, shift, low, high, rows)].copy()
             if not len(rows):

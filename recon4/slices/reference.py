@@ -18,6 +18,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import REFERENCES
 from recon4.store.arrays import load_arrays
 from recon4.store.json_files import read_object
 from recon4.untrusted.names import visible
@@ -26,15 +27,6 @@ if TYPE_CHECKING:
     from recon4.geometry.raycast import Scene
 
 Method = Literal["plane", "point"]
-FAR_M = 0.5
-"""Search radius of distances [m]; larger ones are returned as infinite."""
-_KNOWN = 0.25
-"""Smallest squared length of a normal: where there is none, it is zero."""
-MAX_FACTS_BYTES = 1 << 20
-"""Size of ``reference.json``."""
-_LONGEST_NOTE, _LONGEST_CAPTION = 400, 150
-_MARGIN_M = 2.0
-"""Points of a request are measured in cubes of this size, each with its own search tree [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -81,7 +73,7 @@ class ReferenceOffsets:
     """Where points lie beside a reference."""
 
     distance_m: Array
-    """Distance to the reference [m], (N,); inf = over `FAR_M`."""
+    """Distance to the reference [m], (N,); inf = over `REFERENCES.far_m`."""
     across_m: Array
     """Signed distance from the nearest surface along its normal [m], (N,); 0 without normal."""
     normal: Array
@@ -112,10 +104,14 @@ class Reference:
     def caption(self) -> str:
         """Its name and how it was read, for one line of a sheet."""
         text = ". ".join((self.name, " ".join(self.notes)) if self.notes else (self.name,))
-        return text if len(text) <= _LONGEST_CAPTION else f"{text[: _LONGEST_CAPTION - 1]}…"
+        return (
+            text
+            if len(text) <= REFERENCES.longest_caption
+            else f"{text[: REFERENCES.longest_caption - 1]}…"
+        )
 
     def distance(self, p_map: Array) -> Array:
-        """Distance of points of the map (N, 3) to the reference [m], (N,); inf = over `FAR_M`."""
+        """Distance of points of the map (N, 3) to the reference [m], (N,); inf = far from it."""
         return self.offsets(p_map).distance_m
 
     def offsets(self, p_map: Array) -> ReferenceOffsets:
@@ -148,18 +144,20 @@ class Reference:
         foot, normal = self._scene.nearest(p)
         distance = np.linalg.norm(p - foot, axis=1)
         across = np.einsum("ni,ni->n", normal, p - foot)
-        return ReferenceOffsets(np.where(distance <= FAR_M, distance, np.inf), across, normal)
+        return ReferenceOffsets(
+            np.where(distance <= REFERENCES.far_m, distance, np.inf), across, normal
+        )
 
     def _to_cloud(self, p: Array) -> ReferenceOffsets:
         """Offsets from a cloud, cube by cube, so that only nearby points are in memory."""
         assert self.tiles is not None
         out = ReferenceOffsets(np.full(len(p), np.inf), np.zeros(len(p)), np.zeros((len(p), 3)))
-        cubes = np.floor(p / _MARGIN_M).astype(np.int64)
+        cubes = np.floor(p / REFERENCES.margin_m).astype(np.int64)
         order = np.lexsort(cubes.T)
         changes = np.flatnonzero(np.any(np.diff(cubes[order], axis=0) != 0, axis=1)) + 1
         for rows in np.split(order, changes) if len(p) else []:
-            low = p[rows].min(axis=0) - FAR_M
-            high = p[rows].max(axis=0) + FAR_M
+            low = p[rows].min(axis=0) - REFERENCES.far_m
+            high = p[rows].max(axis=0) + REFERENCES.far_m
             found = self._near(p[rows], low, high)
             out.distance_m[rows], out.across_m[rows] = found.distance_m, found.across_m
             out.normal[rows] = found.normal
@@ -173,10 +171,10 @@ class Reference:
         if not len(q):
             return out
         tree = cKDTree(q, balanced_tree=False, compact_nodes=False)
-        distance, row = tree.query(p, distance_upper_bound=FAR_M)
+        distance, row = tree.query(p, distance_upper_bound=REFERENCES.far_m)
         near = np.isfinite(distance)
         n = normal[row[near]]
-        known = np.einsum("ni,ni->n", n, n) > _KNOWN
+        known = np.einsum("ni,ni->n", n, n) > REFERENCES.known
         n[~known] = 0.0
         across = np.einsum("ni,ni->n", n, p[near] - q[row[near]])
         if self.method == "plane":
@@ -229,13 +227,13 @@ def read_facts(folder: Path) -> ReferenceFacts:
     Raises:
         StoreError: If it is missing or damaged.
     """
-    record = read_object(folder / "reference.json", max_bytes=MAX_FACTS_BYTES)
+    record = read_object(folder / "reference.json", max_bytes=REFERENCES.max_facts_bytes)
     try:
         facts = msgspec.convert(record, ReferenceFacts)
     except msgspec.ValidationError as error:
         raise StoreError(f"{folder.name}/reference.json: {error}") from error
-    notes = tuple(visible(note, most=_LONGEST_NOTE) for note in facts.notes)
-    alignment = visible(facts.alignment, most=_LONGEST_NOTE)
+    notes = tuple(visible(note, most=REFERENCES.longest_note) for note in facts.notes)
+    alignment = visible(facts.alignment, most=REFERENCES.longest_note)
     return replace(facts, name=visible(facts.name), alignment=alignment, notes=notes)
 
 

@@ -25,11 +25,9 @@ from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
 from recon4.slices.height_hints import beside_map, common_height
 from recon4.slices.limits import ControlLimits
 from recon4.slices.measured import MeasuredPosition
+from recon4.slices.tuning import RESIDUALS
 
 ROLES: tuple[Role, Role] = ("check", "control")
-OUTLIER_SIGMAS = (3.0, 3.4393, 3.7625)
-"""Limits of `Residual.sigmas` for one, two and three measured directions: a good residual exceeds
-them with a probability of 0.27 % (square roots of the quantiles of χ²)."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -54,7 +52,7 @@ class Residual:
     sigmas: float | None
     """``across_m`` in standard deviations of point and map together; None = not stated."""
     outlier: bool
-    """Whether ``sigmas`` exceeds `OUTLIER_SIGMAS`."""
+    """Whether ``sigmas`` exceeds `RESIDUALS.outlier_sigmas`."""
 
     @property
     def known_2d_m(self) -> float | None:
@@ -197,7 +195,7 @@ def _residual(
         across_m=across,
         stated=None if cov is None else error_ellipse(cov),
         sigmas=sigmas,
-        outlier=sigmas is not None and sigmas > OUTLIER_SIGMAS[directions - 1],
+        outlier=sigmas is not None and sigmas > RESIDUALS.outlier_sigmas[directions - 1],
     )
 
 

@@ -12,18 +12,11 @@ import numpy as np
 import recon4
 from recon4.errors import ConfigError
 from recon4.model.usability import Usability
-from recon4.slices.colors import (
-    LABELS,
-    REFERENCE_COLOR,
-    SENSOR_COLORS,
-    UNITS,
-    ColorBy,
-    Span,
-    table,
-)
+from recon4.slices.colors import LABELS, UNITS, ColorBy, Span, table
 from recon4.slices.points import SliceWindow
 from recon4.slices.slice_image import RasterGrid, SliceImage
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import SHEETS, SLICE_COLORS
 from recon4.store.atomic import atomic_file
 from recon4.untrusted.names import visible
 
@@ -34,12 +27,7 @@ SIZES_MM: dict[Size, tuple[float, float]] = {
     "a2": (594.0, 420.0),
     "a1": (841.0, 594.0),
 }
-SCALES = (1, 2, 5, 10, 20, 25, 50, 100, 200, 250, 500, 1000, 2000, 2500, 5000, 10000)
-DPI = 300
-_LEFT_MM, _RIGHT_MM, _TOP_MM, _BOTTOM_MM = 18.0, 8.0, 20.0, 30.0
 _MM_PER_INCH = 25.4
-_REASON_CHARACTERS = 90
-"""Of a signer's reason that fit on one line; all of it is in the statement."""
 _INK, _QUIET, _GRID = "#17202a", "#56636f", "#b9c3cc"
 
 
@@ -74,8 +62,8 @@ class SheetLayout:
 
     @property
     def paper(self) -> RasterGrid:
-        """Window and pixel size of the image to draw, at `DPI`."""
-        return RasterGrid(self.window, self.scale * _MM_PER_INCH / 1000.0 / DPI)
+        """Window and pixel size of the image to draw, at `SHEETS.dpi`."""
+        return RasterGrid(self.window, self.scale * _MM_PER_INCH / 1000.0 / SHEETS.dpi)
 
 
 def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayout:
@@ -84,12 +72,12 @@ def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayo
     Raises:
         ConfigError: If it does not fit at 1 : 10 000, or the scale is not a usual one.
     """
-    if scale and scale not in SCALES:
-        raise ConfigError(f"scale: expected one of {list(SCALES)}, got {scale}")
+    if scale and scale not in SHEETS.scales:
+        raise ConfigError(f"scale: expected one of {list(SHEETS.scales)}, got {scale}")
     across_mm, up_mm = _field_mm(size)
     width_m, height_m = window.right - window.left, window.top - window.bottom
     least = max(width_m * 1000.0 / across_mm, height_m * 1000.0 / up_mm)
-    chosen = scale or next((s for s in SCALES if s >= least * (1.0 - 1e-9)), 0)
+    chosen = scale or next((s for s in SHEETS.scales if s >= least * (1.0 - 1e-9)), 0)
     if not chosen:
         raise ConfigError(f"a window {width_m:.0f} m wide does not fit on {size} at 1 : 10 000")
     half_u, half_v = across_mm * chosen / 2000.0, up_mm * chosen / 2000.0
@@ -119,7 +107,7 @@ def write_sheet(
     }
     with matplotlib.rc_context({**plain, "font.size": 7, "path.simplify": False}):
         across_mm, up_mm = SIZES_MM[layout.size]
-        figure = Figure(figsize=(across_mm / _MM_PER_INCH, up_mm / _MM_PER_INCH), dpi=DPI)
+        figure = Figure(figsize=(across_mm / _MM_PER_INCH, up_mm / _MM_PER_INCH), dpi=SHEETS.dpi)
         _field(figure, drawn, layout, span=span)
         _head(figure, drawn, layout, text=text)
         _scale_bar(figure, layout)
@@ -128,7 +116,7 @@ def write_sheet(
         if kind == "pdf":
             metadata = {"CreationDate": None}
         with atomic_file(path) as temporary:
-            figure.savefig(temporary, format=kind, dpi=DPI, metadata=metadata)
+            figure.savefig(temporary, format=kind, dpi=SHEETS.dpi, metadata=metadata)
 
 
 def grid_step_m(across_m: float) -> float:
@@ -149,14 +137,14 @@ def axis_labels(plane: SlicePlane) -> tuple[str, str]:
 
 def _field_mm(size: Size) -> tuple[float, float]:
     across_mm, up_mm = SIZES_MM[size]
-    return across_mm - _LEFT_MM - _RIGHT_MM, up_mm - _TOP_MM - _BOTTOM_MM
+    return across_mm - SHEETS.left_mm - SHEETS.right_mm, up_mm - SHEETS.top_mm - SHEETS.bottom_mm
 
 
 def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, *, span: Span) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
     width, height = _field_mm(layout.size)
     axes = figure.add_axes(
-        (_LEFT_MM / across_mm, _BOTTOM_MM / up_mm, width / across_mm, height / up_mm)
+        (SHEETS.left_mm / across_mm, SHEETS.bottom_mm / up_mm, width / across_mm, height / up_mm)
     )
     w = layout.window
     axes.imshow(
@@ -184,7 +172,7 @@ def _field(figure: Any, drawn: SliceImage, layout: SheetLayout, *, span: Span) -
 
 def _head(figure: Any, drawn: SliceImage, layout: SheetLayout, *, text: SheetText) -> None:
     across_mm, up_mm = SIZES_MM[layout.size]
-    x = _LEFT_MM / across_mm
+    x = SHEETS.left_mm / across_mm
     kind = {"horizontal": "Horizontal slice", "vertical": "Vertical slice", "free": "Slice"}
     title = f"{text.project}   {kind[drawn.plane.kind]}  {drawn.plane.name}"
     facts = (
@@ -208,7 +196,7 @@ def _scale_bar(figure: Any, layout: SheetLayout) -> None:
     step = grid_step_m(60.0 * layout.scale / 1000.0 * 14.0 / 4.0)
     length_mm = step * 1000.0 / layout.scale
     axes = figure.add_axes(
-        (_LEFT_MM / across_mm, 14.0 / up_mm, 3 * length_mm / across_mm, 1.6 / up_mm)
+        (SHEETS.left_mm / across_mm, 14.0 / up_mm, 3 * length_mm / across_mm, 1.6 / up_mm)
     )
     axes.set(xlim=(0, 3), ylim=(0, 1), yticks=[])
     axes.axvspan(0, 1, color=_INK)
@@ -222,7 +210,7 @@ def _scale_bar(figure: Any, layout: SheetLayout) -> None:
 def _legend(figure: Any, drawn: SliceImage, span: Span, *, text: SheetText) -> None:
     across_mm, up_mm = SIZES_MM[layout_size(figure)]
     color: ColorBy = drawn.color
-    right = 1.0 - (_RIGHT_MM + 3.0) / across_mm
+    right = 1.0 - (SHEETS.right_mm + 3.0) / across_mm
     width = 60.0 / across_mm
     bar = (right - width, 12.5 / up_mm, width, 2.4 / up_mm)
     unit = f" [{UNITS[color]}]" if UNITS[color] else ""
@@ -240,7 +228,7 @@ def _legend(figure: Any, drawn: SliceImage, span: Span, *, text: SheetText) -> N
             spine.set_linewidth(0.4)
     figure.text(right - width, 16.2 / up_mm, label, color=_INK, fontsize=6.5, parse_math=False)
     if text.reference:
-        green = tuple(c / 255.0 for c in REFERENCE_COLOR)
+        green = tuple(c / 255.0 for c in SLICE_COLORS.reference_color)
         x = right - width - 4.0 / across_mm
         figure.text(
             x, 13.0 / up_mm, f"\u25a0 reference: {text.reference}", color=green, fontsize=6.5,
@@ -256,7 +244,9 @@ def layout_size(figure: Any) -> Size:
 
 def _sensors(figure: Any, bar: tuple[float, float, float, float], text: SheetText) -> None:
     for k, name in enumerate(text.sensors or ("1", "2")):
-        rgb = tuple(c / 255.0 for c in SENSOR_COLORS[k % len(SENSOR_COLORS)])
+        rgb = tuple(
+            c / 255.0 for c in SLICE_COLORS.sensor_colors[k % len(SLICE_COLORS.sensor_colors)]
+        )
         x = bar[0] + k * bar[2] / max(2, len(text.sensors))
         figure.text(x, bar[1], f"\u25a0 {name}", color=rgb, fontsize=6.5, parse_math=False)
 
@@ -276,7 +266,7 @@ def approval_text(approval: Mapping[str, object] | None) -> str:
     if verdict in ("", Usability.GOOD):
         return signed
     reason = (
-        f", signed because: {visible(' '.join(why.split()), most=_REASON_CHARACTERS)}"
+        f", signed because: {visible(' '.join(why.split()), most=SHEETS.reason_characters)}"
         if why
         else ""
     )

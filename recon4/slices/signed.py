@@ -8,15 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.slices.reference import FAR_M, ReferenceOffsets
-
-HISTOGRAM_STEP_M = 0.002
-HISTOGRAM_END_M = 0.10
-"""The histogram goes from minus this to plus this; points beyond it are in its end classes."""
-_LEAST_POINTS = 100
-_LEAST_FACING = 0.02
-"""Smallest mean of ``(n · axis)²``: with fewer surfaces across an axis its shift is not known."""
-_IN_SPAN = np.cos(np.deg2rad(10.0))
+from recon4.slices.reference import ReferenceOffsets
+from recon4.slices.tuning import SIGNED
+from recon4.slices.tuning_files import REFERENCES
 
 Shift = tuple[float | None, float | None, float | None]
 
@@ -46,12 +40,12 @@ class SignedTally:
         self.points = 0
         self.sum_m = self.sum_m2 = 0.0
         self.shifted, self.H, self.b = 0, np.zeros((3, 3)), np.zeros(3)
-        classes = round(2.0 * HISTOGRAM_END_M / HISTOGRAM_STEP_M)
+        classes = round(2.0 * SIGNED.histogram_end_m / SIGNED.histogram_step_m)
         self.histogram = np.zeros(classes, np.int64)
 
     def add(self, found: ReferenceOffsets, map_normal: Array) -> None:
         """Add points of the map with their normals, (N, 3), zeros = not known."""
-        known = np.isfinite(found.distance_m) & (found.distance_m < FAR_M)
+        known = np.isfinite(found.distance_m) & (found.distance_m < REFERENCES.far_m)
         known &= np.any(found.normal != 0.0, axis=1)
         n, d = found.normal[known], found.across_m[known]
         self.shifted += len(d)
@@ -62,7 +56,7 @@ class SignedTally:
         self.points += len(d)
         self.sum_m += float(d.sum())
         self.sum_m2 += float((d**2).sum())
-        at = np.floor((d + HISTOGRAM_END_M) / HISTOGRAM_STEP_M).astype(np.int64)
+        at = np.floor((d + SIGNED.histogram_end_m) / SIGNED.histogram_step_m).astype(np.int64)
         last = len(self.histogram) - 1
         self.histogram += np.bincount(np.clip(at, 0, last), minlength=last + 1)
 
@@ -76,13 +70,13 @@ class SignedTally:
 
     def _shift(self) -> Shift:
         """Least squares of ``n · t = d``, only in the directions that surfaces face."""
-        if self.shifted < _LEAST_POINTS:
+        if self.shifted < SIGNED.least_points:
             return None, None, None
         facing, axes = np.linalg.eigh(self.H / self.shifted)
-        good = facing >= _LEAST_FACING
+        good = facing >= SIGNED.least_facing
         V = axes[:, good]
         t = V @ ((V.T @ self.b) / (self.shifted * facing[good]))
-        known: NDArray[np.bool_] = np.linalg.norm(V, axis=1) >= _IN_SPAN
+        known: NDArray[np.bool_] = np.linalg.norm(V, axis=1) >= SIGNED.in_span
         x, y, z = (float(value) if ok else None for value, ok in zip(t, known, strict=True))
         return x, y, z
 

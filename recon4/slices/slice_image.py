@@ -13,17 +13,14 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.kernels.slices import first_of_pixels, splat
 from recon4.mapping.tiles import TileSet
-from recon4.slices.colors import REFERENCE_COLOR, ColorBy, Ground, Span, paint, usual_span
+from recon4.slices.colors import ColorBy, Ground, Span, paint, usual_span
 from recon4.slices.points import SliceWindow, TilePart, points_in
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import SLICE_COLORS, SLICE_IMAGES
 
 if TYPE_CHECKING:
     from recon4.slices.reference import Reference
 
-MAX_PIXELS = 40_000_000
-_DOT_M = 0.006
-"""Smallest size of a drawn point [m]."""
-_MAX_RADIUS_PX = 4
 _FIELD: dict[ColorBy, str] = {
     "intensity": "intensity",
     "normalized": "intensity_normalized",
@@ -50,10 +47,10 @@ class RasterGrid:
             raise ConfigError(
                 f"window: expected left < right and bottom < top, got {corners.tolist()}"
             )
-        if self.width * self.height > MAX_PIXELS:
+        if self.width * self.height > SLICE_IMAGES.max_pixels:
             raise ConfigError(
-                f"slice image: expected at most {MAX_PIXELS // 10**6} million pixels, got "
-                f"{self.width} x {self.height}; use larger pixels or a smaller window"
+                f"slice image: expected at most {SLICE_IMAGES.max_pixels // 10**6} million pixels, "
+                f"got {self.width} x {self.height}; use larger pixels or a smaller window"
             )
 
     @property
@@ -73,8 +70,8 @@ class RasterGrid:
 
     @property
     def radius_px(self) -> int:
-        """Radius of a drawn point: points stay visible where pixels are smaller than `_DOT_M`."""
-        return min(_MAX_RADIUS_PX, int(_DOT_M / self.pixel_m))
+        """Radius of a drawn point: points stay visible where pixels are smaller than a dot."""
+        return min(SLICE_IMAGES.max_radius_px, int(SLICE_IMAGES.dot_m / self.pixel_m))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,7 +95,7 @@ class SliceImage:
     def rgba(self, span: Span, ground: Ground) -> NDArray[np.uint8]:
         """Colors (H, W, 4), transparent where there are no points; single points are paler."""
         out = np.zeros((*self.count.shape, 4), np.uint8)
-        out[self.reference] = (*REFERENCE_COLOR, 255)
+        out[self.reference] = (*SLICE_COLORS.reference_color, 255)
         hit = self.count > 0
         out[hit, :3] = paint(self.value[hit], span, color=self.color, ground=ground)
         ink = 1.0 - 0.4 ** np.minimum(self.count[hit], 8)

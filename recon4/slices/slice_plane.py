@@ -9,17 +9,10 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.slices.tuning_files import SLICE_PLANES
 
 Kind = Literal["horizontal", "vertical", "free"]
 Vector = tuple[float, float, float]
-
-ERROR_THICKNESS_M = 0.02
-"""Thickness for error measurement (V §3.2: slices 2 cm wide) [m]."""
-LOOKING_THICKNESS_M = 0.10
-"""Thickness for display [m]."""
-MAX_THICKNESS_M = 100.0
-MAX_SLICES = 200
-"""Repeated slices in one request."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,19 +34,22 @@ class SlicePlane:
     """Point of the map where u, v and the distance from the plane are 0 [m]."""
     u: Vector
     v: Vector
-    thickness_m: float = LOOKING_THICKNESS_M
+    thickness_m: float = SLICE_PLANES.looking_thickness_m
 
     def __post_init__(self) -> None:
         numbers = np.array([*self.origin_m, *self.u, *self.v, self.thickness_m])
         if not np.isfinite(numbers).all() or np.abs(numbers).max() > 1e8:
             raise ConfigError(f"a slice needs finite coordinates, got {numbers.tolist()}")
-        if not 0.0 < self.thickness_m <= MAX_THICKNESS_M:
+        if not 0.0 < self.thickness_m <= SLICE_PLANES.max_thickness_m:
             raise ConfigError(
-                f"the thickness must be 0 to {MAX_THICKNESS_M:.0f} m, got {self.thickness_m}"
+                f"the thickness must be 0 to {SLICE_PLANES.max_thickness_m:.0f} m, "
+                f"got {self.thickness_m}"
             )
 
     @staticmethod
-    def horizontal(z_m: float, *, thickness_m: float = LOOKING_THICKNESS_M) -> SlicePlane:
+    def horizontal(
+        z_m: float, *, thickness_m: float = SLICE_PLANES.looking_thickness_m
+    ) -> SlicePlane:
         """A floor plan at a height of the map."""
         return SlicePlane(
             "horizontal", (0.0, 0.0, z_m), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), thickness_m
@@ -64,7 +60,7 @@ class SlicePlane:
         a_m: tuple[float, float],
         b_m: tuple[float, float],
         *,
-        thickness_m: float = LOOKING_THICKNESS_M,
+        thickness_m: float = SLICE_PLANES.looking_thickness_m,
     ) -> SlicePlane:
         """A section through two points seen from above; u counts from the first.
 
@@ -81,7 +77,7 @@ class SlicePlane:
 
     @staticmethod
     def free(
-        origin_m: Vector, normal: Vector, *, thickness_m: float = LOOKING_THICKNESS_M
+        origin_m: Vector, normal: Vector, *, thickness_m: float = SLICE_PLANES.looking_thickness_m
     ) -> SlicePlane:
         """Any plane. v is as near to the map's z as it can be (to y, if the plane is level).
 
@@ -133,8 +129,8 @@ class SlicePlane:
         Raises:
             ConfigError: If there are none or too many, or they do not move.
         """
-        if not 1 <= count <= MAX_SLICES:
-            raise ConfigError(f"1 to {MAX_SLICES} slices at a time, got {count}")
+        if not 1 <= count <= SLICE_PLANES.max_slices:
+            raise ConfigError(f"1 to {SLICE_PLANES.max_slices} slices at a time, got {count}")
         if count > 1 and not 0.001 <= abs(spacing_m) <= 1000.0:
             raise ConfigError(f"slices need 1 mm to 1 km between them, got {spacing_m} m")
         return tuple(self.moved(k * spacing_m) for k in range(count))

@@ -36,11 +36,9 @@ from recon4.store.locks import open_lock_file, wait_for_lock
 from recon4.store.project import read_artifacts
 from recon4.system.compile_packets import compile_packets
 from recon4.system.runtime_folder import runtime_folder
+from recon4.system.tuning import COMPILING
 
-_LIDAR_S, _PROFILER_S = 5.0, 8.0
 _FEW = ["map.voxel_m=0.1", "graph.node_stride=10"]
-_FRAMES = 20
-_PIXEL_M = 0.05
 
 
 def compile_kernels(progress: Progress) -> bool:
@@ -73,18 +71,20 @@ def _lidars(folder: Path) -> None:
     """Packets, a map of LiDARs, its slices, a live map, and odometry without an IMU."""
     compile_packets()
     walk, project = folder / "walk", folder / "map"
-    simulate(prepare("office", seconds=_LIDAR_S, seed=1), walk, bag=False, progress=Silent())
+    simulate(
+        prepare("office", seconds=COMPILING.lidar_s, seed=1), walk, bag=False, progress=Silent()
+    )
     sources = Sources((walk / "recording.pcap",), None, walk / "imu.csv", None)
     process(sources, project, settings=override(preset("indoor"), _FEW))
     made = read_artifacts(project)
     tiles = TileSet.open(made["map"])
     find_double_walls(tiles)
     plane = SlicePlane.horizontal(1.0)
-    paper = RasterGrid(extent(tiles, plane), _PIXEL_M)
+    paper = RasterGrid(extent(tiles, plane), COMPILING.pixel_m)
     draw(tiles, plane, paper, color="height")
     draw(tiles, plane, paper, color="sensor")
     store = FrameStore.open(made["frames"])
-    frames = list(store)[:_FRAMES]
+    frames = list(store)[: COMPILING.frames]
     settings = preset("indoor")
     live = LiveMap(store.rig, settings)
     without_imu = Odometry(store.rig, part_of(settings, OdometryReads))
@@ -97,7 +97,7 @@ def _lidars(folder: Path) -> None:
 
 def _backpack(folder: Path) -> None:
     """A map of line scans; the loop closure of 2-D maps, which a walk of seconds has none of."""
-    setup = prepare_backpack("hall", figure="circle", seconds=_PROFILER_S, seed=3)
+    setup = prepare_backpack("hall", figure="circle", seconds=COMPILING.profiler_s, seed=3)
     simulate_backpack(setup, folder / "lines", progress=Silent())
     sources = Sources((folder / "lines" / "rosbag2",), setup.rig)
     process(sources, folder / "lines-map", settings=override(preset("indoor"), _FEW))

@@ -13,6 +13,7 @@ import recon4
 from recon4.errors import ConfigError
 from recon4.sandbox import Barrier, available_barriers
 from recon4.sandbox.private_cache import cache_in_use, planted
+from recon4.system.tuning import NEEDS
 
 _PACKAGES = (
     ("numpy", "numbers"),
@@ -27,7 +28,6 @@ _PACKAGES = (
     ("fastapi", "server"),
 )
 _ELSEWHERE = {"open3d-cpu": "open3d"}
-_MEMORY_GB, _DISK_GB, _CORES = 4.0, 5.0, 2
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,9 +55,9 @@ def examine(folder: Path) -> list[Check]:
     checks = [
         Check("recon4", recon4.__version__, ok=True),
         Check("Python", platform.python_version(), ok=True),
-        _at_least("cores", _cores(), _CORES, unit=""),
-        _at_least("memory", _memory_gb(), _MEMORY_GB, unit=" GB"),
-        _at_least("disk free", shutil.disk_usage(folder).free / 1e9, _DISK_GB, unit=" GB"),
+        _at_least("cores", _cores(), NEEDS.cores, unit=""),
+        _at_least("memory", _memory_gb(), NEEDS.memory_gb, unit=" GB"),
+        _at_least("disk free", shutil.disk_usage(folder).free / 1e9, NEEDS.disk_gb, unit=" GB"),
         Check(
             "threads of BLAS", os.environ.get("OPENBLAS_NUM_THREADS", "as many as cores"), ok=True
         ),

@@ -22,13 +22,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.system.tuning import PROCESSES
 
 _F_SETSIG = 10
 """Linux; the module `fcntl` lacks it."""
 _BOOT_ID = Path("/proc/sys/kernel/random/boot_id")
 _UNKNOWN = ""
-_LOOKS_EVERY_S = 1.0
-"""Interval at which `first_line` measures the time of the child [s]."""
 
 
 def die_with_parent(lifeline: int | None = None) -> None:
@@ -131,7 +130,7 @@ async def first_line(process: asyncio.subprocess.Process, *, within_s: float) ->
     line = asyncio.ensure_future(process.stdout.readline())
     try:
         while time.monotonic() - began_s - waited_for_processor_s(process.pid) < within_s:
-            done, _ = await asyncio.wait({line}, timeout=min(_LOOKS_EVERY_S, within_s))
+            done, _ = await asyncio.wait({line}, timeout=min(PROCESSES.looks_every_s, within_s))
             if done:
                 return line.result()
         return b""

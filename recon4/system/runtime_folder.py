@@ -12,11 +12,10 @@ import tempfile
 from pathlib import Path
 
 from recon4.errors import StoreError
+from recon4.system.tuning import RUNTIME_FOLDERS
 
 _SHARED_TEMPORARY = Path(tempfile.gettempdir())
 """Where all processes of this user meet; a confined one has a temporary folder of its own later."""
-LONGEST_FOLDER = 50
-"""Leaves 53 bytes for the names below [bytes]."""
 
 
 def runtime_folder() -> Path:
@@ -27,7 +26,7 @@ def runtime_folder() -> Path:
     """
     problems = []
     for path in _places():
-        if len(os.fsencode(path)) > LONGEST_FOLDER:
+        if len(os.fsencode(path)) > RUNTIME_FOLDERS.longest_folder:
             continue
         try:
             return private_folder(path)

@@ -22,12 +22,11 @@ from contextlib import suppress
 from types import FrameType, TracebackType
 from typing import Any, NoReturn, Self
 
+from recon4.system.tuning import STOPPING
+
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OF_A_TERMINAL = (signal.SIGINT, signal.SIGHUP)
 """Ctrl-C and a closed window reach all processes of a terminal."""
-RAISED_AGAIN_AFTER_S = 0.02
-CLEANING_UP_S = 10.0
-"""Signals that come while the first one is obeyed are ignored this long, then the process ends."""
 _OUTPUTS = (1, 2)
 
 
@@ -145,7 +144,7 @@ class StopSignals:
         if self.received is None:
             self.received, self._received_s = signal.Signals(number), time.monotonic()
             self._obey()
-        elif time.monotonic() - self._received_s > CLEANING_UP_S:
+        elif time.monotonic() - self._received_s > STOPPING.cleaning_up_s:
             self.say(", at once")
             os._exit(self.exit_code)
 
@@ -172,7 +171,7 @@ class StopSignals:
         if not self.broke_off:
             self._hooks[0](lost)
         elif lost.exc_type is not None and issubclass(lost.exc_type, StoppedBySignal):
-            signal.setitimer(signal.ITIMER_REAL, RAISED_AGAIN_AFTER_S)
+            signal.setitimer(signal.ITIMER_REAL, STOPPING.raised_again_after_s)
 
     def _in_thread(self, lost: threading.ExceptHookArgs) -> None:
         if not self.broke_off:

@@ -39,8 +39,9 @@ from recon4.pipeline import calibrate_recording, track_lines
 from recon4.progress import Progress
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.sources import Sources
-from recon4.report.calibration_page import THICKNESS_M, CalibrationPage, CloudSlice
+from recon4.report.calibration_page import CalibrationPage, CloudSlice
 from recon4.report.rig import DISPLAY_UNITS
+from recon4.report.tuning import CALIBRATION_PAGE
 from recon4.settings import Settings, override, preset
 from recon4.settings.reads import CalibrationReads, part_of
 from recon4.settings.tuning import tuned
@@ -148,7 +149,7 @@ def calibration_report(
     if found.rig is not None and is_project(folder):
         walk = _recorded(folder)
         for name, rig in (("rig file", sources.rig), ("calibrated", found.rig)):
-            points = slice_points(walk, rig, thickness_m=THICKNESS_M)
+            points = slice_points(walk, rig, thickness_m=CALIBRATION_PAGE.thickness_m)
             slices.append(CloudSlice(name, tuple(points)))
     return CalibrationPage(
         title=sources.rig.name,

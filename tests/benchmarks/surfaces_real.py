@@ -16,7 +16,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.evaluation.table import number, text_table
-from recon4.evaluation.thickness import CELL_M, plane_thickness
+from recon4.evaluation.thickness import plane_thickness
+from recon4.evaluation.tuning import THICKNESS
 from recon4.geometry.cubes import cube_keys, cubes_of
 from recon4.geometry.se3 import SE3
 from recon4.mapping.build import MapInputs, build_map
@@ -101,7 +102,7 @@ def same_places(tiles: TileSet) -> str:
     """Thickness of the cubes that are planar as measured, before and after."""
     fitted_m = np.concatenate([tile.xyz_m() for tile in tiles])
     measured_m = np.concatenate([tile.xyz_m() for tile in tiles.as_measured()])
-    key = cube_keys(cubes_of(measured_m, CELL_M))
+    key = cube_keys(cubes_of(measured_m, THICKNESS.cell_m))
     order = np.argsort(key, kind="stable")
     found = []
     for rows in np.split(order, np.flatnonzero(np.diff(key[order])) + 1):

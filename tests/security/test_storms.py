@@ -28,14 +28,15 @@ from recon4.model.rig import load_rig
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.sandbox import ONE_THREAD
 from recon4.store.project import read_artifacts
-from recon4.system.stopping import CLEANING_UP_S, SIGNALS
+from recon4.system.stopping import SIGNALS
+from recon4.system.tuning import STOPPING
 from tests.loopback import an_address
 from tests.project_builder import build_project
 from tests.service.running import ROOT, recording_with_gate, server_process, wait_for
 from tests.unit.recording.packet_builders import spin
 
 RECON4 = (sys.executable, "-m", "recon4")
-STORM_S = 0.8 * CLEANING_UP_S
+STORM_S = 0.8 * STOPPING.cleaning_up_s
 """Later signals may cut the end short."""
 ANY = tuple(128 + number for number in SIGNALS)
 """Exit codes of work that was broken off."""

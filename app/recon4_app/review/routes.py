@@ -15,13 +15,7 @@ from starlette.requests import Request
 from recon4.findings.notes import findings_in, notes_in
 from recon4.model.plain import finite_or_none
 from recon4.model.usability import verdict_in
-from recon4.review.approval import (
-    MIN_REASON_CHARACTERS,
-    NotApprovable,
-    make_read_only,
-    reason_needed,
-    signed_figures,
-)
+from recon4.review.approval import NotApprovable, make_read_only, reason_needed, signed_figures
 from recon4.review.approval import approve as sign
 from recon4.review.approved import Approval
 from recon4.review.decisions import ABOUT_MAPS, Decided, Decision, DecisionKind, fold
@@ -40,6 +34,7 @@ from recon4.review.preview import Effect
 from recon4.review.source import Source, graph_key
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.review.trusted_keys import SIGNING_KEY, ensure_own_key
+from recon4.review.tuning import APPROVALS
 from recon4_app.access.audit import audit
 from recon4_app.access.people import Permission, Person, Who, needs, recent_login
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
@@ -353,7 +348,7 @@ def _map_facts(root: Path) -> MapFacts | None:
     return MapFacts(
         verdict=verdict,
         reason_needed=reason_needed(verdict),
-        min_reason_characters=MIN_REASON_CHARACTERS,
+        min_reason_characters=APPROVALS.min_reason_characters,
         notes=notes_in(summary),
         findings=findings_in(summary),
         figures=signed_figures(summary),

@@ -13,10 +13,11 @@ from recon4.recording.tables.coordinates import MAX_COLUMNS, ColumnChoice
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
-from recon4.slices.limits import MOST_M, ControlLimits
+from recon4.slices.limits import ControlLimits
 from recon4.slices.measured import orthonormal
 from recon4.slices.reference import ReferenceFacts
-from recon4.slices.slice_plane import MAX_SLICES, MAX_THICKNESS_M, SlicePlane
+from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import CONTROL_LIMITS, SLICE_PLANES
 from recon4_app.names import Name
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
@@ -27,7 +28,7 @@ Pose = tuple[Coordinate, Coordinate, Coordinate, Part, Part, Part, Part]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
 """A coordinate u or v of a slice [m]; its origin is arbitrary."""
 MAX_SIDE_PX = 4096
-Limit = Annotated[float, Field(gt=0.0, le=MOST_M, allow_inf_nan=False)]
+Limit = Annotated[float, Field(gt=0.0, le=CONTROL_LIMITS.most_m, allow_inf_nan=False)]
 USUAL_LIMITS = ControlLimits()
 
 
@@ -51,7 +52,7 @@ class SlicePlaneSpec(Strict):
     """A point of a free plane [m]."""
     normal: Xyz = (0.0, 0.0, 1.0)
     """Normal of a free plane."""
-    thickness_m: float = Field(default=0.10, gt=0.0, le=MAX_THICKNESS_M)
+    thickness_m: float = Field(default=0.10, gt=0.0, le=SLICE_PLANES.max_thickness_m)
 
     def slice_plane(self) -> SlicePlane:
         """The slice it describes.
@@ -168,7 +169,7 @@ class CompareRequest(Strict):
 
     reference: str = Field(min_length=1)
     method: Literal["plane", "point"] = "plane"
-    planes: list[SlicePlaneSpec] = Field(default=[], max_length=MAX_SLICES)
+    planes: list[SlicePlaneSpec] = Field(default=[], max_length=SLICE_PLANES.max_slices)
     """Empty = eight slices spread over the map, 2 cm thick (V §3.2)."""
     source: str = ""
 
@@ -207,7 +208,7 @@ class AlignPoints:
 class SliceExportRequest(SliceView):
     """Request for an export of slices."""
 
-    count: int = Field(default=1, ge=1, le=MAX_SLICES)
+    count: int = Field(default=1, ge=1, le=SLICE_PLANES.max_slices)
     spacing_m: float = Field(default=0.5, ge=-1000.0, le=1000.0)
     size: Literal["a4", "a3", "a2", "a1"] = "a4"
     scale: int = 0

@@ -17,7 +17,7 @@ from recon4.mapping.tiles import TileSet
 from recon4.model.plain import to_plain
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
-from recon4.slices.colors import SENSOR_COLORS, ColorBy, Ground, Span, table
+from recon4.slices.colors import ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
 from recon4.slices.frames import MapFrame, frame_of
@@ -35,6 +35,7 @@ from recon4.slices.sheet import (
 )
 from recon4.slices.slice_image import RasterGrid, SliceImage, draw, png
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import SLICE_COLORS
 from recon4.store.atomic import atomic_file, write_json
 from recon4.store.checked import CheckedArtifact
 from recon4.untrusted.names import visible
@@ -306,7 +307,7 @@ def _shaped(window: SliceWindow, aspect: float) -> SliceWindow:
 
 def _stops(color: ColorBy, ground: Ground) -> list[str]:
     if color == "sensor":
-        return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in SENSOR_COLORS]
+        return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in SLICE_COLORS.sensor_colors]
     return [f"#{r:02x}{g:02x}{b:02x}" for r, g, b in table(color, ground)[::15].tolist()]
 
 

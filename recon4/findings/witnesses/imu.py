@@ -11,6 +11,7 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import IMU_WITNESS
 from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.import_notes import CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
@@ -18,11 +19,6 @@ from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.imu_saturation import SaturatedAxis, saturated_axes
 
-_STOREY_M = 1.0
-"""Heights that are wrong by more than this put one storey onto another [m]."""
-_OF_A_BIAS_M_S2 = 0.4
-"""The bias of a unit in order changes gravity by a quarter of this (standard deviation); more is a
-wrong scale, of which a gyroscope in the same unit shows the half, too [m/s²]."""
 _OUTCOMES = {
     "bias removed": FindingKind.IMU_BIAS_REMOVED,
     "accelerometer not used": FindingKind.IMU_ACCELEROMETER_NOT_USED,
@@ -81,7 +77,7 @@ class Gravity:
         found = wrong_gravity(walk.odometry, walk.imu, walk.rig)
         if found is None:
             return
-        of_a_bias = abs(found - STANDARD_GRAVITY_M_S2) <= _OF_A_BIAS_M_S2
+        of_a_bias = abs(found - STANDARD_GRAVITY_M_S2) <= IMU_WITNESS.of_a_bias_m_s2
         percent = 100.0 * (found / STANDARD_GRAVITY_M_S2 - 1.0)
         values = {
             "found_m_s2": found,
@@ -104,7 +100,7 @@ def ride_finding(doubt: HeightDoubt) -> Finding:
     """A contradiction of heights; files of earlier versions do not state its pattern."""
     contradiction = doubt.largest_m_s2 is not None
     half = doubt.speed_m_s is not None
-    severe = half or abs(doubt.rise_m) >= _STOREY_M
+    severe = half or abs(doubt.rise_m) >= IMU_WITNESS.storey_m
     values: dict[str, Value] = {
         "rise_m": abs(doubt.rise_m),
         "way": "up" if doubt.rise_m > 0 else "down",

@@ -12,13 +12,9 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.review_problems import problem_findings
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import LOOP_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.model.pose_graph import EdgeKind, Verdict
-
-_SMALL_M = 1.0
-"""A larger correction of the odometry is a note [m]."""
-_RESIDUAL_M, _PERCENTILE = 0.10, 95
-"""Loop closures of which 5 % have a larger residual contradict the map [m]."""
 
 
 class Loops:
@@ -54,11 +50,13 @@ class Correction:
             return
         closed = len(drift.loop_after_m) > 0
         # Without a loop closure a small correction is no evidence of small drift.
-        fine = drift.largest_m <= _SMALL_M and closed
+        fine = drift.largest_m <= LOOP_WITNESS.small_m and closed
         values = {"end_m": drift.end_m, "largest_m": drift.largest_m}
         yield finding(FindingKind.CORRECTION, Level.GOOD if fine else Level.NOTE, values)
-        residual_m = float(np.percentile(drift.loop_after_m, _PERCENTILE)) if closed else 0.0
-        if residual_m > _RESIDUAL_M:
+        residual_m = (
+            float(np.percentile(drift.loop_after_m, LOOP_WITNESS.percentile)) if closed else 0.0
+        )
+        if residual_m > LOOP_WITNESS.residual_m:
             yield finding(FindingKind.LOOP_RESIDUAL, Level.CHECK, {"residual_m": residual_m})
 
 

@@ -11,12 +11,10 @@ from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import PLACE_WITNESS
 from recon4.model.pose_graph import PoseGraph, Reason
 from recon4.model.trajectory import Times
 from recon4.pose_graph.pieces import joined_pieces
-
-_SAME_PLACE_S = 10.0
-"""Ambiguous pairs with less time in between are one place."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +73,9 @@ def ambiguous_places(graph: PoseGraph | None) -> list[AmbiguousPlace]:
     t_s = (graph.t_ns - graph.t_ns[0]) / 1e9
     edges.sort(key=lambda edge: edge.j)
     later_s = np.array([t_s[edge.j] for edge in edges])
-    runs = np.split(np.arange(len(edges)), np.flatnonzero(np.diff(later_s) > _SAME_PLACE_S) + 1)
+    runs = np.split(
+        np.arange(len(edges)), np.flatnonzero(np.diff(later_s) > PLACE_WITNESS.same_place_s) + 1
+    )
     return [
         AmbiguousPlace(
             start_s=float(later_s[run[0]]),

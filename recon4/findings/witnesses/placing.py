@@ -11,15 +11,12 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.placement import GnssFacts
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import PLACING_WITNESS
 from recon4.georeference.antenna_audit import antenna_doubts
 from recon4.model.figures import AntennaFigures
 from recon4.model.gps_time import GPS_MINUS_UTC_S
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED, import_notes
 from recon4.settings import GnssSettings
-
-_LARGE_S = 1.0
-"""A larger error of a clock is stated in seconds, with a usual cause [s]."""
-_SAME_S = 0.5
 
 
 class Leveled:
@@ -129,8 +126,8 @@ def _offset(found: AntennaFigures) -> dict[str, Value]:
 
 def _clock(found: AntennaFigures) -> Finding:
     """An error of the clock in milliseconds, or in seconds with a usual cause."""
-    large = abs(found.clock_s) >= _LARGE_S
-    leap = large and abs(abs(found.clock_s) - GPS_MINUS_UTC_S) < _SAME_S
+    large = abs(found.clock_s) >= PLACING_WITNESS.large_s
+    leap = large and abs(abs(found.clock_s) - GPS_MINUS_UTC_S) < PLACING_WITNESS.same_s
     return finding(
         FindingKind.GNSS_CLOCK,
         Level.CHECK,

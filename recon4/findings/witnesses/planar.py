@@ -12,6 +12,7 @@ from recon4.findings.finding import Finding, Level, Value, worst_first
 from recon4.findings.kinds import FindingKind
 from recon4.findings.witnesses.base import finding, placed
 from recon4.findings.witnesses.imports import gyro_unit_assumed
+from recon4.findings.witnesses.tuning import PLANAR_WITNESS
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
@@ -19,22 +20,6 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.unused import unused_parts
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
 from recon4.slam2d.steps import Steps2d
-
-_BRIDGED_S = 1.0
-_LOST_S = 0.5
-"""Tracking that is lost for a shorter time is bridged by the prediction [s]."""
-_LOST_RATIO = 0.02
-_SILENT_S = 1.0
-"""Over a longer time without a scan and without odometry the motion is unknown [s]."""
-_CROSSING_CHECK, _CROSSING_BAD = 0.1, 0.2
-_SEARCHED_RATIO = 0.005
-_UNCERTAIN_M = 0.5
-_COARSE_M = 0.25
-"""With larger cells walls and doors cannot be distinguished [m]."""
-_STEEP_DEG = 30.0
-"""A laser tilted by more does not see the walls of a plan [°]."""
-_LONG_WALK_M = 60.0
-"""A longer path without any loop closure is not confirmed by anything [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -87,7 +72,7 @@ def corridors(steps: Steps2d) -> tuple[Corridor, ...]:
     rows = np.flatnonzero(weak)
     if not len(rows):
         return ()
-    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > _BRIDGED_S) + 1)
+    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > PLANAR_WITNESS.bridged_s) + 1)
     return tuple(
         Corridor(float(t_s[run[0]]), float(t_s[run[-1]]), float(np.median(steps.degeneracy[run])))
         for run in runs
@@ -118,7 +103,7 @@ def _imported(notes: ImportNotes, doubts: tuple[str, ...]) -> Iterator[Finding]:
 
 
 def _mounting(scans: Scan2dFigures) -> Iterator[Finding]:
-    level = Level.DO_NOT_USE if scans.tilt_deg > _STEEP_DEG else Level.CHECK
+    level = Level.DO_NOT_USE if scans.tilt_deg > PLANAR_WITNESS.steep_deg else Level.CHECK
     for text in scans.doubts:
         yield finding(FindingKind.LASER_MOUNT, level, {"text": text})
 
@@ -126,10 +111,10 @@ def _mounting(scans: Scan2dFigures) -> Iterator[Finding]:
 def _tracking(record: PlanarRecord) -> Iterator[Finding]:
     odometry = record.odometry
     longest_s = longest_loss_s(record.steps)
-    if longest_s <= _LOST_S:
+    if longest_s <= PLANAR_WITNESS.lost_s:
         yield finding(FindingKind.SCANS_TRACKED, Level.GOOD, {"scans": odometry.scans})
         return
-    bad = odometry.lost > _LOST_RATIO * odometry.scans and not record.scans.odometry
+    bad = odometry.lost > PLANAR_WITNESS.lost_ratio * odometry.scans and not record.scans.odometry
     yield finding(
         FindingKind.SCANS_LOST,
         Level.DO_NOT_USE if bad else Level.CHECK,
@@ -141,7 +126,7 @@ def _motion(record: PlanarRecord) -> Iterator[Finding]:
     """What joins scans that no other scan joins."""
     odometry, has_odometry = record.odometry, record.scans.odometry
     silent_s = np.diff(record.steps.t_ns) / 1e9
-    gaps = silent_s[silent_s > _SILENT_S]
+    gaps = silent_s[silent_s > PLANAR_WITNESS.silent_s]
     if len(gaps) and not has_odometry:
         values: dict[str, Value] = {"count": len(gaps), "longest_s": float(gaps.max())}
         yield finding(FindingKind.SCANS_SILENT, Level.CHECK, values)
@@ -151,7 +136,7 @@ def _motion(record: PlanarRecord) -> Iterator[Finding]:
             Level.CHECK if has_odometry else Level.DO_NOT_USE,
             {"resets": odometry.resets, "by": _by(record)},
         )
-    if odometry.searched > _SEARCHED_RATIO * odometry.scans:
+    if odometry.searched > PLANAR_WITNESS.searched_ratio * odometry.scans:
         yield finding(FindingKind.SCANS_SEARCHED, Level.CHECK, {"searched": odometry.searched})
 
 
@@ -168,7 +153,7 @@ def _corridors(record: PlanarRecord) -> Iterator[Finding]:
         level = Level.DO_NOT_USE if bad else Level.CHECK
         corridor = finding(FindingKind.CORRIDOR, level, values, span_s=(one.start_s, one.end_s))
         yield replace(corridor, direction="horizontal")
-    if record.map.largest_sd_m > _UNCERTAIN_M:
+    if record.map.largest_sd_m > PLANAR_WITNESS.uncertain_m:
         values = {"sd_m": record.map.largest_sd_m}
         yield finding(FindingKind.POSITION_UNCERTAIN, Level.CHECK, values)
 
@@ -178,7 +163,7 @@ def _loops(record: PlanarRecord) -> Iterator[Finding]:
     loops = sum(edge.kind is EdgeKind.LOOP and edge.in_graph for edge in record.graph.edges)
     if loops:
         yield finding(FindingKind.LOOPS_ACCEPTED, Level.GOOD, {"accepted": loops})
-    elif record.path_length_m > _LONG_WALK_M:
+    elif record.path_length_m > PLANAR_WITNESS.long_walk_m:
         yield finding(FindingKind.PATH_UNCONFIRMED, Level.CHECK, {"path_m": record.path_length_m})
     verdicts = record.graph.loop_verdicts()
     unverified, accepted = verdicts[Verdict.UNVERIFIED], verdicts[Verdict.ACCEPTED]
@@ -189,8 +174,8 @@ def _loops(record: PlanarRecord) -> Iterator[Finding]:
 
 def _consistency(record: PlanarRecord) -> Iterator[Finding]:
     crossing = record.map.crossing_ratio
-    if crossing > _CROSSING_CHECK:
-        level = Level.DO_NOT_USE if crossing > _CROSSING_BAD else Level.CHECK
+    if crossing > PLANAR_WITNESS.crossing_check:
+        level = Level.DO_NOT_USE if crossing > PLANAR_WITNESS.crossing_bad else Level.CHECK
         yield finding(FindingKind.MAPPED_TWICE, level, {"ratio": crossing})
 
 
@@ -200,7 +185,7 @@ def _resolution(made: Map2dFigures) -> Iterator[Finding]:
     width_m, height_m = (cells * made.cell_m for cells in made.size)
     yield finding(
         FindingKind.GRID_COARSE,
-        Level.DO_NOT_USE if made.cell_m > _COARSE_M else Level.CHECK,
+        Level.DO_NOT_USE if made.cell_m > PLANAR_WITNESS.coarse_m else Level.CHECK,
         {
             "width_m": width_m,
             "height_m": height_m,

@@ -12,6 +12,7 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.findings.witnesses.imu import fault_finding, has_untimed_clouds
+from recon4.findings.witnesses.tuning import RIG_WITNESS
 from recon4.model.calibration_figures import (
     GNSS,
     IMU,
@@ -24,8 +25,6 @@ from recon4.model.calibration_figures import (
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig_origin import RigOrigin
 
-_VAGUE_M = 0.01
-"""A lever arm that is known no better is named [m]."""
 _OF_NO_COST = {"rotation": 0.005, "clock": 0.004}
 """Smaller errors of an IMU cost the map nothing [rad, s]: the odometry estimates the axes of its
 gyroscope and its clock, and a leveled map is stated to be tilted by as much as that rotation."""
@@ -227,7 +226,7 @@ def _beams(rows: Sequence[ParameterFigures]) -> dict[str, Value]:
 
 def _vague(rows: Sequence[ParameterFigures]) -> Iterator[Finding]:
     """The axes of the lever arm that the walk shows only roughly."""
-    vague = [row for row in rows if (row.sd or 0.0) > _VAGUE_M]
+    vague = [row for row in rows if (row.sd or 0.0) > RIG_WITNESS.vague_m]
     if vague:
         axes = ", ".join(f"{row.axis} ± {100 * (row.sd or 0.0):.1f} cm" for row in vague)
         yield finding(FindingKind.ANTENNA_VAGUE, Level.NOTE, {"axes": axes})

@@ -11,12 +11,9 @@ from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import SPEED_WITNESS
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Trajectory
-
-MAX_SPEED_M_S = 4.0
-"""No person who carries a backpack moves faster for a second [m/s]."""
-_WINDOW_S = 1.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +21,7 @@ class TooFast:
     """Where the trajectory moves faster than a person."""
 
     seconds: int
-    """How many seconds of the walk are faster than `MAX_SPEED_M_S`."""
+    """How many seconds of the walk are faster than `SPEED_WITNESS.max_speed_m_s`."""
     fastest_m_s: float
     at_s: float
     """Time of the fastest second, after the start [s]."""
@@ -35,12 +32,12 @@ def too_fast(trajectory: Trajectory) -> TooFast | None:
     if len(trajectory) < 2:
         return None
     t_s = (trajectory.t_ns - trajectory.t_ns[0]) / 1e9
-    knots = np.arange(0.0, t_s[-1] + 1e-9, _WINDOW_S)
+    knots = np.arange(0.0, t_s[-1] + 1e-9, SPEED_WITNESS.window_s)
     if len(knots) < 2:
         return None
     p: Array = np.stack([np.interp(knots, t_s, trajectory.T_a_b.t[:, k]) for k in range(3)], 1)
-    speed_m_s = np.linalg.norm(np.diff(p, axis=0), axis=1) / _WINDOW_S
-    fast = speed_m_s > MAX_SPEED_M_S
+    speed_m_s = np.linalg.norm(np.diff(p, axis=0), axis=1) / SPEED_WITNESS.window_s
+    fast = speed_m_s > SPEED_WITNESS.max_speed_m_s
     if not fast.any():
         return None
     worst = int(np.argmax(speed_m_s))
@@ -62,7 +59,7 @@ class Speed:
                     "fastest_m_s": fast.fastest_m_s,
                     "at_s": fast.at_s,
                     "seconds": fast.seconds,
-                    "limit_m_s": MAX_SPEED_M_S,
+                    "limit_m_s": SPEED_WITNESS.max_speed_m_s,
                 },
-                span_s=(fast.at_s, fast.at_s + _WINDOW_S),
+                span_s=(fast.at_s, fast.at_s + SPEED_WITNESS.window_s),
             )

@@ -16,16 +16,10 @@ from recon4.findings.witnesses.uncertainty import is_known
 from recon4.findings.witnesses.weak_directions import held_by_surfaces
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
+from recon4.findings.witnesses.tuning import TRACKING_WITNESS
 
 Flags = NDArray[np.bool_]
 
-_FEW_LOST, _SHORT_GAP_S = 0.1, 2.0
-"""Tracking that is lost in no more than this part of the multiframes, and for no longer than this,
-may leave a usable map: if its positions are known in spite of it."""
-_MIN_CONVERGED, _HALF = 0.9, 0.5
-_FAR_M = 0.10
-"""A multiframe that did not converge may be as wrong as it is far from its prediction [m]: at most
-0.03 in 58 right runs, 0.14 in a field without an IMU that was 19 cm off there."""
 
 
 class Tracking:
@@ -54,20 +48,20 @@ class Convergence:
         if not len(converged):
             return
         far_m = _far_m(walk.steps)
-        far = np.flatnonzero(far_m > _FAR_M)
+        far = np.flatnonzero(far_m > TRACKING_WITNESS.far_m)
         ratio = float(converged.mean())
-        if ratio >= _MIN_CONVERGED and not len(far):
+        if ratio >= TRACKING_WITNESS.min_converged and not len(far):
             return
         t_s = (walk.steps["t_mid_ns"] - walk.steps["t_mid_ns"][0]) / 1e9
         values: dict[str, Value] = {}
-        if ratio < _MIN_CONVERGED:
+        if ratio < TRACKING_WITNESS.min_converged:
             counts = {"converged": int(converged.sum()), "multiframes": len(converged)}
             values |= counts | {"ratio": ratio}
         if len(far):
             values |= {"far": len(far), "far_m": float(far_m.max()), "far_s": float(t_s[far[0]])}
         yield finding(
             FindingKind.NOT_CONVERGED,
-            Level.CHECK if ratio >= _HALF else Level.DO_NOT_USE,
+            Level.CHECK if ratio >= TRACKING_WITNESS.half else Level.DO_NOT_USE,
             values,
             span_s=(float(t_s[far[0]]), float(t_s[far[-1]])) if len(far) else None,
         )
@@ -100,7 +94,7 @@ def _short_gaps(lost: Flags, t_ns: Times) -> bool:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(np.int8)))
     begin, end = edges[::2], np.minimum(edges[1::2], len(t_ns) - 1)
     longest_s = float((t_ns[end] - t_ns[begin]).max()) / 1e9
-    return float(lost.mean()) <= _FEW_LOST and longest_s <= _SHORT_GAP_S
+    return float(lost.mean()) <= TRACKING_WITNESS.few_lost and longest_s <= TRACKING_WITNESS.short_gap_s
 
 
 def _laser_poses_missing(lost: Flags, held: Flags, t_ns: Times) -> Finding:

@@ -16,17 +16,10 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import TURN_SCALE
 from recon4.geometry.se3 import Array, so3_log
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
-
-_FEWEST, _FARTHEST = 2, 8
-"""Nodes between the ends of a pair: neighbors share multiframes, over more turns drift."""
-_LEAST_RAD, _MOST_RAD = 0.1, 2.5
-"""Turn between the ends of a pair."""
-_MIN_PAIRS = 8
-_MOST, _SIGMAS = 0.004, 3.5
-"""A larger ratio, by more than this multiple of its deviation, is a contradiction."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +32,7 @@ class TurnScale:
     @property
     def is_off(self) -> bool:
         """Whether odometry and pairs contradict each other."""
-        return abs(self.ratio) > max(_MOST, _SIGMAS * self.sd)
+        return abs(self.ratio) > max(TURN_SCALE.most, TURN_SCALE.sigmas * self.sd)
 
 
 def turn_scale(graph: PoseGraph, odometry: Trajectory) -> TurnScale | None:
@@ -50,7 +43,9 @@ def turn_scale(graph: PoseGraph, odometry: Trajectory) -> TurnScale | None:
         odometry: ``T_odom_body``.
     """
     of, apart = graph.relations, graph.relations.j - graph.relations.i
-    rows = np.flatnonzero(of.in_graph & (apart >= _FEWEST) & (apart <= _FARTHEST))
+    rows = np.flatnonzero(
+        of.in_graph & (apart >= TURN_SCALE.fewest) & (apart <= TURN_SCALE.farthest)
+    )
     if not len(rows) or not len(odometry):
         return None
     t_ns = np.clip(graph.t_ns, odometry.t_ns[0], odometry.t_ns[-1])
@@ -58,8 +53,8 @@ def turn_scale(graph: PoseGraph, odometry: Trajectory) -> TurnScale | None:
     turned: Array = so3_log(np.swapaxes(R[of.i[rows]], 1, 2) @ R[of.j[rows]])
     registered: Array = so3_log(of.T_i_j.R[rows])
     squared = np.einsum("na,na->n", registered, registered)
-    used = (squared > _LEAST_RAD**2) & (squared < _MOST_RAD**2)
-    if used.sum() < _MIN_PAIRS:
+    used = (squared > TURN_SCALE.least_rad**2) & (squared < TURN_SCALE.most_rad**2)
+    if used.sum() < TURN_SCALE.min_pairs:
         return None
     ratio = np.einsum("na,na->n", turned, registered)[used] / squared[used] - 1.0
     middle = float(np.median(ratio))

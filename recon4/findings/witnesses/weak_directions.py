@@ -18,22 +18,11 @@ from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import WEAK_DIRECTION
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.geometry.se3 import Array
 from recon4.model.support import SurfaceSupport
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
-
-_WEAK_DEGENERACY = 0.005
-"""Files of earlier versions do not state the standard deviation: there a direction counts as
-unobservable below this, as for pairs (`GraphTuning.min_degeneracy`)."""
-_UNSURE_SD_M = 0.03
-"""As `WEAK_SD_M`, of a registration that did not converge: what it states is too small [m]."""
-_HELD_RATIO = 0.7
-"""A multiframe matches the map if its match ratio reaches this part of the median of the others."""
-_UNLIMITED_M = 10.0
-"""A larger standard deviation is quoted as above this [m]."""
-_BRIDGED_S = 1.0
-"""Two weak stretches with less than this between them are one [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +64,7 @@ def held_by_surfaces(
     """
     if support is None or not lost.any() or lost.all():
         return None
-    usual = _HELD_RATIO * float(np.median(support.match_ratio[~lost]))
+    usual = WEAK_DIRECTION.held_ratio * float(np.median(support.match_ratio[~lost]))
     held = (support.match_ratio >= usual) & (support.weak_sd_m <= WEAK_SD_M)
     return np.asarray(held[lost], np.bool_)
 
@@ -95,8 +84,8 @@ def weak_stretches(
     degeneracy = np.asarray(steps["degeneracy"], np.float64)
     directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
     sd_m = np.asarray(steps.get("weak_sd_m", np.full(len(t_s), np.nan)), np.float64)
-    limit_m = np.where(steps.get("converged", True), WEAK_SD_M, _UNSURE_SD_M)
-    weak = np.where(np.isnan(sd_m), degeneracy < _WEAK_DEGENERACY, sd_m > limit_m)
+    limit_m = np.where(steps.get("converged", True), WEAK_SD_M, WEAK_DIRECTION.unsure_sd_m)
+    weak = np.where(np.isnan(sd_m), degeneracy < WEAK_DIRECTION.weak_degeneracy, sd_m > limit_m)
     if support is not None:
         weak &= support.weak_sd_m > WEAK_SD_M
     weak[0] = False  # there is no map yet to observe anything against
@@ -105,7 +94,7 @@ def weak_stretches(
     rows = np.flatnonzero(weak)
     if not len(rows):
         return []
-    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > _BRIDGED_S) + 1)
+    runs = np.split(rows, np.flatnonzero(np.diff(t_s[rows]) > WEAK_DIRECTION.bridged_s) + 1)
     found = [
         WeakStretch(
             start_s=float(t_s[run[0]]),
@@ -169,8 +158,8 @@ def _finding(stretch: WeakStretch, level: Level, uncertainty: dict[str, float]) 
         {
             "degeneracy": stretch.degeneracy,
             "sd_m": stretch.sd_m,
-            "known": stated and stretch.sd_m < _UNLIMITED_M,
-            "unlimited": stated and stretch.sd_m >= _UNLIMITED_M,
+            "known": stated and stretch.sd_m < WEAK_DIRECTION.unlimited_m,
+            "unlimited": stated and stretch.sd_m >= WEAK_DIRECTION.unlimited_m,
             "unstated": not stated,
             "open": not uncertainty,
         }

@@ -18,7 +18,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from recon4.geometry.mesh import CLEAR, MIRROR, MeshBuilder
+from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.tuning import SURFACES
 from recon4.simulation.world import Waypoint, World
 from recon4.simulation.worlds.furniture import board, desk, lamp, shelf
 from recon4.simulation.worlds.walls import CEILING, LINOLEUM, STEEL, WOOD, WallShape, wall, window
@@ -42,7 +43,7 @@ def build(variant: int = 0) -> World:
     for x, y in columns:
         _column(builder, x, y)
     pane_x = length_m - 3.0
-    builder.quad([pane_x, 3.0, 0.0], [0, 6.0, 0], [0, 0, _HEIGHT_M], reflectivity=CLEAR)
+    builder.quad([pane_x, 3.0, 0.0], [0, 6.0, 0], [0, 0, _HEIGHT_M], reflectivity=SURFACES.clear)
     for y in (3.0, 5.0, 7.0, 9.0):
         builder.box([pane_x - 0.03, y - 0.06, 0], [pane_x + 0.03, y, _HEIGHT_M], STEEL)
     for k, x in enumerate(np.arange(1.2, length_m - 3.6, 1.9)):
@@ -77,7 +78,7 @@ def _mirror(builder: MeshBuilder, span_m: tuple[float, float]) -> None:
     """The mirror before the south wall, with a frame of steel."""
     (left, right), (bottom, top) = span_m, _MIRROR_M
     width = [right - left, 0, 0]
-    builder.quad([left, 0.08, bottom], width, [0, 0, top - bottom], reflectivity=MIRROR)
+    builder.quad([left, 0.08, bottom], width, [0, 0, top - bottom], reflectivity=SURFACES.mirror)
     for low, high in ((bottom - 0.05, bottom), (top, top + 0.05)):
         builder.box([left, 0.06, low], [right, 0.11, high], STEEL)
 
@@ -86,7 +87,7 @@ def _column(builder: MeshBuilder, x: float, y: float) -> None:
     """A square column clad with mirrors, on a base and below a head of plaster."""
     r = _COLUMN_M
     builder.block([x, y, 0.0], [2.2 * r, 2.2 * r, 0.2], 0.5)
-    builder.block([x, y, 0.2], [2 * r, 2 * r, 2.2], MIRROR)
+    builder.block([x, y, 0.2], [2 * r, 2 * r, 2.2], SURFACES.mirror)
     builder.block([x, y, 2.4], [2.2 * r, 2.2 * r, _HEIGHT_M - 2.4], 0.5)
 
 

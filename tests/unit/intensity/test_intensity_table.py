@@ -15,8 +15,8 @@ from recon4.intensity.normalize import (
     sample_windows,
     write_intensity,
 )
-from recon4.intensity.table import COARSER, table_of_sums
-from recon4.intensity.tuning import IntensityTuning
+from recon4.intensity.table import table_of_sums
+from recon4.intensity.tuning import INTENSITY_TABLE, IntensityTuning
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.intensity import normalized_intensity
 from recon4.settings import MapSettings
@@ -127,9 +127,9 @@ def test_sparse_bins_take_the_next_coarser_one():
     own, merged = (0, 0, 10, 10), (0, 0, 12, 10)
     assert table.level[own] == 0 and table.mean[own] == 15.0
     assert table.level[merged] == 1 and table.mean[merged] == (20 * 15 + 5 * 200) / 25
-    assert table.level[0, 0, 80, 40] == len(COARSER) - 1
+    assert table.level[0, 0, 80, 40] == len(INTENSITY_TABLE.coarser) - 1
     assert table.level[0, 0, 10, 12] == 2
-    assert table.level[1, 5, 10, 10] == len(COARSER)
+    assert table.level[1, 5, 10, 10] == len(INTENSITY_TABLE.coarser)
     assert table.mean[1, 5, 10, 10] == pytest.approx(table.target_mean)
 
 
@@ -259,8 +259,8 @@ def test_one_sensor_and_one_frame_are_enough():
 
     table, shown = learn_intensity(walk, walk.trajectory, settings=SETTINGS)
 
-    assert (table.level[1] == len(COARSER)).all()
-    assert (table.level[0] < len(COARSER)).any()
+    assert (table.level[1] == len(INTENSITY_TABLE.coarser)).all()
+    assert (table.level[0] < len(INTENSITY_TABLE.coarser)).any()
     assert np.isfinite(shown.all_before).all()
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.placing import Mirrors
-from recon4.geometry.mesh import MIRROR
+from recon4.geometry.tuning import SURFACES
 from recon4.mapping.mirrors import Sight, find_mirrors
 from recon4.model.figures import LevelFigures
 from recon4.recording.packets.velodyne.models import MODELS
@@ -46,7 +46,7 @@ def sights(setup: SimulationSetup) -> Sight:
 
 def without_mirrors(world: World) -> World:
     """The same room with boards in place of the mirrors."""
-    value = np.where(world.mesh.reflectivity <= MIRROR, 0.5, world.mesh.reflectivity)
+    value = np.where(world.mesh.reflectivity <= SURFACES.mirror, 0.5, world.mesh.reflectivity)
     mesh = replace(world.mesh, reflectivity=value.astype(np.float32))
     return replace(world, mesh=mesh)
 
@@ -55,7 +55,7 @@ def without_mirrors(world: World) -> World:
 def test_a_mirror_is_found_with_its_place_and_size(world: str) -> None:
     setup = prepare(world, seconds=20.0, seed=1)
     mesh = setup.world.mesh
-    glass = mesh.vertices_m[mesh.triangles[mesh.reflectivity <= MIRROR]].reshape(-1, 3)
+    glass = mesh.vertices_m[mesh.triangles[mesh.reflectivity <= SURFACES.mirror]].reshape(-1, 3)
     glass = glass[glass[:, 1] < 0.2]
     area_m2 = np.ptp(glass[:, 0]) * np.ptp(glass[:, 2])
 

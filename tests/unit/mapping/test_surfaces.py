@@ -1,5 +1,7 @@
 """Points moved onto the surface fitted to the returns around them."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -258,7 +260,8 @@ def test_a_wall_fitted_in_parts_is_that_fitted_at_once(rng, monkeypatch):
     across = rectangle(rng, [2.033, 1.5, 1.5], [0, 1.6, 0], [0, 0, 1.2])
     records = in_voxel_order(returns(rng, across, np.array([1.0, 2.3, 2.2])), GRID)
     whole = fit_surfaces(records, GRID, noise_m=NOISE_M)
-    monkeypatch.setattr(surfaces_module, "SLAB", len(records) // 6)
+    slabs = replace(surfaces_module.TILE_SURFACES, slab=len(records) // 6)
+    monkeypatch.setattr(surfaces_module, "TILE_SURFACES", slabs)
 
     parts = fit_surfaces(records, GRID, noise_m=NOISE_M)
 

@@ -6,9 +6,10 @@ import pytest
 from recon4.findings.review_problems import problem_findings
 from recon4.model.pose_graph import EdgeKind, Reason, Verdict, known_judgment
 from recon4.pose_graph.verification import verify
-from recon4.review.apply import CHANGED_M, apply_decisions, rows_by_pair
+from recon4.review.apply import apply_decisions, rows_by_pair
 from recon4.review.decisions import Decision, DecisionKind, Measurement, fold, numbers_of
 from recon4.review.solve import difference, review, review_figures
+from recon4.review.tuning import CHANGES
 from recon4.settings import GraphSettings, Settings, VerificationSettings
 from tests.said import texts
 from tests.unit.review.graphs import LOOP, truth, two_rounds
@@ -185,7 +186,7 @@ def test_a_pair_that_was_never_registered_cannot_be_accepted(verified):
 def test_an_edge_that_measures_something_else_than_was_seen_is_named(verified):
     seen = at(verified, 3, 32).T_i_j
     other = numbers_of(seen)
-    other = (other[0] + 2 * CHANGED_M, *other[1:])
+    other = (other[0] + 2 * CHANGES.changed_m, *other[1:])
 
     same = apply_decisions(verified, standing(accept(3, 32, T_i_j=numbers_of(seen))))
     changed = apply_decisions(verified, standing(accept(3, 32, T_i_j=other)))

@@ -3,7 +3,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.geometry.mesh import GLASS, MeshBuilder
+from recon4.geometry.mesh import MeshBuilder
+from recon4.geometry.tuning import SURFACES
 from recon4.model.rig import load_rig
 from recon4.recording.packets.velodyne.models import MODELS
 from recon4.simulation.lidar import LidarModel
@@ -127,7 +128,7 @@ def test_dark_and_distant_surfaces_are_lost():
 
 
 def test_glass_answers_only_when_hit_squarely():
-    shots = fire(PERFECT, walls(3.0, reflectivity=0.5 * GLASS), still())
+    shots = fire(PERFECT, walls(3.0, reflectivity=0.5 * SURFACES.glass), still())
 
     _, azimuth, elevation, _ = returns(shots)
 

@@ -3,8 +3,9 @@
 import numpy as np
 import pytest
 
-from recon4.geometry.mesh import CLEAR, MIRROR, MeshBuilder
+from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.raycast import Hits, Scene
+from recon4.geometry.tuning import SURFACES
 from recon4.simulation.mirrors import follow
 
 
@@ -26,7 +27,7 @@ def wall_before(x: float, value: float) -> MeshBuilder:
 
 
 def test_a_mirror_shows_the_wall_behind_the_sensor_as_far_behind_itself() -> None:
-    hits = seen(wall_before(9.0, MIRROR), [1, 0, 0], [1, 0.5, 0.2])
+    hits = seen(wall_before(9.0, SURFACES.mirror), [1, 0, 0], [1, 0.5, 0.2])
 
     length = np.linalg.norm([1, 0.5, 0.2])
     assert hits.range_m == pytest.approx([7.0, 7.0 * length], abs=0.01)  # 2 m there, 5 m back
@@ -35,7 +36,7 @@ def test_a_mirror_shows_the_wall_behind_the_sensor_as_far_behind_itself() -> Non
 
 def test_the_incidence_is_that_on_what_is_seen_in_the_mirror() -> None:
     builder = MeshBuilder()
-    builder.quad([2, -5, -5], [0, 10, 0], [0, 0, 10], reflectivity=MIRROR)
+    builder.quad([2, -5, -5], [0, 10, 0], [0, 0, 10], reflectivity=SURFACES.mirror)
     builder.quad([-3, -9, -5], [0, 0, 10], [3, -3, 0], reflectivity=0.5)  # turned by 45°
     along = np.array([2.0, -3.5, 0.0])
 
@@ -47,7 +48,7 @@ def test_the_incidence_is_that_on_what_is_seen_in_the_mirror() -> None:
 
 
 def test_a_clear_pane_lets_through_and_reflects_at_grazing_incidence() -> None:
-    hits = seen(wall_before(9.0, CLEAR), [1, 0, 0], [1, 2, 0], [1, 5, 0])
+    hits = seen(wall_before(9.0, SURFACES.clear), [1, 0, 0], [1, 2, 0], [1, 5, 0])
 
     assert hits.range_m[:2] == pytest.approx([9.0, 9.0 * np.sqrt(5.0)], abs=0.01)
     assert hits.range_m[2] == pytest.approx(7.0 * np.sqrt(26.0), abs=0.01)
@@ -56,7 +57,7 @@ def test_a_clear_pane_lets_through_and_reflects_at_grazing_incidence() -> None:
 def test_a_beam_between_two_mirrors_does_not_return() -> None:
     builder = MeshBuilder()
     for x in (-1.0, 2.0):
-        builder.quad([x, -5, -5], [0, 10, 0], [0, 0, 10], reflectivity=MIRROR)
+        builder.quad([x, -5, -5], [0, 10, 0], [0, 0, 10], reflectivity=SURFACES.mirror)
 
     assert seen(builder, [1, 0, 0]).range_m == pytest.approx([np.inf])
 

@@ -1,6 +1,9 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from recon4.slices import doubles
 from recon4.slices.doubles import DoubleRule, find_double_walls, limit_m
 from tests.unit.slices.room_map import T0_NS, wall, write_map
 
@@ -117,6 +120,6 @@ def test_a_larger_table_gives_the_same_answer(tmp_path, monkeypatch):
     columns = visits(np.random.default_rng(5), [0.0, 0.05])
     tiles = write_map(tmp_path, **columns)
     expected = find_double_walls(tiles)
-    monkeypatch.setattr("recon4.slices.doubles._FIRST_TABLE", 64)
+    monkeypatch.setattr(doubles, "DOUBLE_WALLS", replace(doubles.DOUBLE_WALLS, first_table=64))
 
     assert find_double_walls(tiles) == expected

@@ -4,6 +4,7 @@ import signal
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 
 import ezdxf
 import laspy
@@ -284,12 +285,12 @@ def test_the_foot_on_the_surface_is_found(tiles):
 def test_a_dxf_of_too_many_points_is_refused_with_their_number_before_it_is_written(
     tiles, tmp_path, monkeypatch
 ):
-    plane = CUT.repeated(3, spacing_m=0.3)
+    plane, limits = CUT.repeated(3, spacing_m=0.3), export.SLICE_EXPORT
     write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL)
     count = len(list(ezdxf.readfile(tmp_path / "s.dxf").modelspace()))
-    monkeypatch.setattr(export, "MAX_DXF_POINTS", count)
+    monkeypatch.setattr(export, "SLICE_EXPORT", replace(limits, max_dxf_points=count))
     assert write_dxf(SliceSelection(tiles, plane), tmp_path / "s.dxf", frame=LOCAL) > count
-    monkeypatch.setattr(export, "MAX_DXF_POINTS", count // 2)
+    monkeypatch.setattr(export, "SLICE_EXPORT", replace(limits, max_dxf_points=count // 2))
     monkeypatch.setattr(export, "atomic_file", None)  # nothing may be begun
 
     with pytest.raises(ConfigError, match=f"at most {count // 2} points .* got {count}: .* LAZ"):

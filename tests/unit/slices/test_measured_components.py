@@ -11,8 +11,9 @@ from recon4.slices.control_points import ControlPoint
 from recon4.slices.measured import MeasuredPosition, orthonormal
 from recon4.slices.pick import measured_directions, nearest_surface
 from recon4.slices.residual_table import residual_csv, residual_text
-from recon4.slices.residuals import OUTLIER_SIGMAS, ControlContext, residuals
+from recon4.slices.residuals import ControlContext, residuals
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning import RESIDUALS
 from tests.unit.slices.room_map import wall, write_map
 
 MOVED_M = np.array([0.004, 0.0, 0.002])
@@ -123,7 +124,7 @@ def test_a_residual_far_beyond_its_sigma_is_flagged(directions, along):
 
 
 def test_a_good_residual_is_flagged_with_the_probability_of_three_sigmas():
-    beyond = [gammaincc(k / 2, x**2 / 2) for k, x in enumerate(OUTLIER_SIGMAS, start=1)]
+    beyond = [gammaincc(k / 2, x**2 / 2) for k, x in enumerate(RESIDUALS.outlier_sigmas, start=1)]
 
     assert beyond == pytest.approx([0.0027] * 3, abs=2e-5)
 

@@ -5,12 +5,13 @@ import pytest
 from PIL import Image
 
 from recon4.errors import ConfigError
-from recon4.slices.colors import DISTANCE_RANGE_M, REFERENCE_COLOR, Span, paint, table
+from recon4.slices.colors import Span, paint, table
 from recon4.slices.imports import import_reference
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference
 from recon4.slices.slice_image import RasterGrid, draw, png
 from recon4.slices.slice_plane import SlicePlane
+from recon4.slices.tuning_files import SLICE_COLORS
 from tests.unit.slices.room_map import T0_NS, write_map
 
 CUT = SlicePlane.horizontal(1.0, thickness_m=0.2)
@@ -72,13 +73,13 @@ def test_distances_are_colored_from_blue_to_red_and_the_reference_is_green(tiles
     reference = load_reference(tmp_path / "reference", method="point")
 
     drawn = draw(tiles, CUT, PAPER, color="distance", reference=reference)
-    rgba = drawn.rgba(Span(*DISTANCE_RANGE_M), "light")
+    rgba = drawn.rgba(Span(*SLICE_COLORS.distance_range_m), "light")
 
     assert drawn.span == Span(0.0, 0.10)
     assert drawn.value[0, 0] == pytest.approx(np.hypot(0.05, 0.01), abs=1e-3)
     assert np.isinf(drawn.value[19, 39])
     assert rgba[19, 39, 0] > 200 > rgba[19, 39, 2]
-    assert tuple(rgba[1, 20, :3]) == REFERENCE_COLOR
+    assert tuple(rgba[1, 20, :3]) == SLICE_COLORS.reference_color
 
 
 def test_the_ends_of_a_palette_stand_for_everything_beyond():

@@ -1,0 +1,164 @@
+"""Tuning of the evaluation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AteTuning:
+    """Absolute trajectory error."""
+
+    min_spread_m: float = 0.05
+    """Below this lateral extent of the positions the rotation of the fit is undetermined."""
+
+
+ATE = AteTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EvaluationTuning:
+    """``recon4 evaluate``."""
+
+    every: int = 10
+    """Of the multiframes, every tenth is placed by the estimate and by the truth."""
+    frame_ns: int = 100_000_000
+    """Dense trajectories are evaluated at one pose per multiframe of 10 Hz [ns]."""
+
+
+EVALUATION = EvaluationTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SensorFloorTuning:
+    """What the sensor itself leaves of e_r."""
+
+    max_range_m: float = 60.0
+    """As for the map [m]."""
+
+
+SENSOR_FLOOR = SensorFloorTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SegmentDriftTuning:
+    """Drift over segments."""
+
+    min_path_m: float = 0.1
+    """Shorter pieces are stationary and have no drift per meter; they are left out."""
+    thesis_frames: tuple[int, ...] = tuple(range(100, 801, 100))
+    """Lengths of the pieces in V §3.1 [frames]."""
+
+
+SEGMENT_DRIFT = SegmentDriftTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshAlignmentTuning:
+    """Alignment of a map with a mesh."""
+
+    kernel_m: float = 0.05
+    """Scale of the Cauchy kernel: points of moving people must not pull the map."""
+    max_samples: int = 400_000
+    """Points of the map that are aligned."""
+    still: float = 1e-4
+    """Convergence: largest step [m and rad]."""
+
+
+MESH_ALIGNMENT = MeshAlignmentTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelationTuning:
+    """Errors against reference relations."""
+
+    max_bytes: int = 256 << 20
+    """Largest file of relations."""
+    latest_s: float = 2.0**33
+    """Times of this many nanoseconds still fit into 64 bits [s]."""
+    slack_ns: int = 1_000_000
+    """Times of relations may lie outside of the trajectory by this much: they are rounded [ns]."""
+
+
+RELATIONS = RelationTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SharpnessTuning:
+    """How crisp a map is without any truth."""
+
+    min_neighbors: int = 10
+    """Points with fewer neighbors are not counted."""
+    planar: float = 0.1
+    """A place is a plane where the middle eigenvalue is at least 1/0.1 times the smallest
+    and at least 0.1 times the largest."""
+    batch: int = 500
+    """Points whose neighbors are looked for at a time."""
+    merge_points: int = 1_000_000
+    """Points that are merged at a time."""
+
+
+SHARPNESS = SharpnessTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RelativeErrorTuning:
+    """Relative error e_r."""
+
+    histogram_step_m: float = 0.001
+    """Width of a class of the error histogram [m]."""
+    outlier_m: float = 0.5
+    """Points farther from the model than this are outliers [m]."""
+    batch: int = 500_000
+    """Points that are compared at a time."""
+
+
+RELATIVE_ERROR = RelativeErrorTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ThicknessTuning:
+    """Thickness of planar surfaces."""
+
+    cell_m: float = 0.3
+    """Edge of the cubes whose points are tested for a plane [m]."""
+    most_points: int = 4_000_000
+    """Of a larger map an even sample of about this size is used."""
+    min_points: int = 15
+    """A cell with fewer points is not counted."""
+    planar: float = 0.1
+    """As in `recon4.evaluation.sharpness`: the middle eigenvalue is at least 1/0.1 times the
+    smallest and at least 0.1 times the largest."""
+    min_cells: int = 10
+    """A place with fewer cells is not listed."""
+    places: int = 10
+    """Places that are listed; the thickest first."""
+
+
+THICKNESS = ThicknessTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MarkerFileLimits:
+    """Tables of survey markers."""
+
+    max_bytes: int = 16 << 20
+    """Largest table."""
+
+
+MARKER_FILES = MarkerFileLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeshFileLimits:
+    """Triangle meshes of unknown origin."""
+
+    max_triangles: int = 20_000_000
+    """Most triangles of a mesh."""
+    max_text_bytes: int = 4 << 30
+    """Largest file of text."""
+    max_sides: int = 1000
+    """Most corners of a face."""
+
+
+MESH_FILES = MeshFileLimits()

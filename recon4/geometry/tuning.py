@@ -1,0 +1,42 @@
+"""Tuning of geometry and ray casting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LineGeometryTuning:
+    """Lines in space."""
+
+    parallel_sin2: float = 1e-6
+    """Squared sine of the angle below which two lines count as parallel (0.06°)."""
+
+
+LINES = LineGeometryTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SurfaceReflectivity:
+    """How much of the light surfaces return."""
+
+    glass: float = 0.02
+    """Window glass."""
+    clear: float = 0.004
+    """Clear glass."""
+    mirror: float = 0.001
+    """A mirror."""
+
+
+SURFACES = SurfaceReflectivity()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RaycastTuning:
+    """Ray casting."""
+
+    nearest_batch: int = 1_000_000
+    """Points whose nearest surface is looked for at a time."""
+
+
+RAYCASTING = RaycastTuning()

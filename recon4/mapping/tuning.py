@@ -1,0 +1,154 @@
+"""Tuning of the map: placing, thinning, surfaces, mirrors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BucketTuning:
+    """Records of each tile on disk."""
+
+    burst: int = 6_000_000
+    """Records held in memory before they are thinned and written (192 MB)."""
+
+
+BUCKETS = BucketTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapBuildTuning:
+    """The stage ``map``."""
+
+    workers: int = 2
+    """Threads; the kernels do not hold Python's lock."""
+
+
+MAP_BUILD = MapBuildTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MirrorTuning:
+    """Mirrors in a map."""
+
+    cell_m: float = 0.15
+    """Cells of the normals, which come from three of them."""
+    vertical: float = 0.2
+    min_support: int = 8
+    """Largest z of the normal of a wall; normals from fewer points do not count."""
+    angle_rad: float = float(np.deg2rad(3.0))
+    offset_m: float = 0.1
+    """Bins in which walls are searched."""
+    most_walls: int = 24
+    """Walls that are examined; the largest first."""
+    wall_cells: int = 12
+    """A wall covers at least this many cells of `grid_m`."""
+    grid_m: float = 0.25
+    """Cells on a wall, in which beams cross it."""
+    before_m: float = 0.3
+    behind_m: float = 0.4
+    """Beams count that begin and end this far from the wall."""
+    facing: float = 0.5
+    """Cosine between a surface's normal and that of the wall above which it faces it."""
+    same_m: float = 0.12
+    same_cosine: float = 0.85
+    """A reflected point lies on a surface within this, with the same normal."""
+    min_beams: int = 3
+    min_ratio: float = 0.75
+    """A cell is mirrored if this many beams cross it, and this ratio of them shows the room before
+    it."""
+    min_area_m2: float = 2.5
+    """A smaller wall is no mirror [m²]."""
+    entered_ratio: float = 0.5
+    """A room is real if this ratio of it was seen from behind the wall, too."""
+    most_beams: int = 20_000
+    most_points: int = 60_000
+    """No more beams through a wall, and points on walls, are used."""
+
+
+MIRRORS = MirrorTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NormalTuning:
+    """Normals of many points at once."""
+
+    min_points: int = 6
+    """Fewer points in a neighborhood have no normal."""
+
+
+NORMALS = NormalTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PointPlaceTuning:
+    """Every point by the pose at its time."""
+
+    knot_ns: int = 1_000_000
+    """Interval of exactly interpolated poses [ns]; the poses of the trajectory are added."""
+
+
+POINT_PLACES = PointPlaceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SparseSurfaceTuning:
+    """Surfaces of sparse places."""
+
+    scale: int = 3
+    """Cells of the larger scale are as many times as large."""
+    few: int = 60
+    """A neighborhood of fewer points is sparse."""
+    share: float = 0.02
+    """A tile with a smaller part of such points is dense; they are then things, not surfaces."""
+    noise: float = 3.0
+    """Sparse points are far from the sensor or few recordings: poses and beams are less exact."""
+    thicker: float = 1.4
+    """Sparse surfaces this many times as thick as most of a tile are not trusted."""
+    reach: int = 5
+    """Cells along a window of windows: what the planes of a cell depend on."""
+
+
+SPARSE_SURFACES = SparseSurfaceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TileSurfaceTuning:
+    """Surfaces of a tile."""
+
+    slab: int = 400_000
+    """Records fitted at once: what is known of their cells is four times as large as themselves.
+    With half as many, margins make the fit 1.2 times as expensive."""
+    margin: int = 2
+    """Rows of cells beyond a slab that its surfaces depend on, as many as in the halo of a tile."""
+
+
+TILE_SURFACES = TileSurfaceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TileTuning:
+    """The columns of a tile."""
+
+    strata: int = 64
+    """Number of uniform samples of itself in which a tile is stored, one after the other."""
+    block: int = 1 << 16
+    """Rows made at once: the columns of a whole tile take more memory than all else of it."""
+    far_cell_m: float = 1.0
+    """Size of the cubes of ``MapSettings.far_ratio`` [m]."""
+
+
+TILES = TileTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VoxelRunTuning:
+    """Runs of records that are merged."""
+
+    buffer: int = 8192
+    """Records of each run in memory."""
+
+
+VOXEL_RUNS = VoxelRunTuning()

@@ -1,0 +1,127 @@
+"""Layout of the report: how much is drawn and listed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BeamChartTuning:
+    """Charts of single beams."""
+
+    apart: float = 0.6
+    """Width over which the LiDARs of one ring are spread."""
+    width_sd: float = 2.0
+    """Standard deviations that the bars extend to each side."""
+
+
+BEAM_CHARTS = BeamChartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CalibrationPageTuning:
+    """The page of a calibration."""
+
+    thickness_m: float = 0.2
+    """Of the slice [m]."""
+    height_in: float = 4.6
+    """Height of a slice [in]."""
+
+
+CALIBRATION_PAGE = CalibrationPageTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EdgeChartTuning:
+    """Verdicts of pairs."""
+
+    max_drawn: int = 4000
+    """Edges that are drawn."""
+
+
+EDGE_CHARTS = EdgeChartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChartTuning:
+    """Charts as inline SVG."""
+
+    many_bars: int = 40
+    """More bars of a color are drawn finer."""
+
+
+CHARTS = ChartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FindingListTuning:
+    """Findings in reports."""
+
+    most_of_a_kind: int = 12
+    """Findings of one kind that are listed."""
+
+
+FINDING_LISTS = FindingListTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IntensityChartTuning:
+    """Charts of intensity."""
+
+    min_points: int = 100
+    """Bins with fewer points are not drawn."""
+
+
+INTENSITY_CHARTS = IntensityChartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapImageTuning:
+    """Images of the map."""
+
+    max_pixels: int = 1300
+    """Pixels along the longer side."""
+    levels: int = 48
+    """Shades of an image: fewer compress better, more are not visible."""
+    bin_m: float = 0.25
+    """Step of the histogram of heights [m]."""
+    trim: float = 0.001
+    """Fraction of points cut off at either end of the image: reflections far away."""
+
+
+MAP_IMAGES = MapImageTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanTuning:
+    """Plan of the map."""
+
+    longest: float = 1000.0
+    """Units of the longer side: a tall image is scaled down, and its text must stay readable."""
+    ticks: int = 6
+    """Coordinates along an axis."""
+
+
+PLANS = PlanTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProjectFactLimits:
+    """Summaries that are read."""
+
+    max_bytes: int = 16 << 20
+    """Largest summary."""
+
+
+PROJECT_FACTS = ProjectFactLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RigChartTuning:
+    """Charts of the rig."""
+
+    width_sd: float = 2.0
+    """Standard deviations that the bars extend to each side."""
+
+
+RIG_CHARTS = RigChartTuning()

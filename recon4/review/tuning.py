@@ -1,0 +1,157 @@
+"""Tuning of reviews, and limits of what people give to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AcknowledgmentLimits:
+    """Notes of a reviewer."""
+
+    head_bytes: int = 1 << 20
+    """The block with the approval is within the first bytes of a report."""
+
+
+ACKNOWLEDGMENTS = AcknowledgmentLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangeTuning:
+    """What a decision changes."""
+
+    changed_m: float = 0.1
+    """Translation between the pose the reviewer saw and the edge that is reported [m]."""
+    changed_rad: float = 0.02
+    """Rotation that is reported [rad]."""
+
+
+CHANGES = ChangeTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class InfluenceTuning:
+    """How far an edge moves the map."""
+
+    nothing: float = 1e-12
+    """Weight of structural entries, as a fraction of the largest information."""
+    gauge: float = 1e9
+    """Information that fixes the first node."""
+
+
+INFLUENCE = InfluenceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReviewPairTuning:
+    """Points and poses of a pair."""
+
+    max_points: int = 30_000
+    """Limit for each multiframe of the pair."""
+    max_reach: int = 10
+    """Largest number of multiframes shown before and after each one."""
+    voxel_m: float = 0.04
+    """Edge of the voxels to which points are thinned [m]."""
+    max_range_m: float = 60.0
+    """Points farther from the sensor are not shown [m]."""
+    min_spread_m: float = 0.1
+    """Smallest extent of picked points across their principal line [m]."""
+
+
+REVIEW_PAIRS = ReviewPairTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PreviewTuning:
+    """Preview of decisions."""
+
+    remembered: int = 6
+    """Solved graphs that are kept."""
+
+
+PREVIEW = PreviewTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class QueueTuning:
+    """The review queue."""
+
+    max_paths: int = 60
+    """Largest number of alternative paths listed for a pair, the worst first."""
+
+
+QUEUE = QueueTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReviewSolveTuning:
+    """What a solved review reports."""
+
+    max_moves: int = 10
+    """Nodes whose shift is reported."""
+    apart_nodes: int = 5
+    """Nodes closer than this along the trajectory count as one move."""
+    min_move_m: float = 1e-4
+    """Smaller shifts are not reported [m]."""
+    named_pairs: int = 5
+    """Pairs that a message names."""
+
+
+REVIEW_SOLVE = ReviewSolveTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ApprovalLimits:
+    """Approvals."""
+
+    min_reason_characters: int = 10
+    """A shorter text is no reason to approve a map in spite of its verdict."""
+
+
+APPROVALS = ApprovalLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ApprovalNameLimits:
+    """Names in an approval."""
+
+    max_name: int = 60
+    """A longer name of a signer is cut [characters]."""
+
+
+APPROVAL_NAMES = ApprovalNameLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NewestApprovalLimits:
+    """Records of newest approvals."""
+
+    max_record_bytes: int = 64 << 10
+    """Largest record."""
+
+
+NEWEST_APPROVALS = NewestApprovalLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SummaryLimits:
+    """Summaries that are read."""
+
+    max_summary_bytes: int = 16 << 20
+    """Largest summary."""
+
+
+SUMMARIES = SummaryLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrustedKeyLimits:
+    """Keys whose signatures count."""
+
+    max_name_characters: int = 100
+    """Longest name of a key."""
+    max_key_file_bytes: int = 64 << 10
+    """Largest file of a key."""
+
+
+KEY_LIMITS = TrustedKeyLimits()

@@ -1,0 +1,222 @@
+"""Tuning of comparisons of slices with references, and of double walls."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlignmentTuning:
+    """Alignment of a reference with the map by ICP."""
+
+    samples: int = 60_000
+    """Points of the map that are compared."""
+    rounds: int = 60
+    """Upper bound on the rounds."""
+    near_m: float = 0.5
+    """Largest distance of a match in the first rounds [m]."""
+    on_m: float = 0.10
+    """A point this near lies on the reference [m]."""
+    min_points: int = 100
+    """With fewer matches there is no alignment."""
+    floor_samples: int = 400_000
+    """Points among which floors are looked for."""
+    floor_near_m: float = 3.0
+    """Largest difference of two floors that may be the same one [m]."""
+    level: float = np.cos(np.deg2rad(30.0))
+    """Cosine of the largest tilt of a floor."""
+    bin_m: float = 0.05
+    """Step of the histogram of heights [m]."""
+    min_near: float = 0.02
+    """Smallest ratio of map points near the reference, which may be one room of a building."""
+    min_on: float = 0.6
+    """Smallest inlier ratio among those points."""
+
+
+ALIGNMENT = AlignmentTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ControlVerdictTuning:
+    """Residuals compared with the limits."""
+
+    named: int = 5
+    """Points named in the verdict."""
+
+
+CONTROL_VERDICT = ControlVerdictTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DoublePlaceTuning:
+    """Patches grouped into places."""
+
+    max_surfaces: int = 3000
+    """Surfaces that are listed; the thickest first."""
+    place_m: float = 1.5
+    """Patches within this distance that face alike form one place [m]."""
+    min_patches: int = 10
+    """Smallest number of patches of a place: an edge or a moved chair makes one or two."""
+
+
+DOUBLE_PLACES = DoublePlaceTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DoubleWallTuning:
+    """Double walls."""
+
+    block: int = 2_000_000
+    """Points that are read at a time."""
+    first_table: int = 1 << 15
+    """Number of cells for which there is room at first."""
+
+
+DOUBLE_WALLS = DoubleWallTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EllipseTuning:
+    """How well a place of the map is known."""
+
+    near_m: float = 0.1
+    """Points this near belong to a place [m]."""
+    sample: int = 200_000
+    """Most points of a tile that are looked at."""
+    poses: int = 300
+    """Most points near a place whose poses are averaged."""
+
+
+ELLIPSES = EllipseTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReferenceFitTuning:
+    """Whether a reference fits the map at all."""
+
+    compared: int = 60_000
+    """Points of the reference that are compared."""
+    samples: int = 400_000
+    """Points of the map that are compared."""
+    covered_m: float = 2.0
+    """Surfaces farther from the other are outside of it, and not compared [m]."""
+    on_m: float = 0.10
+    """A point within this of a surface of the same orientation agrees with it [m]."""
+    least_near: float = 0.02
+    """Smallest ratio of the map near the reference, which may be one room of a building."""
+    least_agreeing: float = 0.6
+    """Smallest ratio of agreeing points among those near the other."""
+    parallel: float = 0.8
+    """Cosine of the angle between normals that are alike."""
+    level: float = np.cos(np.deg2rad(30.0))
+    """Cosine of the largest tilt of a floor."""
+    least_points: int = 100
+    """Fewer points do not show whether a reference fits."""
+    least_part: float = 0.05
+    """Fewer of the points near the other are no group of their own."""
+
+
+REFERENCE_FIT = ReferenceFitTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapFrameTuning:
+    """Between the map frame and its CRS."""
+
+    step_m: float = 10.0
+    """Step of the numerical derivative [m]."""
+    rounds: int = 4
+    """Rounds of the inverse transformation."""
+
+
+MAP_FRAMES = MapFrameTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeightHintTuning:
+    """Heights above sea level against those above the ellipsoid."""
+
+    nearly_m: float = 1.0
+    """Largest deviation from it, and largest horizontal error: heights alone are of another
+    kind."""
+
+
+HEIGHT_HINTS = HeightHintTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredTuning:
+    """Surveyed points in the map."""
+
+    in_span: float = np.cos(np.deg2rad(10.0))
+    """A component counts as measured if a measured direction lies within 10° of its axis."""
+
+
+MEASURED = MeasuredTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PickTuning:
+    """Picking a point of a slice."""
+
+    plane_m: float = 0.10
+    """Radius within which a surface is fitted by a plane [m]."""
+    least_points: int = 8
+    """Fewer points are no surface."""
+
+
+PICKS = PickTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlacementTuning:
+    """Where the coordinates of a reference belong."""
+
+    earth_m: tuple[float, float] = (6.2e6, 6.6e6)
+    """Distance of the surface of the Earth from its center [m]."""
+    accurate_m: float = 0.05
+    """A CRS that is less accurate is named [m]."""
+    times: float = 30.0
+    """A reference that exceeds the map this many times in length, width and height is in another
+    unit: a whole town around one building is as flat as a few of its storeys."""
+    small_m: float = 0.1
+    """A file smaller than this is no building in meters [m]."""
+    beside_m: float = 2.0
+    """A reference this far beside the map does not overlap it [m]."""
+
+
+PLACEMENT = PlacementTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ResidualTuning:
+    """Residuals at control points."""
+
+    outlier_sigmas: tuple[float, float, float] = (3.0, 3.4393, 3.7625)
+    """Limits of `Residual.sigmas` for one, two and three measured directions: a good residual
+    exceeds them with a probability of 0.27 % (square roots of the quantiles of χ²)."""
+
+
+RESIDUALS = ResidualTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SignedDistanceTuning:
+    """Signed distances of a map from a reference."""
+
+    histogram_step_m: float = 0.002
+    """Step of the histogram [m]."""
+    histogram_end_m: float = 0.10
+    """The histogram goes from minus this to plus this; points beyond it are in its end classes."""
+    least_points: int = 100
+    """Fewer points say nothing."""
+    least_facing: float = 0.02
+    """Smallest mean of ``(n · axis)²``: with fewer surfaces across an axis its shift is not
+    known."""
+    in_span: float = np.cos(np.deg2rad(10.0))
+    """Cosine of the largest angle between a direction and the span of the normals."""
+
+
+SIGNED = SignedDistanceTuning()

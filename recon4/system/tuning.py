@@ -1,0 +1,69 @@
+"""Times and limits of child processes and of the installation."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CompileTuning:
+    """What is compiled after an installation."""
+
+    lidar_s: float = 5.0
+    profiler_s: float = 8.0
+    """Length of the simulated walks [s]."""
+    frames: int = 20
+    """Multiframes that are mapped."""
+    pixel_m: float = 0.05
+    """Edge of a pixel of the slice that is drawn [m]."""
+
+
+COMPILING = CompileTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NeedsTuning:
+    """What recon4 needs of a machine."""
+
+    memory_gb: float = 4.0
+    disk_gb: float = 5.0
+    cores: int = 2
+    """Memory [GB], disk [GB] and cores."""
+
+
+NEEDS = NeedsTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ProcessTuning:
+    """Child processes."""
+
+    looks_every_s: float = 1.0
+    """Interval at which `first_line` measures the time of the child [s]."""
+
+
+PROCESSES = ProcessTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RuntimeFolderLimits:
+    """The folder of sockets."""
+
+    longest_folder: int = 50
+    """Leaves 53 bytes for the names below [bytes]."""
+
+
+RUNTIME_FOLDERS = RuntimeFolderLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoppingTuning:
+    """How processes end."""
+
+    raised_again_after_s: float = 0.02
+    cleaning_up_s: float = 10.0
+    """Signals that come while the first one is obeyed are ignored this long, then the process
+    ends."""
+
+
+STOPPING = StoppingTuning()
