@@ -17,16 +17,7 @@ from datetime import UTC, datetime
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
 
-MAX_LOG_BYTES = 50_000_000
-KEPT_LOGS = 10
-"""A log is at most this many files of `MAX_LOG_BYTES`."""
-REPEATS_A_MINUTE = 20
-"""Records of one kind written within a minute; the others are counted."""
-RECORDS_A_MINUTE = 200
-"""Records of one logger written within a minute, of whatever kind."""
-MAX_MESSAGE_CHARS = 4000
-MAX_KINDS = 1000
-"""Kinds of records that are remembered; beyond that the least recently used are forgotten."""
+from recon4_app.tuning import LOGS
 
 
 def printable(text: str) -> str:
@@ -61,8 +52,8 @@ class RepeatFilter(logging.Filter):
         kind = (record.name, record.levelno, str(record.msg))
         minute = int(self._clock() // 60.0)
         with self._lock:
-            allowed = self._count(kind, minute) <= REPEATS_A_MINUTE
-            allowed = allowed and self._count(record.name, minute) <= RECORDS_A_MINUTE
+            allowed = self._count(kind, minute) <= LOGS.repeats_a_minute
+            allowed = allowed and self._count(record.name, minute) <= LOGS.records_a_minute
             if not allowed:
                 self._dropped[kind] += 1
                 self.dropped += 1
@@ -77,7 +68,7 @@ class RepeatFilter(logging.Filter):
         count = count + 1 if then == minute else 1
         self._written[key] = (minute, count)
         self._written.move_to_end(key)
-        while len(self._written) > MAX_KINDS:
+        while len(self._written) > LOGS.max_kinds:
             forgotten, _ = self._written.popitem(last=False)
             self._dropped.pop(forgotten, None)
         return count
@@ -89,7 +80,7 @@ class LineFormatter(logging.Formatter):
     def format(self, record: logging.LogRecord) -> str:
         """One record."""
         at = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(record.created))
-        message = printable(record.getMessage()[:MAX_MESSAGE_CHARS])
+        message = printable(record.getMessage()[: LOGS.max_message_chars])
         lines = [f"{at} {record.levelname} {record.name}: {message}"]
         if record.exc_info:
             lines += map(printable, self.formatException(record.exc_info).splitlines())
@@ -105,7 +96,7 @@ class JsonFormatter(logging.Formatter):
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname,
             "logger": record.name,
-            "message": printable(record.getMessage()[:MAX_MESSAGE_CHARS]),
+            "message": printable(record.getMessage()[: LOGS.max_message_chars]),
         }
         if record.exc_info:
             trace = self.formatException(record.exc_info).splitlines()
@@ -147,8 +138,8 @@ class Logs:
         if file is not None:
             self._file = QuietRotatingFile(
                 file,
-                maxBytes=MAX_LOG_BYTES,
-                backupCount=KEPT_LOGS - 1,
+                maxBytes=LOGS.max_log_bytes,
+                backupCount=LOGS.kept_logs - 1,
                 encoding="utf-8",
                 delay=True,
             )
@@ -185,7 +176,9 @@ class Logs:
                 handler.close()
 
 
-def rotate_grown(path: Path, *, max_bytes: int = MAX_LOG_BYTES, kept: int = KEPT_LOGS) -> bool:
+def rotate_grown(
+    path: Path, *, max_bytes: int = LOGS.max_log_bytes, kept: int = LOGS.kept_logs
+) -> bool:
     """Rotate a log that another process appends to, by copying and truncating it.
 
     A worker and the native libraries in it write to an inherited descriptor, so renaming the file

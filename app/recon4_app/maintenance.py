@@ -11,12 +11,9 @@ from recon4_app.jobs.model import JobState
 from recon4_app.jobs.store import JobStore
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.logs import rotate_grown
+from recon4_app.tuning import MAINTENANCE
 
 log = logging.getLogger(__name__)
-
-MAINTENANCE_INTERVAL_S = 3600.0
-LOG_ROTATION_INTERVAL_S = 20.0
-"""Interval of checking the logs of workers, viewers and captures [s]."""
 
 
 async def maintain(tasks: Sequence[Callable[[], object]]) -> None:
@@ -27,7 +24,7 @@ async def maintain(tasks: Sequence[Callable[[], object]]) -> None:
                 await asyncio.to_thread(task)
             except Exception:
                 log.exception("could not clean up or back up; trying again in an hour")
-        await asyncio.sleep(MAINTENANCE_INTERVAL_S)
+        await asyncio.sleep(MAINTENANCE.maintenance_interval_s)
 
 
 async def rotate_logs(state: Path, jobs: JobStore, current_capture: CurrentCapture) -> None:
@@ -39,7 +36,7 @@ async def rotate_logs(state: Path, jobs: JobStore, current_capture: CurrentCaptu
                 await asyncio.to_thread(rotate_grown, path)
         except Exception:
             log.exception("could not rotate the logs; trying again")
-        await asyncio.sleep(LOG_ROTATION_INTERVAL_S)
+        await asyncio.sleep(MAINTENANCE.log_rotation_interval_s)
 
 
 def active_logs(state: Path, jobs: JobStore, current_capture: CurrentCapture) -> Iterator[Path]:

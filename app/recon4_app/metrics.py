@@ -28,11 +28,11 @@ from recon4_app.live.capture import Capture
 from recon4_app.logs import Logs
 from recon4_app.network.behind import route_path
 from recon4_app.network.connections import ConnectionTable, Phase
+from recon4_app.tuning import METRICS
 
 METHODS = frozenset({"GET", "HEAD", "POST", "PUT", "PATCH", "DELETE", "OPTIONS"})
 UNROUTED = "(none)"
 """Label of requests without a route; a client could invent any number of paths."""
-BUCKETS_S = (0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0)
 
 disable_created_metrics()  # type: ignore[no-untyped-call]
 
@@ -51,7 +51,7 @@ class HttpMetrics:
             "recon4_http_response_start_seconds",
             "Time from a request's head to the start of its response",
             ["method", "route"],
-            buckets=BUCKETS_S,
+            buckets=METRICS.buckets_s,
             registry=registry,
         )
         self.in_progress = Gauge(

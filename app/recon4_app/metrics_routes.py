@@ -16,9 +16,9 @@ from starlette.responses import Response
 from recon4_app.access.people import NOBODY, Permission, Person, allow_anonymous, person
 from recon4_app.errors import Refused, Unknown
 from recon4_app.metrics import Metrics
+from recon4_app.tuning import METRICS_TOKEN
 
 TOKEN_FILE = "metrics.token"
-TOKEN_BYTES = 32
 TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
 """Of that many bytes."""
 
@@ -38,7 +38,7 @@ def make_metrics_token(state: Path, *, renew: bool = False) -> str:
         fresh.unlink(missing_ok=True)
         descriptor = os.open(fresh, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
         with os.fdopen(descriptor, "w") as file:
-            file.write(secrets.token_urlsafe(TOKEN_BYTES) + "\n")
+            file.write(secrets.token_urlsafe(METRICS_TOKEN.token_bytes) + "\n")
             file.flush()
             os.fsync(file.fileno())
         fresh.replace(path)

@@ -8,9 +8,7 @@ from recon4.model.rig import load_rig
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.network.request_caller import Caller
-
-LIMIT_S = 20.0
-"""A rig file that takes longer to parse is rejected [s]; it has at most 128 KiB."""
+from recon4_app.tuning import RIG_FILE_TIMES
 
 
 async def check_rig_file(pool: ComputePool, caller: Caller, path: Path) -> None:
@@ -20,7 +18,9 @@ async def check_rig_file(pool: ComputePool, caller: Caller, path: Path) -> None:
         ConfigError: If it is not a rig file.
         ComputeFailed: If it takes too long to parse.
     """
-    terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
+    terms = Terms(
+        person=caller.name, access=FileAccess(read=(path,)), limit_s=RIG_FILE_TIMES.limit_s
+    )
     await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_name, path))
 
 

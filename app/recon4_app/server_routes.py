@@ -11,6 +11,7 @@ from recon4 import __version__
 from recon4_app.access.people import Permission, needs
 from recon4_app.deps import Server
 from recon4_app.projects.unlisted import unlisted_notices
+from recon4_app.tuning import ROOM
 
 router = APIRouter(prefix="/api", tags=["server"], dependencies=[Depends(needs(Permission.LOOK))])
 
@@ -18,8 +19,6 @@ READ_ONLY = (
     "The folder of the projects cannot be written: it is shown as it is. Jobs, uploads, reviews, "
     "rigs and live captures need a copy of it."
 )
-LITTLE_ROOM = 0.1
-"""Free fraction of the disk below which a notice is shown."""
 
 
 class ServerView(BaseModel):
@@ -43,7 +42,7 @@ def read_server(server: Server) -> ServerView:
     notices += [READ_ONLY] if server.settings.read_only else []
     notices += unlisted_notices(server.settings.root)
     if not server.settings.read_only and disk.free < max(
-        LITTLE_ROOM * disk.total, server.settings.free_disk_reserve_bytes
+        ROOM.little_room * disk.total, server.settings.free_disk_reserve_bytes
     ):
         notices.append(
             f"The disk is nearly full: {disk.free / 1e9:.1f} GB of {disk.total / 1e9:.0f} GB are "

@@ -12,8 +12,8 @@ from pathlib import Path
 from recon4.errors import StoreError
 from recon4.store.atomic import atomic_file
 from recon4.store.sqlite_files import connect
+from recon4_app.tuning import STATE_COPIES
 
-MAX_COPIES = 7
 PRIVATE = 0o600
 
 
@@ -55,7 +55,7 @@ class StateCopies:
                 for table in self._without:
                     copy.execute(f"DELETE FROM {table}")
                 copy.execute("VACUUM")
-        for old in self.all()[MAX_COPIES:]:
+        for old in self.all()[STATE_COPIES.max_copies :]:
             old.unlink()
 
     def damage(self) -> str:

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.mesh import WorldMesh
-from recon4.geometry.tuning import SURFACES
 from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
+from recon4.geometry.tuning import SURFACES
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor

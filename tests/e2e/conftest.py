@@ -6,6 +6,7 @@ import io
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import pytest
 from PIL import Image
 from playwright.sync_api import Browser, BrowserContext, Page, expect
 
+from recon4_app import server_routes
 from tests.chromium import DRAW_LESS
 from tests.service.running import ROOT
 
@@ -34,7 +36,7 @@ EXPECTED_NOISE = (
 @pytest.fixture(autouse=True)
 def room_on_the_disk(monkeypatch):
     """The free space of the machine that runs the tests does not matter."""
-    monkeypatch.setattr("recon4_app.server_routes.LITTLE_ROOM", 0.0)
+    monkeypatch.setattr(server_routes, "ROOM", replace(server_routes.ROOM, little_room=0.0))
 
 
 @pytest.fixture(params=["desktop light", "desktop dark", "phone light", "phone dark"])

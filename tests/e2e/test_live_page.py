@@ -24,7 +24,8 @@ from recon4.progress import Silent
 from recon4.recording.sources import Sources
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
-from recon4_app.live.stream_state import BYTES_A_POINT, Cursor, StreamState
+from recon4_app.live.stream_state import Cursor, StreamState
+from recon4_app.live.tuning import STREAM
 from tests.e2e.conftest import EXPECTED_NOISE
 from tests.live_messages import pose
 from tests.scan_captures import capture_server
@@ -264,7 +265,7 @@ def cut_and_restore(page, link):
     expect(page.locator("#state")).to_have_text("Recording", timeout=5000)
     wait_for_points(page, before + 1)
     received, new = link.received - at, points(page) - before
-    assert received < BYTES_A_POINT * (new + before // 2), "what was there was sent again"
+    assert received < STREAM.bytes_a_point * (new + before // 2), "what was there was sent again"
 
 
 def far(gap, other):

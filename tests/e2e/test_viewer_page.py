@@ -3,6 +3,7 @@
 import os
 import re
 import signal
+from dataclasses import replace
 
 import numpy as np
 import psutil
@@ -10,6 +11,7 @@ import pytest
 from playwright.sync_api import expect
 
 from recon4.model.pose_graph import Reason
+from recon4_app.viewer import pool
 from recon4_app.viewer.client.show import start_m
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.build import Content, bounds
@@ -175,7 +177,7 @@ def test_a_viewer_that_does_not_start_says_so_over_the_thumbnail_and_is_tried_ag
 ):
     build_project(finished.root / "hall", points=POINTS)
     with monkeypatch.context() as patch:
-        patch.setattr("recon4_app.viewer.pool.STARTS_WITHIN_S", 0.0)
+        patch.setattr(pool, "VIEWER_POOL", replace(pool.VIEWER_POOL, starts_within_s=0.0))
         page.goto(f"{finished.url}/projects/hall/viewer/")
         cover = page.locator("#cover")
         expect(cover).to_contain_text("the viewer of hall does not start")

@@ -19,10 +19,11 @@ import pytest
 
 from recon4.errors import Recon4Error
 from recon4.system.processes import ChildRegister
-from recon4_app.compute_pool.fair_queue import MAX_PASSED, FairQueue
+from recon4_app.compute_pool.fair_queue import FairQueue
 from recon4_app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.compute_pool.process import ChildFailed
+from recon4_app.compute_pool.tuning import FAIRNESS
 from recon4_app.errors import AppError, ComputeFailed, TooMany
 from tests import pool_functions as work
 from tests.deadlines import BUSY_S
@@ -278,11 +279,11 @@ def test_people_take_turns(root):
 
 
 def test_small_calls_go_before_large_ones_but_a_large_one_does_not_starve():
-    arrivals = [("a", True)] + [("b", False)] * (2 * MAX_PASSED)
+    arrivals = [("a", True)] + [("b", False)] * (2 * FAIRNESS.max_passed)
 
     granted = order_of(Quota(), arrivals)
 
-    assert granted.index("aL") == MAX_PASSED
+    assert granted.index("aL") == FAIRNESS.max_passed
 
 
 def test_six_large_exports_of_one_person_leave_a_slot_for_the_small_one_of_another():

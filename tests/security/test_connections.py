@@ -186,7 +186,7 @@ def test_without_file_descriptors_accept_pauses_and_goes_on_when_there_are_some(
         wait_for(lambda: greeted(clients) == served + 1, "served as soon as there is a descriptor")
         _, said = process.communicate("\n", timeout=10.0)
 
-    assert 1 <= errors <= 2 + elapsed_s / accept.ACCEPT_PAUSE_S
+    assert 1 <= errors <= 2 + elapsed_s / accept.ACCEPT.accept_pause_s
     assert used_s < 0.5
     assert "Traceback" not in said
     assert "out of system resource" not in said

@@ -4,6 +4,7 @@ import base64
 import os
 import socket
 import time
+from dataclasses import replace
 from urllib.parse import urlsplit
 
 import pytest
@@ -18,11 +19,15 @@ from tests.service.running import server_thread, wait_for
 @pytest.fixture
 def hurried(tmp_path, monkeypatch):
     """A server without TLS and with shorter deadlines."""
-    monkeypatch.setattr(http_timeouts, "BODY_WINDOW_S", SOON_S)
-    monkeypatch.setattr(slow_readers, "READ_WINDOW_S", SOON_S)
-    monkeypatch.setattr(accept, "SWEEP_S", 0.1)
-    monkeypatch.setattr(listen, "PING_INTERVAL_S", SOON_S)
-    monkeypatch.setattr(listen, "PING_TIMEOUT_S", SOON_S)
+    monkeypatch.setattr(
+        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=SOON_S)
+    )
+    monkeypatch.setattr(
+        slow_readers, "SLOW_READERS", replace(slow_readers.SLOW_READERS, read_window_s=SOON_S)
+    )
+    monkeypatch.setattr(accept, "ACCEPT", replace(accept.ACCEPT, sweep_s=0.1))
+    monkeypatch.setattr(listen, "PINGS", replace(listen.PINGS, ping_interval_s=SOON_S))
+    monkeypatch.setattr(listen, "PINGS", replace(listen.PINGS, ping_timeout_s=SOON_S))
     build_project(tmp_path / "office", points=1000)
     with server_thread(tmp_path) as running:
         yield running
@@ -34,7 +39,7 @@ def test_an_upgrade_that_is_none_ends(hurried, upgrade):
     lines = ["Connection: Upgrade", f"Upgrade: {upgrade}", "Content-Length: 5"]
     with connect(hurried.url) as connection:
         connection.sendall(head("POST", "/api/jobs", *lines))
-        assert lasts_s(connection) < http_timeouts.KEEP_ALIVE_S + BUSY_S
+        assert lasts_s(connection) < http_timeouts.HTTP_TIMEOUTS.keep_alive_s + BUSY_S
 
 
 def test_a_body_nobody_wants_is_not_read_forever(hurried):
@@ -50,12 +55,14 @@ def test_a_body_nobody_wants_is_not_read_forever(hurried):
 
 
 def test_an_idle_connection_ends_after_its_answer_and_after_a_late_body(hurried, monkeypatch):
-    monkeypatch.setattr(http_timeouts, "BODY_WINDOW_S", 30.0)
+    monkeypatch.setattr(
+        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=30.0)
+    )
     with connect(hurried.url) as connection:
         connection.sendall(head("POST", "/nothing-here", "Content-Length: 2"))
         assert connection.recv(1 << 16).startswith(b"HTTP/1.1 404")
         connection.sendall(b"{}")
-        assert 4.0 < lasts_s(connection) < http_timeouts.KEEP_ALIVE_S + BUSY_S
+        assert 4.0 < lasts_s(connection) < http_timeouts.HTTP_TIMEOUTS.keep_alive_s + BUSY_S
 
 
 def test_a_client_that_does_not_read_its_download_is_disconnected(hurried):
@@ -84,7 +91,9 @@ def slow_client(url):
 
 def test_a_client_that_reads_slowly_is_served(hurried, monkeypatch):
     """Twice the least rate, over several windows."""
-    monkeypatch.setattr(slow_readers, "MIN_READ_BYTES", 30_000)
+    monkeypatch.setattr(
+        slow_readers, "SLOW_READERS", replace(slow_readers.SLOW_READERS, min_read_bytes=30_000)
+    )
     big = hurried.root / "office" / "trajectory.tum"
     with big.open("r+b") as file:
         file.truncate(20 << 20)

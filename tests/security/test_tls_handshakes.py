@@ -3,6 +3,7 @@
 import contextlib
 import ssl
 import time
+from dataclasses import replace
 
 import pytest
 
@@ -16,8 +17,10 @@ from tests.service.secure import secure_server
 @pytest.fixture
 def secure(tmp_path, monkeypatch):
     """A server with TLS and shorter deadlines."""
-    monkeypatch.setattr(accept, "HANDSHAKE_TIMEOUT_S", SOON_S)
-    monkeypatch.setattr(http_timeouts, "HEAD_TIMEOUT_S", SOON_S)
+    monkeypatch.setattr(accept, "ACCEPT", replace(accept.ACCEPT, handshake_timeout_s=SOON_S))
+    monkeypatch.setattr(
+        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, head_timeout_s=SOON_S)
+    )
     with secure_server(tmp_path) as running:
         yield running
 

@@ -5,9 +5,10 @@ import sys
 
 import pytest
 
-from recon4_app.jobs.events import MAX_BYTES, read_events
+from recon4_app.jobs.events import read_events
 from recon4_app.jobs.folder import JobFolder, Limits
 from recon4_app.jobs.model import Inputs
+from recon4_app.jobs.tuning import EVENT_LIMITS
 
 LIMITS = Limits(memory_bytes=1 << 30, reserve_bytes=0)
 
@@ -75,7 +76,9 @@ def test_a_folder_in_the_place_of_a_file_is_no_obstacle(folder, tmp_path):
 def test_events_that_are_none_are_skipped_and_a_flood_is_read_in_pieces(tmp_path):
     path = tmp_path / "events.jsonl"
     good = b'{"kind": "run", "t": 1}\n'
-    path.write_bytes(b"[" * 100_000 + b"\n" + b"\xff\n" + b"x" * (3 * MAX_BYTES) + b"\n" + good)
+    path.write_bytes(
+        b"[" * 100_000 + b"\n" + b"\xff\n" + b"x" * (3 * EVENT_LIMITS.max_bytes) + b"\n" + good
+    )
 
     found, offset, reads = [], 0, 0
     while offset < path.stat().st_size:

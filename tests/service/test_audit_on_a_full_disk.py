@@ -7,7 +7,8 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from recon4_app.access.reserve import NEEDED_BYTES, RESERVE_BYTES, RESERVE_FILE
+from recon4_app.access.reserve import RESERVE_FILE
+from recon4_app.access.tuning import RESERVE
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD, secure_server
 
@@ -72,13 +73,13 @@ def test_on_a_full_disk_people_sign_in_and_what_is_acknowledged_is_in_the_log(di
     assert (forbidden.status_code, added.status_code) == (403, 201)
     assert done(log)[-2:] == [("sign in", "viewer"), ("add person", "ida, viewer")]
     assert log["chain"]["broken_at"] is None
-    assert kept > RESERVE_BYTES // 2
+    assert kept > RESERVE.reserve_bytes // 2
 
 
 def test_when_the_reserve_is_used_up_nothing_is_done_that_is_not_in_the_log(disk):
     roles = ("viewer", "operator")
     with secure_server(disk) as server, server.signed_in("anna") as anna:
-        (disk / ".recon4" / RESERVE_FILE).write_bytes(bytes(3 * NEEDED_BYTES))
+        (disk / ".recon4" / RESERVE_FILE).write_bytes(bytes(3 * RESERVE.needed_bytes))
         filler = fill(disk)
         answers = [anna.patch("/api/people/vera", json={"role": roles[k % 2]}) for k in range(60)]
         acknowledged = [f"vera, {roles[k % 2]}" for k, a in enumerate(answers) if a.is_success]

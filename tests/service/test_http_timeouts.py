@@ -3,6 +3,7 @@
 import contextlib
 import socket
 import time
+from dataclasses import replace
 from urllib.parse import urlsplit
 
 import httpx
@@ -18,9 +19,15 @@ SOON_S = 0.6
 @pytest.fixture
 def server(tmp_path, monkeypatch):
     """A server that is less patient, so that the test is short."""
-    monkeypatch.setattr(http_timeouts, "HEAD_TIMEOUT_S", SOON_S)
-    monkeypatch.setattr(http_timeouts, "BODY_WINDOW_S", SOON_S)
-    monkeypatch.setattr(http_timeouts, "MIN_BODY_BYTES", 60_000)
+    monkeypatch.setattr(
+        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, head_timeout_s=SOON_S)
+    )
+    monkeypatch.setattr(
+        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, body_window_s=SOON_S)
+    )
+    monkeypatch.setattr(
+        http_timeouts, "HTTP_TIMEOUTS", replace(http_timeouts.HTTP_TIMEOUTS, min_body_bytes=60_000)
+    )
     with server_thread(tmp_path) as running:
         yield running
 

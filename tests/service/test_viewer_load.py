@@ -2,6 +2,7 @@
 
 import time
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 
 import pytest
 
@@ -47,7 +48,9 @@ def test_twenty_people_at_once_each_have_a_map_of_a_million_points(million):
 def test_a_browser_that_reads_nothing_is_disconnected_without_effect_on_others(
     million, monkeypatch, caplog
 ):
-    monkeypatch.setattr(proxy, "STALLED_S", 3.0)  # `other` reads at least as often
+    monkeypatch.setattr(
+        proxy, "RELAY", replace(proxy.RELAY, stalled_s=3.0)
+    )  # `other` reads at least as often
     with (
         server_thread(million) as server,
         viewing(server.url, buffer_bytes=1 << 16) as stalled,

@@ -22,14 +22,10 @@ from starlette.requests import HTTPConnection
 
 from recon4.store.hashing import CHAIN_START
 from recon4_app.access.database import AUDIT, reserve_of, writing
+from recon4_app.access.tuning import AUDIT_LOG
 from recon4_app.errors import NoRoom
 
 log = logging.getLogger(__name__)
-
-MAX_TEXT_CHARS = 300
-"""Longer texts are cut [characters]."""
-MAX_FAILURES_PER_MINUTE = 60
-"""More refusals and failures are only counted, so that a stranger cannot fill the disk."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,7 +132,7 @@ class AuditLog:
             if minute != self._minute:
                 self._minute, self._failures = minute, 0
             self._failures += 1
-            if self._failures > MAX_FAILURES_PER_MINUTE:
+            if self._failures > AUDIT_LOG.max_failures_per_minute:
                 self._unwritten += 1
                 return ""
             left_out, self._unwritten = self._unwritten, 0
@@ -181,8 +177,8 @@ def verify_chain(rows: Iterable[Entry]) -> ChainCheck:
 
 
 def printable(text: str) -> str:
-    """The text without control characters, which could forge lines, cut at `MAX_TEXT_CHARS`."""
-    kept = text[:MAX_TEXT_CHARS]
+    """The text without control characters, which could forge lines, cut where it is long."""
+    kept = text[: AUDIT_LOG.max_text_chars]
     shown = "".join("\N{REPLACEMENT CHARACTER}" if _hidden(one) else one for one in kept)
     return shown.encode("utf-8", "replace").decode()
 

@@ -12,6 +12,7 @@ from fastapi import Depends
 from starlette.requests import HTTPConnection
 
 from recon4_app.access.audit import AuditLog, audit
+from recon4_app.access.tuning import PEOPLE_TIMES
 from recon4_app.errors import LOGIN, Refused, SignInAgain
 
 
@@ -48,9 +49,6 @@ MAY: dict[Role, frozenset[Permission]] = {
     Role.REVIEWER: frozenset({Permission.LOOK, Permission.PROCESS, Permission.REVIEW}),
     Role.ADMIN: frozenset(Permission),
 }
-
-RECENT_LOGIN_S = 900.0
-"""Signing with one's name requires a password given within this time [s]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,8 +134,9 @@ def recent_login(connection: HTTPConnection) -> Person:
     """A dependency for what is signed with one's name: requires a recent password.
 
     Raises:
-        SignInAgain: If it was given more than `RECENT_LOGIN_S` ago: ``POST /api/login/again``.
+        SignInAgain: If that is more than `PEOPLE_TIMES.recent_login_s` ago:
+            ``POST /api/login/again``.
     """
-    if signed_in_s(connection) > RECENT_LOGIN_S:
+    if signed_in_s(connection) > PEOPLE_TIMES.recent_login_s:
         raise SignInAgain("give your password again: this is signed with your name")
     return person(connection)

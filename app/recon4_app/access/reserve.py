@@ -12,13 +12,10 @@ import os
 from contextlib import suppress
 from pathlib import Path
 
+from recon4_app.access.tuning import RESERVE
 from recon4_app.errors import NoRoom
 
 RESERVE_FILE = "audit.room"
-RESERVE_BYTES = 8 << 20
-"""The write-ahead log grows to 4 MiB before its space is used again."""
-NEEDED_BYTES = 128 << 10
-"""For one transaction."""
 
 
 class Reserve:
@@ -38,9 +35,9 @@ class Reserve:
         Raises:
             NoRoom: If the reserve is used up and the disk still full.
         """
-        if self._size() < NEEDED_BYTES:
+        if self._size() < RESERVE.needed_bytes:
             self._fill()
-        if self._size() < NEEDED_BYTES:
+        if self._size() < RESERVE.needed_bytes:
             raise self._full()
 
     def give_way(self) -> None:
@@ -49,12 +46,12 @@ class Reserve:
         Raises:
             NoRoom: If that is not enough.
         """
-        missing = NEEDED_BYTES - self._free()
+        missing = RESERVE.needed_bytes - self._free()
         if missing <= 0:
             return
         with suppress(FileNotFoundError):
             os.truncate(self._file, max(0, self._size() - missing))
-        if self._free() < NEEDED_BYTES:
+        if self._free() < RESERVE.needed_bytes:
             raise self._full()
 
     def _fill(self) -> None:
@@ -63,8 +60,10 @@ class Reserve:
             before = os.fstat(file).st_size
             with suppress(OSError):
                 os.lseek(file, before, os.SEEK_SET)
-                os.write(file, bytes(RESERVE_BYTES - before))
-            if os.fstat(file).st_size < RESERVE_BYTES:  # no room for all: others need it more
+                os.write(file, bytes(RESERVE.reserve_bytes - before))
+            if (
+                os.fstat(file).st_size < RESERVE.reserve_bytes
+            ):  # no room for all: others need it more
                 os.ftruncate(file, before)
         finally:
             os.close(file)

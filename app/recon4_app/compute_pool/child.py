@@ -30,8 +30,7 @@ from recon4_app.compute_pool.messages import (
     encode_error,
     encode_result,
 )
-
-BACKGROUND_NICE = 10
+from recon4_app.compute_pool.tuning import CHILD_PRIORITY
 
 
 def main(arguments: list[str]) -> None:
@@ -41,7 +40,7 @@ def main(arguments: list[str]) -> None:
     kernels = use_private_cache(Path(scratch) / "kernels")
     leave_terminal_to_parent()
     if "--background" in rest:
-        os.nice(BACKGROUND_NICE)
+        os.nice(CHILD_PRIORITY.background_nice)
     # Output of a library must not mix with our messages.
     answers = os.fdopen(os.dup(1), "wb", buffering=0)
     os.dup2(2, 1)

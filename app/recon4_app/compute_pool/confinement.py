@@ -7,10 +7,7 @@ from pathlib import Path
 
 from recon4.sandbox import Confinement, Policy, confine
 from recon4_app.compute_pool.model import FileAccess
-
-MAX_FILE_BYTES = 64 << 30
-MAX_MEMORY_BYTES = 8 << 30
-"""Private memory of a child; memory-mapped files do not count."""
+from recon4_app.compute_pool.tuning import CHILD_LIMITS
 
 
 def confine_child(access: FileAccess, scratch: Path, kernels: tuple[Path, ...]) -> Confinement:
@@ -26,8 +23,8 @@ def confine_child(access: FileAccess, scratch: Path, kernels: tuple[Path, ...]) 
             read=(*access.read, *kernels),
             write=(*access.write, scratch),
             temporary=scratch / "tmp",
-            memory_bytes=min(MAX_MEMORY_BYTES, _half_of_the_memory()),
-            file_bytes=MAX_FILE_BYTES,
+            memory_bytes=min(CHILD_LIMITS.max_memory_bytes, _half_of_the_memory()),
+            file_bytes=CHILD_LIMITS.max_file_bytes,
         )
     )
 

@@ -7,10 +7,8 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from recon4_app.compute_pool.model import Quota
+from recon4_app.compute_pool.tuning import FAIRNESS
 from recon4_app.errors import TooMany
-
-MAX_PASSED = 8
-"""A large call that was passed by this many small ones counts as small, so that it is served."""
 
 
 @dataclass(eq=False, slots=True, kw_only=True)
@@ -119,7 +117,7 @@ class FairQueue:
         return min(
             eligible,
             key=lambda slot: (
-                slot.large and slot.passed < MAX_PASSED,
+                slot.large and slot.passed < FAIRNESS.max_passed,
                 running[slot.person],
                 self._served.get(slot.person, 0),
             ),

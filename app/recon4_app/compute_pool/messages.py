@@ -19,6 +19,7 @@ from pydantic import BaseModel, TypeAdapter
 from recon4.errors import ConfigError, Recon4Error, UnknownFormat, WrongSettings
 from recon4.untrusted.names import is_unnameable
 from recon4_app.compute_pool.model import FileAccess
+from recon4_app.compute_pool.tuning import POOL_MESSAGES
 from recon4_app.errors import ComputeFailed
 
 LENGTH = struct.Struct("<Q")
@@ -27,8 +28,6 @@ HEAD = struct.Struct("<cQ")
 """Header of each response: its kind, number of bytes that follow."""
 RESULT, REFUSED, FAILED = b"R", b"E", b"F"
 """A result; an error about the input; a failure of the program."""
-MAX_RESULT_BYTES = 256 << 20
-MAX_MESSAGE = 20_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +109,7 @@ def encode_error(error: Exception) -> bytes:
     """Encode an error of the library (child's side)."""
     problems = error.problems if isinstance(error, WrongSettings) else {}
     name = f"{type(error).__module__}.{type(error).__qualname__}"
-    message = str(error)[:MAX_MESSAGE].encode(errors="backslashreplace").decode()
+    message = str(error)[: POOL_MESSAGES.max_message].encode(errors="backslashreplace").decode()
     found = error.candidates if isinstance(error, UnknownFormat) else ()
     candidates = [str(one) for one in found if not is_unnameable(one)]
     reply = CallError(name=name, message=message, problems=problems, candidates=candidates)

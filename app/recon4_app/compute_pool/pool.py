@@ -15,20 +15,11 @@ from recon4_app.compute_pool.fair_queue import FairQueue
 from recon4_app.compute_pool.messages import Call, declared
 from recon4_app.compute_pool.model import QUOTAS, FileAccess, Lane, Quota, Terms
 from recon4_app.compute_pool.process import ChildProcess
+from recon4_app.compute_pool.tuning import POOL_TIMES
 from recon4_app.errors import ComputeFailed
 
 T = TypeVar("T")
 
-INTERACTIVE_LIMIT_S = 120.0
-BACKGROUND_LIMIT_S = 1800.0
-"""Limit of background calls [s]: a reference of gigabytes takes minutes."""
-GRACE_S = 2.0
-"""Time an interactive call may continue after its client left [s]: ending a child with a loaded map
-costs more."""
-MAX_KEPT = 4
-"""Most idle children that are kept with their open maps."""
-SPARE_AFTER_S = 5.0
-"""After the last start of a child the next one is prepared in advance."""
 INTERACTIVE_MODULES = ("recon4_app.slices.slice_work", "recon4_app.review.review_work")
 
 
@@ -129,13 +120,13 @@ class ComputePool:
             if background:
                 serving.cancel()
             else:
-                asyncio.get_running_loop().call_later(GRACE_S, serving.cancel)
+                asyncio.get_running_loop().call_later(POOL_TIMES.grace_s, serving.cancel)
             serving.add_done_callback(_retrieved)
             raise
 
     async def _serve(self, lane: Lane, terms: Terms, call: Call, *, background: bool) -> Any:
         """Run a call in a child; when this returns, no child works on it."""
-        usual_s = BACKGROUND_LIMIT_S if background else INTERACTIVE_LIMIT_S
+        usual_s = POOL_TIMES.background_limit_s if background else POOL_TIMES.interactive_limit_s
         limit_s = terms.limit_s or usual_s
         permission = _Permission.of(lane, terms.access)
         child: ChildProcess | None = None
@@ -191,7 +182,7 @@ class ComputePool:
             return
         self._kept.setdefault(permission, []).append(child)
         self._kept.move_to_end(permission)
-        while sum(map(len, self._kept.values())) > MAX_KEPT:
+        while sum(map(len, self._kept.values())) > POOL_TIMES.max_kept:
             oldest = next(iter(self._kept))
             gone = self._kept[oldest].pop(0)
             if not self._kept[oldest]:
@@ -205,7 +196,9 @@ class ComputePool:
         if self._closed:
             return
         loop = asyncio.get_running_loop()
-        self._preparing = loop.call_later(SPARE_AFTER_S, lambda: self._start(self._add_spare()))
+        self._preparing = loop.call_later(
+            POOL_TIMES.spare_after_s, lambda: self._start(self._add_spare())
+        )
 
     async def _add_spare(self) -> None:
         if self._spare is None:

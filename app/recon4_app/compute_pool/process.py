@@ -17,7 +17,6 @@ from recon4.system.processes import ChildRegister
 from recon4_app.compute_pool.messages import (
     FAILED,
     HEAD,
-    MAX_RESULT_BYTES,
     RESULT,
     Call,
     ChildSetup,
@@ -26,6 +25,7 @@ from recon4_app.compute_pool.messages import (
     encode_request,
 )
 from recon4_app.compute_pool.model import FileAccess
+from recon4_app.compute_pool.tuning import POOL_MESSAGES
 from recon4_app.errors import ComputeFailed
 from recon4_app.settings import worker_environment
 
@@ -109,10 +109,10 @@ class ChildProcess:
                 self._process.stdin.write(encode_request(message))
             await self._process.stdin.drain()
             kind, size = HEAD.unpack(await self._process.stdout.readexactly(HEAD.size))
-            if size > MAX_RESULT_BYTES:
+            if size > POOL_MESSAGES.max_result_bytes:
                 raise ComputeFailed(
-                    f"expected a result of at most {MAX_RESULT_BYTES} bytes, got {size}: "
-                    "request less at a time"
+                    f"expected a result of at most {POOL_MESSAGES.max_result_bytes} bytes, "
+                    f"got {size}: request less at a time"
                 )
             answer = await self._process.stdout.readexactly(size)
         except (OSError, asyncio.IncompleteReadError) as error:

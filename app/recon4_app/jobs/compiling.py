@@ -19,12 +19,9 @@ from pathlib import Path
 
 from recon4.sandbox.private_cache import is_compiled
 from recon4_app.jobs.folder import beat
+from recon4_app.jobs.tuning import COMPILING_TIMES
 
 log = logging.getLogger("recon4.job")
-
-WITHIN_S = 1800.0
-BEAT_EVERY_S = 1.0
-_NICENESS = 10
 
 
 @contextmanager
@@ -34,7 +31,7 @@ def compiling_beside() -> Iterator[None]:
         yield
         return
     child = _start()
-    os.setpriority(os.PRIO_PROCESS, child.pid, _NICENESS)
+    os.setpriority(os.PRIO_PROCESS, child.pid, COMPILING_TIMES.niceness)
     try:
         yield
     finally:
@@ -52,11 +49,11 @@ def compile_kernels_once(heartbeat: Path) -> None:
         return
     log.info("compiling the kernels: once after an installation, some minutes")
     child = _start()
-    deadline_s = time.monotonic() + WITHIN_S
+    deadline_s = time.monotonic() + COMPILING_TIMES.within_s
     while time.monotonic() < deadline_s:
         beat(heartbeat)
         with contextlib.suppress(subprocess.TimeoutExpired):
-            if child.wait(BEAT_EVERY_S):
+            if child.wait(COMPILING_TIMES.beat_every_s):
                 break
             return
     child.kill()

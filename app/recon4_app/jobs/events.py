@@ -19,15 +19,12 @@ from recon4.model.events import KINDS, Event, RunStarted, WorkProgress
 from recon4.model.plain import to_plain
 from recon4.store.json_files import parse_object
 from recon4_app.jobs.folder import beat
+from recon4_app.jobs.tuning import EVENT_LIMITS
 
 log = logging.getLogger("recon4.job")
 
 MANY = frozenset({"edge", "nodes", "poses", "verdicts"})
 """Events the viewer draws; they are too many for the text log."""
-EVERY_S = 0.25
-"""Shortest interval of writing progress and of checking for a request to stop [s]."""
-MAX_BYTES = 4 << 20
-"""Read at a time."""
 
 
 class EventWriter:
@@ -81,13 +78,13 @@ class EventWriter:
     def _beat(self) -> None:
         now_s = time.monotonic()
         if now_s >= self._beat_due_s:
-            self._beat_due_s = now_s + EVERY_S
+            self._beat_due_s = now_s + EVENT_LIMITS.every_s
             with contextlib.suppress(OSError):  # the work itself reports a full disk
                 beat(self._heartbeat)
 
     def _report(self) -> None:
         now_s = time.monotonic()
-        self._due_s = now_s + EVERY_S
+        self._due_s = now_s + EVENT_LIMITS.every_s
         self._write(
             WorkProgress(
                 what=self._what,
@@ -121,11 +118,11 @@ def read_events(path: Path, offset: int) -> tuple[list[Event], int]:
     try:
         with path.open("rb") as file:
             file.seek(offset)
-            data = file.read(MAX_BYTES)
+            data = file.read(EVENT_LIMITS.max_bytes)
     except FileNotFoundError:
         return [], offset
     whole = data[: data.rfind(b"\n") + 1]
-    if not whole and len(data) == MAX_BYTES:
+    if not whole and len(data) == EVENT_LIMITS.max_bytes:
         whole = data  # a line longer than any of ours
     found = (_parse(line) for line in whole.splitlines())
     return [event for event in found if event is not None], offset + len(whole)

@@ -31,10 +31,7 @@ from recon4.store.atomic import make_folders, write_json
 from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock
 from recon4_app.jobs.model import Inputs
-
-KEPT_BYTES = 64 << 10
-MAX_LOG_BYTES = 256 << 10
-MAX_REPLY_BYTES = 64 << 10
+from recon4_app.jobs.tuning import JOB_FILES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -161,7 +158,7 @@ class JobFolder:
     def keep_room(self) -> None:
         """Reserve the disk space that the outcome needs."""
         with (self.path / "room").open("wb") as file:
-            file.write(bytes(KEPT_BYTES))
+            file.write(bytes(JOB_FILES.kept_bytes))
             os.fsync(file.fileno())
 
     def finish(self, outcome: Outcome) -> None:
@@ -183,11 +180,12 @@ class JobFolder:
                 if offset > file.seek(0, os.SEEK_END):
                     offset = 0  # it was rotated (`recon4_app.logs.rotate_grown`)
                 file.seek(offset)
-                data = file.read(MAX_LOG_BYTES)
+                data = file.read(JOB_FILES.max_log_bytes)
         except FileNotFoundError:
             return "", offset
         whole = (
-            data[: data.rfind(b"\n") + 1] or data[: MAX_LOG_BYTES * (len(data) >= MAX_LOG_BYTES)]
+            data[: data.rfind(b"\n") + 1]
+            or data[: JOB_FILES.max_log_bytes * (len(data) >= JOB_FILES.max_log_bytes)]
         )
         lines = whole.decode("utf-8", "replace").splitlines()
         return "".join(f"{_printable(line)}\n" for line in lines), offset + len(whole)
@@ -217,7 +215,7 @@ def beat(heartbeat: Path) -> None:
 def _start(path: Path) -> bytes:
     """The first bytes of a file of a worker; all of them, unless it is too long."""
     with path.open("rb") as file:
-        return file.read(MAX_REPLY_BYTES)
+        return file.read(JOB_FILES.max_reply_bytes)
 
 
 def _is_worker_of(number: int, folder: Path) -> bool:

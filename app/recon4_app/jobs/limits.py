@@ -14,19 +14,12 @@ from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import use_private_cache
 from recon4_app.jobs.compiling import compile_kernels_once
 from recon4_app.jobs.folder import JobFolder
-
-MEMORY_FRACTION = 0.7
-MAX_FILES = 4096
-MAX_CPU_S = 96 * 3600
-"""Of all threads together; a day of recording takes less."""
-MIN_FILE_BYTES = 1 << 30
-NICENESS = 10
-"""Workers run at low priority, so that the pages stay responsive."""
+from recon4_app.jobs.tuning import WORKER_LIMITS
 
 
 def allowed_memory(setting_bytes: int) -> int:
     """Memory limit of a worker [bytes]: 70 % of this computer's, or the setting if that is less."""
-    most = int(MEMORY_FRACTION * physical_memory_bytes())
+    most = int(WORKER_LIMITS.memory_fraction * physical_memory_bytes())
     return min(most, setting_bytes) if setting_bytes > 0 else most
 
 
@@ -47,16 +40,16 @@ def worker_policy(folder: JobFolder) -> Policy:
         write=(project, folder.path),
         temporary=folder.temporary,
         memory_bytes=limits.memory_bytes,
-        cpu_s=MAX_CPU_S,
-        file_bytes=max(MIN_FILE_BYTES, free),
-        open_files=MAX_FILES,
+        cpu_s=WORKER_LIMITS.max_cpu_s,
+        file_bytes=max(WORKER_LIMITS.min_file_bytes, free),
+        open_files=WORKER_LIMITS.max_files,
     )
 
 
 def prepare_worker(folder: JobFolder, policy: Policy) -> Confinement:
     """Confine this process to the policy of its job, before it opens a file of a user."""
     restart_with_one_thread()
-    os.nice(NICENESS)
+    os.nice(WORKER_LIMITS.niceness)
     faulthandler.enable()  # a crash in native code writes its stack to the log
     project, _ = folder.request()
     project.mkdir(parents=True, exist_ok=True)  # the kernel allows only paths that exist

@@ -29,6 +29,7 @@ from recon4_app.jobs.model import Inputs, Job, JobState
 from recon4_app.jobs.space import refuse_if_full
 from recon4_app.jobs.status import JobStatus
 from recon4_app.jobs.supervisor import now
+from recon4_app.jobs.tuning import JOB_STREAM
 from recon4_app.names import Name
 from recon4_app.network.rate_limit import at_most
 from recon4_app.network.request_caller import CalledBy
@@ -50,9 +51,6 @@ _NOT_YET = ".not-yet"
 """Stands for the folder of a project whose name is not chosen yet."""
 _NAMING = threading.Lock()
 """Held from the choice of a project's folder to its job: two requests get two folders."""
-
-LONGEST_QUIET_S = 15.0
-"""Longest interval between two messages of an event stream [s]."""
 
 
 class NewJob(BaseModel):
@@ -264,7 +262,7 @@ async def stream_jobs(server: Server) -> AsyncIterator[ServerSentEvent]:
     while True:
         for job in jobs:
             yield ServerSentEvent(event="job", data=_view(server, job))
-        await server.supervisor.news(version, timeout_s=LONGEST_QUIET_S)
+        await server.supervisor.news(version, timeout_s=JOB_STREAM.longest_quiet_s)
         touched = server.supervisor.touched_since(version)
         version = server.supervisor.version
         jobs = [server.jobs.get(job_id) for job_id in touched]

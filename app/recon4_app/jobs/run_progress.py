@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from recon4.model.events import Event, RunStarted, StageChanged, WorkProgress
+from recon4_app.jobs.tuning import ESTIMATES
 
 BEFORE, AFTER = "hash", "results"
 """Work outside of any stage: hashing the recording, copying the results."""
@@ -38,9 +39,6 @@ PIECES = {
 }
 """Where within its stage a piece of work begins and ends; others span the whole stage."""
 
-KNOWN_AFTER_S, KNOWN_AFTER = 2.0, 0.02
-"""The remaining time is given after this time [s] and this fraction of the run."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RunProgress:
@@ -69,7 +67,7 @@ class RunProgress:
     def eta_s(self) -> float | None:
         """Remaining time of the whole run [s], None = not known yet."""
         worked, passed_s = self.fraction - self.reused, self.now_s - self.began_s
-        if self.over or worked < KNOWN_AFTER or passed_s < KNOWN_AFTER_S:
+        if self.over or worked < ESTIMATES.known_after or passed_s < ESTIMATES.known_after_s:
             return None
         return passed_s * (1.0 - self.fraction) / worked
 

@@ -16,8 +16,8 @@ from recon4.store.stage import SAVING
 from recon4.system.processes import waited_for_processor_s
 from recon4_app.jobs.run_progress import AFTER
 from recon4_app.jobs.status import JobStatus
+from recon4_app.jobs.tuning import SILENCE
 
-COMPUTING_FACTOR = 10.0
 COMPUTING = frozenset({"graph", "verification", "review", "refine", "level", "map", AFTER, SAVING})
 """Stages, and pieces of work in any stage."""
 
@@ -25,7 +25,7 @@ COMPUTING = frozenset({"graph", "verification", "review", "refine", "level", "ma
 def allowed_silence_s(status: JobStatus, hung_after_s: float) -> float:
     """Seconds without progress after which a worker at this point is killed."""
     running = {row.stage for row in status.stages if row.state == "running"}
-    return hung_after_s * (COMPUTING_FACTOR if COMPUTING & {*running, status.what} else 1.0)
+    return hung_after_s * (SILENCE.computing_factor if COMPUTING & {*running, status.what} else 1.0)
 
 
 @dataclass(slots=True)

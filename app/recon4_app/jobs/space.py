@@ -8,9 +8,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from recon4.errors import NoSpace
-
-TIMES_THE_INPUT = 3
-"""Decoded frames and map together have at most this multiple of the recording's bytes."""
+from recon4_app.jobs.tuning import SPACE
 
 
 def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int) -> None:
@@ -20,13 +18,13 @@ def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int)
         NoSpace: With the needed and the free bytes.
     """
     given = sum(size_below(path) for path in inputs)
-    needed = max(0, TIMES_THE_INPUT * given - size_below(project)) + reserve_bytes
+    needed = max(0, SPACE.times_the_input * given - size_below(project)) + reserve_bytes
     there = next(folder for folder in (project, *project.parents) if folder.exists())
     free = shutil.disk_usage(there).free
     if free < needed:
         raise NoSpace(
             f"no space: this job needs about {needed / 1e9:.1f} GB "
-            f"({TIMES_THE_INPUT} x {given / 1e9:.2f} GB of recording, and some to spare), "
+            f"({SPACE.times_the_input} x {given / 1e9:.2f} GB of recording, and some to spare), "
             f"{free / 1e9:.1f} GB are free; make room, then start again"
         )
 

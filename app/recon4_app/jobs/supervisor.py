@@ -28,11 +28,10 @@ from recon4_app.jobs.run_progress import after as progress_after
 from recon4_app.jobs.silence import SilenceClock, allowed_silence_s
 from recon4_app.jobs.status import JobStatus, after
 from recon4_app.jobs.store import JobStore
+from recon4_app.jobs.tuning import SUPERVISOR_TIMES
 from recon4_app.settings import ServerSettings, worker_environment
 
 log = logging.getLogger(__name__)
-
-LOOK_EVERY_S = 0.25
 
 
 class Tail:
@@ -155,7 +154,7 @@ class Supervisor:
                 changed = set()
             self._publish(changed | asked)
             with contextlib.suppress(TimeoutError):
-                async with asyncio.timeout(LOOK_EVERY_S):
+                async with asyncio.timeout(SUPERVISOR_TIMES.look_every_s):
                     await self._wake.wait()
 
     def _publish(self, jobs: set[str]) -> None:

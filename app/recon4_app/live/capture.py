@@ -14,12 +14,10 @@ from recon4.live.protocol import Done, Pause, Request, Resume, Status, Stopped
 from recon4.live.session import CaptureSession
 from recon4_app.errors import Conflict
 from recon4_app.live.stream_state import StreamState
+from recon4_app.live.tuning import CAPTURES
 from recon4_app.settings import worker_environment
 
 log = logging.getLogger(__name__)
-
-_MAPPER_STARTS = 5
-"""Starts of a mapper that keeps dying; then only the recording continues."""
 
 
 class State(StrEnum):
@@ -123,7 +121,7 @@ class Capture:
     async def _follow_mapper(self) -> None:
         """Follow the mapper; start it if none runs."""
         done = None
-        while done is None and self._mapper_starts < _MAPPER_STARTS:
+        while done is None and self._mapper_starts < CAPTURES.mapper_starts:
             try:
                 async with linked(self.session.socket("mapper")) as link:
                     self.problem = self._ended_because  # a failed start before is over

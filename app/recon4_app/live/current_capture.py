@@ -20,11 +20,11 @@ from recon4.untrusted.bounded import read_text_limited
 from recon4_app.errors import CAPTURE, Conflict, NotFound
 from recon4_app.live.capture import Capture, unfinished
 from recon4_app.live.power import Power, read_battery
+from recon4_app.live.tuning import MARKS
 from recon4_app.network.streams import StreamLimits, Streams
 
 log = logging.getLogger(__name__)
 
-MAX_MARKS_BYTES = 16 << 20
 LIVE_STREAM_LIMITS = StreamLimits(
     max_streams=32, max_per_person=8, max_per_address=16, reserved_for_capture=4
 )
@@ -132,7 +132,7 @@ def marks_of(session: CaptureSession) -> list[Mark]:
     try:
         if not session.marks.exists():
             return []
-        lines = read_text_limited(session.marks, MAX_MARKS_BYTES).splitlines()
+        lines = read_text_limited(session.marks, MARKS.max_marks_bytes).splitlines()
     except CorruptFile as error:
         log.warning("%s", error)
         return []

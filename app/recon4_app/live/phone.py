@@ -17,18 +17,9 @@ from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.health import lidars
 from recon4_app.live.phone_message import CaptureState, NoCapture, PhoneMessage
 from recon4_app.live.power import battery_findings
-from recon4_app.live.stream_state import BYTES_A_POINT, Cursor
+from recon4_app.live.stream_state import Cursor
+from recon4_app.live.tuning import PHONE_STREAM, STREAM
 
-SHOWN_EVERY_S = 0.05
-"""Shortest time between two messages to a phone …"""
-STILL_HERE_S = 2.0
-"""… and the longest."""
-STALLED_S = 30.0
-"""A phone that receives nothing for this long is disconnected; it reconnects by itself."""
-BYTES_A_SECOND = 220_000
-"""Data rate per phone, 1.8 Mbit/s: the newest messages go first, points get the rest …"""
-BYTES_AT_FIRST = 420_000
-"""… after an initial burst of 60 000 points."""
 URGENCY = ("error", "warning", "info")
 
 
@@ -46,7 +37,7 @@ class Phone:
         self._socket, self._current_capture = socket, current_capture
         self._disconnected: asyncio.Task[None] | None = None
         self._state: CaptureState | None = None
-        self._allowance = float(BYTES_AT_FIRST)
+        self._allowance = float(PHONE_STREAM.bytes_at_first)
 
     async def serve(self) -> None:
         """Send messages until the page disconnects.
@@ -56,7 +47,7 @@ class Phone:
         followed by a binary one.
 
         Raises:
-            TimeoutError: If it receives nothing for `STALLED_S`.
+            TimeoutError: If it receives nothing for `PHONE_STREAM.stalled_s`.
             WebSocketDisconnect: If it is disconnected.
         """
         greeting = await self._greeting()
@@ -69,7 +60,7 @@ class Phone:
             while not self._disconnected.done():
                 if capture is None:
                     await self._send(NoCapture(t=time.time(), server=__version__))
-                    await self._rest(STILL_HERE_S)
+                    await self._rest(PHONE_STREAM.still_here_s)
                 else:
                     await self._stream(capture, cursor_of(have, capture))
                     have = None
@@ -80,7 +71,7 @@ class Phone:
     async def _greeting(self) -> Greeting | None:
         """The first message of the page; None if it is not a JSON object."""
         try:
-            async with asyncio.timeout(STALLED_S):
+            async with asyncio.timeout(PHONE_STREAM.stalled_s):
                 said = await self._socket.receive_text()
             return msgspec.json.decode(said, type=Greeting)
         except (
@@ -98,9 +89,9 @@ class Phone:
         before_s = time.monotonic()
         while self._current_capture.newest is capture and not self._disconnected.done():
             version, now_s = stream.version, time.monotonic()
-            self._allowance += BYTES_A_SECOND * (now_s - before_s)
-            self._allowance, before_s = min(self._allowance, BYTES_AT_FIRST), now_s
-            most = max(0, int(self._allowance) // BYTES_A_POINT)
+            self._allowance += PHONE_STREAM.bytes_a_second * (now_s - before_s)
+            self._allowance, before_s = min(self._allowance, PHONE_STREAM.bytes_at_first), now_s
+            most = max(0, int(self._allowance) // STREAM.bytes_a_point)
             message, points = stream.lacking(cursor, most=most)
             self._allowance -= len(points)
             state = state_of(self._current_capture, capture)
@@ -108,11 +99,11 @@ class Phone:
             self._state = state
             await self._send(message)
             if points:
-                async with asyncio.timeout(STALLED_S):
+                async with asyncio.timeout(PHONE_STREAM.stalled_s):
                     await self._socket.send_bytes(points)
-            await self._rest(SHOWN_EVERY_S)
+            await self._rest(PHONE_STREAM.shown_every_s)
             if stream.complete(cursor):
-                await stream.news(version, timeout_s=STILL_HERE_S)
+                await stream.news(version, timeout_s=PHONE_STREAM.still_here_s)
 
     async def _rest(self, seconds: float) -> None:
         """Wait, at most until the phone disconnects."""
@@ -122,7 +113,7 @@ class Phone:
     async def _send(self, message: PhoneMessage | NoCapture) -> None:
         data = msgspec.json.encode(message)
         self._allowance -= len(data)
-        async with asyncio.timeout(STALLED_S):
+        async with asyncio.timeout(PHONE_STREAM.stalled_s):
             await self._socket.send_text(data.decode())
 
     async def _wait_for_disconnect(self) -> None:

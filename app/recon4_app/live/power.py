@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.live.findings import CaptureFinding
+from recon4_app.live.tuning import POWER
 
 SUPPLIES = Path("/sys/class/power_supply")
-READ_EVERY_S = 15.0
-LOW_S, LOW_CHARGE = 900.0, 0.15
-CRITICAL_S, CRITICAL_CHARGE = 300.0, 0.06
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,8 +37,8 @@ class Power:
 
     @property
     def battery(self) -> Battery | None:
-        """The battery, at most `READ_EVERY_S` old; None = there is none."""
-        if self._clock() - self._read_s >= READ_EVERY_S:
+        """The battery, at most `POWER.read_every_s` old; None = there is none."""
+        if self._clock() - self._read_s >= POWER.read_every_s:
             self._read_s, self._battery = self._clock(), self._read()
         return self._battery
 
@@ -62,9 +60,9 @@ def battery_findings(battery: Battery | None) -> list[CaptureFinding]:
     if battery is None or battery.mains:
         return []
     left_s = float("inf") if battery.left_s is None else battery.left_s
-    if left_s >= LOW_S and battery.charge >= LOW_CHARGE:
+    if left_s >= POWER.low_s and battery.charge >= POWER.low_charge:
         return []
-    critical = left_s < CRITICAL_S or battery.charge < CRITICAL_CHARGE
+    critical = left_s < POWER.critical_s or battery.charge < POWER.critical_charge
     left = f", {left_s / 60:.0f} min" if battery.left_s is not None else ""
     text = f"The computer's battery has {100 * battery.charge:.0f} %{left} left"
     return [CaptureFinding("error" if critical else "warning", text)]

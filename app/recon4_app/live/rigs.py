@@ -12,10 +12,8 @@ from recon4.errors import ConfigError, CorruptFile
 from recon4.model.rig import load_rig, rig_presets
 from recon4.untrusted.bounded import read_text_limited
 from recon4.untrusted.names import is_unnameable
+from recon4_app.live.tuning import LIVE_RIGS
 from recon4_app.rigs.store import RIGS, newest_files
-
-MAX_FILES = 100
-LARGEST_BYTES = 1 << 17
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +42,7 @@ def rig_files(
         shows: Whether a file may be listed (`ImportFolders.shows`).
     """
     files = (path for folder in folders for path in _files(folder) if _fits(path) and shows(path))
-    return tuple(islice(files, MAX_FILES))
+    return tuple(islice(files, LIVE_RIGS.max_files))
 
 
 def rigs_in(files: tuple[Path, ...]) -> list[RigChoice]:
@@ -68,13 +66,17 @@ def _fits(path: Path) -> bool:
         found = path.lstat()
     except OSError:
         return False
-    return S_ISREG(found.st_mode) and found.st_size <= LARGEST_BYTES and not is_unnameable(path)
+    return (
+        S_ISREG(found.st_mode)
+        and found.st_size <= LIVE_RIGS.largest_bytes
+        and not is_unnameable(path)
+    )
 
 
 def _choice(path: Path) -> RigChoice | None:
     """The rig in a file; None if the file has no sensors."""
     try:
-        if "[[sensor]]" not in read_text_limited(path, LARGEST_BYTES):
+        if "[[sensor]]" not in read_text_limited(path, LIVE_RIGS.largest_bytes):
             return None
         rig = load_rig(path)
     except ConfigError as error:

@@ -20,18 +20,10 @@ from recon4_app.live.phone_message import (
     PointsPart,
     StretchesPart,
 )
+from recon4_app.live.tuning import STREAM
 
-POINTS_AT_ONCE = 20_000
-"""Points per message: 140 kB, so that the map grows steadily on a slow phone."""
-BYTES_A_POINT = 7
 _SENT = ("status", "notes", "fix", "plan", "gaps", "loop", "motion", "pose")
 """Kinds of messages of which phones get the newest."""
-_LOCATED_WITHIN_NS = 10_000_000_000
-"""A mark appears without a position if the mapping does not reach its time within this."""
-_PATH_STEP_M = 0.25
-"""Distance between stored points of the path; an hour's walk has a few thousand."""
-_TRACK = 6000
-"""Poses kept to locate marks: ten minutes, longer than typing a note takes."""
 
 
 @dataclass(slots=True)
@@ -68,7 +60,7 @@ class StreamState:
         self._marks: list[LocatedMark] = []
         self._pending_marks: list[Mark] = []
         """Marks of times the mapping has not reached."""
-        self._track: deque[tuple[int, list[float]]] = deque(maxlen=_TRACK)
+        self._track: deque[tuple[int, list[float]]] = deque(maxlen=STREAM.track)
         """Time [ns] and position of the newest poses."""
 
     @property
@@ -91,7 +83,7 @@ class StreamState:
             case Mark():
                 self._take_mark(message)
             case Status():
-                self._locate_marks(message.t_ns - _LOCATED_WITHIN_NS)
+                self._locate_marks(message.t_ns - STREAM.located_within_ns)
             case Done():
                 self._locate_marks(None)
             case _ if not kept:
@@ -114,7 +106,9 @@ class StreamState:
         except TimeoutError:
             return
 
-    def lacking(self, cursor: Cursor, *, most: int = POINTS_AT_ONCE) -> tuple[PhoneMessage, bytes]:
+    def lacking(
+        self, cursor: Cursor, *, most: int = STREAM.points_at_once
+    ) -> tuple[PhoneMessage, bytes]:
         """The state a phone with this cursor lacks, with at most ``most`` points; moves the cursor.
 
         Returns:
@@ -137,7 +131,7 @@ class StreamState:
             message.marks = MarksPart(cursor.marks, self._marks[cursor.marks :])
             cursor.marks = len(self._marks)
         self._add_stretches(cursor, message)
-        return message, self._lacking_points(cursor, message, min(most, POINTS_AT_ONCE))
+        return message, self._lacking_points(cursor, message, min(most, STREAM.points_at_once))
 
     def _add_stretches(self, cursor: Cursor, message: PhoneMessage) -> None:
         """The stretches that are new, and the last one as long as it grows."""
@@ -166,7 +160,7 @@ class StreamState:
         return bytes(self._voxels[6 * start : 6 * end] + self._values[start:end])
 
     def _extend_path(self, place: list[float]) -> None:
-        if not self._path or math.dist(self._path[-1], place) >= _PATH_STEP_M:
+        if not self._path or math.dist(self._path[-1], place) >= STREAM.path_step_m:
             self._path.append([round(value, 2) for value in place])
 
     def _take_path(self, path: Path) -> None:

@@ -17,21 +17,8 @@ from functools import partial
 
 from recon4_app.network.connections import Connection, ConnectionTable, client_network
 from recon4_app.network.slow_readers import ReaderWatch
+from recon4_app.network.tuning import ACCEPT
 
-HANDSHAKE_TIMEOUT_S = 10.0
-"""Longest TLS handshake, from accepting the connection [s]."""
-SHUTDOWN_TIMEOUT_S = 5.0
-"""Longest wait for a TLS client to confirm the end of the connection [s]."""
-BACKLOG = 2048
-"""Connections the kernel keeps until they are accepted."""
-ACCEPTS_A_ROUND = 64
-"""Connections accepted in one round of the event loop."""
-ACCEPT_PAUSE_S = 0.25
-"""Pause of accepting after file descriptors or memory ran out [s]."""
-SPARED_S = 1.0
-"""A connection this young is not closed when file descriptors run out [s]."""
-SWEEP_S = 5.0
-"""Interval of the search for clients that do not read [s]."""
 EXHAUSTED = frozenset({errno.EMFILE, errno.ENFILE, errno.ENOBUFS, errno.ENOMEM})
 TLS_HANDSHAKE_RECORD = b"\x16"
 """First byte of every TLS connection."""
@@ -79,9 +66,9 @@ class Acceptor:
     def start(self) -> None:
         """Accept from now on."""
         self._listener.setblocking(False)
-        self._listener.listen(BACKLOG)
+        self._listener.listen(ACCEPT.backlog)
         self._resume()
-        self._later(SWEEP_S, self._sweep)
+        self._later(ACCEPT.sweep_s, self._sweep)
 
     def close(self) -> None:
         """Accept no more; connections without a request end."""
@@ -102,7 +89,7 @@ class Acceptor:
         self._loop.add_reader(self._listener, self._accept)
 
     def _accept(self) -> None:
-        for _ in range(ACCEPTS_A_ROUND):
+        for _ in range(ACCEPT.accepts_a_round):
             try:
                 accepted, address = self._listener.accept()
             except (BlockingIOError, InterruptedError):
@@ -123,9 +110,9 @@ class Acceptor:
         self._table.counts.accept_errors[errno.errorcode.get(number, str(number))] += 1
         if number not in EXHAUSTED:
             return False  # this client went before it was accepted
-        self._table.make_room(accepted_before_s=self._loop.time() - SPARED_S)
+        self._table.make_room(accepted_before_s=self._loop.time() - ACCEPT.spared_s)
         self._loop.remove_reader(self._listener)
-        self._later(ACCEPT_PAUSE_S, self._resume)
+        self._later(ACCEPT.accept_pause_s, self._resume)
         return True
 
     def _admit(self, sock: AcceptedSocket, address: str) -> None:
@@ -167,7 +154,7 @@ class Acceptor:
             self._loop.remove_reader(sock)
             self._connect(sock, connection, left_s=max(timer.when() - self._loop.time(), 0.1))
 
-        timer = self._loop.call_later(HANDSHAKE_TIMEOUT_S, late)
+        timer = self._loop.call_later(ACCEPT.handshake_timeout_s, late)
         connection.abort = partial(end, "")
         self._loop.add_reader(sock, readable)
 
@@ -191,7 +178,7 @@ class Acceptor:
                 sock,
                 ssl=self._context,
                 ssl_handshake_timeout=left_s if secure else None,
-                ssl_shutdown_timeout=SHUTDOWN_TIMEOUT_S if secure else None,
+                ssl_shutdown_timeout=ACCEPT.shutdown_timeout_s if secure else None,
             )
         except ConnectionAbortedError:  # what asyncio raises for a late handshake
             counts.timeouts["handshake"] += 1
@@ -212,7 +199,7 @@ class Acceptor:
             if watch.stalled(now_s):
                 self._table.counts.timeouts["response"] += 1
                 watch.transport.abort()
-        self._later(SWEEP_S, self._sweep)
+        self._later(ACCEPT.sweep_s, self._sweep)
 
 
 def _shut_down(sock: socket.socket) -> None:

@@ -17,12 +17,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from recon4_app.access.login.login_backoff import network
-
-RESERVED_FILES = 128
-"""File descriptors kept for databases, children and files that are being sent."""
-FILES_PER_CONNECTION = 2
-"""The socket, and a file or a viewer's socket behind it."""
-FEWEST_CONNECTIONS = 16
+from recon4_app.network.tuning import CONNECTIONS
 
 
 class Phase(StrEnum):
@@ -80,7 +75,10 @@ class ConnectionLimits:
             per_address: Connections wanted for one address.
             files: ``RLIMIT_NOFILE`` of the process.
         """
-        possible = max((files - RESERVED_FILES) // FILES_PER_CONNECTION, FEWEST_CONNECTIONS)
+        possible = max(
+            (files - CONNECTIONS.reserved_files) // CONNECTIONS.files_per_connection,
+            CONNECTIONS.fewest_connections,
+        )
         total = min(total, possible)
         return cls(total, min(per_address, max(total // 2, 1)))
 

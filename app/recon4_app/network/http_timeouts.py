@@ -13,15 +13,7 @@ from typing import Any
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol
 
 from recon4_app.network.connections import Connection, ConnectionTable, Phase
-
-HEAD_TIMEOUT_S = 10.0
-"""Longest time for the head of a request, from its first byte [s]."""
-MAX_HEAD_BYTES = 1 << 16
-BODY_WINDOW_S = 30.0
-MIN_BODY_BYTES = 3_000_000
-"""This much of a body arrives in `BODY_WINDOW_S` unless we ourselves stop reading: 100 kB/s."""
-KEEP_ALIVE_S = 5
-"""An idle connection is closed after this long [s]."""
+from recon4_app.network.tuning import HTTP_TIMEOUTS
 
 
 class HttpTimeoutsProtocol(HttpToolsProtocol):
@@ -40,7 +32,7 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
     def connection_made(self, transport: asyncio.BaseTransport) -> None:
         """Start the deadline of the first head."""
         super().connection_made(transport)  # type: ignore[arg-type]
-        self._start_timer(HEAD_TIMEOUT_S)
+        self._start_timer(HTTP_TIMEOUTS.head_timeout_s)
 
     def connection_lost(self, exc: Exception | None) -> None:
         """Stop the deadlines."""
@@ -57,22 +49,22 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         if self._in_head:
             self._head_bytes += len(data)
             if self._timer is None:
-                self._start_timer(HEAD_TIMEOUT_S)
+                self._start_timer(HTTP_TIMEOUTS.head_timeout_s)
         super().data_received(data)
-        if self._in_head and self._head_bytes > MAX_HEAD_BYTES:
+        if self._in_head and self._head_bytes > HTTP_TIMEOUTS.max_head_bytes:
             self._reject(b"431 Request Header Fields Too Large", "head_too_long")
 
     def on_headers_complete(self) -> None:
         """Wait for the body."""
         size = sum(len(name) + len(value) for name, value in self.headers) + len(self.url)
-        if size > MAX_HEAD_BYTES:
+        if size > HTTP_TIMEOUTS.max_head_bytes:
             self._head_too_long = True
             raise ValueError("head too long")
         self._in_head = False
         self._head_bytes = self._body_bytes = 0
         self._reading_paused = False
         self._table.move(self._connection, Phase.ACTIVE)
-        self._start_timer(BODY_WINDOW_S)
+        self._start_timer(HTTP_TIMEOUTS.body_window_s)
         super().on_headers_complete()
 
     def handle_websocket_upgrade(self) -> None:
@@ -106,7 +98,9 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
         if not self._in_head:
             # Closing at once would reset the connection before the client has read the answer.
             self._stop_timer()
-            self._timer = self.loop.call_later(BODY_WINDOW_S, partial(self._time_out, "body"))
+            self._timer = self.loop.call_later(
+                HTTP_TIMEOUTS.body_window_s, partial(self._time_out, "body")
+            )
         elif not self.pipeline and self.cycle.response_complete:
             self.on_idle()
 
@@ -137,12 +131,12 @@ class HttpTimeoutsProtocol(HttpToolsProtocol):
 
     def _check(self) -> None:
         self._timer = None
-        fast_enough = self._reading_paused or self._body_bytes >= MIN_BODY_BYTES
+        fast_enough = self._reading_paused or self._body_bytes >= HTTP_TIMEOUTS.min_body_bytes
         if self._in_head or not fast_enough:
             self._time_out("head" if self._in_head else "body")
             return
         self._body_bytes, self._reading_paused = 0, self.flow.read_paused
-        self._start_timer(BODY_WINDOW_S)
+        self._start_timer(HTTP_TIMEOUTS.body_window_s)
 
     def _time_out(self, what: str) -> None:
         self._table.counts.timeouts[what] += 1

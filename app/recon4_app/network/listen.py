@@ -28,12 +28,9 @@ from recon4_app.network.connections import (
     open_file_limit,
 )
 from recon4_app.network.hosts import LOOPBACK, own_names
-from recon4_app.network.http_timeouts import KEEP_ALIVE_S, HttpTimeoutsProtocol
+from recon4_app.network.http_timeouts import HttpTimeoutsProtocol
+from recon4_app.network.tuning import HTTP_TIMEOUTS, PINGS
 from recon4_app.settings import ServerSettings
-
-PING_INTERVAL_S = 20.0
-PING_TIMEOUT_S = 20.0
-"""Interval of WebSocket pings, and time after which one without a pong is closed [s]."""
 
 
 class AnnouncingServer(uvicorn.Server):
@@ -113,10 +110,10 @@ def uvicorn_config(app: FastAPI, certificate: Certificate | None = None) -> uvic
         access_log=False,
         proxy_headers=False,  # there is no proxy: such headers are forged
         ws_max_size=1 << 20,
-        ws_ping_interval=PING_INTERVAL_S,
-        ws_ping_timeout=PING_TIMEOUT_S,
+        ws_ping_interval=PINGS.ping_interval_s,
+        ws_ping_timeout=PINGS.ping_timeout_s,
         ws_per_message_deflate=False,  # costs 0.3 s of processor time a million points
-        timeout_keep_alive=KEEP_ALIVE_S,
+        timeout_keep_alive=HTTP_TIMEOUTS.keep_alive_s,
         timeout_graceful_shutdown=2,  # event streams never end by themselves
         server_header=False,
         ssl_context_factory=(lambda config, default: context) if context is not None else None,

@@ -11,9 +11,8 @@ import socket
 import struct
 from dataclasses import dataclass
 
-READ_WINDOW_S = 30.0
-MIN_READ_BYTES = 60_000
-"""Least bytes that a client with waiting data reads in `READ_WINDOW_S`: 2 kB/s."""
+from recon4_app.network.tuning import SLOW_READERS
+
 TCP_INFO_BYTES = 128
 BYTES_ACKED = struct.Struct("=120xQ")
 """``tcpi_bytes_acked`` in the ``struct tcp_info`` of Linux, since 4.1."""
@@ -47,10 +46,10 @@ class ReaderWatch:
         if self._since_s is None:
             self._since_s, self._acked = now_s, bytes_acked(self.sock)
             return False
-        if now_s - self._since_s < READ_WINDOW_S:
+        if now_s - self._since_s < SLOW_READERS.read_window_s:
             return False
         acked = bytes_acked(self.sock)
-        enough = acked - self._acked >= MIN_READ_BYTES
+        enough = acked - self._acked >= SLOW_READERS.min_read_bytes
         self._since_s, self._acked = now_s, acked
         return not enough
 

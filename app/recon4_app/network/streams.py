@@ -16,10 +16,10 @@ from starlette.requests import HTTPConnection
 from recon4_app.access.login.login_backoff import network
 from recon4_app.access.people import LOCAL, READER, Permission, person
 from recon4_app.errors import TooMany
+from recon4_app.network.tuning import STREAMS
 
 TOO_MANY = 4429
 """Close code of a WebSocket beyond the limit; the reason has the message."""
-RETRY_AFTER_S = 10.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class Streams:
         address = network(connection.client.host if connection.client else "")
         if (reason := self._rejection(connection, name, address)) is not None:
             self.refused += 1
-            raise TooMany(reason, retry_after_s=RETRY_AFTER_S)
+            raise TooMany(reason, retry_after_s=STREAMS.retry_after_s)
         self.open += 1
         self._people[name] += 1
         self._addresses[address] += 1

@@ -9,8 +9,7 @@ import re
 import unicodedata
 from collections.abc import Callable
 
-LONGEST = 60
-"""Characters; leaves space for the number of a repeated title."""
+from recon4_app.projects.tuning import FOLDER_NAMES
 
 
 def folder_name(title: str) -> str:
@@ -19,7 +18,10 @@ def folder_name(title: str) -> str:
     ``project`` if the title has no letter or digit of the Latin alphabet.
     """
     plain = unicodedata.normalize("NFKD", title).encode("ascii", "ignore").decode()
-    return re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[:LONGEST].rstrip("-") or "project"
+    return (
+        re.sub(r"[^a-z0-9]+", "-", plain.lower()).strip("-")[: FOLDER_NAMES.longest].rstrip("-")
+        or "project"
+    )
 
 
 def free_folder_name(title: str, is_taken: Callable[[str], bool]) -> str:

@@ -11,12 +11,11 @@ from pathlib import Path
 from recon4.untrusted.names import is_unnameable, visible
 from recon4_app.errors import NotFound, Refused
 from recon4_app.projects.model import FolderEntry
+from recon4_app.projects.tuning import IMPORT_FOLDERS
 
 SYSTEM = tuple(map(Path, ("/boot", "/dev", "/etc", "/proc", "/run", "/sys")))
 """Never recordings, even where a folder of recordings contains them (``/``)."""
 RENAME = "rename it: its name is no UTF-8 text"
-MAX_ENTRIES = 2000
-"""A longer folder listing is cut."""
 
 
 class ImportFolders:
@@ -93,7 +92,7 @@ class ImportFolders:
         shown.sort(key=lambda path: (not path.is_dir(), path.name.lower()))
         unnameable = sorted(path for path in inside if is_unnameable(path))
         found = [_entry(path, path.name) for path in shown]
-        return [*found, *map(_unnameable_entry, unnameable)][:MAX_ENTRIES]
+        return [*found, *map(_unnameable_entry, unnameable)][: IMPORT_FOLDERS.max_entries]
 
     def _within(self, real: Path) -> bool:
         return any(real.is_relative_to(folder) for folder in self._folders)

@@ -7,9 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from recon4.untrusted.names import is_unnameable
-
-MAX_BESIDE = 50
-"""In folders with more files, no IMU or GNSS file is searched for."""
+from recon4_app.projects.tuning import INSPECTION
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,14 +55,17 @@ class RecordingSummary:
 def files_beside(path: Path) -> tuple[Path, ...]:
     """Regular files in the folder of a recording: `inspect_recording` may read them too.
 
-    With more than `MAX_BESIDE` files only those of the recording's own name (``x.db3-wal``).
+    With more than `INSPECTION.max_beside` files only those of the recording's own name
+    (``x.db3-wal``).
     """
     folder = path if path.is_dir() else path.parent
     with os.scandir(folder) as entries:
         files = sorted(Path(one.path) for one in entries if one.is_file(follow_symlinks=False))
     files = [file for file in files if file != path and not is_unnameable(file)]
-    if len(files) > MAX_BESIDE:
-        return tuple(file for file in files if file.name.startswith(path.stem))[:MAX_BESIDE]
+    if len(files) > INSPECTION.max_beside:
+        return tuple(file for file in files if file.name.startswith(path.stem))[
+            : INSPECTION.max_beside
+        ]
     return tuple(files)
 
 

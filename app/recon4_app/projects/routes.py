@@ -24,6 +24,7 @@ from recon4_app.network.request_caller import CalledBy
 from recon4_app.projects.inspect_recording import RecordingSummary, files_beside, inspect_recording
 from recon4_app.projects.model import MAP_IMAGES, FolderEntry, ProjectCard, ProjectView
 from recon4_app.projects.trash import Deleted
+from recon4_app.projects.tuning import LOOKS
 
 router = APIRouter(
     prefix="/api",
@@ -38,10 +39,6 @@ REPORT_POLICY = "sandbox; default-src 'none'; style-src 'unsafe-inline'; img-src
 
 
 FINDINGS_TYPES = {"csv": "text/csv; charset=utf-8", "geojson": "application/geo+json"}
-
-LOOK_LIMIT_S = 60.0
-COMPARED_WITHIN_S = 0.3
-"""The page of a project waits this long for the comparison with its signature [s]."""
 
 
 class Rename(BaseModel):
@@ -194,7 +191,9 @@ async def look(path: str, server: Server, caller: CalledBy) -> RecordingSummary:
     """Inspect a recording on this computer: content and suitable settings."""
     real = await run_in_threadpool(server.projects.importable, path)
     beside = await run_in_threadpool(files_beside, real)
-    terms = Terms(person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOK_LIMIT_S)
+    terms = Terms(
+        person=caller.name, access=FileAccess(read=(real, *beside)), limit_s=LOOKS.look_limit_s
+    )
     return await caller.wait(
         server.compute_pool.run_background(Lane.INSPECT, terms, inspect_recording, real, beside)
     )
@@ -206,7 +205,7 @@ def _compared(server: ServerParts, project: ProjectView) -> ProjectView:
     if not found.hash:
         return project
     root, keys = server.projects.folder(project.id), artifact_keys(project.summary)
-    found = server.checks.compared(root, keys, found, within_s=COMPARED_WITHIN_S)
+    found = server.checks.compared(root, keys, found, within_s=LOOKS.compared_within_s)
     return replace(project, approval=found)
 
 

@@ -35,16 +35,11 @@ from recon4_app.projects.model import (
     ResultFile,
     StageView,
 )
+from recon4_app.projects.tuning import PROJECT_LIST
 
 RESERVED = frozenset({"recordings", "rigs"})
 """Folders of uploads and of rigs, beside those of projects."""
 PROJECT_ID = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
-MAX_PROBLEM = 400
-"""A longer description of a project's problem is cut [characters]."""
-_LARGE = 1 << 53
-"""Greater numbers are not plausible, and not exact in a browser."""
-MAX_ENTRIES = 2000
-"""A longer folder listing is cut."""
 
 
 class ProjectStore:
@@ -287,11 +282,13 @@ def _name(facts: dict[str, object], folder: Path) -> str:
 
 
 def _number(value: Any) -> float | None:
-    return float(value) if isinstance(value, int | float) and abs(value) < _LARGE else None
+    return (
+        float(value) if isinstance(value, int | float) and abs(value) < PROJECT_LIST.large else None
+    )
 
 
 def _whole(value: Any) -> int | None:
-    return value if isinstance(value, int) and abs(value) < _LARGE else None
+    return value if isinstance(value, int) and abs(value) < PROJECT_LIST.large else None
 
 
 def _is_project(folder: Path) -> bool:
@@ -333,7 +330,7 @@ def _stages(folder: Path) -> tuple[tuple[StageView, ...], str]:
         rows = [row for row in read_stages(folder) if row.key in current]
         found = tuple(map(_stage, rows))
     except (StoreError, ValueError, TypeError) as error:
-        return (), visible(str(error), most=MAX_PROBLEM)
+        return (), visible(str(error), most=PROJECT_LIST.max_problem)
     order = {stage: k for k, stage in enumerate(STAGE_ORDER)}
     return tuple(sorted(found, key=lambda one: order.get(one.stage, len(order)))), ""
 
@@ -366,7 +363,7 @@ def _object(folder: Path, name: str) -> tuple[dict[str, object], str]:
         return read_object(path), ""
     except StoreError as error:
         problem = str(error).replace(f"{folder}/", "")
-        return {}, visible(problem, most=MAX_PROBLEM)
+        return {}, visible(problem, most=PROJECT_LIST.max_problem)
 
 
 def _name_of(rig: Any) -> str:

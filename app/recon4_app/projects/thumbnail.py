@@ -9,9 +9,8 @@ from recon4.errors import Recon4Error
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import ComputeFailed, NotFound
+from recon4_app.projects.tuning import THUMBNAILS
 
-MAX_POINTS = 3_000_000
-"""Points of a map that are enough for a thumbnail."""
 THUMBNAIL = "map.png"
 
 
@@ -52,5 +51,5 @@ def draw_thumbnail(artifact: Path, out: Path) -> None:
     from recon4.report.maps import ABOVE, ink_png, map_chunks, rasterize
 
     tiles = TileSet.open(artifact)
-    raster = rasterize(lambda: map_chunks(tiles, points=MAX_POINTS), (ABOVE,))[0]
+    raster = rasterize(lambda: map_chunks(tiles, points=THUMBNAILS.max_points), (ABOVE,))[0]
     out.write_bytes(ink_png(raster))

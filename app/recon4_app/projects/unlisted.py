@@ -8,8 +8,7 @@ from pathlib import Path
 from recon4.store.project import is_project
 from recon4.untrusted.names import visible
 from recon4_app.projects.store import PROJECT_ID
-
-_MAX_SHOWN = 3
+from recon4_app.projects.tuning import UNLISTED
 
 
 def unlisted_notices(root: Path) -> list[str]:
@@ -18,8 +17,8 @@ def unlisted_notices(root: Path) -> list[str]:
         names = sorted(entry.name for entry in entries if _is_unlisted(entry))
     if not names:
         return []
-    shown = ", ".join(visible(name, most=64) for name in names[:_MAX_SHOWN])
-    more = " …" if len(names) > _MAX_SHOWN else ""
+    shown = ", ".join(visible(name, most=64) for name in names[: UNLISTED.max_shown])
+    more = " …" if len(names) > UNLISTED.max_shown else ""
     return [
         f"Not listed: {shown}{more} ({len(names)} in all). The folder name of a project has "
         "up to 64 letters A-Z, digits, '.', '_' and '-': rename the folder."

@@ -16,9 +16,7 @@ from recon4.errors import Recon4Error
 from recon4.review.approval_state import ApprovalState, altered, approval_state
 from recon4.review.approved import Approval, approval_of
 from recon4.store.checked import Altered
-
-ANSWER_WITHIN_S = 2.0
-"""A request waits this long for a comparison [s]."""
+from recon4_app.review.tuning import CHECKS
 
 
 class ApprovalChecks:
@@ -31,7 +29,7 @@ class ApprovalChecks:
         self._altered: dict[tuple[Path, str], str] = {}
 
     def state(
-        self, root: Path, keys: Mapping[str, str], *, within_s: float = ANSWER_WITHIN_S
+        self, root: Path, keys: Mapping[str, str], *, within_s: float = CHECKS.answer_within_s
     ) -> ApprovalState:
         """The approval of results, with the outcome of the comparison of every byte.
 

@@ -60,6 +60,7 @@ from recon4_app.review.model import (
 )
 from recon4_app.review.records import record_signed
 from recon4_app.review.store import terms_of
+from recon4_app.review.tuning import SIGNING
 
 T = TypeVar("T")
 
@@ -67,8 +68,6 @@ LOOK = [Depends(needs(Permission.LOOK))]
 REVIEW = [Depends(needs(Permission.REVIEW))]
 SIGN = [Depends(needs(Permission.REVIEW)), Depends(recent_login)]
 PREFIX = "/api/projects/{project_id}/review"
-SIGNING_LIMIT_S = 1800.0
-"""A map of tens of gigabytes is read and written once for its approval."""
 
 router = APIRouter(
     prefix=PREFIX,
@@ -288,7 +287,7 @@ async def _sign(
     terms = Terms(
         person=signer["who"],
         access=FileAccess(read=(key, *judging_folders(key.parent)), write=(root,)),
-        limit_s=SIGNING_LIMIT_S,
+        limit_s=SIGNING.signing_limit_s,
     )
     seen = (asked.after_seq, asked.graph)
     return await server.compute_pool.run_background(

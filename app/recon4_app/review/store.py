@@ -15,9 +15,7 @@ from recon4.review.source import Source
 from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import Conflict
-
-_MAX_MEASUREMENTS = 500
-_MAX_QUEUES = 4
+from recon4_app.review.tuning import REVIEW_CACHE
 
 
 def terms_of(root: Path, person: str) -> Terms:
@@ -42,7 +40,7 @@ class Reviews:
         """Store a registration and return its id."""
         name = secrets.token_hex(12)
         self._measured[name] = (root, pair, alignment.measurement)
-        if len(self._measured) > _MAX_MEASUREMENTS:
+        if len(self._measured) > REVIEW_CACHE.max_measurements:
             self._measured.popitem(last=False)
         return name
 
@@ -66,7 +64,7 @@ class Reviews:
             self._queues[known] = await self._pool.run_interactive(
                 Lane.REVIEW, terms_of(root, person), queue_json, source
             )
-            if len(self._queues) > _MAX_QUEUES:
+            if len(self._queues) > REVIEW_CACHE.max_queues:
                 self._queues.popitem(last=False)
         return self._queues[known]
 

@@ -19,9 +19,9 @@ from recon4.untrusted.names import visible
 from recon4_app.errors import NotFound
 from recon4_app.projects.store import ProjectStore
 from recon4_app.rigs.model import AgreementView, CalibrationSlices, CalibrationView, ParameterView
+from recon4_app.rigs.tuning import CALIBRATION_FILES
 from recon4_app.rigs.uses import RigUses
 
-MAX_CALIBRATION_BYTES = 4 << 20
 _SHOWN = {"rad": (math.degrees(1.0), "°", 3), "m": (100.0, " cm", 2), "s": (1e3, " ms", 2)}
 """Unit -> factor to the unit on screen, its name, decimals."""
 
@@ -161,7 +161,7 @@ def _agreement_lines(before: AgreementView | None, after: AgreementView | None) 
 
 
 def _parsed(kind: type[_Model], path: Path) -> _Model:
-    found = read_object(path, max_bytes=MAX_CALIBRATION_BYTES)
+    found = read_object(path, max_bytes=CALIBRATION_FILES.max_calibration_bytes)
     try:
         return kind.model_validate(found)
     except ValidationError as error:

@@ -22,13 +22,8 @@ from recon4_app.rigs.model import (
     SensorContent,
     Triple,
 )
+from recon4_app.rigs.tuning import RIG_CONTENT
 
-LARGEST_M = 10.0
-"""A sensor farther from the origin of a backpack is a mistake of the unit."""
-LARGEST_DEG = 360.0
-_LARGEST_HEAD_DEG_S = 3600.0
-_LARGEST_PORT = 65535
-_GIMBAL_LOCK = 1e-9
 Problem = tuple[str, str]
 """Field, and what is wrong with it."""
 
@@ -125,7 +120,7 @@ def rpy_deg(R: Array) -> Triple:
     """
     level = float(np.hypot(R[0, 0], R[1, 0]))
     pitch = np.arctan2(-R[2, 0], level)
-    if level < _GIMBAL_LOCK:
+    if level < RIG_CONTENT.gimbal_lock:
         angles = (np.arctan2(np.sign(pitch) * R[0, 1], R[1, 1]), pitch, 0.0)
     else:
         angles = (np.arctan2(R[2, 1], R[2, 2]), pitch, np.arctan2(R[1, 0], R[0, 0]))
@@ -165,8 +160,11 @@ def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[
         yield f"{where}.model", f"{label}: expected {expected}, got {visible(sensor.model)!r}"
     if sensor.kind != "profiler" and (sensor.head_topic or sensor.head_rate_deg_s):
         yield f"{where}.head_topic", f"{label}: only a profiler has a head"
-    if abs(sensor.head_rate_deg_s) > _LARGEST_HEAD_DEG_S:
-        yield f"{where}.head_rate_deg_s", f"{label}: expected at most {_LARGEST_HEAD_DEG_S:g} °/s"
+    if abs(sensor.head_rate_deg_s) > RIG_CONTENT.largest_head_deg_s:
+        yield (
+            f"{where}.head_rate_deg_s",
+            f"{label}: expected at most {RIG_CONTENT.largest_head_deg_s:g} °/s",
+        )
     yield from _beams_problems(sensor, f"{where}.beams", label)
     if sensor.address and not _is_address(sensor.address):
         got = visible(sensor.address)
@@ -185,18 +183,24 @@ def _beams_problems(sensor: SensorContent, field: str, label: str) -> Iterator[P
 
 def _mount_problems(xyz_m: Triple, rpy: Triple, *, where: str, label: str) -> Iterator[Problem]:
     yield from _distance_problems(xyz_m, f"{where}.xyz_m", label)
-    if any(abs(angle) > LARGEST_DEG for angle in rpy):
-        yield f"{where}.rpy_deg", f"{label}: expected angles within ±{LARGEST_DEG:g}°, got {rpy}"
+    if any(abs(angle) > RIG_CONTENT.largest_deg for angle in rpy):
+        yield (
+            f"{where}.rpy_deg",
+            f"{label}: expected angles within ±{RIG_CONTENT.largest_deg:g}°, got {rpy}",
+        )
 
 
 def _distance_problems(xyz_m: Triple, field: str, label: str) -> Iterator[Problem]:
-    if any(abs(value) > LARGEST_M for value in xyz_m):
-        yield field, f"{label}: expected a position within ±{LARGEST_M:g} m, got {xyz_m}"
+    if any(abs(value) > RIG_CONTENT.largest_m for value in xyz_m):
+        yield (
+            field,
+            f"{label}: expected a position within ±{RIG_CONTENT.largest_m:g} m, got {xyz_m}",
+        )
 
 
 def _port_problems(port: int, field: str, label: str) -> Iterator[Problem]:
-    if not 0 <= port <= _LARGEST_PORT:
-        yield field, f"{label}: port must be 0 to {_LARGEST_PORT}, got {port}"
+    if not 0 <= port <= RIG_CONTENT.largest_port:
+        yield field, f"{label}: port must be 0 to {RIG_CONTENT.largest_port}, got {port}"
 
 
 def _serial_problems(gnss: GnssContent) -> Iterator[Problem]:

@@ -9,12 +9,12 @@ from pydantic import BaseModel, ConfigDict, Field
 from recon4.model.beams import MAX_BEAMS
 from recon4.model.rig import MAX_RIG_BYTES, MAX_SENSORS, SensorKind
 from recon4_app.names import Name, Note
+from recon4_app.rigs.tuning import RIG_TEXTS
 
 Number = Annotated[float, Field(ge=-4e9, le=4e9, allow_inf_nan=False)]
 Triple = tuple[Number, Number, Number]
 Port = Annotated[int, Field(ge=-(1 << 31), le=1 << 31)]
 RIG_ID = r"^[A-Za-z0-9][A-Za-z0-9._-]{0,63}$"
-LONGEST_TEXT = 1000
 
 
 class RigPart(BaseModel):
@@ -37,10 +37,10 @@ class BeamsContent(RigPart):
 class SensorContent(RigPart):
     """One LiDAR, profiler or 2-D laser, in the units of a rig file."""
 
-    name: Name = Field(max_length=LONGEST_TEXT)
+    name: Name = Field(max_length=RIG_TEXTS.longest_text)
     """Unique within the rig."""
     kind: SensorKind = "lidar"
-    model: Name = Field(default="VLP-16", max_length=LONGEST_TEXT)
+    model: Name = Field(default="VLP-16", max_length=RIG_TEXTS.longest_text)
     """See `/api/sensor-models`."""
     xyz_m: Triple = (0.0, 0.0, 0.0)
     """Origin of the sensor in the body frame [m]."""
@@ -48,22 +48,22 @@ class SensorContent(RigPart):
     """Roll, pitch, yaw in the body frame [deg]."""
     time_offset_s: Number = 0.0
     """Added to its timestamps [s]."""
-    address: Name = Field(default="", max_length=LONGEST_TEXT)
+    address: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """IPv4 address its packets come from; empty = any."""
     port: Port = 2368
     """UDP port its packets go to."""
-    topic: Name = Field(default="", max_length=LONGEST_TEXT)
+    topic: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Topic in a bag; empty = detected."""
-    head_topic: Name = Field(default="", max_length=LONGEST_TEXT)
+    head_topic: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Profiler: topic of the angle of its head; empty = detected."""
     head_rate_deg_s: Number = 0.0
     """Profiler: constant turn rate of its head [deg/s]; 0 = the recording has the angles."""
     enabled: bool = True
     """False: its points are stored, but neither registered nor mapped."""
-    serial: Name = Field(default="", max_length=LONGEST_TEXT)
+    serial: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
+    """Serial number; empty = not known."""
     description: str = Field(default="", max_length=MAX_RIG_BYTES)
     """Metadata or table of angles of this very sensor, as its maker writes them."""
-    """Serial number; empty = not known."""
     beams: BeamsContent | None = None
     """Corrections of single beams; null = none."""
 
@@ -71,14 +71,14 @@ class SensorContent(RigPart):
 class ImuContent(RigPart):
     """The IMU."""
 
-    sensor: Name = Field(default="", max_length=LONGEST_TEXT)
+    sensor: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Name of the LiDAR whose IMU it is, mounted as that LiDAR; empty = an IMU of its own."""
     xyz_m: Triple = (0.0, 0.0, 0.0)
     rpy_deg: Triple = (0.0, 0.0, 0.0)
     time_offset_s: Number = 0.0
     port: Port
     """UDP port of its datagrams; 0 = none."""
-    topic: Name = Field(default="", max_length=LONGEST_TEXT)
+    topic: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Topic in a bag; empty = chosen by content."""
 
 
@@ -90,16 +90,16 @@ class GnssContent(RigPart):
     time_offset_s: Number = 0.0
     port: Port
     """UDP port of its datagrams; 0 = none."""
-    serial: Name = Field(default="", max_length=LONGEST_TEXT)
+    serial: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Serial device and baud rate; empty = none."""
-    topic: Name = Field(default="", max_length=LONGEST_TEXT)
+    topic: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Topic in a bag; empty = chosen by content."""
 
 
 class RigContent(RigPart):
     """A rig in the units of a rig file."""
 
-    name: Name = Field(max_length=LONGEST_TEXT)
+    name: Name = Field(max_length=RIG_TEXTS.longest_text)
     """Display name."""
     sensors: list[SensorContent] = Field(min_length=1, max_length=MAX_SENSORS)
     imu: ImuContent

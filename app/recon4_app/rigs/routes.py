@@ -19,7 +19,6 @@ from recon4_app.error_responses import ProblemDetail
 from recon4_app.errors import BadRequest
 from recon4_app.network.request_caller import CalledBy, Caller
 from recon4_app.pages import page_response
-from recon4_app.rig_files import LIMIT_S
 from recon4_app.rigs import rig_work
 from recon4_app.rigs.calibrations import evidence_of
 from recon4_app.rigs.content import content_of, problems_of, rig_of, warnings_of
@@ -37,7 +36,8 @@ from recon4_app.rigs.model import (
     SavedRig,
     SensorModel,
 )
-from recon4_app.rigs.store import MAX_EVIDENCE
+from recon4_app.rigs.tuning import RIG_STORE
+from recon4_app.tuning import RIG_FILE_TIMES
 
 LOOK = [Depends(needs(Permission.LOOK))]
 PROCESS = [Depends(needs(Permission.PROCESS))]
@@ -93,7 +93,9 @@ async def read_rig(
         return RigView(id=rig_id, shipped=True, version=0, content=content, versions=[], uses=uses)
     path = await run_in_threadpool(server.rigs.file, rig_id, version)
     versions = await run_in_threadpool(server.rigs.versions, rig_id)
-    terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
+    terms = Terms(
+        person=caller.name, access=FileAccess(read=(path,)), limit_s=RIG_FILE_TIMES.limit_s
+    )
     content = await caller.wait(
         server.compute_pool.run_interactive(Lane.INSPECT, terms, rig_work.read_content, path)
     )
@@ -175,7 +177,7 @@ async def save_calibrated(
     path = await run_in_threadpool(server.calibrations.file, project_id)
     view = await run_in_threadpool(server.calibrations.of, project_id)
     rig = await _checked_file(server, caller, path)
-    evidence = evidence_of(view, project_id)[:MAX_EVIDENCE] if view else ""
+    evidence = evidence_of(view, project_id)[: RIG_STORE.max_evidence] if view else ""
     about = {"who": who.name, "note": new.note, "evidence": evidence}
     if new.create:
         saved = await run_in_threadpool(server.rigs.create, new.rig, rig, **about)
@@ -192,13 +194,15 @@ def _text_of(new: NewRig | NewVersion) -> str:
 
 
 async def _checked_text(text: str, server: ServerParts, caller: Caller) -> rig_work.CheckedRig:
-    terms = Terms(person=caller.name, limit_s=LIMIT_S)
+    terms = Terms(person=caller.name, limit_s=RIG_FILE_TIMES.limit_s)
     pool = server.compute_pool
     return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_work.check_rig, text))
 
 
 async def _checked_file(server: ServerParts, caller: Caller, path: Path) -> rig_work.CheckedRig:
-    terms = Terms(person=caller.name, access=FileAccess(read=(path,)), limit_s=LIMIT_S)
+    terms = Terms(
+        person=caller.name, access=FileAccess(read=(path,)), limit_s=RIG_FILE_TIMES.limit_s
+    )
     pool = server.compute_pool
     return await caller.wait(pool.run_interactive(Lane.INSPECT, terms, rig_work.check_rig_in, path))
 

@@ -23,14 +23,11 @@ from recon4.untrusted.names import visible
 from recon4_app.errors import Conflict, NotFound, Remedy
 from recon4_app.rigs.model import RIG_ID, RigVersion
 from recon4_app.rigs.rig_work import CheckedRig
+from recon4_app.rigs.tuning import RIG_STORE
 
 RIGS = "rigs"
 """Folder of the rigs below that of the projects."""
 VERSION_FILE = "version.json"
-MAX_RIGS = 200
-MAX_VERSIONS = 999
-MAX_VERSION_BYTES = 64 * 1024
-MAX_EVIDENCE = 4000
 _NUMBER = re.compile(r"[1-9][0-9]{0,2}")
 
 
@@ -104,8 +101,10 @@ class RigStore:
                     "load it again",
                     remedy=Remedy(f"Load {rig_id} again", f"/rigs/{rig_id}/", needs="look"),
                 )
-            if newest >= MAX_VERSIONS:
-                raise Conflict(f"rig {rig_id} has {MAX_VERSIONS} versions: start a new rig")
+            if newest >= RIG_STORE.max_versions:
+                raise Conflict(
+                    f"rig {rig_id} has {RIG_STORE.max_versions} versions: start a new rig"
+                )
             return self._add(rig_id, newest + 1, rig, about=about)
 
     def _refuse_name(self, rig_id: str) -> None:
@@ -115,8 +114,8 @@ class RigStore:
             raise Conflict(f"{RIGS} is a project: rename its folder to store rigs")
         if (self._folder / rig_id).exists():
             raise Conflict(f"there is a rig {rig_id} already: choose another name")
-        if len(self.ids()) >= MAX_RIGS:
-            raise Conflict(f"there are {MAX_RIGS} rigs already")
+        if len(self.ids()) >= RIG_STORE.max_rigs:
+            raise Conflict(f"there are {RIG_STORE.max_rigs} rigs already")
 
     def _add(
         self, rig_id: str, number: int, rig: CheckedRig, *, about: dict[str, str]
@@ -142,7 +141,7 @@ class RigStore:
         """A version as stored; with a damaged description only its number and the problem."""
         path = _file(self._folder, rig_id, number)
         try:
-            row = read_object(path.with_name(VERSION_FILE), max_bytes=MAX_VERSION_BYTES)
+            row = read_object(path.with_name(VERSION_FILE), max_bytes=RIG_STORE.max_version_bytes)
             problem = ""
         except StoreError as error:
             row, problem = {}, visible(str(error).replace(f"{self._folder}/", ""), most=400)
@@ -153,7 +152,7 @@ class RigStore:
             who=_text(row, "who"),
             when=_text(row, "when"),
             note=_text(row, "note", most=500),
-            evidence=_text(row, "evidence", most=MAX_EVIDENCE),
+            evidence=_text(row, "evidence", most=RIG_STORE.max_evidence),
             name=_text(row, "name") or rig_id,
             sensors=[visible(str(one)) for one in sensors] if isinstance(sensors, list) else [],
             digest=_text(row, "digest"),

@@ -14,9 +14,9 @@ from recon4_app.jobs.store import JobStore
 from recon4_app.projects.store import ProjectStore
 from recon4_app.rigs.model import RigUse, SavedRig
 from recon4_app.rigs.store import RigStore
+from recon4_app.rigs.tuning import RIG_USES
 
 _STORED = re.compile(r"/([^/]+)/([0-9]{1,3})/\1-v\2\.toml$")
-MAX_CACHED = 4096
 
 
 class RigUses:
@@ -79,7 +79,7 @@ class RigUses:
     def _digest(self, path: Path) -> str:
         """Hash of a file of an artifact, which never changes; empty = it cannot be read."""
         if path not in self._digests:
-            if len(self._digests) >= MAX_CACHED:
+            if len(self._digests) >= RIG_USES.max_cached:
                 self._digests.clear()
             self._digests[path] = _sha256(path)
         return self._digests[path]

@@ -18,10 +18,7 @@ from recon4.slices.imports import set_alignment, undo_alignment
 from recon4.slices.reference import Reference, ReferenceFacts
 from recon4_app.slices.model import AlignPoints, AlignRequest
 from recon4_app.slices.slice_work import reference_of, tiles_of
-
-_SHOWN = 150_000
-"""Most points of map and reference on the page."""
-_UPRIGHT = np.cos(np.deg2rad(30.0))
+from recon4_app.slices.tuning import ALIGN_VIEW
 
 
 def align_reference(map_folder: str, reference: str, ask: AlignRequest) -> ReferenceFacts:
@@ -48,7 +45,7 @@ def align_points(map_folder: str, reference: str) -> AlignPoints:
     """Points of map and reference to be laid on each other, each about its middle."""
     against = reference_of(reference, "plane")
     assert against is not None
-    ours = _shown(sample_tiles(tiles_of(map_folder), 4 * _SHOWN))
+    ours = _shown(sample_tiles(tiles_of(map_folder), 4 * ALIGN_VIEW.shown))
     theirs = _shown(sample_reference(against, np.random.default_rng(1)))
     if not len(ours) or not len(theirs):
         raise ConfigError("alignment: map or reference has no flat surface to align")
@@ -109,10 +106,10 @@ def _motion(pose: tuple[float, ...]) -> SE3:
 
 def _shown(surface: SurfacePoints) -> Array:
     """Upright surfaces first: from above, floors and ceilings would cover them."""
-    level = np.abs(surface.normals[:, 2]) > _UPRIGHT
+    level = np.abs(surface.normals[:, 2]) > ALIGN_VIEW.upright
     upright = surface.p[~level]
     chosen = upright if len(upright) > len(surface.p) // 10 else surface.p
-    return chosen[:: max(1, -(-len(chosen) // _SHOWN))]
+    return chosen[:: max(1, -(-len(chosen) // ALIGN_VIEW.shown))]
 
 
 def _middle(p: Array) -> Array:

@@ -23,10 +23,7 @@ from recon4_app.slices.slice_work import (
     stamp_text,
     window_of,
 )
-
-FINEST_M = 0.005
-"""Pixel of a GeoTIFF, unless it would get too large [m]."""
-MAX_GEOTIFF_PX = 6000
+from recon4_app.slices.tuning import EXPORT_IMAGES
 
 
 def export(
@@ -73,7 +70,7 @@ def _export_geotiff(
     tiles, plane = map_of(artifacts, context.evidence).on(ask.surface), ask.plane.slice_plane()
     window = window_of(ask, tiles, plane)
     side_m = max(window.right - window.left, window.top - window.bottom)
-    paper = RasterGrid(window, max(FINEST_M, side_m / MAX_GEOTIFF_PX))
+    paper = RasterGrid(window, max(EXPORT_IMAGES.finest_m, side_m / EXPORT_IMAGES.max_geotiff_px))
     against = reference_of(reference, ask.method)
     made = draw(tiles, plane, paper, color=ask.color, reference=against)
     stamp = stamp_text(context.evidence)

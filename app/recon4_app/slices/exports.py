@@ -19,15 +19,8 @@ from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import NoRoom
 from recon4_app.slices import export_work
 from recon4_app.slices.model import ExportContext, SliceExportRequest
+from recon4_app.slices.tuning import EXPORTS
 
-LIMIT_S = 1800.0
-"""Longest time an export may take [s]."""
-KEPT_S = 86_400.0
-"""A finished export is kept at least this long, unless all exceed `MAX_KEPT_BYTES` [s]."""
-MAX_KEPT_BYTES = 20 << 30
-"""Limit for all kept exports; the oldest are removed first."""
-LARGE_THICKNESS_M = 0.5
-"""A thicker slice may hold most of the map [m]."""
 _POINTS = ("laz", "csv", "dxf")
 
 
@@ -61,7 +54,7 @@ class ExportRequest:
         """Whether it may take minutes: many points, written one by one, or many slices."""
         ask = self.ask
         points = self.ending in _POINTS and ask.window is None
-        return ask.count > 1 or points or ask.plane.thickness_m > LARGE_THICKNESS_M
+        return ask.count > 1 or points or ask.plane.thickness_m > EXPORTS.large_thickness_m
 
 
 class Exports:
@@ -90,7 +83,9 @@ class Exports:
                 run = pool.run_background if request.large else pool.run_interactive
                 await run(
                     Lane.EXPORT,
-                    replace(terms, outputs={name: place}, large=request.large, limit_s=LIMIT_S),
+                    replace(
+                        terms, outputs={name: place}, large=request.large, limit_s=EXPORTS.limit_s
+                    ),
                     export_work.export,
                     dict(request.artifacts),
                     request.ask,
@@ -116,7 +111,7 @@ class Exports:
         total, removed = 0, 0
         for changed_s, size, path in files:
             total += size
-            if now_s - changed_s > KEPT_S or total > MAX_KEPT_BYTES:
+            if now_s - changed_s > EXPORTS.kept_s or total > EXPORTS.max_kept_bytes:
                 path.unlink(missing_ok=True)
                 removed += 1
         return removed

@@ -19,6 +19,7 @@ from recon4.slices.reference import ReferenceFacts
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import CONTROL_LIMITS, SLICE_PLANES
 from recon4_app.names import Name
+from recon4_app.slices.tuning import SLICE_REQUESTS
 
 Coordinate = Annotated[float, Field(ge=-1e8, le=1e8, allow_inf_nan=False)]
 Part = Annotated[float, Field(ge=-2.0, le=2.0, allow_inf_nan=False)]
@@ -27,7 +28,6 @@ Xyz = tuple[Coordinate, Coordinate, Coordinate]
 Pose = tuple[Coordinate, Coordinate, Coordinate, Part, Part, Part, Part]
 Reach = Annotated[float, Field(ge=-1e9, le=1e9, allow_inf_nan=False)]
 """A coordinate u or v of a slice [m]; its origin is arbitrary."""
-MAX_SIDE_PX = 4096
 Limit = Annotated[float, Field(gt=0.0, le=CONTROL_LIMITS.most_m, allow_inf_nan=False)]
 USUAL_LIMITS = ControlLimits()
 
@@ -98,8 +98,8 @@ class SliceView(Strict):
 class SliceImageRequest(SliceView):
     """Request for an image of a slice."""
 
-    width: int = Field(ge=16, le=MAX_SIDE_PX)
-    height: int = Field(ge=16, le=MAX_SIDE_PX)
+    width: int = Field(ge=16, le=SLICE_REQUESTS.max_side_px)
+    height: int = Field(ge=16, le=SLICE_REQUESTS.max_side_px)
     ground: Ground = "light"
     page: str = Field(default="", max_length=40)
     """Id of the page: of several requests of one page only the latest gets an image."""

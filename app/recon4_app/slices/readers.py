@@ -11,9 +11,7 @@ from recon4.errors import StoreError
 from recon4.slices.double_places import DoubleReport
 from recon4.untrusted.bounded import read_json_object
 from recon4_app.slices.model import WindowSpec
-
-_MAX_BYTES = 64 << 20
-"""A larger file was not written by us."""
+from recon4_app.slices.tuning import READERS
 
 
 def read_window(path: Path) -> WindowSpec:
@@ -23,7 +21,9 @@ def read_window(path: Path) -> WindowSpec:
         StoreError: If it is damaged or too large.
     """
     try:
-        return WindowSpec.model_validate(read_json_object(path, _MAX_BYTES, failure=StoreError))
+        return WindowSpec.model_validate(
+            read_json_object(path, READERS.max_bytes, failure=StoreError)
+        )
     except ValidationError as error:
         raise StoreError(f"{path.name}: {error}") from error
 
@@ -35,7 +35,7 @@ def read_double_walls(path: Path) -> DoubleReport:
         StoreError: If it is damaged or too large.
     """
     try:
-        record = read_json_object(path, _MAX_BYTES, failure=StoreError)
+        record = read_json_object(path, READERS.max_bytes, failure=StoreError)
         return msgspec.convert(record, DoubleReport)
     except msgspec.ValidationError as error:
         raise StoreError(f"{path.name} cannot be read: {error}") from error

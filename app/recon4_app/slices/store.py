@@ -33,14 +33,12 @@ from recon4_app.settings import ServerSettings
 from recon4_app.slices import slice_work
 from recon4_app.slices.exports import Exports
 from recon4_app.slices.model import ControlState, ListedReference, OtherMap, Xyz
+from recon4_app.slices.tuning import SLICE_STORE
 
 T = TypeVar("T")
 _KEY = re.compile(r"[0-9a-f]{16,64}")
 _REFERENCE = re.compile(r"[0-9a-f]{12}")
-MAX_REFERENCES = 20
 CONTROL = "slices/control.json"
-MAX_PAGES = 256
-MAX_CONTROL_BYTES = 16 << 20
 
 
 class Superseded(Conflict):
@@ -217,8 +215,10 @@ class Slices:
         Raises:
             Conflict: If there are too many.
         """
-        if len(self.references(project_id)) >= MAX_REFERENCES:
-            raise Conflict(f"a project has at most {MAX_REFERENCES} references; remove one first")
+        if len(self.references(project_id)) >= SLICE_STORE.max_references:
+            raise Conflict(
+                f"a project has at most {SLICE_STORE.max_references} references; remove one first"
+            )
         folder = self._folder(project_id) / "references"
         folder.mkdir(parents=True, exist_ok=True)
         return folder / secrets.token_hex(6)
@@ -260,7 +260,7 @@ class Slices:
         if not path.exists():
             return ControlState(version=0)
         try:
-            text = read_text_limited(path, MAX_CONTROL_BYTES, failure=StoreError)
+            text = read_text_limited(path, SLICE_STORE.max_control_bytes, failure=StoreError)
             state = ControlState.model_validate_json(text)
         except (StoreError, ValueError) as error:
             raise StoreError(f"{path.name} cannot be read: {error}") from error
@@ -335,7 +335,7 @@ class Slices:
         work = asyncio.ensure_future(self.run_interactive(terms, function, *args, **kwargs))
         self._newest[page] = _Latest(asking.sequence, work)
         self._newest.move_to_end(page)
-        while len(self._newest) > MAX_PAGES:
+        while len(self._newest) > SLICE_STORE.max_pages:
             self._newest.popitem(last=False)
         try:
             return await work

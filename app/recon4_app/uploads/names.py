@@ -7,10 +7,8 @@ import unicodedata
 from pathlib import PurePosixPath
 
 from recon4_app.errors import BadRequest
+from recon4_app.uploads.tuning import UPLOAD_NAMES
 
-MAX_LETTERS = 100
-"""Longer names are cut in the middle; the ending stays visible."""
-MAX_FOLDERS = 8
 RESERVED = frozenset(
     {"con", "prn", "aux", "nul"} | {f"{port}{n}" for port in ("com", "lpt") for n in range(10)}
 )
@@ -24,9 +22,9 @@ def safe_path(relative: str) -> PurePosixPath:
         BadRequest: If it is empty, contains ``..``, or is nested too deep.
     """
     parts = [part for part in re.split(r"[/\\]+", relative) if part not in ("", ".")]
-    if not parts or ".." in parts or len(parts) > MAX_FOLDERS:
+    if not parts or ".." in parts or len(parts) > UPLOAD_NAMES.max_folders:
         raise BadRequest(
-            f"expected the name of a file in at most {MAX_FOLDERS - 1} folders, "
+            f"expected the name of a file in at most {UPLOAD_NAMES.max_folders - 1} folders, "
             f"got {relative[:100]!r}"
         )
     return PurePosixPath(*map(safe_name, parts))
@@ -39,7 +37,7 @@ def safe_name(name: str) -> str:
     kept = kept if re.search(r"[A-Za-z0-9]", kept) else f"file{kept}"
     if kept.split(".", 1)[0].lower() in RESERVED:
         kept = f"_{kept}"
-    return kept if len(kept) <= MAX_LETTERS else f"{kept[:70]}~{kept[-29:]}"
+    return kept if len(kept) <= UPLOAD_NAMES.max_letters else f"{kept[:70]}~{kept[-29:]}"
 
 
 def slug(name: str) -> str:

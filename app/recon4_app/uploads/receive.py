@@ -14,11 +14,7 @@ from starlette.requests import ClientDisconnect
 from recon4.errors import NoSpace
 from recon4.store.atomic import raise_if_full
 from recon4_app.errors import BadRequest, NoRoom
-
-GATHER_BYTES = 1 << 20
-"""The network delivers about 64 kB at a time; writes are gathered to this size."""
-SILENT_S = 30.0
-"""A sender without data for this long is disconnected [s]."""
+from recon4_app.uploads.tuning import RECEIVING
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +99,7 @@ class _Sink:
         self._bytes += len(piece)
         if self.end + self._bytes > self._length:
             raise BadRequest(f"expected {self._length} bytes, got {self.end + self._bytes}")
-        if self._bytes >= GATHER_BYTES:
+        if self._bytes >= RECEIVING.gather_bytes:
             await asyncio.to_thread(self._write)
 
     async def flush(self, *, keep: bool) -> None:
@@ -131,7 +127,7 @@ class _Sink:
 async def _in_time(pieces: AsyncIterator[bytes]) -> AsyncIterator[bytes]:
     while True:
         try:
-            async with asyncio.timeout(SILENT_S):
+            async with asyncio.timeout(RECEIVING.silent_s):
                 piece = await anext(pieces)
         except StopAsyncIteration:
             return

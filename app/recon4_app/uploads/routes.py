@@ -28,9 +28,9 @@ from recon4_app.network.behind import public_path
 from recon4_app.uploads import tus
 from recon4_app.uploads.model import Upload, UploadedFile
 from recon4_app.uploads.receive import receive
+from recon4_app.uploads.tuning import SETTLING
 
 PREFIX = "/api/uploads/files"
-SETTLES_WITHIN_S = 3.0
 
 
 class TusRoute(APIRoute):
@@ -240,7 +240,7 @@ async def head(file_id: Annotated[str, Path(max_length=40)], server: Server) -> 
     """Read the bytes of a file that are durably on the server's disk, as ``Upload-Offset``."""
     upload, file = server.uploads.file(file_id)
     with contextlib.suppress(TimeoutError):  # an interrupted request may still write its bytes
-        async with asyncio.timeout(SETTLES_WITHIN_S), file.lock:
+        async with asyncio.timeout(SETTLING.settles_within_s), file.lock:
             pass
     headers = {"Upload-Length": str(file.bytes), "Cache-Control": "no-store"}
     return Response(headers=headers | _offset_headers(server, upload, file))

@@ -11,12 +11,12 @@ from collections.abc import Mapping
 
 from recon4_app.errors import AppError, BadRequest
 from recon4_app.uploads.receive import Checksum
+from recon4_app.uploads.tuning import TUS
 
 VERSION = "1.0.0"
 EXTENSIONS = "creation,creation-with-upload,termination,checksum,expiration"
 ALGORITHMS = ("sha256", "sha1")
 CHUNK_TYPE = "application/offset+octet-stream"
-MAX_METADATA = 8192
 
 
 class WrongVersion(AppError):
@@ -70,8 +70,8 @@ def metadata(headers: Mapping[str, str]) -> dict[str, str]:
         BadRequest: If it is malformed.
     """
     text = headers.get("upload-metadata", "")
-    if len(text) > MAX_METADATA:
-        raise BadRequest(f"Upload-Metadata has more than {MAX_METADATA} letters")
+    if len(text) > TUS.max_metadata:
+        raise BadRequest(f"Upload-Metadata has more than {TUS.max_metadata} letters")
     found = {}
     for pair in filter(None, (one.strip() for one in text.split(","))):
         name, _, value = pair.partition(" ")

@@ -11,8 +11,7 @@ from typing import Annotated, Literal
 
 import msgspec
 
-MAX_MESSAGE_BYTES = 1 << 16
-"""Longest message from a browser."""
+from recon4_app.viewer.tuning import BROWSER_MESSAGES
 
 Coordinate = Annotated[float, msgspec.Meta(ge=-1e12, le=1e12)]
 """[m]; neither NaN nor infinity."""
@@ -118,8 +117,10 @@ def checked(data: bytes) -> bytes:
     Raises:
         RefusedMessage: If it is none of `KINDS`, is damaged, or has a value beyond its limits.
     """
-    if len(data) > MAX_MESSAGE_BYTES:
-        raise RefusedMessage(f"expected at most {MAX_MESSAGE_BYTES} bytes, got {len(data)}")
+    if len(data) > BROWSER_MESSAGES.max_message_bytes:
+        raise RefusedMessage(
+            f"expected at most {BROWSER_MESSAGES.max_message_bytes} bytes, got {len(data)}"
+        )
     try:
         return msgspec.msgpack.encode(_decoder.decode(data))
     except (msgspec.MsgspecError, RecursionError, UnicodeDecodeError) as error:

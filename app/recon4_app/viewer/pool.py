@@ -19,11 +19,8 @@ from recon4_app.errors import ViewerFailed
 from recon4_app.network.streams import Streams
 from recon4_app.settings import worker_environment
 from recon4_app.viewer.scratch import scratch_of, viewer_environment
+from recon4_app.viewer.tuning import VIEWER_POOL
 
-STARTS_WITHIN_S = 60.0
-"""A viewer that does not listen after this much time of its own has failed [s]."""
-ENDS_WITHIN_S = 5.0
-"""A viewer requested to end is killed after this long [s]."""
 READY = b"ready\n"
 """Output of a viewer as soon as it listens."""
 
@@ -102,7 +99,7 @@ class ViewerPool:
                 env=worker_environment() | caches,
             )
         self._children.add(process.pid)
-        if await first_line(process, within_s=STARTS_WITHIN_S) == READY:
+        if await first_line(process, within_s=VIEWER_POOL.starts_within_s) == READY:
             self._problems.pop(project, None)
             return process, socket
         await self._end(process, socket)
@@ -118,7 +115,7 @@ class ViewerPool:
         if process.returncode is None:
             process.terminate()
             try:
-                async with asyncio.timeout(ENDS_WITHIN_S):
+                async with asyncio.timeout(VIEWER_POOL.ends_within_s):
                     await process.wait()
             except TimeoutError:
                 process.kill()

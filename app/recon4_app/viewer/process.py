@@ -26,10 +26,7 @@ from recon4_app.viewer.client.show import Viewer
 from recon4_app.viewer.cloud.palette import table
 from recon4_app.viewer.scene.source import ProjectSource
 from recon4_app.viewer.scratch import scratch_of
-
-MEMORY_FRACTION = 0.7
-LOOK_EVERY_S = 0.5
-"""Interval of checking for new artifacts and events of a running job [s]."""
+from recon4_app.viewer.tuning import VIEWER_PROCESS
 
 log = logging.getLogger(__name__)
 
@@ -100,7 +97,7 @@ def main(viewing: Viewing, stop: StopSignals) -> int:
     viewer = Viewer(socket, on_client=sessions.take, on_leave=sessions.leave)
     answer.write("ready\n")
     answer.flush()
-    while not over.wait(LOOK_EVERY_S) and viewer.idle_s < viewing.idle_s:
+    while not over.wait(VIEWER_PROCESS.look_every_s) and viewer.idle_s < viewing.idle_s:
         if source.changed():
             sessions.refresh()
     viewer.stop()
@@ -115,7 +112,7 @@ def viewer_policy(project: Path, jobs: Path, scratch: Path, *, socket: Path) -> 
         write=(socket,),
         temporary=scratch,
         network=Network.UNIX,
-        memory_bytes=int(MEMORY_FRACTION * physical_memory_bytes()),
+        memory_bytes=int(VIEWER_PROCESS.memory_fraction * physical_memory_bytes()),
     )
 
 

@@ -24,18 +24,11 @@ from recon4_app.errors import AppError, TooMany, ViewerFailed
 from recon4_app.network.streams import TOO_MANY
 from recon4_app.viewer.browser_messages import RefusedMessage, checked
 from recon4_app.viewer.pool import ViewerPool
+from recon4_app.viewer.tuning import RELAY
 
 router = APIRouter()
 log = logging.getLogger(__name__)
 
-MESSAGES_A_SECOND = 120.0
-"""Most messages read from a browser per second; a moving camera sends 60 per second."""
-BURST = 240
-"""Most messages at once."""
-ATTEMPTS = 3
-"""Most starts of a viewer for one connection."""
-STALLED_S = 30.0
-"""A browser that reads nothing for this long is disconnected [s]."""
 STALLED = 4408
 """Close code: the browser read nothing for too long."""
 
@@ -66,7 +59,7 @@ async def _viewer(
     viewers: ViewerPool, project: Path, offered: list[Subprotocol]
 ) -> ClientConnection:
     """Connect to the viewer of a project; a viewer that was killed is started again."""
-    for _ in range(ATTEMPTS):
+    for _ in range(RELAY.attempts):
         socket = await viewers.socket(project)
         try:
             return await unix_connect(
@@ -101,7 +94,7 @@ async def _pump(browser: WebSocket, viewer: ClientConnection) -> None:
 
 
 async def _from_browser(browser: WebSocket, viewer: ClientConnection) -> None:
-    rate, dropped = Rate(MESSAGES_A_SECOND, BURST), Dropped()
+    rate, dropped = Rate(RELAY.messages_a_second, RELAY.burst), Dropped()
     try:
         while (message := await browser.receive())["type"] == "websocket.receive":
             if (wait_s := rate.wait_s(time.monotonic())) > 0.0:
@@ -141,12 +134,12 @@ async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
     try:
         async for data in viewer:
             whole = data if isinstance(data, bytes) else data.encode()
-            async with asyncio.timeout(STALLED_S):
+            async with asyncio.timeout(RELAY.stalled_s):
                 await browser.send_bytes(whole)
     except WebSocketDisconnect:
         return
     except TimeoutError:
-        log.warning("a browser read nothing for %.0f s: disconnected", STALLED_S)
+        log.warning("a browser read nothing for %.0f s: disconnected", RELAY.stalled_s)
         code = STALLED
     except ConnectionClosed:
         log.info("viewer connection lost")

@@ -12,14 +12,13 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import TRACKING_WITNESS
 from recon4.findings.witnesses.uncertainty import is_known
 from recon4.findings.witnesses.weak_directions import held_by_surfaces
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
-from recon4.findings.witnesses.tuning import TRACKING_WITNESS
 
 Flags = NDArray[np.bool_]
-
 
 
 class Tracking:
@@ -94,7 +93,10 @@ def _short_gaps(lost: Flags, t_ns: Times) -> bool:
     edges = np.flatnonzero(np.diff(np.concatenate([[False], lost, [False]]).astype(np.int8)))
     begin, end = edges[::2], np.minimum(edges[1::2], len(t_ns) - 1)
     longest_s = float((t_ns[end] - t_ns[begin]).max()) / 1e9
-    return float(lost.mean()) <= TRACKING_WITNESS.few_lost and longest_s <= TRACKING_WITNESS.short_gap_s
+    return (
+        float(lost.mean()) <= TRACKING_WITNESS.few_lost
+        and longest_s <= TRACKING_WITNESS.short_gap_s
+    )
 
 
 def _laser_poses_missing(lost: Flags, held: Flags, t_ns: Times) -> Finding:

@@ -158,15 +158,14 @@ class TrackingWitnessTuning:
 
     few_lost: float = 0.1
     short_gap_s: float = 2.0
-    """Tracking that is lost in no more than this part of the multiframes, and for no longer than this,
-    may leave a usable map: if its positions are known in spite of it."""
+    """Tracking that is lost in no more than this part of the multiframes, and for no longer than
+    this, may leave a usable map: if its positions are known in spite of it."""
     min_converged: float = 0.9
     half: float = 0.5
     """Ratio of converged registrations: *check* below the first, *do not use* below the second."""
     far_m: float = 0.10
-    """A multiframe that did not converge may be as wrong as it is far from its prediction [m]: at most
-    0.03 in 58 right runs, 0.14 in a field without an IMU that was 19 cm off there."""
+    """A multiframe that did not converge may be as wrong as it is far from its prediction [m]: at
+    most 0.03 in 58 right runs, 0.14 in a field without an IMU that was 19 cm off there."""
 
 
 TRACKING_WITNESS = TrackingWitnessTuning()
-

@@ -4,6 +4,7 @@ import asyncio
 import contextlib
 import re
 import threading
+from dataclasses import replace
 
 import pytest
 
@@ -49,8 +50,16 @@ def test_a_session_in_use_ends_at_last(access, clock, role):
 
 
 def test_a_socket_outlives_no_session_even_if_a_cancellation_is_lost(access, clock, monkeypatch):
-    monkeypatch.setattr(session_middleware, "LOOK_AGAIN_S", 0.01)
-    monkeypatch.setattr(session_middleware, "CANCEL_AGAIN_S", 0.01)
+    monkeypatch.setattr(
+        session_middleware,
+        "SESSION_WATCH",
+        replace(session_middleware.SESSION_WATCH, look_again_s=0.01),
+    )
+    monkeypatch.setattr(
+        session_middleware,
+        "SESSION_WATCH",
+        replace(session_middleware.SESSION_WATCH, cancel_again_s=0.01),
+    )
     access.accounts.add("Anna", Role.VIEWER, PASSWORD)
     session = access.sessions.find(access.sessions.begin("Anna", address="?", agent="")).session
     sent = []

@@ -8,7 +8,8 @@ import pytest
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, broken, read_rows
 from recon4.store.project import Project
-from recon4_app.access.people import RECENT_LOGIN_S, Role
+from recon4_app.access.people import Role
+from recon4_app.access.tuning import PEOPLE_TIMES
 from recon4_app.jobs.folder import JobFolder
 from recon4_app.projects.trash import Trash
 
@@ -22,7 +23,7 @@ def test_a_password_given_before_the_step_is_not_recent(access, clock):
     clock.now_s -= DAY_S
     session = access.sessions.find(token).session
 
-    assert access.sessions.age_s(session) > RECENT_LOGIN_S
+    assert access.sessions.age_s(session) > PEOPLE_TIMES.recent_login_s
     fresh = access.sessions.find(access.sessions.prove(session.id)).session
     assert access.sessions.age_s(fresh) == 0.0
 

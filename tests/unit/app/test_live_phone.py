@@ -3,6 +3,7 @@
 import asyncio
 import json
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -66,7 +67,7 @@ def walk(stream, k):
 
 
 def test_a_phone_that_stalls_is_disconnected_without_effect_on_others(current_capture, monkeypatch):
-    monkeypatch.setattr(phones, "STALLED_S", 0.5)
+    monkeypatch.setattr(phones, "PHONE_STREAM", replace(phones.PHONE_STREAM, stalled_s=0.5))
 
     async def ten_phones():
         clients = [Client(current_capture, stalls=k == 0) for k in range(10)]
@@ -105,7 +106,7 @@ def test_the_newest_pose_is_sent_first_and_the_data_rate_stays_within_two_megabi
 
     client, seconds = asyncio.run(one_phone())
 
-    assert 300_000 < client.bytes < phones.BYTES_AT_FIRST + 2e6 / 8 * seconds
+    assert 300_000 < client.bytes < phones.PHONE_STREAM.bytes_at_first + 2e6 / 8 * seconds
     poses = [one["pose"]["p"][0] for one in client.received if "pose" in one]
     assert poses[-1] == 19.0
 

@@ -7,9 +7,10 @@ import threading
 
 import pytest
 
-from recon4_app.access.login.login_backoff import MAX_KEYS, LoginBackoff, TokenBuckets
-from recon4_app.access.login.login_service import WAITING_LOGINS, LoginOrigin
+from recon4_app.access.login.login_backoff import LoginBackoff, TokenBuckets
+from recon4_app.access.login.login_service import LoginOrigin
 from recon4_app.access.people import Role
+from recon4_app.access.tuning import BACKOFF, LOGINS
 from recon4_app.errors import TooMany, WrongPassword
 
 PASSWORD = "three green owls dance"
@@ -36,7 +37,7 @@ def test_a_flood_from_many_addresses_waits_in_few_threads_and_the_owner_gets_in(
     threads = [threading.Thread(target=attack, args=(k,)) for k in range(2, 102)]
     for thread in threads:
         thread.start()
-    refused = [outcomes.get(timeout=60.0) for _ in range(100 - WAITING_LOGINS)]
+    refused = [outcomes.get(timeout=60.0) for _ in range(100 - LOGINS.waiting_logins)]
     monkeypatch.setattr(logins, "_fits", lambda name, password: password == PASSWORD)
     logins.prove("Anna", PASSWORD, origin(1, home))  # while the others wait
     gate.set()
@@ -44,7 +45,7 @@ def test_a_flood_from_many_addresses_waits_in_few_threads_and_the_owner_gets_in(
         thread.join(60.0)
 
     assert set(refused) == {TooMany}
-    assert [outcomes.get_nowait() for _ in range(WAITING_LOGINS)] == [WrongPassword] * 8
+    assert [outcomes.get_nowait() for _ in range(LOGINS.waiting_logins)] == [WrongPassword] * 8
     logins.prove("Anna", PASSWORD, origin(200))  # places are free again
 
 
@@ -62,11 +63,11 @@ def test_refused_for_the_flood_is_not_counted_as_a_wrong_password(access, logins
 
 def test_memory_is_bounded_however_many_addresses_try(clock):
     backoff, buckets = LoginBackoff(clock=clock), TokenBuckets(burst=1, per_s=1.0, clock=clock)
-    for k in range(MAX_KEYS + 500):
+    for k in range(BACKOFF.max_keys + 500):
         backoff.begin(("anna", str(k)))
         buckets.take(str(k))
 
-    assert len(backoff._failures) == len(buckets._left) == MAX_KEYS
+    assert len(backoff._failures) == len(buckets._left) == BACKOFF.max_keys
 
 
 def users(root, *words):

@@ -4,6 +4,7 @@ import json
 import logging
 import subprocess
 import sys
+from dataclasses import replace
 
 import pytest
 from hypothesis import given
@@ -32,7 +33,7 @@ def test_repetitions_are_counted_and_the_next_line_says_how_many():
     clock.now_s = 60.0
     last = record("refused %s", 100)
 
-    assert sum(written) == module.REPEATS_A_MINUTE
+    assert sum(written) == module.LOGS.repeats_a_minute
     assert judge.filter(last)
     assert last.getMessage() == "refused 100 (80 more like this were not written)"
     assert judge.dropped == 80
@@ -42,9 +43,9 @@ def test_messages_that_all_differ_are_limited_too():
     judge = RepeatFilter(Clock())
     written = sum(judge.filter(record(f"message {n}")) for n in range(10_000))
 
-    assert written == module.RECORDS_A_MINUTE
-    assert len(judge._written) <= module.MAX_KINDS
-    assert len(judge._dropped) <= module.MAX_KINDS
+    assert written == module.LOGS.records_a_minute
+    assert len(judge._written) <= module.LOGS.max_kinds
+    assert len(judge._dropped) <= module.LOGS.max_kinds
 
 
 def test_one_noisy_logger_does_not_silence_another():
@@ -95,20 +96,20 @@ def test_both_outputs_agree_on_what_repeats(logged, capsys):
     for _ in range(100):
         logging.getLogger("recon4_app.test").warning("again")
 
-    assert len(file.read_text().splitlines()) == module.REPEATS_A_MINUTE
-    assert logs.dropped == 100 - module.REPEATS_A_MINUTE
+    assert len(file.read_text().splitlines()) == module.LOGS.repeats_a_minute
+    assert logs.dropped == 100 - module.LOGS.repeats_a_minute
 
 
 def test_the_file_rotates(tmp_path, monkeypatch):
-    monkeypatch.setattr(module, "MAX_LOG_BYTES", 2000)
-    monkeypatch.setattr(module, "RECORDS_A_MINUTE", 10_000)
+    monkeypatch.setattr(module, "LOGS", replace(module.LOGS, max_log_bytes=2000))
+    monkeypatch.setattr(module, "LOGS", replace(module.LOGS, records_a_minute=10_000))
     logs = Logs(tmp_path / "server.log")
     with logs.installed():
         for n in range(2000):
             logging.getLogger("recon4_app.test").warning(f"message {n}")
     files = list(tmp_path.iterdir())
 
-    assert len(files) == module.KEPT_LOGS
+    assert len(files) == module.LOGS.kept_logs
     assert max(path.stat().st_size for path in files) <= 2000
 
 

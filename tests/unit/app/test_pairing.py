@@ -5,16 +5,9 @@ import threading
 
 import pytest
 
-from recon4_app.access.pairing.grants import (
-    INVITATION_S,
-    MAX_OPEN,
-    MAX_OPEN_A_NETWORK,
-    REQUEST_S,
-    TRIES_A_MINUTE,
-    Pairings,
-    roles_for,
-)
+from recon4_app.access.pairing.grants import Pairings, roles_for
 from recon4_app.access.people import Person, Role
+from recon4_app.access.tuning import PAIRING
 from recon4_app.errors import NotFound, Refused, TooMany
 
 OTTO = Person("otto", Role.OPERATOR)
@@ -40,7 +33,7 @@ def test_an_invitation_lets_one_phone_in_once(pairings):
 
 def test_an_invitation_is_good_for_two_minutes(pairings, clock):
     in_time, late = (pairings.invite(OTTO, Role.VIEWER) for _ in range(2))
-    clock.now_s += INVITATION_S
+    clock.now_s += PAIRING.invitation_s
 
     assert pairings.redeem(in_time, "192.0.2.1").role is Role.VIEWER
     clock.now_s += 0.1
@@ -104,7 +97,7 @@ def test_digits_are_good_for_five_minutes_and_are_no_token(pairings, clock):
     with pytest.raises(Refused):
         pairings.claim(asked.code)
     assert asked.token not in repr(asked)
-    clock.now_s += REQUEST_S + 0.1
+    clock.now_s += PAIRING.request_s + 0.1
 
     with pytest.raises(NotFound):
         pairings.approve(asked.code, OTTO, Role.VIEWER)
@@ -115,19 +108,19 @@ def test_digits_are_good_for_five_minutes_and_are_no_token(pairings, clock):
 def test_digits_cannot_be_guessed_by_trying(pairings, clock):
     asked = pairings.request("phone", "192.0.2.7")
     wrong = f"{(int(asked.code) + 1) % 1_000_000:06d}"
-    for _ in range(TRIES_A_MINUTE):
+    for _ in range(PAIRING.tries_a_minute):
         with pytest.raises(NotFound):
             pairings.approve(wrong, OTTO, Role.VIEWER)
 
     with pytest.raises(TooMany):
         pairings.approve(asked.code, OTTO, Role.VIEWER)
-    clock.now_s += 60.0 / TRIES_A_MINUTE
+    clock.now_s += 60.0 / PAIRING.tries_a_minute
     assert pairings.approve(asked.code, OTTO, Role.VIEWER).code == asked.code
 
 
 def test_tokens_cannot_be_guessed_by_trying(pairings):
     token = pairings.invite(OTTO, Role.VIEWER)
-    for _ in range(TRIES_A_MINUTE):
+    for _ in range(PAIRING.tries_a_minute):
         with pytest.raises(Refused):
             pairings.redeem("attempt", "192.0.2.66")
 
@@ -137,7 +130,7 @@ def test_tokens_cannot_be_guessed_by_trying(pairings):
 
 
 def test_a_flood_of_requests_keeps_no_other_phone_out(pairings, clock):
-    for _ in range(MAX_OPEN_A_NETWORK):
+    for _ in range(PAIRING.max_open_a_network):
         pairings.request("flood", "192.0.2.66")
     with pytest.raises(TooMany):
         pairings.request("flood", "192.0.2.66")
@@ -146,11 +139,11 @@ def test_a_flood_of_requests_keeps_no_other_phone_out(pairings, clock):
 
 
 def test_never_more_than_twenty_wait(pairings, clock):
-    codes = {pairings.request("x", f"192.0.{k}.1").code for k in range(MAX_OPEN)}
-    assert len(codes) == MAX_OPEN
+    codes = {pairings.request("x", f"192.0.{k}.1").code for k in range(PAIRING.max_open)}
+    assert len(codes) == PAIRING.max_open
     with pytest.raises(TooMany):
         pairings.request("x", "198.51.100.1")
-    clock.now_s += REQUEST_S + 0.1
+    clock.now_s += PAIRING.request_s + 0.1
     pairings.request("x", "198.51.100.1")
 
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from recon4.mapping.tile import progressive
-from recon4_app.viewer.client.point_budget import FEWEST_POINTS, FIRST_POINTS, PointBudget
+from recon4_app.viewer.client.point_budget import PointBudget
 from recon4_app.viewer.cloud.lod import Camera, TileBoxes, base_step, choose, chunks_of, in_sight
+from recon4_app.viewer.tuning import POINT_BUDGET
 
 AHEAD = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
 """Looks along x, z up."""
@@ -102,7 +103,7 @@ def test_a_quick_browser_gets_twice_as_many_until_it_has_all():
         budget.record(0.05)
         given.append(budget.points)
 
-    assert given[0] == FIRST_POINTS
+    assert given[0] == POINT_BUDGET.first_points
     assert given[-1] == 3_000_000 and len(given) <= 6
 
 
@@ -111,7 +112,7 @@ def test_a_slow_browser_gets_less_and_stays_there():
     budget.record(2.0)
     budget.record(0.05)
 
-    assert budget.points == FIRST_POINTS // 2 and budget.settled
+    assert budget.points == POINT_BUDGET.first_points // 2 and budget.settled
 
 
 def test_a_browser_that_does_not_answer_is_never_given_nothing():
@@ -119,7 +120,7 @@ def test_a_browser_that_does_not_answer_is_never_given_nothing():
     for _ in range(9):
         budget.record(None)
 
-    assert budget.points == FEWEST_POINTS
+    assert budget.points == POINT_BUDGET.fewest_points
 
 
 def test_a_long_way_there_and_back_is_not_held_against_a_browser():
@@ -127,4 +128,4 @@ def test_a_long_way_there_and_back_is_not_held_against_a_browser():
     budget.began(1.5)
     budget.record(1.6)
 
-    assert budget.points == 2 * FIRST_POINTS
+    assert budget.points == 2 * POINT_BUDGET.first_points

@@ -9,8 +9,9 @@ from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
 from recon4_app.viewer.cloud.multiframes import Multiframes
 from recon4_app.viewer.cloud.palette import paint
-from recon4_app.viewer.cloud.preview import HEIGHTS, PIECE, JobPreview
+from recon4_app.viewer.cloud.preview import HEIGHTS, JobPreview
 from recon4_app.viewer.scene.source import ProjectSource
+from recon4_app.viewer.tuning import CLOUD_PREVIEW
 from tests.project_builder import ROOM_M, add_multiframes, build_project, loop_walk
 
 
@@ -58,7 +59,7 @@ def test_a_walk_that_grows_places_its_last_seconds_only(preview):
     assert kept == [True, True, False]
     added = len(after[-1].p_node) - len(before[-1].p_node)
     assert 0.7 < added / (3 * 400) < 0.95
-    assert len(before[-1].p_node) > (26 - 2 * PIECE) * 250
+    assert len(before[-1].p_node) > (26 - 2 * CLOUD_PREVIEW.piece) * 250
 
 
 def test_where_the_poses_move_the_points_move_too(preview):

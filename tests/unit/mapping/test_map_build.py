@@ -11,12 +11,14 @@ import pytest
 
 from recon4.errors import OutOfRange, StoreError
 from recon4.export.laz import export_laz
+from recon4.mapping import build as map_build
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.notes import MapCrs
 from recon4.mapping.place import place
 from recon4.mapping.tile import FIELDS, SURFACE_FIELDS
 from recon4.mapping.tiles import TileSet
+from recon4.mapping.tuning import MAP_BUILD
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings, preset
@@ -371,7 +373,7 @@ def test_fitted_maps_do_not_depend_on_the_number_of_bursts_and_threads(tmp_path,
     settings = MapSettings(voxel_m=0.05, surface="fitted")
 
     for threads, burst in ((2, 10**9), (2, 5000), (1, 10**9), (4, 10**9)):
-        monkeypatch.setattr("recon4.mapping.build.WORKERS", threads)
+        monkeypatch.setattr(map_build, "MAP_BUILD", replace(MAP_BUILD, workers=threads))
         build(walk, tmp_path / f"{threads} {burst}", settings, burst=burst)
 
     first, *others = (digest(folder) for folder in tmp_path.iterdir())

@@ -11,8 +11,7 @@ import time
 from collections import OrderedDict
 from collections.abc import Callable, Hashable
 
-MAX_KEYS = 20_000
-"""Beyond that the least recently used are forgotten."""
+from recon4_app.access.tuning import BACKOFF
 
 
 class LoginBackoff:
@@ -44,7 +43,7 @@ class LoginBackoff:
                 return left_s
             self._failures[key] = (count + 1, self._clock())
             self._failures.move_to_end(key)
-            while len(self._failures) > MAX_KEYS:
+            while len(self._failures) > BACKOFF.max_keys:
                 self._failures.popitem(last=False)
             return 0.0
 
@@ -77,7 +76,7 @@ class TokenBuckets:
             taken = left >= 1.0
             self._left[key] = (left - taken, now_s)
             self._left.move_to_end(key)
-            while len(self._left) > MAX_KEYS:
+            while len(self._left) > BACKOFF.max_keys:
                 self._left.popitem(last=False)
             return 0.0 if taken else (1.0 - left) / self._per_s
 

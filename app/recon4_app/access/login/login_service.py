@@ -21,15 +21,11 @@ from recon4_app.access.login.sessions import Sessions, hash_of, new_token
 from recon4_app.access.pairing.grants import Pairings
 from recon4_app.access.people import Role
 from recon4_app.access.restoring import ACCESS_FILE
+from recon4_app.access.tuning import LOGINS
 from recon4_app.errors import NoRoom, Refused, TooMany, WrongPassword
 
 WRONG = "wrong name or password"
 """The same message for a wrong name, a wrong password and a disabled account."""
-CONCURRENT_LOGINS = 2
-"""Passwords verified at the same time; each takes 64 MiB."""
-WAITING_LOGINS = 8
-"""Logins of unknown browsers at the same time, so that a flood of them from many addresses takes no
-thread from other requests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,8 +62,8 @@ class LoginService:
         self._accounts, self._sessions = accounts, sessions
         self._backoff = LoginBackoff(clock=clock)
         self._addresses = TokenBuckets(burst=100, per_s=100 / 3600, clock=clock)
-        self._verifying = threading.Semaphore(CONCURRENT_LOGINS)
-        self._waiting = threading.BoundedSemaphore(WAITING_LOGINS)
+        self._verifying = threading.Semaphore(LOGINS.concurrent_logins)
+        self._waiting = threading.BoundedSemaphore(LOGINS.waiting_logins)
         self._setup_hash = ""
         self._setup_lock = threading.Lock()
 

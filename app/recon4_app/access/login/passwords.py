@@ -11,17 +11,12 @@ from argon2 import PasswordHasher
 from argon2.exceptions import InvalidHashError, VerificationError
 from zxcvbn import zxcvbn
 
+from recon4_app.access.tuning import PASSWORDS
 from recon4_app.errors import WeakPassword
 from recon4_app.settings import allowed_hosts_from_environment
 
 SHORTEST, LONGEST = 12, 256
 """Characters of a password."""
-MIN_ATTEMPTS = 10**10
-"""Attempts a new password must withstand (the highest score of zxcvbn)."""
-LONGEST_ESTIMATED = 64
-"""Characters the estimate uses; its time grows with the square."""
-MAX_SUBSTITUTES = 8
-"""Different substitutes (``4`` for ``a``) in one estimate: zxcvbn tries all combinations."""
 
 HASHER = PasswordHasher(time_cost=2, memory_cost=64 * 1024, parallelism=1)
 """64 MiB, two passes: a tenth of a second here, expensive on a graphics card."""
@@ -87,9 +82,9 @@ def require_strong(password: str, name: str) -> None:
             f"the password needs {SHORTEST} to {LONGEST} characters, got {len(password)}; "
             "use three or four unrelated words, or let a password manager make one"
         )
-    text = _normal(password)[:LONGEST_ESTIMATED]
+    text = _normal(password)[: PASSWORDS.longest_estimated]
     known = _known_words(name)
-    if len(SUBSTITUTES.intersection(text)) <= MAX_SUBSTITUTES:
+    if len(SUBSTITUTES.intersection(text)) <= PASSWORDS.max_substitutes:
         _check_reading(text, known, separators=0)
     letters = "".join(one for one in unicodedata.normalize("NFKD", text) if one.isalnum())
     _check_reading(letters, known, separators=len({one for one in text if not one.isalnum()}))
@@ -116,15 +111,16 @@ def _normal(password: str) -> str:
 def _check_reading(text: str, known: list[str], *, separators: int) -> None:
     """Check one reading of a password; each kind of separator left out counts as a factor of 10."""
     with _estimating:
-        found = zxcvbn(text, user_inputs=known, max_length=2 * LONGEST_ESTIMATED)
+        found = zxcvbn(text, user_inputs=known, max_length=2 * PASSWORDS.longest_estimated)
     strings = len(set(text.casefold())) ** len(text)
     attempts = min(int(found["guesses"]), strings) * 10**separators
-    if attempts < MIN_ATTEMPTS:
+    if attempts < PASSWORDS.min_attempts:
         kinds = dict.fromkeys(_kind(match) for match in found["sequence"])
         weak = [WEAKNESS[kind] for kind in kinds if kind != "bruteforce"]
         raise WeakPassword(
             f"the password is found in about {float(f'{attempts:.0e}'):,.0f} attempts, it needs "
-            f"{MIN_ATTEMPTS:,}: it is mostly {'; '.join(weak) or WEAKNESS['bruteforce']}. "
+            f"{PASSWORDS.min_attempts:,}: it is mostly "
+            f"{'; '.join(weak) or WEAKNESS['bruteforce']}. "
             "Add two or three unrelated words; digits or signs at the end, repeating and "
             "reversing help little"
         )

@@ -22,6 +22,7 @@ from recon4_app.access.audit import printable
 from recon4_app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
 from recon4_app.access.login.accounts import lookup_key
 from recon4_app.access.people import Person, Role
+from recon4_app.access.tuning import SESSION_TIMES
 from recon4_app.errors import NoRoom, NotFound
 
 HOUR_S = 3600.0
@@ -45,12 +46,6 @@ LIVES = {
 }
 PHONE_LIFE = Life(12 * HOUR_S, 12 * HOUR_S)
 """A phone stays in a pocket for hours of a walk."""
-CLOCK_STEP_S = 60.0
-"""A password given later than this from now was given before the clock was set back [s]."""
-CACHED_S = 2.0
-"""Lifetime of a cached session: one ended by another process ends after that [s]."""
-NOTED_EVERY_S = 30.0
-"""Interval at which the last use of a session is written [s]."""
 BROWSER_KNOWN_S = 365 * 24 * HOUR_S
 
 
@@ -146,7 +141,7 @@ class Sessions:
             if len(self._cached) > 1000:
                 self._cached.clear()
             found_session = AuthenticatedSession(found[0], token_hash)
-            self._cached[token_hash] = (time.monotonic() + CACHED_S, found_session)
+            self._cached[token_hash] = (time.monotonic() + SESSION_TIMES.cached_s, found_session)
             return found_session
 
     def alive(self, session_id: str) -> Session | None:
@@ -156,7 +151,7 @@ class Sessions:
 
     def unnoted(self, session: Session) -> bool:
         """Whether the last use of a session is due to be written."""
-        return self._clock() - session.seen_s > NOTED_EVERY_S
+        return self._clock() - session.seen_s > SESSION_TIMES.noted_every_s
 
     def note(self, session: Session) -> None:
         """Write that a session is in use now; on a full disk it is left out."""
@@ -174,7 +169,7 @@ class Sessions:
     def age_s(self, session: Session) -> float:
         """Seconds since the password was last given."""
         age_s = self._clock() - session.proved_s
-        return max(0.0, age_s) if age_s > -CLOCK_STEP_S else math.inf
+        return max(0.0, age_s) if age_s > -SESSION_TIMES.clock_step_s else math.inf
 
     def all(self, *, person: str | None = None) -> list[Session]:
         """Sessions that have not expired, the latest first; of one person, or of all."""

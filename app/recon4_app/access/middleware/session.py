@@ -16,6 +16,7 @@ from recon4_app.access.login.login_service import Access
 from recon4_app.access.login.sessions import AuthenticatedSession, Session, form_token
 from recon4_app.access.middleware.rejection import Rejection, note
 from recon4_app.access.people import NOBODY, SAFE_METHODS
+from recon4_app.access.tuning import SESSION_WATCH
 from recon4_app.network.behind import prefix_of, public_path, route_path
 
 FORM_HEADER = "X-Recon4-Token"
@@ -25,9 +26,6 @@ OPEN_PATHS = PAIRING | {"/login", "/api/login", "/api/setup", "/healthz", "/metr
 """Paths answered without a session, besides the files of `OPEN_FOLDER`; tested."""
 OPEN_FOLDER = "/web/"
 
-LOOK_AGAIN_S = 2.0
-"""An open WebSocket or stream ends at most this long after its session [s]."""
-CANCEL_AGAIN_S = 1.0
 TOKEN = re.compile(r"[A-Za-z0-9_-]{43}")
 
 
@@ -128,7 +126,7 @@ class SessionMonitor:
 
         running = asyncio.ensure_future(app(self._scope, receive_and_note, send_and_note))
         try:
-            while not (await asyncio.wait({running}, timeout=LOOK_AGAIN_S))[0]:
+            while not (await asyncio.wait({running}, timeout=SESSION_WATCH.look_again_s))[0]:
                 if self._begun and not await asyncio.to_thread(self._still):
                     await cancelled(running)
                     await self._end(send)
@@ -170,7 +168,7 @@ async def cancelled(running: asyncio.Future[None]) -> None:
     """Cancel a task until it has ended: a library may lose a cancellation."""
     while not running.done():
         running.cancel()
-        await asyncio.wait({running}, timeout=CANCEL_AGAIN_S)
+        await asyncio.wait({running}, timeout=SESSION_WATCH.cancel_again_s)
 
 
 async def find(access: Access, token: str) -> AuthenticatedSession | None:

@@ -23,16 +23,9 @@ from recon4_app.access.audit import printable
 from recon4_app.access.login.login_backoff import TokenBuckets, network
 from recon4_app.access.login.sessions import hash_of
 from recon4_app.access.people import MAY, Permission, Person, Role
+from recon4_app.access.tuning import PAIRING
 from recon4_app.errors import NotFound, Refused, TooMany
 
-INVITATION_S = 120.0
-REQUEST_S = 300.0
-MAX_OPEN = 20
-"""Invitations, and requests, that wait at the same time …"""
-MAX_OPEN_A_NETWORK = 4
-"""… of which requests from one address, so that one client cannot fill the list."""
-TRIES_A_MINUTE = 10
-LONGEST_NAME = 64
 PHONE_ROLES = (Role.OPERATOR, Role.VIEWER)
 """A phone never signs or administers."""
 
@@ -87,7 +80,9 @@ class Pairings:
         self._lock = threading.Lock()
         self._invitations: dict[str, Invitation] = {}
         self._requests: dict[str, PhoneRequest] = {}
-        self._tries = TokenBuckets(burst=TRIES_A_MINUTE, per_s=TRIES_A_MINUTE / 60, clock=clock)
+        self._tries = TokenBuckets(
+            burst=PAIRING.tries_a_minute, per_s=PAIRING.tries_a_minute / 60, clock=clock
+        )
 
     def invite(self, maker: Person, role: Role) -> str:
         """A one-time token for one phone; it is stored nowhere.
@@ -100,9 +95,9 @@ class Pairings:
         token = secrets.token_urlsafe(16)
         with self._lock:
             _drop_old(self._invitations, self._clock())
-            if len(self._invitations) >= MAX_OPEN:
-                raise TooMany("too many invitations are open", retry_after_s=INVITATION_S)
-            until_s = self._clock() + INVITATION_S
+            if len(self._invitations) >= PAIRING.max_open:
+                raise TooMany("too many invitations are open", retry_after_s=PAIRING.invitation_s)
+            until_s = self._clock() + PAIRING.invitation_s
             self._invitations[hash_of(token)] = Invitation(grant=grant, until_s=until_s)
         return token
 
@@ -128,15 +123,18 @@ class Pairings:
             Refused: If the name is too long.
             TooMany: If too many phones wait, or this one sends too many requests.
         """
-        if len(name) > LONGEST_NAME:
-            raise Refused(f"the name of a phone has at most {LONGEST_NAME} characters")
+        if len(name) > PAIRING.longest_name:
+            raise Refused(f"the name of a phone has at most {PAIRING.longest_name} characters")
         place = network(address)
         self._try(("request", place))
         with self._lock:
             _drop_old(self._requests, self._clock())
             from_there = [r for r in self._requests.values() if network(r.address) == place]
-            if len(self._requests) >= MAX_OPEN or len(from_there) >= MAX_OPEN_A_NETWORK:
-                raise TooMany("too many phones wait to be paired", retry_after_s=REQUEST_S)
+            if (
+                len(self._requests) >= PAIRING.max_open
+                or len(from_there) >= PAIRING.max_open_a_network
+            ):
+                raise TooMany("too many phones wait to be paired", retry_after_s=PAIRING.request_s)
             taken = {request.code for request in self._requests.values()}
             code = _code(taken)
             token = secrets.token_urlsafe(16)
@@ -144,7 +142,7 @@ class Pairings:
                 code=code,
                 name=printable(name.strip()) or "phone",
                 address=address,
-                until_s=self._clock() + REQUEST_S,
+                until_s=self._clock() + PAIRING.request_s,
             )
         return PairingRequest(code, token)
 

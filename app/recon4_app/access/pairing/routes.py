@@ -13,7 +13,7 @@ from pydantic import Field
 
 from recon4_app.access.audit import address, audit
 from recon4_app.access.login.routes import Me, Text, Wire, enter_paired
-from recon4_app.access.pairing.grants import INVITATION_S, REQUEST_S, PairingGrant, roles_for
+from recon4_app.access.pairing.grants import PairingGrant, roles_for
 from recon4_app.access.people import (
     Permission,
     Person,
@@ -23,6 +23,7 @@ from recon4_app.access.people import (
     interactive_login,
     needs,
 )
+from recon4_app.access.tuning import PAIRING
 from recon4_app.deps import Server
 from recon4_app.error_responses import ProblemDetail
 from recon4_app.errors import AppError, Conflict, Refused
@@ -141,7 +142,7 @@ def invite(new: NewInvitation, request: Request, server: Server, *, who: Who) ->
     behind = server.settings.behind
     hosts = [behind.host] if behind else _hosts(request, server.settings.host)
     links = [_link(host, request, token) for host in hosts]
-    return InvitationView(links=links, seconds=INVITATION_S, role=new.role)
+    return InvitationView(links=links, seconds=PAIRING.invitation_s, role=new.role)
 
 
 @router.post("/redeem", dependencies=ALLOW_ANONYMOUS, summary="Redeem an invitation")
@@ -163,7 +164,7 @@ def request_pairing(new: NewRequest, request: Request, server: Server) -> Pairin
     _with_login(server)
     _signed_out(request)
     pending = server.access.pairings.request(new.name, address(request))
-    return PairingRequestView(code=pending.code, token=pending.token, seconds=REQUEST_S)
+    return PairingRequestView(code=pending.code, token=pending.token, seconds=PAIRING.request_s)
 
 
 @router.post("/claim", dependencies=ALLOW_ANONYMOUS, summary="Claim a pairing")

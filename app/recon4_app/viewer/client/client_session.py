@@ -21,7 +21,7 @@ from recon4.errors import Recon4Error
 from recon4.mapping.tiles import Surface
 from recon4_app.viewer.client.legend import legend, shows_preview, span_of
 from recon4_app.viewer.client.panels import Panel, PanelCallbacks
-from recon4_app.viewer.client.point_budget import HOLD_S, PHONE_POINTS, PointBudget
+from recon4_app.viewer.client.point_budget import PointBudget
 from recon4_app.viewer.client.pointer_tools import PointerTools
 from recon4_app.viewer.client.show import Screen
 from recon4_app.viewer.client.view import ViewState, stretch_from_text, view_from_json
@@ -31,15 +31,9 @@ from recon4_app.viewer.scene.build import Content, bounds, describe
 from recon4_app.viewer.scene.mark import stretch_bounds, stretch_nodes, stretch_positions
 from recon4_app.viewer.scene.nodes import Node, PointsNode
 from recon4_app.viewer.scene.source import ProjectSource
+from recon4_app.viewer.tuning import CLIENTS, POINT_BUDGET
 
 log = logging.getLogger(__name__)
-
-KEPT_VIEW_TIMEOUT_S = 1.0
-"""Longest wait for the view that the browser kept [s]."""
-PLAY_S = 0.2
-"""Time each multiframe is shown during playback [s]."""
-KEPT_ACTIONS = 16
-"""Clicks and keys that wait for the thread; of more the oldest are dropped."""
 
 
 class ClientSession:
@@ -48,14 +42,14 @@ class ClientSession:
     def __init__(self, client: Any, source: ProjectSource, project: str, *, points: int) -> None:
         self._source, self._project = source, project
         self._screen = Screen(client, project, begins_at=bounds(source.content))
-        self._most = min(points, PHONE_POINTS) if self._screen.phone else points
+        self._most = min(points, POINT_BUDGET.phone_points) if self._screen.phone else points
         self._budget = PointBudget(self._most)
         self._lock = threading.Lock()
         self._wake, self._over = threading.Event(), threading.Event()
         self._view, self._shown, self._kept = ViewState(), ViewState(), ViewState()
         self._content = Content()
         self._playing = False
-        self._actions: deque[Callable[[], None]] = deque(maxlen=KEPT_ACTIONS)
+        self._actions: deque[Callable[[], None]] = deque(maxlen=CLIENTS.kept_actions)
         self._thread = threading.Thread(target=self._run, daemon=True)
         self._thread.start()
 
@@ -69,7 +63,7 @@ class ClientSession:
         self._wake.set()
 
     def _run(self) -> None:
-        kept, answer_s = self._screen.kept_view(KEPT_VIEW_TIMEOUT_S)
+        kept, answer_s = self._screen.kept_view(CLIENTS.kept_view_timeout_s)
         self._budget.began(answer_s)
         self._view = self._kept = view_from_json(kept) or ViewState()
         self._panel = Panel(self._screen.gui, PanelCallbacks(self._change, self._press))
@@ -81,7 +75,7 @@ class ClientSession:
         self._screen.on_click(self._click)
         self._wake.set()
         while not self._over.is_set():
-            self._wake.wait(PLAY_S if self._playing else None)
+            self._wake.wait(CLIENTS.play_s if self._playing else None)
             if self._playing and not self._wake.is_set():
                 self._next_multiframe()
             self._wake.clear()
@@ -114,7 +108,7 @@ class ClientSession:
     def _try_more(self) -> None:
         """Measure the response time of the browser; adapt the number of points."""
         before = self._budget.points
-        self._budget.record(self._screen.answers_within_s(HOLD_S))
+        self._budget.record(self._screen.answers_within_s(POINT_BUDGET.hold_s))
         if self._budget.points != before:
             self._wake.set()
 
@@ -174,7 +168,7 @@ class ClientSession:
 
     def _go_to_stretch(self) -> None:
         """Mark the stretch that the page was asked for, or the marked one again, and fly there."""
-        asked = stretch_from_text(self._screen.asked_stretch(KEPT_VIEW_TIMEOUT_S))
+        asked = stretch_from_text(self._screen.asked_stretch(CLIENTS.kept_view_timeout_s))
         stretch, content = asked or self._view.stretch, self._source.content
         if stretch is None:
             return

@@ -7,17 +7,7 @@ responds quickly.
 
 from __future__ import annotations
 
-PHONE_POINTS = 300_000
-"""Most points on a phone."""
-FIRST_POINTS = 200_000
-"""Points before the speed of the browser is known."""
-FEWEST_POINTS = 60_000
-QUICK_S = 0.25
-"""Response time below which the budget grows [s]."""
-SLOW_S = 0.7
-"""Response time above which the budget shrinks [s]."""
-HOLD_S = 3.0
-"""Longest wait for a response [s]."""
+from recon4_app.viewer.tuning import POINT_BUDGET
 
 
 class PointBudget:
@@ -36,17 +26,17 @@ class PointBudget:
         """Set the limit of the person or the server; a new limit resets the adaptation."""
         if most != self._most:
             self._most = self._ceiling = most
-            self.points = min(FIRST_POINTS, most)
+            self.points = min(POINT_BUDGET.first_points, most)
             self.settled = self.points == most
 
     def record(self, answer_s: float | None) -> None:
         """Adapt to a response time (None = too long) measured with `points` on screen."""
         before = self.points
         if answer_s is None:
-            self.points = max(before // 2, min(FEWEST_POINTS, self._most))
-        elif answer_s - self._calm_s > SLOW_S:
-            self._ceiling = max(before // 2, min(FEWEST_POINTS, self._most))
+            self.points = max(before // 2, min(POINT_BUDGET.fewest_points, self._most))
+        elif answer_s - self._calm_s > POINT_BUDGET.slow_s:
+            self._ceiling = max(before // 2, min(POINT_BUDGET.fewest_points, self._most))
             self.points = self._ceiling
-        elif answer_s - self._calm_s < QUICK_S:
+        elif answer_s - self._calm_s < POINT_BUDGET.quick_s:
             self.points = min(before * 2, self._ceiling)
         self.settled = self.points == before

@@ -20,13 +20,12 @@ from recon4_app.viewer.client.captions import (
 )
 from recon4_app.viewer.client.panels import Panel, Update
 from recon4_app.viewer.client.show import Screen
-from recon4_app.viewer.client.view import MAX_MEASUREMENTS, Position, ViewState
+from recon4_app.viewer.client.view import Position, ViewState
 from recon4_app.viewer.cloud.pick import Ray, pick_cell, pick_edge, pick_gnss, pick_point
-from recon4_app.viewer.scene.build import MEASURED_COLOR, as_position, crosses
+from recon4_app.viewer.scene.build import as_position, crosses
 from recon4_app.viewer.scene.nodes import LinesNode, Node
 from recon4_app.viewer.scene.source import ProjectSource
-
-PICKED_COLOR = (255, 255, 255)
+from recon4_app.viewer.tuning import POINTER_COLORS, SCENE, VIEWS
 
 
 class PointerTools:
@@ -58,11 +57,15 @@ class PointerTools:
         """Nodes of the picked edge or point, and of the first point of a measurement."""
         nodes: list[Node] = []
         if self._edge is not None:
-            nodes.append(_mark("/picked/edge", self._edge[None], PICKED_COLOR))
+            nodes.append(_mark("/picked/edge", self._edge[None], POINTER_COLORS.picked_color))
         if self._last is not None:
-            nodes.append(_mark("/picked/point", crosses(np.array([self._last])), PICKED_COLOR))
+            nodes.append(
+                _mark("/picked/point", crosses(np.array([self._last])), POINTER_COLORS.picked_color)
+            )
         if self._first is not None:
-            nodes.append(_mark("/picked/first", crosses(np.array([self._first])), MEASURED_COLOR))
+            nodes.append(
+                _mark("/picked/first", crosses(np.array([self._first])), SCENE.measured_color)
+            )
         return nodes
 
     def report(self, view: ViewState) -> None:
@@ -108,7 +111,7 @@ class PointerTools:
     def _keep(self, points: tuple[Position, ...]) -> None:
         self._change(
             lambda view: replace(
-                view, measurements=(*view.measurements, points)[-MAX_MEASUREMENTS:]
+                view, measurements=(*view.measurements, points)[-VIEWS.max_measurements :]
             )
         )
 

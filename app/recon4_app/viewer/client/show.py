@@ -31,15 +31,12 @@ from recon4_app.viewer.scene.nodes import (
     PointsNode,
     alike,
 )
+from recon4_app.viewer.tuning import SHOW
 
-PHONE_WIDTH_PX = 700
 STORAGE_PREFIX = "recon4.view."
 """Name under which a browser keeps the view of a project."""
 STRETCH_PREFIX = "recon4.stretch."
 """Name under which the page leaves the stretch of the walk that it was asked to show."""
-NARROW_FOV_RAD, USUAL_FOV_RAD = np.deg2rad(6.0), np.deg2rad(75.0)
-REDRAW_GROWTH = 0.2
-"""Relative growth of the map after which the camera is moved to fit it."""
 DEFAULT_VIEW_DIRECTION = np.array([0.0, -0.75, 0.75])
 """Camera position relative to a box, in units of its size: south and above."""
 
@@ -81,7 +78,7 @@ class Screen:
     @property
     def phone(self) -> bool:
         """Whether it is a small screen."""
-        return self._client.camera.image_width < PHONE_WIDTH_PX
+        return self._client.camera.image_width < SHOW.phone_width_px
 
     @property
     def camera(self) -> Camera:
@@ -209,7 +206,7 @@ class Screen:
 
     def follow(self, box: Bounds) -> None:
         """Keep a growing map in view as long as the person does not move the camera."""
-        if self._put_m is None or abs(box.size_m - self._box_m) < REDRAW_GROWTH * self._box_m:
+        if self._put_m is None or abs(box.size_m - self._box_m) < SHOW.redraw_growth * self._box_m:
             return
         if np.allclose(self._client.camera.position, self._put_m, atol=1e-3):
             self._box_m = box.size_m
@@ -218,7 +215,9 @@ class Screen:
     def toggle_narrow(self) -> None:
         """Toggle a narrow field of view from far away and the usual one; the map keeps its size."""
         camera = self._client.camera
-        fov_rad = USUAL_FOV_RAD if camera.fov < 2.0 * NARROW_FOV_RAD else NARROW_FOV_RAD
+        fov_rad = (
+            SHOW.usual_fov_rad if camera.fov < 2.0 * SHOW.narrow_fov_rad else SHOW.narrow_fov_rad
+        )
         away = np.array(camera.position) - np.array(camera.look_at)
         scale = np.tan(camera.fov / 2.0) / np.tan(fov_rad / 2.0)
         with self._client.atomic():

@@ -12,6 +12,7 @@ from recon4.mapping.tiles import Surface
 from recon4.store.earlier_names import PALETTES
 from recon4_app.viewer.cloud.palette import Palette, Range
 from recon4_app.viewer.scene.layers import Layer
+from recon4_app.viewer.tuning import VIEWS
 
 ColorBy = Literal[
     "normalized intensity", "raw intensity", "height", "time", "sensor", "ring", "multiframe",
@@ -37,11 +38,6 @@ Points = Literal["map", "map and multiframe", "multiframe"]
 EdgeColor = Literal["verdict", "error / limit", "chi²"]
 
 Position = tuple[float, float, float]
-MAX_MEASUREMENTS = 200
-MAX_NUMBER = 1e12
-"""Largest coordinate or end of a range: differences and squares of such numbers are finite."""
-_MAX_STRETCH_TEXT = 400
-"""Characters of a fragment that are read."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -132,7 +128,7 @@ def stretch_from_text(text: str | None) -> Stretch | None:
     The text is untrusted: a malformed one counts as none.
     """
     try:
-        fields = parse_qs((text or "")[:_MAX_STRETCH_TEXT])
+        fields = parse_qs((text or "")[: VIEWS.max_stretch_text])
         span, place = (_numbers(fields.get(name, [""])[0]) for name in ("span", "place"))
         places = [place[first : first + 3] for first in range(0, len(place), 3)]
         return _stretch({"span_s": span or None, "places": places})
@@ -174,7 +170,9 @@ def _view(record: dict[str, Any]) -> ViewState:
         edge_color=_one_of(record["edge_color"], get_args(EdgeColor)),
         detail=max(int(record["detail"]), 0),
         adapt=record["adapt"] is True,
-        measurements=tuple(_measurement(m) for m in record["measurements"][:MAX_MEASUREMENTS]),
+        measurements=tuple(
+            _measurement(m) for m in record["measurements"][: VIEWS.max_measurements]
+        ),
         stretch=_stretch(record.get("stretch")),
     )
 
@@ -194,6 +192,6 @@ def _one_of(value: Any, known: tuple[Any, ...]) -> Any:
 
 def _number(value: Any) -> float:
     number = float(value)
-    if not abs(number) <= MAX_NUMBER:
-        raise ValueError(f"expected a number up to {MAX_NUMBER:g}, got {number:g}")
+    if not abs(number) <= VIEWS.max_number:
+        raise ValueError(f"expected a number up to {VIEWS.max_number:g}, got {number:g}")
     return number

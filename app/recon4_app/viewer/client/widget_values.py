@@ -13,7 +13,7 @@ from typing import Any
 import viser
 from viser import _messages
 
-from recon4_app.viewer.client.view import MAX_NUMBER
+from recon4_app.viewer.tuning import VIEWS
 
 log = logging.getLogger(__name__)
 
@@ -64,8 +64,8 @@ def fitting(widget: object, value: object) -> bool | float | str:
 def _number(value: object, *, whole: bool) -> float:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise ValueError(f"expected a number, got {str(value)[:40]!r}")
-    if not (math.isfinite(value) and abs(value) <= MAX_NUMBER):
-        raise ValueError(f"expected a number up to {MAX_NUMBER:g}, got {value:g}")
+    if not (math.isfinite(value) and abs(value) <= VIEWS.max_number):
+        raise ValueError(f"expected a number up to {VIEWS.max_number:g}, got {value:g}")
     if whole and value != int(value):
         raise ValueError(f"expected a whole number, got {value:g}")
     return int(value) if whole else float(value)

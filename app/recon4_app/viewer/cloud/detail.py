@@ -11,13 +11,7 @@ from recon4_app.viewer.cloud.lod import Chunk, choose
 from recon4_app.viewer.cloud.palette import Palette, Range
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.nodes import PointsNode
-
-BATCH_POINTS = 60_000
-"""Points sent before checking whether the camera has moved."""
-COLOR_BATCH_POINTS = 400_000
-"""The same where only colors are sent."""
-MAX_BEHIND = 2
-"""Messages that may wait for the browser before the next batch."""
+from recon4_app.viewer.tuning import DETAIL
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,7 +57,7 @@ class Detail:
         self.points = len(cloud.base) + sum(int(cloud.boxes.sizes[t][k]) for t, k in chosen)
         style = Style(view.color_by, view.palette, span, view.point_size_m)
         for batch in self._batches(cloud, [None, *chosen], style):
-            while self._screen.behind > MAX_BEHIND:
+            while self._screen.behind > DETAIL.max_behind:
                 if self._over(0.002):
                     return False
             self._screen.show_points(batch, style)
@@ -82,7 +76,9 @@ class Detail:
                 continue
             before = self._screen.points_at(path)
             node = _node(cloud, chunk, style, before=before)
-            weight += len(node.p_node) / (COLOR_BATCH_POINTS if before else BATCH_POINTS)
+            weight += len(node.p_node) / (
+                DETAIL.color_batch_points if before else DETAIL.batch_points
+            )
             batch.append(node)
             if weight >= 1.0:
                 yield batch

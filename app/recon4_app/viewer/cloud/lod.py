@@ -13,17 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-
-STRATA = 64
-"""Number of interleaved samples in which a tile of the map is stored (`recon4.mapping.tile`)."""
-STRATA_ENDS = (1, 2, 4, *range(8, STRATA + 1, 4))
-"""Sample counts at which chunks end; the larger ones stay below a 16th of the tile."""
-NEAREST_M = 0.5
-"""A tile the camera is in is taken to be this far away [m]."""
-FINE_PX = 1.0
-"""Points nearer to each other on screen than this need no more between them."""
-EDGE_WEIGHT = 0.4
-"""Detail at the edge of the view, relative to that in its center."""
+from recon4_app.viewer.tuning import LOD
 
 Chunk = tuple[int, int]
 """Row of the tile, number of the chunk."""
@@ -59,18 +49,18 @@ def chunks_of(count: int, step: int) -> tuple[Rows, ...]:
     Inside its first 64th a tile lies in spatial order, so there a sample is every n-th row; from
     there on the tile's own order makes every prefix a sample.
     """
-    ends = [count * k // STRATA for k in STRATA_ENDS]
+    ends = [count * k // LOD.strata for k in LOD.strata_ends]
     rows: list[Rows] = []
     begin = 0
-    if step >= STRATA:
-        stride = step // STRATA
+    if step >= LOD.strata:
+        stride = step // LOD.strata
         begin = ends[0]
         rows.append(Rows(0, begin, stride))
         while stride > 1:
             rows.append(Rows(stride // 2, begin, stride))
             stride //= 2
     else:
-        begin = count * max(STRATA // step, 1) // STRATA
+        begin = count * max(LOD.strata // step, 1) // LOD.strata
         rows.append(Rows(0, begin))
     for end in ends:
         if end > begin:
@@ -144,7 +134,7 @@ def choose(boxes: TileBoxes, camera: Camera, budget: int) -> list[Chunk]:
     while heap:
         spacing, tile, chunk = heapq.heappop(heap)
         size = int(boxes.sizes[tile][chunk])
-        if -spacing < FINE_PX:
+        if -spacing < LOD.fine_px:
             break
         if size > budget:
             continue
@@ -171,7 +161,7 @@ def in_sight(boxes: TileBoxes, camera: Camera) -> NDArray[np.bool_]:
 
 def _distances_m(boxes: TileBoxes, camera: Camera) -> Array:
     outside = np.maximum(boxes.low_m - camera.position_m, camera.position_m - boxes.high_m)
-    return np.maximum(np.linalg.norm(np.maximum(outside, 0.0), axis=1), NEAREST_M)
+    return np.maximum(np.linalg.norm(np.maximum(outside, 0.0), axis=1), LOD.nearest_m)
 
 
 def _weights(boxes: TileBoxes, camera: Camera) -> Array:
@@ -180,7 +170,7 @@ def _weights(boxes: TileBoxes, camera: Camera) -> Array:
     length = np.maximum(np.linalg.norm(to_middle, axis=1), 1e-9)
     ahead = to_middle @ camera.R_map_camera[:, 2] / length
     off = np.arccos(np.clip(ahead, -1.0, 1.0)) / (camera.fov_rad / 2.0)
-    return 1.0 - (1.0 - EDGE_WEIGHT) * np.clip(off, 0.0, 1.0)
+    return 1.0 - (1.0 - LOD.edge_weight) * np.clip(off, 0.0, 1.0)
 
 
 def _spacing_px(boxes: TileBoxes, tile: int, chunks: int, *, scale_px: float) -> float:

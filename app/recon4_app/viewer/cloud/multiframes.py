@@ -14,17 +14,12 @@ from recon4.mapping.place import place
 from recon4.model.trajectory import Times, Trajectory
 from recon4.store.frames import FrameStore
 from recon4_app.viewer.client.view import ColorBy
-from recon4_app.viewer.cloud.palette import Palette, Range, Rgb, usual_range
+from recon4_app.viewer.cloud.palette import Palette, Range, usual_range
 from recon4_app.viewer.cloud.parts import colors
 from recon4_app.viewer.scene.nodes import PointsNode
+from recon4_app.viewer.tuning import MULTIFRAMES
 
-MAX_POINTS = 150_000
-"""A window with more points is thinned out."""
-SLACK_NS = 500_000_000
-"""Largest time of a point outside the trajectory [ns]."""
 IN_THE_MAP_ONLY: frozenset[ColorBy] = frozenset({"normalized intensity", "uncertainty"})
-HIGHLIGHT: Rgb = (255, 145, 0)
-"""A multiframe over the map."""
 
 
 class Multiframes:
@@ -63,7 +58,7 @@ class Multiframes:
         frame = self._frames[row]
         frame = frame.take(slice(None, None, max(1, -(-len(frame) // most))))
         try:
-            return place(frame, line, self._frames.rig, slack_ns=SLACK_NS)
+            return place(frame, line, self._frames.rig, slack_ns=MULTIFRAMES.slack_ns)
         except OutOfRange:
             return np.empty((0, 3))
 
@@ -71,12 +66,12 @@ class Multiframes:
         """The points of a window; None outside the trajectory."""
         rows = self.window(moment, window_s)
         total = sum(len(self._frames[k]) for k in rows)
-        step = max(1, -(-total // MAX_POINTS))
+        step = max(1, -(-total // MULTIFRAMES.max_points))
         parts = []
         for k in rows:
             frame = self._frames[k].take(slice(None, None, step))
             try:
-                p_map = place(frame, line, self._frames.rig, slack_ns=SLACK_NS)
+                p_map = place(frame, line, self._frames.rig, slack_ns=MULTIFRAMES.slack_ns)
             except OutOfRange:
                 continue
             t_ns = frame.t_ns + frame.dt_ns.astype(np.int64)
@@ -110,7 +105,7 @@ class MultiframeWindow:
         """
         origin = self.p_map[0]
         if color_by is None:
-            rgb = np.tile(np.array(HIGHLIGHT, np.uint8), (len(self.p_map), 1))
+            rgb = np.tile(np.array(MULTIFRAMES.highlight, np.uint8), (len(self.p_map), 1))
         else:
             values = self._values(color_by)
             known = None if color_by in IN_THE_MAP_ONLY else span

@@ -9,17 +9,10 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4_app.viewer.tuning import PALETTE
+
 Rgb = tuple[int, int, int]
 Palette = Literal["viridis", "turbo", "gray"]
-
-SENSOR_COLORS: tuple[Rgb, ...] = (
-    (86, 180, 233),
-    (230, 159, 0),
-    (0, 158, 115),
-    (204, 121, 167),
-    (240, 228, 66),
-)
-"""Distinguishable with color vision deficiency (Okabe and Ito 2008)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +35,7 @@ def table(palette: Palette) -> NDArray[np.uint8]:
 @cache
 def sensor_colors() -> NDArray[np.uint8]:
     """One color a sensor, (S, 3)."""
-    return np.array(SENSOR_COLORS, dtype=np.uint8)
+    return np.array(PALETTE.sensor_colors, dtype=np.uint8)
 
 
 def distinct_colors(numbers: NDArray[Any]) -> NDArray[np.uint8]:

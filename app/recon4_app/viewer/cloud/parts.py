@@ -30,13 +30,7 @@ from recon4_app.viewer.cloud.palette import (
     sensor_colors,
     usual_range,
 )
-
-BASE_POINTS = 60_000
-"""Most points of the coarsest sample, which is sent first and always on screen."""
-PAINTED_POINTS = 6_000_000
-"""Points whose colors are cached, for clients with the same view [3 bytes each]."""
-SURFACE_M = 0.01
-"""Distance of points on a surface in a map that was not thinned [m]."""
+from recon4_app.viewer.tuning import CLOUD_PARTS
 
 FIELD_OF: dict[ColorBy, str] = {
     "normalized intensity": "intensity_normalized",
@@ -86,9 +80,9 @@ class Cloud:
             name: np.load(folder / column_file(folder, name), mmap_mode="r").view(np.ndarray)
             for name in self.tiles.fields
         }
-        step = base_step(len(self.tiles), BASE_POINTS)
+        step = base_step(len(self.tiles), CLOUD_PARTS.base_points)
         self._chunks = [chunks_of(len(tile), step) for tile in self.tiles]
-        self._painted = _Painted(PAINTED_POINTS)
+        self._painted = _Painted(CLOUD_PARTS.painted_points)
 
     def __len__(self) -> int:
         return len(self.tiles)
@@ -120,7 +114,7 @@ class Cloud:
     def boxes(self) -> TileBoxes:
         """Input of the selection of detail."""
         tiles = self.tiles.tiles
-        apart_m = self.tiles.notes.voxel_m or SURFACE_M
+        apart_m = self.tiles.notes.voxel_m or CLOUD_PARTS.surface_m
         low = np.array([tile.low_m for tile in tiles]).reshape(-1, 3)
         high = np.array([tile.high_m for tile in tiles]).reshape(-1, 3)
         x, y, z = (high - low).T

@@ -17,15 +17,7 @@ from recon4_app.viewer.client.view import Position, ViewState
 from recon4_app.viewer.cloud.parts import Cloud
 from recon4_app.viewer.scene.build import GnssMarks, as_position
 from recon4_app.viewer.scene.layers import EdgeTable
-
-EDGE_PX = 7.0
-"""Largest distance on screen at which an edge is picked."""
-POINT_PX = (3.0, 12.0)
-"""Search radii around the ray, tried in this order."""
-_MOST_CELLS = 200
-"""Cells on either side in which a surface is looked for."""
-SAME_SURFACE_M = 0.05
-"""Points up to this far behind the first hit are on the same surface [m]."""
+from recon4_app.viewer.tuning import POINT_PICKS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +70,7 @@ def pick_edge(table: EdgeTable, view: ViewState, ray: Ray) -> int | None:
     ends = table.graph.T_map_body.t[table.ends[rows]]
     angle = _angles(ends[:, 0], ends[:, 1], ray)
     best = int(np.argmin(angle))
-    return int(rows[best]) if angle[best] <= EDGE_PX * ray.pixel_rad else None
+    return int(rows[best]) if angle[best] <= POINT_PICKS.edge_px * ray.pixel_rad else None
 
 
 def pick_gnss(marks: GnssMarks, view: ViewState, ray: Ray) -> int | None:
@@ -89,7 +81,7 @@ def pick_gnss(marks: GnssMarks, view: ViewState, ray: Ray) -> int | None:
         return None
     angle = _angles(marks.p_antenna[rows], marks.p_map[rows], ray)
     best = int(np.argmin(angle))
-    return int(rows[best]) if angle[best] <= EDGE_PX * ray.pixel_rad else None
+    return int(rows[best]) if angle[best] <= POINT_PICKS.edge_px * ray.pixel_rad else None
 
 
 def _angles(start: Array, end: Array, ray: Ray) -> Array:
@@ -108,7 +100,7 @@ def _angles(start: Array, end: Array, ray: Ray) -> Array:
 
 def pick_point(cloud: Cloud, ray: Ray) -> PickedPoint | None:
     """The point nearest to a ray on the first surface it meets, None if it meets none."""
-    for pixels in POINT_PX:
+    for pixels in POINT_PICKS.point_px:
         found = _first_hit(cloud, ray, float(np.tan(pixels * ray.pixel_rad)))
         if found is not None:
             return _picked(cloud, *found)
@@ -164,7 +156,7 @@ def _hit_in_tile(
     if len(hits) == 0:
         return None
     front = exact[hits].min()
-    surface = hits[exact[hits] <= front + SAME_SURFACE_M + 0.01 * front]
+    surface = hits[exact[hits] <= front + POINT_PICKS.same_surface_m + 0.01 * front]
     best = surface[np.argmin(off_m[surface] / exact[surface])]
     return float(exact[best]), int(rows[best])
 
@@ -202,7 +194,10 @@ def pick_cell(plan: TrinaryMap, ray: Ray) -> PickedCell | None:
     at = np.floor((hit - low) / plan.cell_m).astype(np.int64)
     if not (0 <= at[0] < columns and 0 <= at[1] < rows):
         return None
-    reach = min(int(np.ceil(POINT_PX[-1] * ray.pixel_rad * depth / plan.cell_m)), _MOST_CELLS)
+    reach = min(
+        int(np.ceil(POINT_PICKS.point_px[-1] * ray.pixel_rad * depth / plan.cell_m)),
+        POINT_PICKS.most_cells,
+    )
     first = np.maximum(at - reach, 0)
     last = np.minimum(at + reach + 1, [columns, rows])
     # The first row of the image has the largest y.
@@ -212,7 +207,7 @@ def pick_cell(plan: TrinaryMap, ray: Ray) -> PickedCell | None:
         middle = low + plan.cell_m * (np.column_stack([x, y]) + first + 0.5)
         away_m = np.linalg.norm(middle - hit, axis=1)
         nearest = int(np.argmin(away_m))
-        if away_m[nearest] <= max(plan.cell_m, POINT_PX[-1] * ray.pixel_rad * depth):
+        if away_m[nearest] <= max(plan.cell_m, POINT_PICKS.point_px[-1] * ray.pixel_rad * depth):
             p_map = as_position(np.append(middle[nearest], 0.0))
             return PickedCell(p_map=p_map, what="surface", cell_m=plan.cell_m)
     free = bool(plan.free[rows - 1 - at[1], at[0]])

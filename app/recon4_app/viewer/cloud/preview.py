@@ -18,17 +18,8 @@ from recon4.model.trajectory import Trajectory
 from recon4_app.viewer.cloud.multiframes import Multiframes
 from recon4_app.viewer.cloud.palette import Palette, Range, paint
 from recon4_app.viewer.scene.nodes import PointsNode
+from recon4_app.viewer.tuning import CLOUD_PREVIEW
 
-EVERY_S = 1.0
-"""Interval of the multiframes shown [s]."""
-PIECE = 10
-"""Multiframes that are sent together."""
-MAX_POINTS = 150_000
-"""Most points in total."""
-MAX_OF_ONE = 2000
-"""Most points of one multiframe."""
-SAME_M = 0.02
-"""Poses that moved by less count as unchanged [m]."""
 HEIGHTS = Range(-2.0, 1.0)
 """Heights above the body at the ends of the palette [m]. Higher points are left out: ceilings would
 hide the walk."""
@@ -53,7 +44,11 @@ class JobPreview:
     def __init__(self, frames: Multiframes) -> None:
         self._frames = frames
         self._rows = _one_a_second(frames)
-        self._of_one = int(np.clip(MAX_POINTS // max(len(self._rows), 1), 20, MAX_OF_ONE))
+        self._of_one = int(
+            np.clip(
+                CLOUD_PREVIEW.max_points // max(len(self._rows), 1), 20, CLOUD_PREVIEW.max_of_one
+            )
+        )
         self._pieces: dict[int, _Piece] = {}
         self._painted: dict[tuple[int, Palette], tuple[_Piece, NDArray[np.uint8]]] = {}
         self._lock = threading.Lock()
@@ -69,8 +64,8 @@ class JobPreview:
     def _draw(
         self, rows: NDArray[np.intp], line: Trajectory, palette: Palette, *, size_m: float
     ) -> Iterator[PointsNode]:
-        for number, begin in enumerate(range(0, len(rows), PIECE)):
-            piece = self._piece(number, rows[begin : begin + PIECE], line)
+        for number, begin in enumerate(range(0, len(rows), CLOUD_PREVIEW.piece)):
+            piece = self._piece(number, rows[begin : begin + CLOUD_PREVIEW.piece], line)
             if piece is not None:
                 yield PointsNode(
                     path=f"/preview/{number}",
@@ -87,7 +82,7 @@ class JobPreview:
         if (
             kept is not None
             and np.array_equal(kept.rows, rows)
-            and np.allclose(kept.at, at, atol=SAME_M, rtol=0.0)
+            and np.allclose(kept.at, at, atol=CLOUD_PREVIEW.same_m, rtol=0.0)
         ):
             return kept
         placed = [self._frames.thinned(int(row), line, most=self._of_one) for row in rows]
@@ -113,5 +108,5 @@ def _one_a_second(frames: Multiframes) -> NDArray[np.intp]:
     t_ns = frames.t_mid_ns
     if len(t_ns) == 0:
         return np.empty(0, np.intp)
-    second = (t_ns - t_ns[0]) // round(EVERY_S * 1e9)
+    second = (t_ns - t_ns[0]) // round(CLOUD_PREVIEW.every_s * 1e9)
     return np.flatnonzero(np.diff(second, prepend=-1) > 0)

@@ -38,21 +38,8 @@ from recon4_app.viewer.scene.layers import (
     Layer,
 )
 from recon4_app.viewer.scene.nodes import AxesNode, GridNode, ImageNode, LabelNode, LinesNode, Node
+from recon4_app.viewer.tuning import SCENE
 
-CLOSED_M = 2.0
-"""Start and end nearer than this have one label [m]."""
-MAX_FRAMES = 1000
-"""More body frames than this are thinned out."""
-MAX_POSES = 20_000
-"""A trajectory of more poses is thinned out for drawing."""
-PIECE = 500
-"""Segments of a line, or edges, that are sent together."""
-MARK_M = 0.12
-"""Half the size of the crosses at GNSS positions and measured points [m]."""
-UNDER_M = 0.05
-"""Of the image of a 2-D map below the trajectory [m]."""
-FREE_COLOR: Rgb = (38, 50, 56)
-MEASURED_COLOR: Rgb = (255, 235, 59)
 ERROR_RANGE = Range(0.0, 1.0)
 CHI2_RANGE = Range(0.0, 20.0)
 
@@ -191,7 +178,7 @@ def grid_cell_m(box: Bounds) -> float:
 def _plan(plan: TrinaryMap, view: ViewState) -> ImageNode:
     low_m, high_m = _corners_m(plan)
     rgba = np.zeros((*plan.gray.shape, 4), np.uint8)
-    rgba[plan.free] = (*FREE_COLOR, 255)
+    rgba[plan.free] = (*SCENE.free_color, 255)
     rgba[plan.occupied] = (*PLAN.rgb, 255)
     width_m, height_m, _ = high_m - low_m
     return ImageNode(
@@ -207,14 +194,14 @@ def _plan(plan: TrinaryMap, view: ViewState) -> ImageNode:
 def _corners_m(plan: TrinaryMap) -> tuple[Array, Array]:
     """Lower left and upper right corner, just below the trajectory."""
     rows, columns = plan.gray.shape
-    low_m = np.array([*plan.origin_m, -UNDER_M])
+    low_m = np.array([*plan.origin_m, -SCENE.under_m])
     return low_m, low_m + plan.cell_m * np.array([columns, rows, 0.0])
 
 
 def _path(layer: Layer, line: Trajectory, visible: bool) -> Iterator[LinesNode]:
-    t = line.T_a_b.t[:: max(1, -(-len(line) // MAX_POSES))]
-    for piece, begin in enumerate(range(0, len(t) - 1, PIECE)):
-        p = t[begin : begin + PIECE + 1]
+    t = line.T_a_b.t[:: max(1, -(-len(line) // SCENE.max_poses))]
+    for piece, begin in enumerate(range(0, len(t) - 1, SCENE.piece)):
+        p = t[begin : begin + SCENE.piece + 1]
         yield _lines(
             f"/{layer.key}/{piece}",
             np.stack([p[:-1], p[1:]], axis=1),
@@ -245,7 +232,7 @@ def _lines(
 
 def _ends(line: Trajectory, visible: bool) -> Iterator[LabelNode]:
     first_m, last_m = line.T_a_b.t[0], line.T_a_b.t[-1]
-    apart = np.linalg.norm(last_m - first_m) > CLOSED_M
+    apart = np.linalg.norm(last_m - first_m) > SCENE.closed_m
     yield _label("start" if apart else "start and end", first_m, visible)
     if apart:
         yield _label("end", last_m, visible)
@@ -261,8 +248,8 @@ def _edges(table: EdgeTable, view: ViewState) -> Iterator[LinesNode]:
     for row, layer in enumerate(table.layers):
         mine = np.flatnonzero(table.layer == row)
         rgb = _edge_colors(table, mine, layer, view=view)
-        for piece, begin in enumerate(range(0, len(mine), PIECE)):
-            part = slice(begin, begin + PIECE)
+        for piece, begin in enumerate(range(0, len(mine), SCENE.piece)):
+            part = slice(begin, begin + SCENE.piece)
             yield _lines(
                 f"/edges/{layer.key}/{piece}",
                 t[table.ends[mine[part]]],
@@ -287,7 +274,7 @@ def _edge_colors(
 
 def _frames(table: EdgeTable, view: ViewState) -> AxesNode:
     T = table.graph.T_map_body
-    T = T[slice(None, None, max(1, -(-len(T.t) // MAX_FRAMES)))]
+    T = T[slice(None, None, max(1, -(-len(T.t) // SCENE.max_frames)))]
     return _axes("/frames", T, length_m=0.4, visible=view.shows(FRAMES))
 
 
@@ -320,7 +307,7 @@ def _axes(path: str, T: SE3, *, length_m: float, visible: bool) -> AxesNode:
 
 def _gnss(marks: GnssMarks, view: ViewState) -> Iterator[LinesNode]:
     for layer, rows in ((GNSS_USED, marks.used), (GNSS_REJECTED, ~marks.used)):
-        step = max(1, int(rows.sum()) // MAX_POSES)
+        step = max(1, int(rows.sum()) // SCENE.max_poses)
         p, p_antenna = marks.p_map[rows][::step], marks.p_antenna[rows][::step]
         lines = np.concatenate([crosses(p), np.stack([p_antenna, p], axis=1)])
         yield _lines(f"/{layer.key}", lines, layer.rgb, width_px=1.5, visible=view.shows(layer))
@@ -328,7 +315,7 @@ def _gnss(marks: GnssMarks, view: ViewState) -> Iterator[LinesNode]:
 
 def crosses(p: Array) -> Array:
     """Three short lines through each point, (N, 3) -> (3 N, 2, 3)."""
-    arms = np.eye(3) * MARK_M
+    arms = np.eye(3) * SCENE.mark_m
     both = np.stack([p[:, None] - arms, p[:, None] + arms], axis=2)
     return np.asarray(both.reshape(-1, 2, 3))
 
@@ -372,7 +359,7 @@ def _measurements(view: ViewState) -> Iterator[Node]:
         yield _lines(
             f"/measured/{number}",
             np.concatenate(lines),
-            MEASURED_COLOR,
+            SCENE.measured_color,
             width_px=2.5,
             visible=True,
         )

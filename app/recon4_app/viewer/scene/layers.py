@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.pose_graph import AUTOMATIC, Edge, EdgeKind, PoseGraph, Reason, Verdict
 from recon4_app.viewer.cloud.palette import Rgb
+from recon4_app.viewer.tuning import EDGE_COLORS
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +43,6 @@ ACCEPTED_COLORS: dict[EdgeKind, Rgb] = {
     EdgeKind.LOOP: (64, 156, 255),
     EdgeKind.MANUAL: (206, 147, 216),
 }
-REJECTED_COLOR: Rgb = (244, 67, 54)
-UNVERIFIED_COLOR: Rgb = (158, 158, 158)
 DECIDED_COLORS: dict[Verdict, Rgb] = {
     Verdict.ACCEPTED: (206, 147, 216),
     Verdict.UNVERIFIED: (206, 147, 216),
@@ -60,7 +59,7 @@ ODOMETRY = Layer("odometry", "Odometry trajectory", (128, 110, 200), shown=False
 FRAMES = Layer("frames", "Multiframes: body frames", (144, 164, 174), shown=False)
 LIDARS = Layer("lidars", "LiDAR frames at the multiframe", (0, 188, 212), shown=False)
 GNSS_USED = Layer("gnss/used", "GNSS, used", (102, 187, 106), shown=False)
-GNSS_REJECTED = Layer("gnss/rejected", "GNSS, rejected", REJECTED_COLOR, shown=False)
+GNSS_REJECTED = Layer("gnss/rejected", "GNSS, rejected", EDGE_COLORS.rejected_color, shown=False)
 GRAVITY = Layer("gravity", "Gravity (down) and axes of the map", (255, 255, 255), shown=False)
 NORTH = Layer("north", "North", (239, 83, 80))
 GRID = Layer("grid", "Grid", (96, 108, 118))
@@ -80,12 +79,14 @@ def edge_layer(edge: Edge) -> Layer:
         return Layer(
             f"rejected/{_path(reason)}",
             f"Rejected, {reason}",
-            REJECTED_COLOR,
+            EDGE_COLORS.rejected_color,
             shown=edge.reason not in HIDDEN_AT_FIRST,
             width_px=2.5,
         )
     if edge.verdict is Verdict.UNVERIFIED:
-        return Layer(f"unverified/{_path(kind)}", f"Unverified, {kind}", UNVERIFIED_COLOR)
+        return Layer(
+            f"unverified/{_path(kind)}", f"Unverified, {kind}", EDGE_COLORS.unverified_color
+        )
     return Layer(f"accepted/{_path(kind)}", f"Accepted, {kind}", ACCEPTED_COLORS[edge.kind])
 
 

@@ -36,9 +36,7 @@ from recon4.model.pose_graph import (
 )
 from recon4.model.trajectory import Trajectory
 from recon4_app.jobs.events import read_events
-
-SILENT_S = 30.0
-"""A job without a heartbeat for this long is not followed [s]."""
+from recon4_app.viewer.tuning import LIVE_SCENE
 
 Pair = tuple[int, int, str]
 
@@ -169,7 +167,7 @@ class JobWatch:
             beat = (job / "heartbeat").stat().st_mtime
         except OSError:
             return None
-        over = time.time() - beat > SILENT_S or (job / "outcome.json").exists()
+        over = time.time() - beat > LIVE_SCENE.silent_s or (job / "outcome.json").exists()
         return None if over or self._project_of(job) != self._project else beat
 
     def _project_of(self, job: Path) -> str:

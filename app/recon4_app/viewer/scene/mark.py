@@ -9,13 +9,9 @@ import numpy as np
 from recon4.findings.walk import positions_along
 from recon4.geometry.se3 import Array
 from recon4_app.viewer.client.view import Stretch
-from recon4_app.viewer.cloud.palette import Rgb
-from recon4_app.viewer.scene.build import MAX_POSES, Bounds, Content, crosses
+from recon4_app.viewer.scene.build import Bounds, Content, crosses
 from recon4_app.viewer.scene.nodes import LabelNode, LinesNode, Node
-
-MARK_COLOR: Rgb = (255, 64, 160)
-MARK_WIDTH_PX = 7.0
-"""Of the stretch, over the line of the trajectory."""
+from recon4_app.viewer.tuning import MARK, SCENE
 
 
 def stretch_positions(content: Content, stretch: Stretch) -> Array:
@@ -26,7 +22,7 @@ def stretch_positions(content: Content, stretch: Stretch) -> Array:
     line = content.trajectory
     if stretch.span_s is None or line is None or not len(line):
         return np.array(stretch.places).reshape(-1, 3)
-    return positions_along(line, stretch.span_s, most=MAX_POSES)
+    return positions_along(line, stretch.span_s, most=SCENE.max_poses)
 
 
 def stretch_nodes(content: Content, stretch: Stretch | None) -> Iterator[Node]:
@@ -43,8 +39,8 @@ def stretch_nodes(content: Content, stretch: Stretch | None) -> Iterator[Node]:
         path="/stretch",
         position_m=p_map[0],
         segments=(np.concatenate(marks) - p_map[0]).astype(np.float32),
-        rgb=MARK_COLOR,
-        width_px=MARK_WIDTH_PX,
+        rgb=MARK.mark_color,
+        width_px=MARK.mark_width_px,
     )
     middle = p_map[len(p_map) // 2]
     yield LabelNode(path="/labels/stretch", position_m=middle, text=stretch.text)

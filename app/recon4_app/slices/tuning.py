@@ -1,0 +1,87 @@
+"""Limits of slices, references and exports."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AlignViewTuning:
+    """Alignment on the page."""
+
+    shown: int = 150_000
+    """Most points of map and reference on the page."""
+    upright: float = np.cos(np.deg2rad(30.0))
+    """Cosine of the largest tilt of a floor."""
+
+
+ALIGN_VIEW = AlignViewTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportImageTuning:
+    """Images that are exported."""
+
+    finest_m: float = 0.005
+    """Pixel of a GeoTIFF, unless it would get too large [m]."""
+    max_geotiff_px: int = 6000
+    """Longest side of a GeoTIFF [px]."""
+
+
+EXPORT_IMAGES = ExportImageTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ExportLimits:
+    """Exports that are prepared."""
+
+    limit_s: float = 1800.0
+    """Longest time an export may take [s]."""
+    kept_s: float = 86_400.0
+    """A finished export is kept at least this long, unless all exceed `max_kept_bytes` [s]."""
+    max_kept_bytes: int = 20 << 30
+    """Limit for all kept exports; the oldest are removed first."""
+    large_thickness_m: float = 0.5
+    """A thicker slice may hold most of the map [m]."""
+
+
+EXPORTS = ExportLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SliceRequestLimits:
+    """Requests for slices."""
+
+    max_side_px: int = 4096
+    """Longest side of an image [px]."""
+
+
+SLICE_REQUESTS = SliceRequestLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ReaderLimits:
+    """Files that are read into memory."""
+
+    max_bytes: int = 64 << 20
+    """A larger file was not written by us."""
+
+
+READERS = ReaderLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SliceStoreLimits:
+    """References and sheets of a project."""
+
+    max_references: int = 20
+    """References."""
+    max_pages: int = 256
+    """Pages of a sheet."""
+    max_control_bytes: int = 16 << 20
+    """Largest file of control points."""
+
+
+SLICE_STORE = SliceStoreLimits()
