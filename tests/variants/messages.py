@@ -126,11 +126,6 @@ class OdometryMessage:
 DRIVER_MESSAGES = {
     "livox_ros_driver2/msg/CustomMsg": ("PointCloud2", "xfer_format"),
     "livox_ros_driver/msg/CustomMsg": ("PointCloud2", "xfer_format"),
-    "ouster_sensor_msgs/msg/PacketMsg": ("PointCloud2",),
-    "ouster_ros/msg/PacketMsg": ("PointCloud2",),
-    "pandar_msgs/msg/PandarScan": ("PointCloud2",),
-    "hesai_ros_driver/msg/UdpFrame": ("PointCloud2",),
-    "rslidar_msg/msg/RslidarPacket": ("PointCloud2",),
     "sensor_msgs/msg/PointCloud": ("PointCloud2",),
 }
 """Types of messages of LiDARs that are not read, and what a refusal must name."""

@@ -33,8 +33,9 @@ def open_decoder(
     if family is None:
         known = ", ".join(name for name, facts in LIDARS.items() if facts.maker)
         raise ConfigError(
-            f"{of.sensor.name}: no packet decoder for sensor model {of.sensor.model!r}; "
-            f"decoded: {known}"
+            f"{of.sensor.topic or of.sensor.name}: these are packets of no LiDAR that is decoded; "
+            "state its model in the rig file, or play the recording back through the driver and "
+            f"record the PointCloud2 that it publishes; decoded: {known}"
         )
     return PacketDecoder(family.open(of), of, utc_offset_ns=utc_offset_ns, alone=alone)
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from rosbags.typesys import get_types_from_msg
 
+from recon4.errors import ConfigError
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
 from recon4.recording.open import open_recording
@@ -60,3 +61,11 @@ def test_a_bag_of_the_makers_driver_is_read(kind, tmp_path):
     xyz = np.concatenate([part.xyz for part in shots])
     np.testing.assert_allclose(xyz, expected.xyz, atol=1e-4)
     assert not [text for text in report.warnings if "angles" in text]
+
+
+def test_packets_of_no_maker_are_refused_with_what_to_do(tmp_path):
+    noise = np.random.default_rng(0).integers(0, 256, (300, 1080), dtype=np.uint8)
+    path = written(tmp_path, "db3", noise, in_message=100)
+
+    with pytest.raises(ConfigError, match=r"_packets: these are packets of no LiDAR .*rig file"):
+        list(open_recording(OpenRequest((path,), None, WIDE, ImportReport())).read())
