@@ -230,9 +230,10 @@ class SensorClock:
     def _say_free_running(self, offset_ns: int) -> None:
         self._report.count(f"clock_runs_freely_{self._name}")
         say = self._report.derive if self._alone else self._report.warn
+        whole = "" if self.past_hour else " and whole hours"
         say(
-            f"{self._name}: its clock is {offset_ns / SECOND_NS:+.3f} s off the recorder's and no "
-            "GPS drives it: its times are shifted to the recorder's clock"
+            f"{self._name}: its clock is {offset_ns / SECOND_NS:+.3f} s{whole} off the recorder's "
+            "and no GPS drives it: its times are shifted to the recorder's clock"
         )
 
     def _odd(

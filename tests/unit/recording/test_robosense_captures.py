@@ -46,3 +46,18 @@ def test_a_capture_reads_angles_from_a_file_beside_it(tmp_path):
 
     assert sum(len(part) for part in capture.read() if isinstance(part, Shots)) == 200 * 8 * 48
     assert any("from airy.csv" in text for text in report.derived)
+
+
+def test_a_clock_that_is_years_off_is_no_quarter_of_an_hour_off(tmp_path):
+    model = MODELS["Helios 5515"]
+    t_ns, payloads = spin(model, 200)
+    years_ns = 2400 * 86_400_000_000_000 + 882_480_000_000
+    with PcapWriter(tmp_path / "walk.pcap") as file:
+        file.write(t_ns + years_ns, payloads, source="192.168.1.200", port=6699)
+    report = ImportReport()
+
+    capture = PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=report)
+    points = sum(len(part) for part in capture.read() if isinstance(part, Shots))
+
+    assert points == 200 * 12 * 32
+    assert any("-882.480 s and whole hours off the recorder" in text for text in report.derived)
