@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, BagTopic
+from recon4.recording.formats.point_messages import POINT_MESSAGES
 from recon4.recording.packets.messages import DATA_MESSAGES
 
 _BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
@@ -44,14 +45,26 @@ def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
     """Why a bag has no LiDAR data that is read: what there is, what is read, what to do."""
     listed = ", ".join(f"{t.name} ({t.type})" for t in topics[:_NAMES_LISTED])
     listed += " …" * (len(topics) > _NAMES_LISTED)
-    kinds = ", ".join(short_type(kind) for kind in (CLOUD, *sorted(DATA_MESSAGES), LASER_SCAN))
+    types = [*sorted(POINT_MESSAGES), *sorted(DATA_MESSAGES)]
+    kinds = ", ".join(short_type(kind) for kind in (CLOUD, *types, LASER_SCAN))
     why = unread_text(topics) or f"read are {kinds}"
     if any(topic.type == CLOUD and topic.messages for topic in topics):
         why += (
             "; the clouds are of a depth camera or a map (one is read with lidar_topic of ingest; "
             "page: All settings; command: --set ingest.lidar_topic=TOPIC)"
         )
+    unknown = [topic for topic in topics if topic.columns and not topic.is_points]
+    why += "".join(f"; {_unknown_points(topic)}" for topic in unknown[:_NAMES_LISTED])
     return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
+
+
+def _unknown_points(topic: BagTopic) -> str:
+    """What a type of the bag's own lacks to be read as points."""
+    names = ", ".join(name[:40] for name in topic.columns[:_NAMES_LISTED])
+    return (
+        f"{topic.name} has lists of {names}: it is read as "
+        "points of a LiDAR if they are named x, y, z, and a time, ring or intensity"
+    )
 
 
 def short_type(kind: str) -> str:

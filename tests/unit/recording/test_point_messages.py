@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-from recon4.errors import CorruptFile
+from recon4.errors import CorruptFile, EmptyRecording
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.exact_times import ExactClock
 from recon4.recording.formats.message_schema import parse_schema, read_message
@@ -292,6 +292,13 @@ def test_a_type_that_the_bag_defines_is_read_by_its_definition(kind, tmp_path):
     assert [len(one) for one in shots] == [200, 200, 200]
     np.testing.assert_array_equal(shots[2].intensity, 300 + np.arange(200))
     np.testing.assert_array_equal(np.diff(shots[0].t_ns), 500_000)
+
+
+def test_points_of_unknown_fields_are_named_with_what_would_be_needed(tmp_path):
+    words = r"/own has lists of forward, y, z, time_offset.*named x, y, z"
+
+    with pytest.raises(EmptyRecording, match=words):
+        read(own_bag(tmp_path, "mcap", x="forward"))
 
 
 def test_corners_and_poses_are_no_points():
