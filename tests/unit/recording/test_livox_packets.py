@@ -1,5 +1,6 @@
 """Livox packets of the own encoder, by the protocols of the maker, through the decoder and back."""
 
+import gzip
 import re
 import sqlite3
 from dataclasses import replace
@@ -317,3 +318,18 @@ def test_models_are_known_from_the_points_of_a_driver_too(name, lines, view_deg)
     xyz = walls(AVIA, 300, view_deg=view_deg).xyz_m.reshape(-1, 3).astype(np.float32)
 
     assert livox_of_points(xyz, lines) == name
+
+
+def test_a_real_stream_in_firing_order_is_that_of_a_mid_40(data):
+    file = data("livox/mid100-multi/scene1-pose10-L1.f32xyz.gz")
+    raw = gzip.decompress(file.read_bytes())
+    xyz = np.frombuffer(raw, "<f4").reshape(-1, 3)[:50_000].reshape(500, 100, 1, 3)
+    layout = LAYOUTS[0]
+    shots = ShotReturns(xyz.astype(np.float64), np.full(xyz.shape[:3], 40))
+    t_ns, payloads = packets(layout, shots)
+    found = opened(layout, datagrams(payloads)).decode(t_ns, payloads)
+    there = xyz.reshape(-1, 3)[np.abs(xyz.reshape(-1, 3)).max(axis=1) >= 0.0005]
+
+    assert LIVOX.recognize(datagrams(payloads), ()).model == "Mid-40"
+    np.testing.assert_allclose(found.xyz, there, atol=0.0006)
+    assert livox_of_points(there, 1) == "Mid-40"
