@@ -205,7 +205,7 @@ def decode(
             base += layout.channel_first
             to_twin = (twin - b) * layout.block
             for i in range(layout.channels):
-                c = order[i]
+                c = order[i] & 255  # masked, an index is not negative: numba need not ask
                 at = base + layout.channel * c
                 distance = _word(payload, at, layout.big_endian) & layout.distance_mask
                 intensity = payload[at + layout.intensity]
@@ -230,7 +230,7 @@ def decode(
                 half = np.float32(0.5) * turn * turn
                 cos_turn = np.float32(1.0) - half
                 sin_turn = turn * (np.float32(1.0) - half * np.float32(1.0 / 3.0))
-                start = circle[azimuth + offset_cdeg[c]]
+                start = circle[(azimuth + offset_cdeg[c]) & 131071]
                 cos_az = start[0] * cos_turn - start[1] * sin_turn
                 sin_az = start[1] * cos_turn + start[0] * sin_turn
                 echo = np.uint8(0)

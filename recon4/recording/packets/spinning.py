@@ -50,6 +50,7 @@ class SpinningTables:
             assert array.shape == (variants, read)
         assert width == layout.channels
         assert layout.blocks <= 64
+        assert layout.channels <= 256
         assert (roles.group > 0).all()
         for blocks in (roles.block, roles.twin):
             assert (blocks >= -1).all()
