@@ -8,21 +8,14 @@ from typing import Literal
 from recon4.live.newest import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
+from recon4.live.tuning import CAPTURE_WARNINGS
 from recon4.model.import_counts import ratio_text
 from recon4.model.rig import Rig, Sensor
 from recon4.model.usability import WEAK_SD_M
 
 Level = Literal["error", "warning", "info"]
 
-_TURN_RAD_S = 3.0
-_LATE_S = 1.5
-_LOW_DISK_S = 600
-_SILENT_S = 1.5
-_GRACE_S = 3.0
-"""No sensor is reported as silent this soon after the start."""
-_MAX_LOST = 0.01
 _BAD_PACKETS = ("packets_duplicate", "packets_out_of_order", "packets_late", "packets_wrong_length")
-_DEGRADED_MATCH_RATIO, _DEGRADED_ERROR_M, _DEGRADED_OFFSET_M = 0.4, 0.08, 0.25
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,7 +86,7 @@ def _disk(status: Status) -> list[CaptureFinding]:
     file, left_s = status.file, status.disk.left_s
     if file.problem:
         found.append(CaptureFinding("error", f"Nothing is recorded: {file.problem}"))
-    if left_s is not None and left_s < _LOW_DISK_S:
+    if left_s is not None and left_s < CAPTURE_WARNINGS.low_disk_s:
         found.append(CaptureFinding("error", f"Disk full in {max(left_s, 0) // 60} min"))
     if status.notes:
         found.append(CaptureFinding("error", f"A mark could not be saved: {status.notes}"))
@@ -104,7 +97,9 @@ def _disk(status: Status) -> list[CaptureFinding]:
 
 def _sensors(rig: Rig, status: Status) -> list[CaptureFinding]:
     silent_s = {s.name: _silent_s(_mine(s, status.senders), status) for s in rig.sensors}
-    silent = {name: seconds for name, seconds in silent_s.items() if seconds >= _SILENT_S}
+    silent = {
+        name: seconds for name, seconds in silent_s.items() if seconds >= CAPTURE_WARNINGS.silent_s
+    }
     if silent and len(silent) == len(silent_s):
         shortest = min(silent.values())
         arrives = _arriving(rig, status)
@@ -162,19 +157,19 @@ def _sources(senders: list[Sender]) -> str:
 
 
 def _silent_s(senders: list[Sender], status: Status) -> float:
-    """Time since the last datagram of some senders [s]; 0 within `_GRACE_S` of the start."""
+    """Time since the last datagram of some senders [s]; 0 soon after the start."""
     if senders:
         return min(one.silent_s for one in senders)
-    return status.seconds if status.seconds >= _GRACE_S else 0.0
+    return status.seconds if status.seconds >= CAPTURE_WARNINGS.grace_s else 0.0
 
 
 def _samples(rig: Rig, status: Status) -> list[CaptureFinding]:
     found = []
     imu = [one for one in status.senders if one.port == rig.imu_port]
     silent_s = _silent_s(imu, status)
-    if rig.imu_port and imu and silent_s >= _SILENT_S:
+    if rig.imu_port and imu and silent_s >= CAPTURE_WARNINGS.silent_s:
         found.append(CaptureFinding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
-    elif silent_s >= _SILENT_S and _needs_imu(rig):
+    elif silent_s >= CAPTURE_WARNINGS.silent_s and _needs_imu(rig):
         found.append(CaptureFinding("warning", "No IMU: walk and turn slowly"))
     if status.serial:
         found.append(CaptureFinding("warning", f"GNSS receiver: {status.serial}"))
@@ -220,7 +215,7 @@ def _tracking(pose: Pose) -> list[CaptureFinding]:
     found = []
     if pose.lost:
         found.append(CaptureFinding("error", "Tracking lost: stop, then go back a few steps"))
-    elif (pose.turn_rad_s or 0.0) > _TURN_RAD_S:
+    elif (pose.turn_rad_s or 0.0) > CAPTURE_WARNINGS.turn_rad_s:
         found.append(CaptureFinding("warning", "Turn slower"))
     elif unobserved_text(pose):
         found.append(CaptureFinding("warning", unobserved_text(pose)))
@@ -250,7 +245,7 @@ def _too_slow(status: Status | None, pose: Pose | None) -> list[CaptureFinding]:
 
 
 def _behind(pose: Pose) -> bool:
-    return pose.age_s > _LATE_S
+    return pose.age_s > CAPTURE_WARNINGS.late_s
 
 
 def _late(pose: Pose) -> str:
@@ -271,10 +266,14 @@ def _degraded(pose: Pose) -> bool:
     match_ratio, weak_sd_m = pose.match_ratio, pose.weak_sd_m
     registered = pose.frame_id > 0
     return bool(
-        (registered and match_ratio is not None and match_ratio < _DEGRADED_MATCH_RATIO)
+        (
+            registered
+            and match_ratio is not None
+            and match_ratio < CAPTURE_WARNINGS.degraded_match_ratio
+        )
         or (registered and weak_sd_m is not None and weak_sd_m > WEAK_SD_M)
-        or (pose.error_m or 0.0) > _DEGRADED_ERROR_M
-        or (pose.prediction_offset_m or 0.0) > _DEGRADED_OFFSET_M
+        or (pose.error_m or 0.0) > CAPTURE_WARNINGS.degraded_error_m
+        or (pose.prediction_offset_m or 0.0) > CAPTURE_WARNINGS.degraded_offset_m
     )
 
 
@@ -284,11 +283,11 @@ def _reader(notes: Notes, *, lost_here: bool) -> list[CaptureFinding]:
     found += [CaptureFinding("warning", text) for text in scan_remarks(notes)]
     recent = notes.recent
     packets, missing = recent.get("packets", 0), recent.get("packets_missing", 0)
-    if packets > 1000 and missing > _MAX_LOST * packets and not lost_here:
+    if packets > 1000 and missing > CAPTURE_WARNINGS.max_lost * packets and not lost_here:
         text = ratio_text("packets_missing", missing / (packets + missing))
         found.append(CaptureFinding("warning", text))
     for name in _BAD_PACKETS:
-        if packets > 1000 and recent.get(name, 0) > _MAX_LOST * packets:
+        if packets > 1000 and recent.get(name, 0) > CAPTURE_WARNINGS.max_lost * packets:
             text = ratio_text(name, recent[name] / packets)
             found.append(CaptureFinding("info", text))
     return found

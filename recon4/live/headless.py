@@ -13,10 +13,8 @@ from recon4.live.ipc.line_client import linked, started
 from recon4.live.newest import Newest
 from recon4.live.project_files import discard
 from recon4.live.session import CaptureSession
+from recon4.live.tuning import HEADLESS
 from recon4.system.stopping import StopSignals
-
-REPORT_EVERY_S = 2.0
-_MAPPER_STARTS = 3
 
 
 class Headless:
@@ -27,8 +25,8 @@ class Headless:
 
         Args:
             session: Session of a project that was created with `begin`.
-            send: Called every `REPORT_EVERY_S` with the newest message of each kind and the
-                problem of the capture itself (empty = none).
+            send: Called every `HEADLESS.report_every_s` with the newest message of each kind and
+                the problem of the capture itself (empty = none).
         """
         self._session, self._send = session, send
         self._newest = Newest()
@@ -67,7 +65,7 @@ class Headless:
 
     async def _map(self) -> None:
         """Keep a mapper running until it reports ``done``."""
-        for _ in range(_MAPPER_STARTS):
+        for _ in range(HEADLESS.mapper_starts):
             mapper = await started(self._session, "mapper")
             await self._receive("mapper")
             await mapper.wait()
@@ -94,7 +92,7 @@ class Headless:
 
     async def _report_periodically(self) -> None:
         while True:
-            await asyncio.sleep(REPORT_EVERY_S)
+            await asyncio.sleep(HEADLESS.report_every_s)
             self._send(self._newest, self._problem)
 
 

@@ -22,6 +22,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import stretched
+from recon4.live.tuning import REPLAY
 from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
 from recon4.recording.formats.datagrams import address_text
@@ -38,10 +39,6 @@ _STAMP = re.compile(rb'("t_ns"\s*:\s*)(\d{1,19})(?=[\s,}])')
 """The time of a JSON object."""
 _SAMPLE_DELAY_NS = {"imu.csv": 2_000_000, "gnss.csv": 50_000_000}
 """Delay between the timestamp of a sample and its sending [ns]."""
-_BETWEEN_NS = 1_000_000
-"""Time between the last datagram of a round and the first of the next [ns]."""
-_AHEAD_NS = 500_000
-"""Datagrams that are due within this time are sent at once [ns]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -151,7 +148,7 @@ def _rounds(
             yield datagram, later_ns
         if first_ns is None or last_ns is None:
             return
-        later_ns += (last_ns - first_ns) // 1000 * 1000 + _BETWEEN_NS
+        later_ns += (last_ns - first_ns) // 1000 * 1000 + REPLAY.between_ns
 
 
 def shifted_in_time(datagram: ReplayDatagram, shift_ns: int) -> ReplayDatagram:
@@ -196,7 +193,7 @@ def _samples(path: Path, port: int) -> Iterator[ReplayDatagram]:
 
 def _wait_until(t_ns: int) -> None:
     left_ns = t_ns - time.time_ns()
-    if left_ns > _AHEAD_NS:
+    if left_ns > REPLAY.ahead_ns:
         time.sleep(left_ns / 1e9)
 
 

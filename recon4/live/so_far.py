@@ -10,10 +10,8 @@ from recon4.live.findings import CaptureFinding
 from recon4.live.findings import Level as Urgency
 from recon4.live.protocol import Pose
 from recon4.live.stretches import Stretches
+from recon4.live.tuning import SO_FAR
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS, Usability
-
-_LONGEST_STEP_S = 1.0
-"""A longer time between two poses is an interruption, not an observation [s]."""
 
 
 class WalkSoFar:
@@ -40,7 +38,7 @@ class WalkSoFar:
         self.multiframes += 1
         self.lost += pose.lost
         weak = not pose.lost and pose.weak_sd_m is not None and pose.weak_sd_m > WEAK_SD_M
-        follows = 0.0 < step_s <= _LONGEST_STEP_S
+        follows = 0.0 < step_s <= SO_FAR.longest_step_s
         if not follows:
             self.stretches.take(None, pose.p, counts=False)
         if follows and weak:

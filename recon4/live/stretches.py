@@ -7,13 +7,9 @@ from typing import Literal
 
 import msgspec
 
+from recon4.live.tuning import STRETCHES
+
 StretchKind = Literal["TRACKING-LOST", "WEAK-DIRECTION"]
-_STEP_M = 0.5
-"""Distance between stored positions of a stretch …"""
-_MOST_POSITIONS = 200
-"""… and the most of one; a longer stretch goes on as another."""
-MOST_STRETCHES = 200
-"""The first ones stay: a walk with more is broken all over."""
 
 
 class MarkedStretch(msgspec.Struct):
@@ -22,7 +18,7 @@ class MarkedStretch(msgspec.Struct):
     kind: StretchKind
     """Code of the finding."""
     p: list[list[float]]
-    """Positions as they were mapped then [m], a position every `_STEP_M`."""
+    """Positions as they were mapped then [m], a position every `STRETCHES.step_m`."""
 
 
 class Stretches:
@@ -47,12 +43,16 @@ class Stretches:
             self._open = None
             return
         before = self._open
-        if before is None or before.kind != kind or len(before.p) >= _MOST_POSITIONS:
+        if before is None or before.kind != kind or len(before.p) >= STRETCHES.most_positions:
             goes_on = before is not None and before.kind == kind
             self._open = MarkedStretch(kind, before.p[-1:] if before and goes_on else [])
         assert self._open is not None
         grown = self._extend(self._open.p, p)
-        if counts and not self._is_marked(self._open) and len(self.marked) < MOST_STRETCHES:
+        if (
+            counts
+            and not self._is_marked(self._open)
+            and len(self.marked) < STRETCHES.most_stretches
+        ):
             self.marked.append(self._open)
             grown = True
         self.changed += grown and self._is_marked(self._open)
@@ -62,7 +62,7 @@ class Stretches:
 
     @staticmethod
     def _extend(places: list[list[float]], p: list[float]) -> bool:
-        if places and math.dist(places[-1], p) < _STEP_M:
+        if places and math.dist(places[-1], p) < STRETCHES.step_m:
             return False
         places.append([round(value, 2) for value in p])
         return True

@@ -8,10 +8,11 @@ from enum import StrEnum
 from pathlib import Path
 
 from recon4.errors import ConfigError
-from recon4.live.ipc.line_client import STARTS_WITHIN_S, LineClient, linked, started
+from recon4.live.ipc.line_client import LineClient, linked, started
 from recon4.live.project_files import discard
 from recon4.live.protocol import Done, Pause, Request, Resume, Status, Stopped
 from recon4.live.session import CaptureSession
+from recon4.live.tuning import LINE_CLIENT
 from recon4_app.errors import Conflict
 from recon4_app.live.stream_state import StreamState
 from recon4_app.live.tuning import CAPTURES
@@ -76,7 +77,7 @@ class Capture:
             asyncio.create_task(self._follow_recorder(connected)),
             asyncio.create_task(self._follow_mapper()),
         ]
-        async with asyncio.timeout(STARTS_WITHIN_S):
+        async with asyncio.timeout(LINE_CLIENT.starts_within_s):
             await connected.wait()
 
     async def request(self, request: Request) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from recon4.live.findings import rates
-from recon4.live.mapper.notes import RECENT_S
+from recon4.live.mapper.tuning import NOTES
 from recon4.live.newest import Newest
 from recon4.live.protocol import Notes
 from recon4.model.count_words import FREE_CLOCK
@@ -22,7 +22,7 @@ class LidarHealth:
     per_s: float
     """Data packets or datagrams per second."""
     lost: float | None
-    """Packet loss ratio of the last `RECENT_S`, 0 to 1; None = unknown."""
+    """Packet loss ratio of the last `NOTES.recent_s`, 0 to 1; None = unknown."""
     clock: str
     """`IN_STEP` with the recorder's clock or GPS, `SHIFTED` if it runs freely (no PPS),
     `JUMPED` if it or the recorder's clock jumped since the start; empty = unknown."""
@@ -50,7 +50,7 @@ def _health(sensor: Sensor, per_s: float, notes: Notes | None) -> LidarHealth:
     if sensor.kind != "lidar":  # its datagrams have no numbers
         return LidarHealth(name, per_s, None, _clock(mine, free=free))
     missing = notes.recent.get(f"packets_missing_{name}", 0)
-    lost = round(missing / (missing + RECENT_S * per_s), 3)
+    lost = round(missing / (missing + NOTES.recent_s * per_s), 3)
     return LidarHealth(name, per_s, lost, _clock(mine, free=free))
 
 

@@ -14,16 +14,11 @@ from recon4.errors import ConfigError
 from recon4.live.confinement import mapper_environment
 from recon4.live.protocol import Message, ProtocolError, Request, decode_message, encode
 from recon4.live.session import CaptureSession
+from recon4.live.tuning import LINE_CLIENT
 from recon4.sandbox import ONE_THREAD, allowed_environment
 from recon4.system.processes import first_line
 
 log = logging.getLogger(__name__)
-
-STARTS_WITHIN_S = 60.0
-"""A process that is not ready after this much time of its own has failed [s]."""
-
-_LONGEST_LINE = 32 << 20
-"""A whole preview of 400 k points is 4 MB."""
 
 
 class LineClient:
@@ -47,7 +42,9 @@ class LineClient:
         except ConnectionError:
             return b""
         except ValueError:
-            log.warning("a line of a live capture is longer than %d bytes", _LONGEST_LINE)
+            log.warning(
+                "a line of a live capture is longer than %d bytes", LINE_CLIENT.longest_line
+            )
             return b""
 
     async def send(self, request: Request) -> None:
@@ -63,7 +60,7 @@ async def linked(path: Path) -> AsyncIterator[LineClient]:
     Raises:
         OSError: If no process listens there.
     """
-    reader, writer = await asyncio.open_unix_connection(path, limit=_LONGEST_LINE)
+    reader, writer = await asyncio.open_unix_connection(path, limit=LINE_CLIENT.longest_line)
     try:
         yield LineClient(reader, writer)
     finally:
@@ -105,7 +102,7 @@ async def started(
             start_new_session=True,  # Ctrl-C must not reach it
             env=env,
         )
-    if await first_line(process, within_s=STARTS_WITHIN_S) == b"ready\n":
+    if await first_line(process, within_s=LINE_CLIENT.starts_within_s) == b"ready\n":
         return process
     with suppress(ProcessLookupError):
         process.kill()

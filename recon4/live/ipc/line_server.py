@@ -17,10 +17,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from recon4.live.protocol import Message, ProtocolError, Request, decode_request, encode
-
-MAX_UNREAD_BYTES = 16 << 20
-"""A complete preview and the path of an hour are 5 MB."""
-_LONGEST_LINE = 1 << 16
+from recon4.live.tuning import LINE_SERVER
 
 log = logging.getLogger(__name__)
 
@@ -53,7 +50,9 @@ class LineServer:
         self._path = path
         before = os.umask(0o177)  # only this user may connect
         try:
-            self._server = await asyncio.start_unix_server(self._serve, path, limit=_LONGEST_LINE)
+            self._server = await asyncio.start_unix_server(
+                self._serve, path, limit=LINE_SERVER.longest_line
+            )
         finally:
             os.umask(before)
 
@@ -61,7 +60,7 @@ class LineServer:
         """Send a message to all clients."""
         line = encode(message)
         for writer in list(self._writers):
-            if writer.transport.get_write_buffer_size() > MAX_UNREAD_BYTES:
+            if writer.transport.get_write_buffer_size() > LINE_SERVER.max_unread_bytes:
                 writer.transport.abort()
             else:
                 writer.write(line)

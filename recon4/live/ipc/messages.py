@@ -8,11 +8,8 @@ from dataclasses import dataclass
 from recon4.live.preview.cloud import Chunk
 from recon4.live.preview.coverage import CELL_M, Coverage
 from recon4.live.protocol import Gap, Gaps, MapperMessage, Path, Plan, Points
+from recon4.live.tuning import MESSAGES
 from recon4.model.plain import finite_or_none
-
-_MAX_GAPS = 50
-_PLAN_BYTES_PER_S = 20_000
-"""Data rate of plans; a large plan is sent less often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +63,7 @@ class PlanSchedule:
         if now_ns < self._due_ns and coverage.floor == self._floor:
             return []
         plan, self._floor = plan_message(coverage), coverage.floor
-        lasts_s = 4 * -(-len(plan.seen) // 3) / _PLAN_BYTES_PER_S  # in base64
+        lasts_s = 4 * -(-len(plan.seen) // 3) / MESSAGES.plan_bytes_per_s  # in base64
         self._due_ns = now_ns + round(1e9 * lasts_s)
         self.newest = [plan]
         return self.newest
@@ -80,7 +77,7 @@ def gaps_message(coverage: Coverage) -> Gaps:
     """The message ``gaps``: gaps on this floor, and their count on other floors."""
     gaps = [
         Gap(p=list(gap.p_map), width_m=gap.width_m, away_m=round(gap.away_m, 2))
-        for gap in coverage.gaps()[:_MAX_GAPS]
+        for gap in coverage.gaps()[: MESSAGES.max_gaps]
     ]
     return Gaps(
         gaps,

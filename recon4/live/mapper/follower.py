@@ -11,6 +11,7 @@ from recon4.live.mapper.latency import Latency
 from recon4.live.mapper.live_map import LiveMap
 from recon4.live.mapper.scan_map import ScanMap
 from recon4.live.mapper.scan_tracker import end_of
+from recon4.live.mapper.tuning import FOLLOWER
 from recon4.live.protocol import MapperMessage, Pose
 from recon4.model.laser_scans import LaserScans
 from recon4.model.multiframe import Multiframe
@@ -20,8 +21,6 @@ from recon4.model.samples import ImuSamples
 Measured = Multiframe | ImuSamples | LaserScans
 _Mapped = TypeVar("_Mapped")
 _Taken = TypeVar("_Taken", contravariant=True)
-_MOST_SCANS = 8
-"""Scans that wait for the IMU at most, 0.3 s at 25 Hz."""
 
 
 class Follower(Protocol):
@@ -116,7 +115,7 @@ class ScanFollower(_MapFollower[LaserScans]):
     """Maps the scans of a 2-D laser, and the multiframes of a profiler."""
 
     def __init__(self, scan_map: ScanMap, rig: Rig, latency: Latency) -> None:
-        waiting = ImuSynchronization(end_of, most=_MOST_SCANS)
+        waiting = ImuSynchronization(end_of, most=FOLLOWER.most_scans)
         super().__init__(scan_map, rig, latency, synchronization=waiting)
         self._scan_map = scan_map
 

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from recon4.live.mapper.tuning import GNSS_WATCH
 from recon4.live.protocol import Fix
 from recon4.model.samples import GnssSamples
 
 EARTH_M = 6_371_000.0
-_FASTEST_M_S = 10.0
-_NOISE_M = 10.0
-"""Distance between fixes that never counts as a jump."""
-SHOWN_S = 30.0
 
 
 class GnssWatch:
@@ -28,7 +25,7 @@ class GnssWatch:
             self._take(t_ns, lat_rad, lon_rad)
         sd_m = gnss.sd_enu_m[-1]
         t_ns = int(gnss.t_ns[-1])
-        jumped = t_ns - self._jump[0] < SHOWN_S * 1e9
+        jumped = t_ns - self._jump[0] < GNSS_WATCH.shown_s * 1e9
         return Fix(
             t_ns=t_ns,
             quality=int(gnss.quality[-1]),
@@ -44,6 +41,6 @@ class GnssWatch:
             north_m = EARTH_M * (lat_rad - before_lat)
             east_m = EARTH_M * (lon_rad - before_lon) * float(np.cos(lat_rad))
             moved_m = float(np.hypot(north_m, east_m))
-            if moved_m > _NOISE_M + _FASTEST_M_S * (t_ns - before_ns) / 1e9:
+            if moved_m > GNSS_WATCH.noise_m + GNSS_WATCH.fastest_m_s * (t_ns - before_ns) / 1e9:
                 self._jump = (t_ns, moved_m)
         self._last = (t_ns, lat_rad, lon_rad)

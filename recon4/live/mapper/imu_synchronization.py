@@ -6,17 +6,17 @@ from collections import deque
 from collections.abc import Callable
 from typing import Generic, TypeVar
 
-MAX_WAITING = 3
-"""Multiframes that wait at most; an IMU that is later than this or silent is not waited for."""
+from recon4.live.mapper.tuning import IMU_WAIT
+
 Measured = TypeVar("Measured")
-_SURE_NS = 10_000_000
-"""Samples may be missing for this part at the end of a frame; its motion is extrapolated."""
 
 
 class ImuSynchronization(Generic[Measured]):
     """Queues multiframes or scans until the IMU samples until their end are there."""
 
-    def __init__(self, end_ns: Callable[[Measured], int], *, most: int = MAX_WAITING) -> None:
+    def __init__(
+        self, end_ns: Callable[[Measured], int], *, most: int = IMU_WAIT.max_waiting
+    ) -> None:
         """Prepare.
 
         Args:
@@ -51,4 +51,4 @@ class ImuSynchronization(Generic[Measured]):
 
     def _synchronized(self) -> bool:
         end_ns = self.end_ns(self._waiting[0])
-        return self._imu_ns is None or self._imu_ns >= end_ns - _SURE_NS
+        return self._imu_ns is None or self._imu_ns >= end_ns - IMU_WAIT.sure_ns

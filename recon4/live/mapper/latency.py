@@ -4,12 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from recon4.live.mapper.tuning import LATENCY
 from recon4.recording.report import ImportReport
-
-LATE_NS = 700_000_000
-"""Age from which a multiframe may be left out of the mapping [ns]."""
-_KEPT = ((LATE_NS, 2), (2_000_000_000, 3), (5_000_000_000, 5))
-"""Age [ns] -> n: one of n multiframes older than this is mapped."""
 
 
 class Latency:
@@ -38,10 +34,11 @@ class Latency:
     def leave_out(self, end_ns: int) -> bool:
         """Whether to leave a multiframe with this end time (sensor clock) out of the mapping.
 
-        Leaves out every other multiframe above `LATE_NS`, and more of them at a higher latency.
+        Leaves out every other multiframe above `LATENCY.late_ns`, and more of them at a higher
+        latency.
         """
         late_ns = self._now_ns() - self.on_recorder_clock(end_ns)
-        one_of = max((n for limit_ns, n in _KEPT if late_ns > limit_ns), default=1)
+        one_of = max((n for limit_ns, n in LATENCY.kept if late_ns > limit_ns), default=1)
         leave_out = self._left_out + 1 < one_of
         self._left_out = self._left_out + 1 if leave_out else 0
         return leave_out

@@ -7,31 +7,21 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, Array, proper
 from recon4.kernels.imu_chain import level_by_gravity
+from recon4.live.mapper.tuning import LIVE_ATTITUDE
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.samples.measured import feels_gravity
 from recon4.registration.motion import imu_in_body, level_rotation
 
-_GAIN_PER_S = 0.15
-"""Part of the tilt that is removed per second: the steps of a walk hide the vertical."""
-_KEPT_NS = 10_000_000_000
-"""Attitudes older than this are dropped [ns]."""
-_LONGEST_HOLE_NS = 200_000_000
-"""Over a longer time without samples the rotation is not known [ns]."""
-_MIN_UPRIGHT = 0.5
-"""Cosine of the largest tilt at the start, 60 degrees."""
 IMU_WRONG = "is it mounted as in the rig file (upside down?)"
 NOT_UPRIGHT = f"the IMU does not measure gravity upward and is not used: {IMU_WRONG}"
 NO_FORCES = "the IMU has no accelerometer and is not used"
-_MOST_SILENT = 100
-_SURE_NS = 10_000_000
-"""Samples may be missing for this time at the end; the motion is extrapolated [ns]."""
 
 
 def is_upright(up_body: Array) -> bool:
     """Whether the mean specific force (3,) lies near the z axis of the body."""
-    return bool(up_body[2] > _MIN_UPRIGHT * np.linalg.norm(up_body))
+    return bool(up_body[2] > LIVE_ATTITUDE.min_upright * np.linalg.norm(up_body))
 
 
 class LiveAttitude:
@@ -67,7 +57,7 @@ class LiveAttitude:
         if self._last is None:
             self._begin(t_ns, gyro, accel)
             return
-        if t_ns[0] - self._t_ns[-1] > _LONGEST_HOLE_NS:
+        if t_ns[0] - self._t_ns[-1] > LIVE_ATTITUDE.longest_hole_ns:
             self._hole_ns = int(t_ns[0])
         gyro, accel = (np.vstack([a, b]) for a, b in zip(self._last, (gyro, accel), strict=True))
         self._integrate(np.append(self._t_ns[-1:], t_ns), gyro, accel)
@@ -76,7 +66,7 @@ class LiveAttitude:
         """Whether the attitude is known over a time, without a hole."""
         if len(self._t_ns) < 2 or first_ns < max(int(self._t_ns[0]), self._hole_ns):
             return False
-        return last_ns <= int(self._t_ns[-1]) + _SURE_NS
+        return last_ns <= int(self._t_ns[-1]) + LIVE_ATTITUDE.sure_ns
 
     def trajectory(self) -> Trajectory:
         """``R_world_body`` of the last seconds; positions are zero."""
@@ -85,7 +75,7 @@ class LiveAttitude:
     def _expect_forces(self, known: NDArray[np.bool_]) -> None:
         """Give up an IMU that begins without accelerations."""
         self._silent += int(np.count_nonzero(~known))
-        if self._last is None and not known.any() and self._silent > _MOST_SILENT:
+        if self._last is None and not known.any() and self._silent > LIVE_ATTITUDE.most_silent:
             self.remark = NO_FORCES
 
     def _begin(self, t_ns: Times, gyro: Array, accel: Array) -> None:
@@ -105,8 +95,10 @@ class LiveAttitude:
         R[0] = self._R[-1]
         for k, step_ns in enumerate(np.diff(t_ns).tolist()):
             rows = slice(k, k + 2)
-            level_by_gravity(gyro[rows], accel[rows], 1e-9 * step_ns, _GAIN_PER_S, R[rows])
+            level_by_gravity(
+                gyro[rows], accel[rows], 1e-9 * step_ns, LIVE_ATTITUDE.gain_per_s, R[rows]
+            )
         R[-1] = proper(R[-1:])[0]
-        kept = self._t_ns > t_ns[-1] - _KEPT_NS
+        kept = self._t_ns > t_ns[-1] - LIVE_ATTITUDE.kept_ns
         self._t_ns = np.concatenate([self._t_ns[kept], t_ns[1:]])
         self._R = np.concatenate([self._R[kept], R[1:]])

@@ -20,6 +20,7 @@ from recon4.live.mapper.place_index import PlaceIndex
 from recon4.live.mapper.recovery import Recovery
 from recon4.live.mapper.shown import RecentCounts, ShownPath
 from recon4.live.mapper.tracker import Tracker
+from recon4.live.mapper.tuning import LIVE_MAP
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import Coverage
 from recon4.live.protocol import Gaps, Loop, MapperMessage, Points, Pose
@@ -31,20 +32,6 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.segments import sample_segments
 from recon4.registration.step import OdometryStep
 from recon4.settings import Settings
-
-PREVIEW_POINTS = 6000
-"""Points of a multiframe used for the preview."""
-COVERAGE_RAYS = 1500
-"""Points of a multiframe used for coverage."""
-SUMMARY_EVERY_NS = 1_000_000_000
-_SEARCH_AFTER = 5
-"""Number of lost multiframes after which relocalization starts, and between its attempts."""
-_LOOP_WITHIN_M = 4.0
-_LOOP_WALKED_M = 20.0
-"""Distance between stored points of the path; an hour's walk has a few thousand."""
-_OFFSET_SHOWN_NS = 3_000_000_000
-_RECENT_NS = 10_000_000_000
-"""Period over which multiframes left out are counted."""
 
 
 class LiveMap:
@@ -116,7 +103,7 @@ class LiveMap:
             return pose, messages
         self._extend_path(T_map_body.t)
         messages += self._add_points(frame, step)
-        if frame.t_ns - self._summary_ns >= SUMMARY_EVERY_NS:
+        if frame.t_ns - self._summary_ns >= LIVE_MAP.summary_every_ns:
             self._summary_ns = frame.t_ns
             messages += self._summary(frame, T_map_body, step)
         return pose, messages
@@ -143,13 +130,13 @@ class LiveMap:
     def _follow(self, frame: Multiframe, step: OdometryStep) -> tuple[OdometryStep, bool]:
         """The step to continue with, and whether tracking is lost.
 
-        The odometry recovers from a few lost multiframes by itself. After `_SEARCH_AFTER` of them
-        it restarts, and its views are relocalized in the map so far. Until that succeeds nothing
-        is added to the map.
+        The odometry recovers from a few lost multiframes by itself. After `LIVE_MAP.search_after`
+        of them it restarts, and its views are relocalized in the map so far. Until that succeeds
+        nothing is added to the map.
         """
         self._lost_steps = self._lost_steps + 1 if step.lost else 0
         self._lost = self._lost + 1 if step.lost or self._recovery else 0
-        if self._lost_steps >= _SEARCH_AFTER:
+        if self._lost_steps >= LIVE_MAP.search_after:
             step = self.tracker.restart(frame)
             self._lost_steps = 0
             if self._recovery is None and len(self._places):
@@ -157,7 +144,7 @@ class LiveMap:
             return step, True
         if self._recovery is None or step.lost:
             return step, step.lost
-        if self._lost % _SEARCH_AFTER:
+        if self._lost % LIVE_MAP.search_after:
             return step, True
         found = self._recovery.search(self._midpoints(frame), step.T_odom_body)
         if found is None:
@@ -196,12 +183,12 @@ class LiveMap:
     def _largest_offset_m(self, t_ns: int, prediction_offset_m: float) -> float:
         """Largest prediction offset of the last seconds, so that the warning stays readable."""
         self._offsets_m.append((t_ns, prediction_offset_m))
-        while t_ns - self._offsets_m[0][0] > _OFFSET_SHOWN_NS:
+        while t_ns - self._offsets_m[0][0] > LIVE_MAP.offset_shown_ns:
             self._offsets_m.popleft()
         return max(prediction_offset_m for _, prediction_offset_m in self._offsets_m)
 
     def _add_points(self, frame: Multiframe, step: OdometryStep) -> list[Points]:
-        rows = np.arange(0, len(frame), max(1, len(frame) // PREVIEW_POINTS))
+        rows = np.arange(0, len(frame), max(1, len(frame) // LIVE_MAP.preview_points))
         part = frame.take(rows)
         T_map_dense = self.tracker.T_map_odom @ step.T_dense
         t_s = (step.t_ns - frame.t_ns).astype(np.float64) * 1e-9
@@ -209,7 +196,7 @@ class LiveMap:
         p_map = place_points(t_s, T_map_dense.R, T_map_dense.t, dt_s, _in_body(part, self._rig))
         range_m = np.linalg.norm(part.xyz, axis=1).astype(np.float64)
         values = self._intensity.normalize(part.intensity, part.sensor, part.ring, range_m=range_m)
-        every = max(1, len(p_map) // COVERAGE_RAYS)
+        every = max(1, len(p_map) // LIVE_MAP.coverage_rays)
         self._coverage.add(T_map_dense.t[-1], p_map[::every])
         chunk = self._preview.add(p_map, values)
         return [] if chunk is None else [points_message(chunk)]
@@ -230,7 +217,7 @@ class LiveMap:
         """Recognize a place visited before and correct the drift of the map."""
         start_m = np.array(self._path.places[0])
         place = self._places.revisited(
-            T_map_body.t, within_m=_LOOP_WITHIN_M, walked_before_m=_LOOP_WALKED_M
+            T_map_body.t, within_m=LIVE_MAP.loop_within_m, walked_before_m=LIVE_MAP.loop_walked_m
         )
         found = None if place is None else self._places.locate(source, T_map_body, place)
         drifted = self._gate.judge(found, T_map_body)

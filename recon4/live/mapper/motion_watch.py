@@ -10,18 +10,12 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import Array, skew, so3_log
+from recon4.live.mapper.tuning import MOTION_WATCH
 from recon4.live.protocol import Axis, Motion
 from recon4.registration.step import OdometryStep
 
-_SD_RAD_S, _SD_M_S2, _SD_RAD_S2 = 0.008, 0.15, 0.004
-"""Rate [rad/s], acceleration [m/s²] and change of rate [rad/s²] that a multiframe is known to, as
-standard deviations of audits of a staircase, a field and a street tell."""
 _ENOUGH = np.array([np.deg2rad(0.05)] * 3 + [0.005] * 3 + [5e-4])
 """Expected standard deviations below which a calibration finds 0.2°, 1 cm and 5 ms [rad, m, s]."""
-_LONGEST_S = 1.0
-"""No rate is taken over a longer time between two multiframes [s]; a computer that is too slow
-leaves some out, and shows less of fast motion."""
-_STILL_RAD_S, _STILL_M_S = 0.05, 0.05
 _NAMES = (*(("rotation", axis) for axis in "xyz"), *(("position", axis) for axis in "xyz"))
 
 
@@ -44,14 +38,22 @@ class MotionWatch:
         """Add a multiframe; one that is lost says nothing."""
         before, self._last = self._last, step
         seconds = (step.t_mid_ns - before.t_mid_ns) * 1e-9 if before else 0.0
-        if step.lost or before is None or before.lost or not 0.0 < seconds <= _LONGEST_S:
+        if (
+            step.lost
+            or before is None
+            or before.lost
+            or not 0.0 < seconds <= MOTION_WATCH.longest_s
+        ):
             self._rate = None
             return
         R_before, R = before.T_odom_body.R, step.T_odom_body.R
         rate = so3_log(R_before.T @ R) / seconds
         shift_m = step.T_odom_body.t - before.T_odom_body.t
         speed = float(np.linalg.norm(shift_m)) / seconds
-        self._stand(np.linalg.norm(rate) < _STILL_RAD_S and speed < _STILL_M_S, seconds)
+        self._stand(
+            np.linalg.norm(rate) < MOTION_WATCH.still_rad_s and speed < MOTION_WATCH.still_m_s,
+            seconds,
+        )
         turned = float((R @ rate)[2]) * seconds
         self._turned += [max(turned, 0.0), max(-turned, 0.0)]
         self._tilt(R)
@@ -88,6 +90,6 @@ class MotionWatch:
 
     def _learn(self, rate: Array, change: Array) -> None:
         lever = skew(change) + skew(rate) @ skew(rate)
-        self._info[:3] += (rate @ rate - rate**2) / _SD_RAD_S**2
-        self._info[3:6] += (lever**2).sum(axis=0) / _SD_M_S2**2
-        self._info[6] += change @ change / _SD_RAD_S2**2
+        self._info[:3] += (rate @ rate - rate**2) / MOTION_WATCH.sd_rad_s**2
+        self._info[3:6] += (lever**2).sum(axis=0) / MOTION_WATCH.sd_m_s2**2
+        self._info[6] += change @ change / MOTION_WATCH.sd_rad_s2**2

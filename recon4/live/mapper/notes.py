@@ -4,13 +4,9 @@ from __future__ import annotations
 
 from collections import deque
 
+from recon4.live.mapper.tuning import NOTES
 from recon4.live.protocol import Notes
 from recon4.recording.report import ImportReport
-
-RECENT_S = 10.0
-FRESH_S = 120.0
-"""A warning is reported for this time; warnings about clocks until the capture ends."""
-_MOST = 20
 
 
 class NotesWatch:
@@ -33,15 +29,15 @@ class NotesWatch:
         current = [
             text
             for text, seen_s in zip(warnings, self._seen_s, strict=False)
-            if now_s - seen_s < FRESH_S or "clock" in text
+            if now_s - seen_s < NOTES.fresh_s or "clock" in text
         ]
         counts = dict(self._report.counts)
         if not self._counts:
             self._counts.append((now_s, {}))
         self._counts.append((now_s, counts))
-        while now_s - self._counts[0][0] > RECENT_S:
+        while now_s - self._counts[0][0] > NOTES.recent_s:
             self._counts.popleft()
         before = self._counts[0][1]
         recent = {name: count - before.get(name, 0) for name, count in counts.items()}
         recent = {name: count for name, count in recent.items() if count}
-        return Notes(warnings=current[-_MOST:], counts=counts, recent=recent)
+        return Notes(warnings=current[-NOTES.most :], counts=counts, recent=recent)

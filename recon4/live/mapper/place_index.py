@@ -10,26 +10,13 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.live.mapper.plan_match import plan_hypotheses
 from recon4.live.mapper.spill_file import SpillFile
+from recon4.live.mapper.tuning import PLACE_INDEX
 from recon4.pose_graph.tuning import graph_tuning
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.planes import register_to_planes
 from recon4.registration.result import Registration
 from recon4.registration.tuning import PLANES
 from recon4.settings import Settings
-
-KEEP_EVERY_M = 1.0
-_SEGMENTS = 3000
-"""Segments stored per place, up to twice as many: 72 to 144 kB. An hour of walking has 4000
-places, which are in a spill file."""
-_AROUND = 3
-"""Places before and after a place that form its local map."""
-_SURE_MATCH_RATIO, _SURE_DEGENERACY = 0.5, 0.02
-"""Smallest values to accept a view without a prior."""
-_LEVELS = 2
-"""Cells of 0.2 and 0.4 m: hypotheses have this accuracy; coarser planes of few points mislead."""
-_HYPOTHESES = 3
-_FLOOR_M, _CEILING_M = 0.9, 0.8
-"""Points between these heights below and above the body count as walls [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -50,7 +37,7 @@ class PlaceIndex:
             scratch: Folder of the spill file; None = the system's temporary folder.
         """
         self._settings = settings
-        self._planes = replace(PLANES, levels=_LEVELS)
+        self._planes = replace(PLANES, levels=PLACE_INDEX.levels)
         self._spill = SpillFile(scratch)
         self._places: list[_StoredPlace] = []
         self._at = np.zeros((64, 4))
@@ -67,7 +54,7 @@ class PlaceIndex:
         return self._walked_m
 
     def keep(self, T_map_body: SE3, ends_body: Array) -> None:
-        """Add a place if the last one is at least `KEEP_EVERY_M` away.
+        """Add a place if the last one is at least `PLACE_INDEX.keep_every_m` away.
 
         Args:
             T_map_body: Pose of the body.
@@ -76,11 +63,11 @@ class PlaceIndex:
         here = T_map_body.t
         if self._last_m is not None:
             step_m = float(np.linalg.norm(here - self._last_m))
-            if step_m < KEEP_EVERY_M:
+            if step_m < PLACE_INDEX.keep_every_m:
                 return
             self._walked_m += step_m
         self._last_m = here
-        step = max(1, len(ends_body) // (2 * _SEGMENTS))
+        step = max(1, len(ends_body) // (2 * PLACE_INDEX.segments))
         kept = self._spill.put(ends_body[::step].astype(np.float32))
         if len(self) == len(self._at):
             self._at = np.concatenate([self._at, np.zeros_like(self._at)])
@@ -151,13 +138,15 @@ class PlaceIndex:
         level = SE3(R, np.zeros(3)) @ source
         target = np.concatenate([self._in_map(k) for k in self._around(place)]) - T.t
         found: list[Registration] = []
-        for yaw, shift_m in plan_hypotheses(_walls(target), _walls(level), most=_HYPOTHESES):
+        for yaw, shift_m in plan_hypotheses(
+            _walls(target), _walls(level), most=PLACE_INDEX.hypotheses
+        ):
             initial = SE3(so3_exp([0.0, 0.0, yaw]) @ R, T.t + np.append(shift_m, 0.0))
             one = self.locate(source, initial, place)
             if (
                 one is not None
-                and one.match_ratio >= _SURE_MATCH_RATIO
-                and one.degeneracy >= _SURE_DEGENERACY
+                and one.match_ratio >= PLACE_INDEX.sure_match_ratio
+                and one.degeneracy >= PLACE_INDEX.sure_degeneracy
             ):
                 found.append(one)
         return [(one.T_target_source, one.match_ratio) for one in found]
@@ -177,7 +166,10 @@ class PlaceIndex:
         return planes
 
     def _around(self, place: int) -> range:
-        return range(max(place - _AROUND, 0), min(place + _AROUND + 1, len(self._places)))
+        return range(
+            max(place - PLACE_INDEX.around, 0),
+            min(place + PLACE_INDEX.around + 1, len(self._places)),
+        )
 
     def _in_map(self, place: int) -> Array:
         one = self._places[place]
@@ -187,4 +179,4 @@ class PlaceIndex:
 
 def _walls(p_m: Array) -> Array:
     """Horizontal coordinates of the points between floor and ceiling; heights are body-relative."""
-    return p_m[(p_m[:, 2] > -_FLOOR_M) & (p_m[:, 2] < _CEILING_M), :2]
+    return p_m[(p_m[:, 2] > -PLACE_INDEX.floor_m) & (p_m[:, 2] < PLACE_INDEX.ceiling_m), :2]

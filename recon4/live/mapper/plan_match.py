@@ -7,14 +7,7 @@ from numpy.typing import NDArray
 from scipy import ndimage
 
 from recon4.geometry.se3 import Array
-
-CELL_M = 0.25
-_CELLS = 128
-_REACH_M = 10.0
-"""Range of the view; with it map and shift stay within 16 m, so that nothing wraps around."""
-_SHIFT_M = 5.0
-_YAW_STEP_RAD = np.deg2rad(4.0)
-_APART_M, _APART_RAD = 1.0, 0.25
+from recon4.live.mapper.tuning import PLAN_MATCH
 
 
 def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tuple[float, Array]]:
@@ -31,19 +24,19 @@ def plan_hypotheses(target_m: Array, source_m: Array, *, most: int) -> list[tupl
     Returns:
         Yaw [rad] and shift [m] (2,) that map the view onto the map, up to 5 m away.
     """
-    source_m = source_m[np.linalg.norm(source_m, axis=1) < _REACH_M]
+    source_m = source_m[np.linalg.norm(source_m, axis=1) < PLAN_MATCH.reach_m]
     if not len(source_m) or not len(target_m):
         return []
     walls = ndimage.gaussian_filter(np.minimum(_raster(target_m), 1.0), 1.0)
     spectrum = np.fft.rfft2(walls)
-    yaws = np.arange(0.0, 2 * np.pi, _YAW_STEP_RAD)
-    reach = round(_SHIFT_M / CELL_M)
+    yaws = np.arange(0.0, 2 * np.pi, PLAN_MATCH.yaw_step_rad)
+    reach = round(PLAN_MATCH.shift_m / PLAN_MATCH.cell_m)
     shifts = np.arange(-reach, reach + 1)
     scores = np.stack([_scores(spectrum, source_m, yaw)[np.ix_(shifts, shifts)] for yaw in yaws])
     found = []
     for _ in range(most):
         k, i, j = np.unravel_index(int(np.argmax(scores)), scores.shape)
-        found.append((float(yaws[k]), np.array([shifts[i], shifts[j]]) * CELL_M))
+        found.append((float(yaws[k]), np.array([shifts[i], shifts[j]]) * PLAN_MATCH.cell_m))
         _suppress(scores, (int(k), int(i), int(j)))
     return found
 
@@ -56,15 +49,20 @@ def _scores(spectrum: NDArray[np.complex128], source_m: Array, yaw: float) -> Ar
 
 
 def _raster(p_m: Array) -> Array:
-    cells = np.floor(p_m / CELL_M + 0.5).astype(np.int64) + _CELLS // 2
-    cells = cells[((cells >= 0) & (cells < _CELLS)).all(axis=1)]
-    counts = np.bincount(cells[:, 0] * _CELLS + cells[:, 1], minlength=_CELLS**2)
-    return counts.reshape(_CELLS, _CELLS).astype(np.float64)
+    cells = np.floor(p_m / PLAN_MATCH.cell_m + 0.5).astype(np.int64) + PLAN_MATCH.cells // 2
+    cells = cells[((cells >= 0) & (cells < PLAN_MATCH.cells)).all(axis=1)]
+    counts = np.bincount(
+        cells[:, 0] * PLAN_MATCH.cells + cells[:, 1], minlength=PLAN_MATCH.cells**2
+    )
+    return counts.reshape(PLAN_MATCH.cells, PLAN_MATCH.cells).astype(np.float64)
 
 
 def _suppress(scores: Array, at: tuple[int, int, int]) -> None:
     """Exclude the neighborhood of a maximum, which belongs to the same hypothesis."""
-    turn, near = round(_APART_RAD / _YAW_STEP_RAD), round(_APART_M / CELL_M)
+    turn, near = (
+        round(PLAN_MATCH.apart_rad / PLAN_MATCH.yaw_step_rad),
+        round(PLAN_MATCH.apart_m / PLAN_MATCH.cell_m),
+    )
     rows = np.arange(at[0] - turn, at[0] + turn + 1) % len(scores)
     a, b = max(at[1] - near, 0), max(at[2] - near, 0)
     scores[rows, a : at[1] + near + 1, b : at[2] + near + 1] = -np.inf

@@ -8,16 +8,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.live.mapper.place_index import PlaceIndex
-
-_PLACES_TRIED, _PLACES_APART_M = 16, 1.5
-"""Number and spacing of the nearest places that are tried in turn, one per search."""
-_SAME_M, _SAME_RAD = 0.3, 0.1
-_MAX_SCORE, _LEAD = 4.0, 1.5
-"""Rooms may look alike: a hypothesis is accepted with a sure score and this lead over the next."""
-_SURE_EXPECTED, _SURE_SCORE = 2.0, 3.0
-"""A place that was not expected must fit for longer: the true one may not be in the map at all."""
-_MISSED = 0.4
-"""Loss of score of the expected place by a view that is not registered, as from behind a door."""
+from recon4.live.mapper.tuning import RECOVERY
 
 
 @dataclass(slots=True)
@@ -41,7 +32,9 @@ class Recovery:
                 places were tried.
         """
         self._places = places
-        self._to_try = places.near(lost_m, most=_PLACES_TRIED, apart_m=_PLACES_APART_M)
+        self._to_try = places.near(
+            lost_m, most=RECOVERY.places_tried, apart_m=RECOVERY.places_apart_m
+        )
         self._tried = 0
         self._expected = None if expected is None else _Hypothesis(expected, 1.0)
         self._hypotheses = [] if self._expected is None else [self._expected]
@@ -69,12 +62,12 @@ class Recovery:
         expected = hypothesis.T_map_odom @ T_odom_body
         found = self._places.locate(source, expected, self._places.near(expected.t, most=1)[0])
         if found is None:
-            hypothesis.score -= _MISSED if hypothesis is self._expected else 1.0
+            hypothesis.score -= RECOVERY.missed if hypothesis is self._expected else 1.0
             return
         if not _same(found.T_target_source, expected):
             hypothesis.score -= 1.0
             return
-        hypothesis.score = min(hypothesis.score + found.match_ratio, _MAX_SCORE)
+        hypothesis.score = min(hypothesis.score + found.match_ratio, RECOVERY.max_score)
         hypothesis.T_map_odom = found.T_target_source @ T_odom_body.inverse()
 
     def _decide(self) -> SE3 | None:
@@ -82,14 +75,17 @@ class Recovery:
         if not ranked:
             return None
         is_expected = ranked[0] is self._expected
-        if ranked[0].score < (_SURE_EXPECTED if is_expected else _SURE_SCORE):
+        if ranked[0].score < (RECOVERY.sure_expected if is_expected else RECOVERY.sure_score):
             return None
         if self._tried < len(self._to_try) and not is_expected:
             return None
         rival = ranked[1].score if len(ranked) > 1 else 0.0
-        return ranked[0].T_map_odom if ranked[0].score - rival >= _LEAD else None
+        return ranked[0].T_map_odom if ranked[0].score - rival >= RECOVERY.lead else None
 
 
 def _same(T_a: SE3, T_b: SE3) -> bool:
     apart = T_a.inverse() @ T_b
-    return bool(float(np.linalg.norm(apart.t)) < _SAME_M and float(apart.angle()) < _SAME_RAD)
+    return bool(
+        float(np.linalg.norm(apart.t)) < RECOVERY.same_m
+        and float(apart.angle()) < RECOVERY.same_rad
+    )

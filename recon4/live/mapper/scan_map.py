@@ -18,6 +18,7 @@ from recon4.live.mapper.scan_places import ScanPlaces
 from recon4.live.mapper.scan_tracker import ScanStep, ScanTracker
 from recon4.live.mapper.shown import RecentCounts, ShownPath
 from recon4.live.mapper.swept_lines import SweptLines
+from recon4.live.mapper.tuning import SCAN_MAP
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import CELL_M, Coverage
 from recon4.live.protocol import Gaps, Loop, MapperMessage, Path, Points, Pose
@@ -33,18 +34,6 @@ from recon4.settings import Settings
 from recon4.settings.tuning import tuned
 from recon4.slam2d.tuning import Slam2dTuning
 
-SUMMARY_EVERY_NS = 1_000_000_000
-SHOWN_EVERY_NS = 100_000_000
-"""Scans are added to plan and preview at this interval [ns]: a fast laser sees nothing new."""
-REDRAW_EVERY_NS = 10_000_000_000
-"""Plan and preview are made again from corrected keyframes at most this often [ns]; it takes 0.3 ms
-a keyframe."""
-RAYS = 400
-"""Returns of a scan that are added."""
-_LASER_VALUE = 128
-"""Intensity of its points in the preview."""
-_FASTEST_M_S = 1.0
-"""Speed of a person or robot that is lost [m/s]."""
 _RESTARTED = "the local map started again: go back to a place seen before, until the loop closes"
 
 
@@ -113,7 +102,7 @@ class ScanMap:
         messages = self._show(step, T_map_laser)
         if step.keyframe:
             self._places.keep(T_map_laser, step.seen)
-        if step.t_ns - self._summary_ns >= SUMMARY_EVERY_NS:
+        if step.t_ns - self._summary_ns >= SCAN_MAP.summary_every_ns:
             self._summary_ns = step.t_ns
             messages += self._summary(step, T_map_laser)
         return pose, messages
@@ -138,7 +127,7 @@ class ScanMap:
         """Count lost scans; a restarted local map is joined by the next loop closure."""
         if step.restarted:
             seconds = (step.t_ns - self._tracked_ns) * 1e-9 if self._tracked_ns else 0.0
-            self._places.restart(_FASTEST_M_S * seconds)
+            self._places.restart(SCAN_MAP.fastest_m_s * seconds)
             self._restarted = len(self._places) > 0
         if not step.lost and self._lost:
             self._relocated += 1
@@ -195,14 +184,14 @@ class ScanMap:
     def _show(self, step: ScanStep, T_map_laser: Array) -> list[MapperMessage]:
         """Add the returns of a scan, and the lines whose poses are known now."""
         messages: list[MapperMessage] = []
-        if step.t_ns - self._shown_ns >= SHOWN_EVERY_NS:
+        if step.t_ns - self._shown_ns >= SCAN_MAP.shown_every_ns:
             self._shown_ns = step.t_ns
-            seen = step.seen.points[:: max(1, len(step.seen.points) // RAYS)]
+            seen = step.seen.points[:: max(1, len(step.seen.points) // SCAN_MAP.rays)]
             height_m = float(self._laser.T_body_sensor.t[2])
             at = np.array([T_map_laser[0], T_map_laser[1], height_m])
             ends = _raised(transform(T_map_laser, seen), height_m)
             self._coverage.add(at, ends) if self._lines is None else self._clear(at, ends)
-            messages += self._add_points(ends, np.full(len(ends), _LASER_VALUE, np.uint8))
+            messages += self._add_points(ends, np.full(len(ends), SCAN_MAP.laser_value, np.uint8))
         return messages + self._add_lines()
 
     def _clear(self, at: Array, ends: Array) -> None:
@@ -229,7 +218,7 @@ class ScanMap:
     def _summary(self, step: ScanStep, T_map_laser: Array) -> list[MapperMessage]:
         self._close_loop(T_map_laser)
         messages: list[MapperMessage] = []
-        if self._stale and step.t_ns - self._redrawn_ns >= REDRAW_EVERY_NS:
+        if self._stale and step.t_ns - self._redrawn_ns >= SCAN_MAP.redraw_every_ns:
             self._stale, self._redrawn_ns = False, step.t_ns
             messages = self._redraw()
         self._coverage.refresh()
@@ -275,9 +264,9 @@ class ScanMap:
         self._path = ShownPath()
         height_m = float(self._laser.T_body_sensor.t[2])
         for pose, seen in self._places.views():
-            ends = _raised(seen[:: max(1, len(seen) // RAYS)], height_m)
+            ends = _raised(seen[:: max(1, len(seen) // SCAN_MAP.rays)], height_m)
             self._coverage.add(np.array([pose[0], pose[1], height_m]), ends)
-            self._preview.add(ends, np.full(len(ends), _LASER_VALUE, np.uint8))
+            self._preview.add(ends, np.full(len(ends), SCAN_MAP.laser_value, np.uint8))
             self._path.extend(self._level_body(pose))
         return [Path(list(self._path.places)), points_message(self._preview.since(0))]
 

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se2 import between, compose, from_se3, inverse, transform, wrap
 from recon4.geometry.se3 import Array
+from recon4.live.mapper.tuning import SCAN_PLACES
 from recon4.model.pose_graph import Edge
 from recon4.settings import Settings
 from recon4.settings.tuning import tuned
@@ -18,11 +19,6 @@ from recon4.slam2d.keyframes import Keyframes
 from recon4.slam2d.scan_points import ScanPoints
 from recon4.slam2d.submaps import SubmapRegistrar
 from recon4.slam2d.tuning import Loop2dTuning, Slam2dTuning
-
-_MOST_RETURNS = 400
-"""Returns of a keyframe that are stored, 5 kB: an hour of walking has 20 000 keyframes."""
-_LEAST_DRIFT_M, _MOST_DRIFT_M = 0.3, 6.0
-_MOST_DRIFT_RAD = 0.6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,7 +74,7 @@ class ScanPlaces:
         if count:
             self.walked_m += float(np.hypot(*(pose[:2] - self._at[count - 1, :2])))
         self._at[count] = [pose[0], pose[1], self.walked_m]
-        step = max(1, len(seen.points) // _MOST_RETURNS)
+        step = max(1, len(seen.points) // SCAN_PLACES.most_returns)
         self._keyframes.append(
             _Keyframe(
                 pose,
@@ -171,12 +167,12 @@ class ScanPlaces:
         """What the pose may be off since the last place that was recognized [m]."""
         path_m = self.walked_m - self._closed_m
         drift_m = self._loops.drift_ratio * path_m + self._unknown_m
-        return float(np.clip(drift_m, _LEAST_DRIFT_M, _MOST_DRIFT_M))
+        return float(np.clip(drift_m, SCAN_PLACES.least_drift_m, SCAN_PLACES.most_drift_m))
 
     def _drift_rad(self, place: int) -> float:
         path_m = self.walked_m - float(self._at[place, 2])
         drift_rad = self._loops.drift_rad_m * path_m + 0.1 * self._unknown_m
-        return min(drift_rad, _MOST_DRIFT_RAD)
+        return min(drift_rad, SCAN_PLACES.most_drift_rad)
 
     def _batch(self, rows: list[int]) -> Keyframes:
         chosen = [self._keyframes[row] for row in rows]

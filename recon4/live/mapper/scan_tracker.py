@@ -8,17 +8,13 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.live.mapper.live_attitude import LiveAttitude
+from recon4.live.mapper.tuning import SCAN_TRACKER
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Trajectory
 from recon4.slam2d.odometry import Odometry2d
 from recon4.slam2d.scan_points import ScanPoints
 from recon4.slam2d.tuning import Slam2dTuning
-
-_KEPT_NS = 300_000_000
-"""Scans of this time before the newest one give the velocity [ns]."""
-_LEAST, _MOST = 2, 100
-"""Scans that are kept."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -81,8 +77,10 @@ class ScanTracker:
         before = self._scans
         if before is None:
             return scan
-        first = int(np.searchsorted(before.t_ns, before.t_ns[-1] - _KEPT_NS)) - 1
-        first = max(min(first, len(before) - _LEAST), len(before) - _MOST, 0)
+        first = int(np.searchsorted(before.t_ns, before.t_ns[-1] - SCAN_TRACKER.kept_ns)) - 1
+        first = max(
+            min(first, len(before) - SCAN_TRACKER.least), len(before) - SCAN_TRACKER.most, 0
+        )
         return joined_scans([before[slice(first, len(before))], scan])
 
     def _attitude(self, scans: LaserScans, attitude: LiveAttitude) -> Trajectory | None:

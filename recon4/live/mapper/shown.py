@@ -7,14 +7,12 @@ from collections import deque
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.live.mapper.tuning import SHOWN
 from recon4.live.protocol import RecentFrames
-
-_PATH_STEP_M = 0.25
-_RECENT_NS = 10_000_000_000
 
 
 class ShownPath:
-    """Places of the body, one every `_PATH_STEP_M`."""
+    """Places of the body, one every `SHOWN.path_step_m`."""
 
     def __init__(self) -> None:
         self.places: list[list[float]] = []
@@ -22,7 +20,7 @@ class ShownPath:
 
     def extend(self, p_map: Array) -> None:
         """Add a position [m], (3,), if it is far enough from the last one."""
-        if not self.places or np.linalg.norm(p_map - self.places[-1]) >= _PATH_STEP_M:
+        if not self.places or np.linalg.norm(p_map - self.places[-1]) >= SHOWN.path_step_m:
             self.places.append([round(float(v), 2) for v in p_map])
 
 
@@ -42,6 +40,6 @@ class RecentCounts:
 
     def message(self, now_ns: int) -> RecentFrames:
         """Those of the last 10 s."""
-        while now_ns - self._recent[0][0] > _RECENT_NS:
+        while now_ns - self._recent[0][0] > SHOWN.recent_ns:
             self._recent.popleft()
         return RecentFrames(len(self._recent), thinned=sum(out for _, out in self._recent))

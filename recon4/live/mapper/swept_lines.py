@@ -12,19 +12,9 @@ from recon4.geometry.se3 import Array, so3_exp
 from recon4.kernels.imu import place_points
 from recon4.live.mapper.live_attitude import LiveAttitude
 from recon4.live.mapper.live_intensity import LiveIntensity
+from recon4.live.mapper.tuning import SWEPT_LINES
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
-
-PREVIEW_POINTS = 2500
-"""Points of a multiframe used for the preview."""
-COVERAGE_RAYS = 1500
-"""Points of a multiframe used for coverage."""
-_KNOT_NS = 10_000_000
-_KEPT_POSES = 500
-_LONGEST_HOLE_NS = 500_000_000
-"""Lines in a longer time without a pose are not placed [ns]."""
-_MOST_WAITING = 30
-"""Multiframes that wait for poses at most, 3 s."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -56,8 +46,8 @@ class SweptLines:
         self._T_body_profiler = rig.sensors[row].T_body_sensor
         self._min_range_m = min_range_m
         self._intensity = LiveIntensity(len(rig.sensors))
-        self._waiting: deque[Multiframe] = deque(maxlen=_MOST_WAITING)
-        self._poses: deque[tuple[int, float, float, float]] = deque(maxlen=_KEPT_POSES)
+        self._waiting: deque[Multiframe] = deque(maxlen=SWEPT_LINES.most_waiting)
+        self._poses: deque[tuple[int, float, float, float]] = deque(maxlen=SWEPT_LINES.kept_poses)
         """Time [ns], turn of the attitude's heading into the map [rad], x, y [m]."""
 
     def push(self, frame: Multiframe) -> None:
@@ -94,7 +84,10 @@ class SweptLines:
         t_ns = np.array([row[0] for row in self._poses], np.int64)
         first = int(np.searchsorted(t_ns, frame.t_ns, side="right")) - 1
         last = int(np.searchsorted(t_ns, end_ns))
-        if first < 0 or np.diff(t_ns[first : last + 1]).max(initial=0) > _LONGEST_HOLE_NS:
+        if (
+            first < 0
+            or np.diff(t_ns[first : last + 1]).max(initial=0) > SWEPT_LINES.longest_hole_ns
+        ):
             return None
         if not attitude.covers(frame.t_ns, end_ns):
             return None
@@ -102,15 +95,17 @@ class SweptLines:
         rows = np.flatnonzero(away_m >= self._min_range_m)
         if not len(rows):
             return None
-        rows = rows[:: max(1, len(rows) // PREVIEW_POINTS)]
+        rows = rows[:: max(1, len(rows) // SWEPT_LINES.preview_points)]
         part = frame.take(rows)
-        knot_ns = np.arange(frame.t_ns, end_ns + _KNOT_NS, _KNOT_NS, dtype=np.int64)
+        knot_ns = np.arange(
+            frame.t_ns, end_ns + SWEPT_LINES.knot_ns, SWEPT_LINES.knot_ns, dtype=np.int64
+        )
         known_s: Array = (t_ns - frame.t_ns).astype(np.float64) * 1e-9
         knot_s: Array = (knot_ns - frame.t_ns).astype(np.float64) * 1e-9
         turn = np.interp(knot_s, known_s, np.unwrap(poses[:, 0]))
         R = (
             so3_exp(np.outer(turn, [0.0, 0.0, 1.0]))
-            @ attitude.trajectory().at(knot_ns, slack_ns=_LONGEST_HOLE_NS).R
+            @ attitude.trajectory().at(knot_ns, slack_ns=SWEPT_LINES.longest_hole_ns).R
         )
         p = np.zeros((len(knot_s), 3))
         for axis in (0, 1):
@@ -123,5 +118,5 @@ class SweptLines:
             part.intensity, part.sensor, part.ring, range_m=away_m[rows].astype(np.float64)
         )
         middle = len(knot_s) // 2
-        step = max(1, len(p_map) // COVERAGE_RAYS)
+        step = max(1, len(p_map) // SWEPT_LINES.coverage_rays)
         return PlacedLines(R[middle] @ T.t + p[middle], p_map[::step], p_map, values)

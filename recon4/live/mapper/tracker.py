@@ -9,6 +9,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.live.mapper.live_attitude import IMU_WRONG, NOT_UPRIGHT, is_upright
+from recon4.live.mapper.tuning import LIVE_TRACKER
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
@@ -23,17 +24,8 @@ from recon4.settings import Settings
 from recon4.settings.reads import OdometryReads, part_of
 from recon4.settings.tuning import tuned
 
-_TRIED_FRAMES = 20
-"""Number of recent multiframes of an IMU check, and between two checks."""
-_BAD_FRAMES = 8
-"""Number of them, lost or with a large residual, that starts a check."""
-_FAR_M = 0.08
 _WHY_NOT = f"{IMU_WRONG}, its clock the same?"
 _UNIT = "is its unit m/s²?"
-_EARLY_FRAMES = 100
-"""If the IMU is rejected before this multiframe, the map made with it is reset."""
-_INTERRUPTED_NS = 2_000_000_000
-"""Duration of a pause after which the pose is unknown, unless the IMU continued."""
 
 
 class Tracker:
@@ -50,7 +42,7 @@ class Tracker:
         self._offset_ns = round(rig.imu_time_offset_s * 1e9)
         self._waiting: list[ImuSamples] = []
         self._odometry: Odometry | None = None
-        self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=_TRIED_FRAMES)
+        self._recent: deque[tuple[Multiframe, bool]] = deque(maxlen=LIVE_TRACKER.tried_frames)
         self._imu: deque[ImuSamples] = deque(maxlen=1000)
         self._since_check = self._frames = 0
         self._end_ns: int | None = None
@@ -99,8 +91,12 @@ class Tracker:
 
     def interrupted(self, frame: Multiframe) -> bool:
         """Whether the motion between the last multiframe and this one is unknown."""
-        blind = not self.with_imu or self._imu_hole_ns > _INTERRUPTED_NS
-        return blind and self._end_ns is not None and frame.t_ns - self._end_ns > _INTERRUPTED_NS
+        blind = not self.with_imu or self._imu_hole_ns > LIVE_TRACKER.interrupted_ns
+        return (
+            blind
+            and self._end_ns is not None
+            and frame.t_ns - self._end_ns > LIVE_TRACKER.interrupted_ns
+        )
 
     def push(self, frame: Multiframe) -> OdometryStep:
         """Register the next multiframe; its pose is in the odometry frame (`T_map_odom`)."""
@@ -111,10 +107,14 @@ class Tracker:
         step = self._odometry.push(frame)
         if not step.lost:
             self._tracked = self.T_map_odom @ step.T_odom_body
-        self._recent.append((frame, step.lost or not step.error_m < _FAR_M))
+        self._recent.append((frame, step.lost or not step.error_m < LIVE_TRACKER.far_m))
         self._since_check += 1
         bad = sum(is_bad for _, is_bad in self._recent)
-        if self.with_imu and bad >= _BAD_FRAMES and self._since_check >= _TRIED_FRAMES:
+        if (
+            self.with_imu
+            and bad >= LIVE_TRACKER.bad_frames
+            and self._since_check >= LIVE_TRACKER.tried_frames
+        ):
             self._since_check = 0
             return self._check_imu(step)
         return step
@@ -163,7 +163,7 @@ class Tracker:
         self._use(found.imu)
         T_map_body, last = self.T_map_odom @ step.T_odom_body, found.best.last
         self._odometry = found.best.odometry
-        self.map_reset = self._frames < _EARLY_FRAMES
+        self.map_reset = self._frames < LIVE_TRACKER.early_frames
         if self.map_reset:
             self.T_map_odom = SE3.identity()
             self._tracked = last.T_odom_body

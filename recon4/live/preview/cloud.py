@@ -9,12 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.live import EMPTY, add_voxels
-
-FIRST_VOXEL_M = 0.1
-MAX_POINTS = 400_000
-"""Above this the voxel size is doubled; a phone can draw 500 k points."""
-_LONGEST = 1 << 15
-"""Voxel coordinates are sent as int16."""
+from recon4.live.preview.tuning import PREVIEW_CLOUD
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +30,9 @@ class Chunk:
 class PreviewCloud:
     """Keeps one point per voxel."""
 
-    def __init__(self, voxel_m: float = FIRST_VOXEL_M, most: int = MAX_POINTS) -> None:
+    def __init__(
+        self, voxel_m: float = PREVIEW_CLOUD.first_voxel_m, most: int = PREVIEW_CLOUD.max_points
+    ) -> None:
         self.voxel_m, self._most = voxel_m, most
         self.generation = 0
         self._clear()
@@ -53,7 +50,7 @@ class PreviewCloud:
         start = self._count
         generation = self.generation
         voxels = np.floor(p_map / self.voxel_m).astype(np.int64)
-        near = (np.abs(voxels) < _LONGEST).all(axis=1)
+        near = (np.abs(voxels) < PREVIEW_CLOUD.longest).all(axis=1)
         self._put(voxels[near], values[near])
         while self._count > self._most:
             self._coarsen()

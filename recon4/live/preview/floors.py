@@ -2,13 +2,7 @@
 
 from __future__ import annotations
 
-APART_M = 2.0
-"""Height difference to all known floors at which a new floor starts."""
-_NEARER_M = 0.5
-"""Hysteresis: another floor must be nearer by this, so that stairs do not toggle the floor."""
-_FOLLOW = 0.005
-"""Gain of the floor height per multiframe (time constant 20 s): a street that rises gently stays
-one floor, stairs are faster."""
+from recon4.live.preview.tuning import FLOOR_DETECTION
 
 
 class Floors:
@@ -25,12 +19,12 @@ class Floors:
     def at(self, z_m: float) -> int:
         """Number of the floor at a body height [m]; call it for every multiframe."""
         away_m = [abs(z_m - height_m) for height_m in self._heights_m]
-        if not away_m or min(away_m) > APART_M:
+        if not away_m or min(away_m) > FLOOR_DETECTION.apart_m:
             self._heights_m.append(z_m)
             self.now = len(self._heights_m) - 1
             return self.now
         nearest = away_m.index(min(away_m))
-        if away_m[nearest] < away_m[self.now] - _NEARER_M:
+        if away_m[nearest] < away_m[self.now] - FLOOR_DETECTION.nearer_m:
             self.now = nearest
-        self._heights_m[self.now] += _FOLLOW * (z_m - self._heights_m[self.now])
+        self._heights_m[self.now] += FLOOR_DETECTION.follow * (z_m - self._heights_m[self.now])
         return self.now

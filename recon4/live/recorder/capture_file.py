@@ -18,6 +18,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from recon4.live.protocol import FileState
+from recon4.live.recorder.tuning import CAPTURE_FILE
 
 _FILE_HEADER = struct.pack("<IHHiIII", 0xA1B23C4D, 2, 4, 0, 0, 65535, 1)
 _RECORD = struct.Struct("<IIII")
@@ -25,10 +26,6 @@ _HEADERS = struct.Struct(">12sH BBHHHBBH4s4s HHHH")
 """Ethernet, IPv4 and UDP."""
 _ETHERNET = b"\xff" * 6 + b"\x60\x76\x88\x00\x00\x01"
 
-WRITE_EVERY_S = 0.05
-SYNC_EVERY_S = 1.0
-MAX_WAITING_BYTES = 64 << 20
-"""Half a minute of two VLP-16; datagrams beyond it are dropped and counted."""
 _FULL = {errno.ENOSPC, errno.EDQUOT, errno.EFBIG}
 
 
@@ -74,10 +71,10 @@ class CaptureFile:
         self._thread.start()
 
     def add(self, datagram: Datagram) -> None:
-        """Queue a datagram; it is synced to the disk within `SYNC_EVERY_S`."""
+        """Queue a datagram; it is synced to the disk within `CAPTURE_FILE.sync_every_s`."""
         record = pcap_record(datagram)
         with self._news:
-            if self._waiting.size + len(record) > MAX_WAITING_BYTES:
+            if self._waiting.size + len(record) > CAPTURE_FILE.max_waiting_bytes:
                 self._state.dropped += 1
                 return
             self._waiting.records.append(record)
@@ -101,11 +98,11 @@ class CaptureFile:
         synced_s = time.monotonic()
         while True:
             with self._news:
-                self._news.wait_for(lambda: self._ending, timeout=WRITE_EVERY_S)
+                self._news.wait_for(lambda: self._ending, timeout=CAPTURE_FILE.write_every_s)
                 ending, batch, self._waiting = self._ending, self._waiting, _Waiting()
             if batch.records:
                 self._write(b"".join(batch.records), len(batch.records))
-            if ending or time.monotonic() - synced_s >= SYNC_EVERY_S:
+            if ending or time.monotonic() - synced_s >= CAPTURE_FILE.sync_every_s:
                 self._sync()
                 synced_s = time.monotonic()
             if ending:

@@ -16,10 +16,9 @@ from pathlib import Path
 
 from recon4.errors import Recon4Error
 from recon4.live.recorder.serial_port import DRIVERS, TERMINALS
+from recon4.live.recorder.tuning import DEVICE_OPENER
 from recon4.sandbox import Policy, confine
 from recon4.system.stopping import SIGNALS
-
-_MAX_WORDS = 1000
 
 
 class DeviceOpener:
@@ -51,7 +50,7 @@ class DeviceOpener:
             OSError: With the reason why it cannot be opened.
         """
         self._ours.send(b"open")
-        words, files, _, _ = socket.recv_fds(self._ours, _MAX_WORDS, 1)
+        words, files, _, _ = socket.recv_fds(self._ours, DEVICE_OPENER.max_words, 1)
         if not files:
             raise OSError(words.decode("utf-8", "replace") or "its process ended")
         return files[0]
@@ -71,7 +70,9 @@ def _serve(connection: socket.socket, open_device: Callable[[], int]) -> None:
         try:
             file = open_device()
         except (OSError, Recon4Error) as error:
-            connection.send(str(error).encode()[:_MAX_WORDS] or b"it cannot be opened")
+            connection.send(
+                str(error).encode()[: DEVICE_OPENER.max_words] or b"it cannot be opened"
+            )
             continue
         with suppress(OSError):
             socket.send_fds(connection, [b"opened"], [file])

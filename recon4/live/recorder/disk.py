@@ -8,12 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from recon4.live.protocol import DiskState
-
-_TREND_S = 60.0
-"""The fill rate is measured over this period."""
-_SURE_AFTER_S = 5.0
-_MIN_PER_S = 1000.0
-"""Fill rate below which no time left is predicted [bytes/s]."""
+from recon4.live.recorder.tuning import DISK
 
 
 class DiskWatch:
@@ -54,13 +49,13 @@ class DiskWatch:
             self.state = DiskState()
             return
         self._seen.append((now_s, free))
-        while now_s - self._seen[0][0] > _TREND_S:
+        while now_s - self._seen[0][0] > DISK.trend_s:
             self._seen.popleft()
         since_s, before = self._seen[0]
         left_s = None
-        if now_s - since_s >= _SURE_AFTER_S:
+        if now_s - since_s >= DISK.sure_after_s:
             per_s = (before - free) / (now_s - since_s)
-            left_s = (free - self._least) / per_s if per_s > _MIN_PER_S else None
+            left_s = (free - self._least) / per_s if per_s > DISK.min_per_s else None
         self.state = DiskState(
             free_bytes=free,
             left_s=None if left_s is None else round(left_s),

@@ -11,16 +11,13 @@ from ipaddress import IPv4Address
 from recon4.errors import ConfigError
 from recon4.live.recorder.capture_file import Datagram
 from recon4.live.recorder.serial_port import check_serial_device
+from recon4.live.recorder.tuning import PORTS
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.model.serial_device import parse_serial_device
 
-_BUFFER_BYTES = 16 << 20
-"""Requested receive buffer; six seconds of two VLP-16."""
 _SO_TIMESTAMPNS = getattr(socket, "SO_TIMESTAMPNS", 35)
 _SO_RXQ_OVFL = 40
-_LONGEST = 65_535
-"""Bytes of a datagram: a scan as JSON has some ten thousand."""
 _HINTS = {
     errno.EADDRINUSE: "; is another recorder or VeloView running?",
     errno.EACCES: "; ports below 1024 need administrator rights: send to other ports",
@@ -43,7 +40,7 @@ class Port:
     def receive(self) -> Datagram | None:
         """The next datagram; None if none is waiting."""
         try:
-            payload, ancillary, _, sender = self.socket.recvmsg(_LONGEST, 128)
+            payload, ancillary, _, sender = self.socket.recvmsg(PORTS.longest, 128)
         except BlockingIOError:
             return None
         t_ns = 0
@@ -149,7 +146,7 @@ def open_ports(rig: Rig, *, address: str = "0.0.0.0") -> list[Port]:
 def _open(address: str, number: int) -> socket.socket:
     udp = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
     try:
-        udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, _BUFFER_BYTES)
+        udp.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, PORTS.buffer_bytes)
         udp.setsockopt(socket.SOL_SOCKET, _SO_TIMESTAMPNS, 1)
         udp.setsockopt(socket.SOL_SOCKET, _SO_RXQ_OVFL, 1)
         udp.setblocking(False)

@@ -46,20 +46,13 @@ from recon4.live.recorder.disk import DiskWatch
 from recon4.live.recorder.ports import Port, check_sources, open_ports
 from recon4.live.recorder.serial_line import SerialLine
 from recon4.live.recorder.serial_port import open_serial_device
+from recon4.live.recorder.tuning import RECORDER
 from recon4.live.session import CaptureSession, load_session, stretched
 from recon4.model.rig import Rig, load_rig
 from recon4.model.serial_device import SerialDevice, parse_serial_device
 from recon4.sandbox import refuse_new_sockets, restart_with_one_thread
 from recon4.store.atomic import write_json
 from recon4.system.stopping import StopSignals, end_process
-
-STATUS_EVERY_S = 0.5
-_MAX_SENDERS = 64
-"""Counted one by one; datagrams of further senders are counted together."""
-_DATA_BYTES = 513
-"""Data packets of all LiDARs are larger; position and IMU packets are not."""
-_AT_ONCE = 256
-"""Datagrams read from a port before the other ports are read."""
 
 
 class Recorder:
@@ -123,7 +116,7 @@ class Recorder:
         on_ready()
         while not self._over.is_set():
             try:
-                async with asyncio.timeout(STATUS_EVERY_S):
+                async with asyncio.timeout(RECORDER.status_every_s):
                     await self._over.wait()
             except TimeoutError:
                 self._report_status()
@@ -145,7 +138,7 @@ class Recorder:
         await self._lines.close()
 
     def _receive(self, port: Port) -> None:
-        for _ in range(_AT_ONCE):
+        for _ in range(RECORDER.at_once):
             datagram = port.receive()
             if datagram is None:
                 return
@@ -153,10 +146,10 @@ class Recorder:
 
     def _take(self, datagram: Datagram) -> None:
         sender = datagram.source[0], datagram.port
-        if sender not in self._counts and len(self._counts) >= _MAX_SENDERS:
+        if sender not in self._counts and len(self._counts) >= RECORDER.max_senders:
             sender = "others", datagram.port
         self._counts[sender] += 1
-        self._data[sender] += len(datagram.payload) >= _DATA_BYTES
+        self._data[sender] += len(datagram.payload) >= RECORDER.data_bytes
         self._received_s[sender] = time.monotonic()
         if self._paused:
             self._skipped += 1

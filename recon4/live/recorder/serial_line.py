@@ -10,12 +10,7 @@ from collections.abc import Callable
 
 from recon4.live.recorder.capture_file import Datagram
 from recon4.live.recorder.device_opener import DeviceOpener
-
-RETRY_S = 1.0
-_POLL_S = 0.2
-_AT_ONCE = 4096
-_LONGEST = 1024
-"""Bytes passed on as one sentence if no line end comes."""
+from recon4.live.recorder.tuning import SERIAL_LINE
 
 
 class SerialLine:
@@ -57,21 +52,21 @@ class SerialLine:
                     os.close(line)
             except OSError as error:
                 self.problem = f"{self._name}: {error}"
-            self._ending.wait(RETRY_S)
+            self._ending.wait(SERIAL_LINE.retry_s)
 
     def _read(self, line: int) -> None:
         rest = b""
         while not self._ending.is_set():
-            if not select.select([line], [], [], _POLL_S)[0]:
+            if not select.select([line], [], [], SERIAL_LINE.poll_s)[0]:
                 continue
-            data = os.read(line, _AT_ONCE)
+            data = os.read(line, SERIAL_LINE.at_once)
             if not data:
                 raise OSError("the device is gone")
             *whole, rest = (rest + data).split(b"\n")
-            for sentence in [*whole, *([rest] if len(rest) > _LONGEST else [])]:
+            for sentence in [*whole, *([rest] if len(rest) > SERIAL_LINE.longest else [])]:
                 if sentence.strip():
                     datagram = Datagram(
                         time.time_ns(), ("127.0.0.1", 0), self._port, sentence.strip() + b"\r\n"
                     )
                     self._take(datagram)
-            rest = rest if len(rest) <= _LONGEST else b""
+            rest = rest if len(rest) <= SERIAL_LINE.longest else b""

@@ -2,7 +2,8 @@
 
 import pytest
 
-from recon4.live.mapper.latency import LATE_NS, Latency
+from recon4.live.mapper.latency import Latency
+from recon4.live.mapper.tuning import LATENCY
 from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
 from recon4.recording.report import ImportReport
 from tests.unit.recording.test_packets_clock import PACKET_NS, packets
@@ -29,7 +30,7 @@ def test_gps_drives_the_sensors_and_the_computer_clock_is_wrong(wrong_s):
 
     age_s = latency.age_s(latency.on_recorder_clock(end_ns))
     soon = [latency.leave_out(end_ns) for _ in range(4)]
-    clock.now_ns += LATE_NS
+    clock.now_ns += LATENCY.late_ns
     behind = [latency.leave_out(end_ns) for _ in range(4)]
 
     clock.now_ns += 5_000_000_000

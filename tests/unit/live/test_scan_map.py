@@ -7,8 +7,9 @@ import pytest
 
 from recon4.geometry.se2 import between
 from recon4.live.mapper.live_attitude import LiveAttitude
-from recon4.live.mapper.scan_map import REDRAW_EVERY_NS, ScanMap
+from recon4.live.mapper.scan_map import ScanMap
 from recon4.live.mapper.scan_tracker import ScanTracker
+from recon4.live.mapper.tuning import SCAN_MAP
 from recon4.live.preview.coverage import CoverageClass
 from recon4.live.protocol import Gaps, Loop, Path, Plan, Points
 from recon4.model.rig import parse_rig
@@ -153,7 +154,7 @@ def test_the_plan_is_drawn_again_at_most_every_ten_seconds(room, monkeypatch):
         live.push(scan)
 
     assert len(drawn) >= 2
-    assert np.diff(drawn).min() >= REDRAW_EVERY_NS
+    assert np.diff(drawn).min() >= SCAN_MAP.redraw_every_ns
 
 
 @pytest.mark.parametrize("with_imu", [False, True])

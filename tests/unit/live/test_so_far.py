@@ -3,7 +3,7 @@
 import pytest
 
 from recon4.live.so_far import WalkSoFar
-from recon4.live.stretches import MOST_STRETCHES
+from recon4.live.tuning import STRETCHES
 from recon4_app.live.stream_state import StreamState
 from tests.live_messages import pose
 
@@ -103,4 +103,4 @@ def test_a_long_stretch_goes_on_as_another_and_all_together_are_bounded():
     found = stretches((1500, LOST))
 
     assert len(found) == 2 and found[0][2] == found[1][1]
-    assert len(stretches(*[(1, LOST), (1, GOOD)] * 300)) == MOST_STRETCHES
+    assert len(stretches(*[(1, LOST), (1, GOOD)] * 300)) == STRETCHES.most_stretches

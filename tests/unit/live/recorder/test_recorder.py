@@ -4,12 +4,14 @@ import json
 import signal
 import socket
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from recon4.live.findings import findings
 from recon4.live.newest import Newest
+from recon4.live.recorder import capture_file
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
 from recon4.live.replay import ReplayDatagram, replay, shifted_in_time
 from recon4.model.rig import load_rig
@@ -119,7 +121,8 @@ def test_nonsense_on_the_socket_does_no_harm(session):
 
 
 def test_too_much_waiting_for_the_disk_is_dropped_and_counted(tmp_path, monkeypatch):
-    monkeypatch.setattr("recon4.live.recorder.capture_file.MAX_WAITING_BYTES", 10_000)
+    few = replace(capture_file.CAPTURE_FILE, max_waiting_bytes=10_000)
+    monkeypatch.setattr(capture_file, "CAPTURE_FILE", few)
     file = CaptureFile(tmp_path / "walk.pcap", on_written=lambda size: None)
 
     for _ in range(30):
