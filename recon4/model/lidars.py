@@ -43,6 +43,9 @@ class LidarFacts:
     """UDP ports of its other packets: IMU, positions, device data."""
     has_imu: bool = False
     """Whether its packets have an IMU."""
+    p_sensor_imu_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    """Where the IMU is in the frame of the points, whose axes it has [m]; 0 = within a centimeter,
+    or not known."""
 
     @property
     def has_rings(self) -> bool:
@@ -149,6 +152,7 @@ _AVIA = LidarFacts(
     accuracy_m=0.02,
     divergence_rad=0.0049,
     has_imu=True,
+    p_sensor_imu_m=(-0.04165, -0.02326, 0.0284),
 )
 _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 v1.0, Avia v1.2,
     # Mid-360 v1.2, HAP v1.0; the divergence is the larger one of 0.28° x 0.03° (Mid-360: as the
@@ -176,6 +180,7 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
     replace(
         _AVIA,
         name="Horizon",
+        p_sensor_imu_m=(-0.05512, -0.02226, 0.0297),
         elevation_deg=(-12.55, 12.55),
         azimuth_deg=81.7,
         min_range_m=0.5,
@@ -184,6 +189,7 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
     replace(
         _AVIA,
         name="Tele-15",
+        p_sensor_imu_m=(0.0, 0.0, 0.0),
         elevation_deg=(-8.1, 8.1),
         azimuth_deg=14.5,
         min_range_m=3.0,
@@ -194,6 +200,7 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
         _AVIA,
         name="Mid-360",
         beams=4,
+        p_sensor_imu_m=(0.011, 0.02329, -0.04412),
         elevation_deg=(-7.0, 52.0),
         azimuth_deg=360.0,
         min_range_m=0.1,
@@ -204,6 +211,7 @@ _LIVOX = (  # user manuals: Mid-40/100 v1.6, Mid-70 v1.2, Horizon v1.2, Tele-15 
     replace(
         _AVIA,
         name="HAP",
+        p_sensor_imu_m=(0.0, 0.0, 0.0),
         elevation_deg=(-12.5, 12.5),
         azimuth_deg=120.0,
         port=57000,

@@ -212,7 +212,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
     return Rig(
         name=table.text("name", where),
         sensors=sensors,
-        T_body_imu=built_in.T_body_sensor if built_in else _mounting(imu),
+        T_body_imu=imu_mount(built_in) if built_in else _mounting(imu),
         imu_time_offset_s=imu.number("time_offset_s"),
         p_body_antenna=gnss.vector("lever_arm_m", 3),
         gnss_time_offset_s=gnss.number("time_offset_s"),
@@ -224,6 +224,12 @@ def parse_rig(text: str, *, where: str) -> Rig:
         gnss_topic=gnss.text("topic"),
         calibration=_calibration(table.get("calibration"), f"{where}: calibration"),
     )
+
+
+def imu_mount(holder: Sensor) -> SE3:
+    """Mounting of the IMU in a LiDAR: the axes of the LiDAR, the place of the data sheet."""
+    place = np.array(lidar_model(holder.model).p_sensor_imu_m)
+    return holder.T_body_sensor @ SE3(np.eye(3), place)
 
 
 def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, RecordingError
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import TimeGap
@@ -284,7 +285,7 @@ def _with_rotation(
         return sensors
     return tuple(
         s
-        if np.isfinite(s.rotation_hz)
+        if np.isfinite(s.rotation_hz) or not lidar_model(s.model).has_rings
         else replace(s, rotation_hz=head.rotation_hz.get(k, float("nan")))
         for k, s in enumerate(sensors)
     )

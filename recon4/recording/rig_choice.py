@@ -11,7 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.lidars import lidar_model
-from recon4.model.rig import Rig, Sensor, load_rig
+from recon4.model.rig import Rig, Sensor, imu_mount, load_rig
 from recon4.recording.report import ImportReport
 
 THESIS_RIG = "4recon"
@@ -155,7 +155,7 @@ def single_rig(stream: Stream) -> Rig:
     return Rig(
         name=f"single {stream.model}",
         sensors=(sensor,),
-        T_body_imu=SE3.identity(),
+        T_body_imu=imu_mount(sensor),
         imu_time_offset_s=0.0,
         p_body_antenna=np.zeros(3),
         gnss_time_offset_s=0.0,

@@ -11,7 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError, WrongSettings
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, parse_beams
-from recon4.model.rig import SENSOR_MODELS, Rig, Sensor
+from recon4.model.rig import SENSOR_MODELS, Rig, Sensor, imu_mount
 from recon4.model.serial_device import parse_serial_device
 from recon4.untrusted.names import visible
 from recon4_app.rigs.model import (
@@ -78,8 +78,10 @@ def rig_of(content: RigContent) -> Rig:
 
 def _imu_mount(content: RigContent) -> SE3:
     """That of the LiDAR that the IMU is in, or its own."""
-    holder = next((one for one in content.sensors if one.name == content.imu.sensor), content.imu)
-    return _mount(holder.xyz_m, holder.rpy_deg)
+    holder = next((one for one in content.sensors if one.name == content.imu.sensor), None)
+    if holder is not None:
+        return imu_mount(_sensor(holder))
+    return _mount(content.imu.xyz_m, content.imu.rpy_deg)
 
 
 def problems_of(content: RigContent) -> dict[str, str]:

@@ -51,4 +51,4 @@ def test_a_rig_is_shipped_for_each_make(name, models):
     holder = next((s for s in rig.sensors if s.name == rig.imu_sensor), None)
     if holder is not None:
         assert lidar_model(holder.model).has_imu
-        np.testing.assert_array_equal(rig.T_body_imu.matrix(), holder.T_body_sensor.matrix())
+        np.testing.assert_array_equal(rig.T_body_imu.R, holder.T_body_sensor.R)
