@@ -44,6 +44,7 @@ const NEW_SENSOR = {
   head_rate_deg_s: 0,
   enabled: true,
   serial: "",
+  description: "",
   beams: null,
 };
 
