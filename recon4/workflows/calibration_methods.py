@@ -314,8 +314,8 @@ def _trajectories(task: _Task) -> MethodResult:
     names = task.sensors.split(",") if task.sensors else list(rows)[:2]
     if len(names) != 2 or not set(names) <= set(rows):
         raise ConfigError(
-            f"expected --sensors A,B: the two sensors of the trajectories, of {', '.join(rows)}; "
-            f"got {task.sensors!r:.80}"
+            f"expected the two sensors of the trajectories, of {', '.join(rows)} (command: "
+            f"--sensors A,B), got {task.sensors!r:.80}"
         )
     first, second = (rig.sensors[rows[name]] for name in names)
     found = align_trajectories(*(read_tum(file) for file in files))

@@ -103,6 +103,7 @@ def test_a_person_works_below_the_path(site, page, tmp_path):
     page.wait_for_url(f"{site.url}/docs/")
     page.evaluate("localStorage.setItem('maps/old/x', '1'); localStorage.setItem('other', '2')")
     page.go_back()
+    page.wait_for_load_state("networkidle")  # signed out, its requests would be refused
     page.get_by_role("button", name="Sign out").click()
     page.wait_for_url(f"{site.url}/login")
     assert page.evaluate("Object.keys(localStorage)") == ["other"]

@@ -95,7 +95,7 @@ def looks_at(viewer, finding):
     start_s, end_s = finding.span_s
     part = WALK.T_a_b.t[round(10 * start_s) : round(10 * end_s) + 1]
     middle = (part.min(axis=0) + part.max(axis=0)) / 2.0
-    viewer.wait_for_function(LOOKS_AT, arg=middle.tolist())
+    viewer.wait_for_function(LOOKS_AT, arg=middle.tolist(), timeout=120_000)
 
 
 def kept_stretch(viewer):
