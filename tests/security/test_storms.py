@@ -27,9 +27,11 @@ from recon4.live.session import load_session
 from recon4.model.rig import load_rig
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.sandbox import ONE_THREAD
+from recon4.sandbox.private_cache import private_cache
 from recon4.store.project import read_artifacts
 from recon4.system.stopping import SIGNALS
 from recon4.system.tuning import STOPPING
+from recon4_app.viewer.scratch import scratch_of
 from tests.loopback import an_address
 from tests.project_builder import build_project
 from tests.service.running import ROOT, recording_with_gate, server_process, wait_for
@@ -208,8 +210,11 @@ def test_a_stormed_recorder_completes_its_file_and_a_stormed_mapper_says_so(tmp_
     assert session.outcome.exists()
 
 
-def test_a_stormed_viewer_ends_at_sigterm_only_and_removes_its_files(tmp_path):
+def test_a_stormed_viewer_ends_at_sigterm_only_and_removes_its_files(tmp_path, monkeypatch):
     build_project(tmp_path / "office", points=1000)
+    caches = private_cache(scratch_of(tmp_path / ".recon4", "office"))  # as its pool gives it
+    for name, folder in caches.items():
+        monkeypatch.setenv(name, folder)
     jobs, sockets = tmp_path / ".recon4" / "jobs", tmp_path / "s"
     jobs.mkdir(parents=True)
     sockets.mkdir()
