@@ -124,7 +124,9 @@ class ClientSession:
         self._screen.show_nodes(
             [*describe(content, view), *marked, *self._pointer.nodes(), *points]
         )
-        self._panel.show(view, span_of(content, view))
+        with self._lock:
+            if view is self._view:  # else the next pass shows what a person set meanwhile
+                self._panel.show(view, span_of(content, view))
         self._pointer.report(view)
 
     def _change(self, update: Callable[[ViewState], ViewState]) -> None:

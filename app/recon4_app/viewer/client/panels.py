@@ -56,6 +56,8 @@ class Panel:
         self._widgets: dict[str, Any] = {}
         self._folders: dict[str, tuple[object, viser.GuiFolderHandle]] = {}
         self._shown: dict[str, object] = {}
+        self._given: dict[str, object] = {}
+        """Values of widgets that the view has, by widget."""
         for label, key, name in HOTKEYS:
             gui.add_command(label, hotkey=key).on_trigger(self._commanding(name))
         self._measure_folder()
@@ -76,7 +78,11 @@ class Panel:
             self._set(f"layer {layer.key}", view.shows(layer), counted(layer))
 
     def show(self, view: ViewState, span: Range) -> None:
-        """Set the widgets to a view that was changed by a key or a click."""
+        """Set the widgets to a view that was changed by a key or a click.
+
+        A widget whose value the view has already is left alone: what a person has just set there
+        may not have reached the view yet.
+        """
         values = {
             "color": view.color_by, "palette": view.palette, "size": view.point_size_m,
             "adapt": view.adapt, "low": span.low, "high": span.high, "points": view.points,
@@ -84,7 +90,9 @@ class Panel:
             "edges": view.edge_color,
         }  # fmt: skip
         for name, value in values.items():
-            self._set(name, value)
+            if self._given.get(name) != value:  # else the browser may have sent a newer one
+                self._given[name] = value
+                self._set(name, value)
 
     def explain(self, legend: Legend) -> None:
         """Show the legend."""
@@ -126,11 +134,16 @@ class Panel:
     def _bind(self, name: str, widget: Any, update: Callable[[ViewState, Any], ViewState]) -> None:
         """Bind a widget to the view; changes made by the program itself are ignored."""
         self._widgets[name] = widget
+        self._given.pop(name, None)
+
+        def given(view: ViewState) -> ViewState:
+            self._given[name] = widget.value
+            return update(view, widget.value)
 
         @widget.on_update
         def record(event: Any) -> None:
             if event.client_id is not None:
-                self._callbacks.change(lambda view: update(view, widget.value))
+                self._callbacks.change(given)
 
     def _button(self, label: str, command: str, *, name: str = "") -> None:
         button = self._gui.add_button(label)
