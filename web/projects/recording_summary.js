@@ -38,14 +38,14 @@ export class RecordingLook extends HTMLElement {
       <button type="button" @click=${() => this.#makeRig(found)}>
         Make a rig of these sensors
       </button>
-      <span class="error"></span>
+      <span class="made"></span><span class="error"></span>
     </p>`;
   }
 
   /** Stores the rig under the name of the recording, and offers its page to fill in the mounts. */
   async #makeRig(/** @type {RecordingSummary} */ { first_rig: toml, project }) {
     const id = project.replace(/[^A-Za-z0-9._-]+/g, "-").replace(/^[^A-Za-z0-9]+/, "") || "rig";
-    const place = within(this, ".rig-offer");
+    const [button, place] = [within(this, ".rig-offer button"), within(this, ".rig-offer .made")];
     try {
       const saved = await createRig({ id: id.slice(0, 64), toml, note: "made of a recording" });
       render(
@@ -53,6 +53,7 @@ export class RecordingLook extends HTMLElement {
           <strong>fill in the mounts</strong> on its page, then choose it below.`,
         place,
       );
+      button.hidden = true;
       this.dispatchEvent(new CustomEvent("rig"));
     } catch (error) {
       showError(within(this, ".rig-offer .error"), error);
