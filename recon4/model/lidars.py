@@ -232,6 +232,7 @@ _OS1 = LidarFacts(
     port=7502,
     sample_ports=(7503,),
     has_imu=True,
+    p_sensor_imu_m=(0.006253, -0.011775, 0.007645),
 )
 _OUSTER_KINDS = (  # data sheets of revision 7, firmware 3.0: precision in the middle of its range
     replace(

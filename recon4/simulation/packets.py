@@ -20,7 +20,7 @@ from recon4.simulation.families.families import family_of
 from recon4.simulation.families.velodyne import VELODYNES
 from recon4.simulation.gnss import geodetic
 from recon4.simulation.lidar import Firings
-from recon4.simulation.setup import SimulationSetup
+from recon4.simulation.setup import SimulationSetup, built_in_imu
 
 POSITION_PORT = 8308
 _LATENCY_NS = 100_000
@@ -66,13 +66,12 @@ def pack_imu(
     samples: ImuSamples, row: int, setup: SimulationSetup, *, degradation: Degradation
 ) -> Packets:
     """Packets of the IMU in a LiDAR, which arrive a tenth of a millisecond after their sample."""
-    lidar, sensor = setup.lidars[row], setup.rig.sensors[row]
-    family = family_of(sensor.model)
+    sensor = setup.rig.sensors[row]
     facts = lidar_model(sensor.model)
     port = facts.sample_ports[0] if facts.sample_ports else sensor.port
     stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
     stamped = replace(samples, t_ns=setup.epoch_ns + stamps)
-    payloads = family.imu_packets(lidar, stamped)
+    payloads = built_in_imu(sensor).packets(stamped)
     return Packets(row, samples.t_ns + _LATENCY_NS, payloads, port)
 
 

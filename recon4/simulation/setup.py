@@ -12,7 +12,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.raycast import Scene
 from recon4.geometry.se3 import SE3
 from recon4.model.lidars import lidar_model
-from recon4.model.rig import Rig, Sensor, load_rig
+from recon4.model.rig import Rig, Sensor, imu_mount, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.simulation.crowd import ALONE, Crowd
 from recon4.simulation.degradation import BEAM_ANGLE
@@ -104,8 +104,8 @@ def prepare(
     used, errors = _addressed(rig or load_rig("4recon")), models or Models()
     row = imu_row(used)
     if row is not None:
-        used = replace(used, T_body_imu=_imu_mount(used.sensors[row]))
-        rate_hz = _built_in(used.sensors[row]).rate_hz
+        used = replace(used, T_body_imu=imu_mount(used.sensors[row]))
+        rate_hz = built_in_imu(used.sensors[row]).rate_hz
         errors = replace(errors, imu=replace(errors.imu, rate_hz=rate_hz))
     place = build_world(world) if isinstance(world, str) else world
     lidars = _lidars(used, errors, seed)
@@ -148,7 +148,7 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
     rig = replace(mounts, name=" and ".join(models), sensors=tuple(sensors))
     for sensor in sensors:
         if family_of(sensor.model).imu(sensor.model) is not None:
-            return replace(rig, T_body_imu=_imu_mount(sensor), imu_time_offset_s=0.0)
+            return replace(rig, T_body_imu=imu_mount(sensor), imu_time_offset_s=0.0)
     return rig
 
 
@@ -164,21 +164,17 @@ def imu_row(rig: Rig) -> int | None:
                 raise ConfigError(f"the IMU of a {sensor.model} is not simulated ({sensor.name})")
             return row
         if family_of(sensor.model).imu(sensor.model) is not None:
-            off = _imu_mount(sensor).inverse() @ rig.T_body_imu
+            off = imu_mount(sensor).inverse() @ rig.T_body_imu
             if np.allclose(off.matrix(), np.eye(4), atol=1e-3):
                 return row
     return None
 
 
-def _built_in(sensor: Sensor) -> BuiltInImu:
+def built_in_imu(sensor: Sensor) -> BuiltInImu:
+    """The IMU in a LiDAR that has one."""
     found = family_of(sensor.model).imu(sensor.model)
     assert found is not None
     return found
-
-
-def _imu_mount(sensor: Sensor) -> SE3:
-    """``T_body_imu`` of the IMU in a LiDAR."""
-    return sensor.T_body_sensor @ SE3(np.eye(3), _built_in(sensor).p_sensor_imu)
 
 
 def _lidars(rig: Rig, models: Models, seed: int) -> tuple[Lidar, ...]:

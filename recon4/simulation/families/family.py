@@ -5,14 +5,13 @@ The inverse of `recon4.recording.packets.family`: the pattern of a model, and pa
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.geometry.se3 import Array
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
@@ -22,10 +21,13 @@ from recon4.simulation.patterns import FiringPattern
 
 @dataclass(frozen=True, slots=True)
 class BuiltInImu:
-    """The IMU in a LiDAR, in the axes in which the family's reader gives its samples."""
+    """The IMU in a LiDAR, in the axes in which the family's reader gives its samples.
 
-    p_sensor_imu: Array
-    """Its place [m], (3,)."""
+    Where it is says `recon4.model.rig.imu_mount`.
+    """
+
+    packets: Callable[[ImuSamples], Payloads]
+    """One packet for each sample, whose times are on the clock of the sensor."""
     rate_hz: int = 200
 
 
@@ -53,10 +55,6 @@ class SimulatedFamily(Protocol):
             firings: Its shots.
             t_ns: Start of each packet on the clock of the sensor [ns], (P,).
         """
-        ...
-
-    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
-        """Packets of its IMU, one for each sample, whose times are on the clock of the sensor."""
         ...
 
     def companions(self, lidar: Lidar) -> Mapping[str, bytes]:

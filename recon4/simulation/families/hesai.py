@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 
 from recon4.geometry.se3 import Array
-from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.hesai.encode import HesaiBlocks, HesaiMode, encode_packets
@@ -71,10 +70,6 @@ class SimulatedHesais:
         )
         mode = HesaiMode(rpm=60.0 * lidar.turn_rate_hz)
         return encode_packets(stamp_us, blocks, model=model, mode=mode)
-
-    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
-        """There are none."""
-        raise NotImplementedError(lidar.pattern.model)
 
     def companions(self, lidar: Lidar) -> Mapping[str, bytes]:
         """The angles of the lasers."""

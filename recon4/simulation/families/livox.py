@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 
@@ -61,6 +61,10 @@ def _pattern(name: str) -> FiringPattern:
     )
 
 
+def _imu_packets(samples: ImuSamples, sdk: int) -> Payloads:
+    return encode_imu(samples.t_ns, samples.gyro_rad_s, samples.accel_m_s2, sdk=sdk)
+
+
 class SimulatedLivox:
     """Single return, clock by PTP."""
 
@@ -72,10 +76,9 @@ class SimulatedLivox:
 
     def imu(self, model: str) -> BuiltInImu | None:
         """Of the models whose manual tells where it is."""
-        made = MODELS[model]
-        if made.imu_m is None:
+        if not any(lidar_model(model).p_sensor_imu_m):
             return None
-        return BuiltInImu(np.array(made.imu_m))
+        return BuiltInImu(partial(_imu_packets, sdk=MODELS[model].sdk))
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Points; the frame is that of the sensor."""
@@ -85,11 +88,6 @@ class SimulatedLivox:
         shape = (len(t_ns), layout.shots, 1)
         shots = ShotReturns(xyz_m.reshape(*shape, 3), firings.intensity.reshape(shape))
         return encode_points(t_ns, shots, layout=layout, model=model)
-
-    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
-        """One packet for each sample."""
-        sdk = MODELS[lidar.pattern.model].sdk
-        return encode_imu(samples.t_ns, samples.gyro_rad_s, samples.accel_m_s2, sdk=sdk)
 
     def companions(self, lidar: Lidar) -> Mapping[str, bytes]:
         """None: the packets have coordinates."""

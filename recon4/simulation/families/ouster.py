@@ -45,7 +45,6 @@ class _Sensor:
     """Azimuths of beams that follow each other."""
     height_m: float = 0.03618
     """Of the optical center above the base."""
-    p_sensor_imu_m: tuple[float, float, float] = (0.006253, -0.011775, 0.007645)
     imu_hz: int = 100
 
 
@@ -117,6 +116,10 @@ def _pattern(model: str) -> FiringPattern:
     )
 
 
+def _imu_packets(samples: ImuSamples) -> Payloads:
+    return encode_imu(samples.t_ns, samples.accel_m_s2, samples.gyro_rad_s)
+
+
 class SimulatedOusters:
     """Single return mode, clock by PTP."""
 
@@ -130,7 +133,7 @@ class SimulatedOusters:
 
     def imu(self, model: str) -> BuiltInImu | None:
         """All have one."""
-        return BuiltInImu(np.array(_SENSOR.p_sensor_imu_m), _SENSOR.imu_hz)
+        return BuiltInImu(_imu_packets, _SENSOR.imu_hz)
 
     def data_packets(self, lidar: Lidar, firings: Firings, t_ns: Times) -> Payloads:
         """Packets of 16 columns, in one datagram whatever their size."""
@@ -143,10 +146,6 @@ class SimulatedOusters:
             intensity=firings.intensity[None],
         )
         return encode_packets(_of_sensor(lidar), returns)
-
-    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
-        """One packet for each sample."""
-        return encode_imu(samples.t_ns, samples.accel_m_s2, samples.gyro_rad_s)
 
     def companions(self, lidar: Lidar) -> Mapping[str, bytes]:
         """The metadata."""

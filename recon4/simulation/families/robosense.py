@@ -9,7 +9,6 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.lidars import lidar_model
-from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.encode import SpinningBlocks, encode_spinning
@@ -77,10 +76,6 @@ class SimulatedRoboSense:
             firings.intensity.reshape(shape),
         )
         return encode_spinning(t_ns, blocks, model)
-
-    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
-        """There are none."""
-        raise NotImplementedError(lidar.pattern.model)
 
     def companions(self, lidar: Lidar) -> Mapping[str, bytes]:
         """The angles of the lasers."""

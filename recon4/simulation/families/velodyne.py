@@ -7,7 +7,6 @@ from functools import cache
 
 import numpy as np
 
-from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.velodyne.encode import PacketBlocks, encode_packets
@@ -93,10 +92,6 @@ class SimulatedVelodynes:
             firings.intensity.reshape(shape),
         )
         return encode_packets(t_ns // 1000, blocks, model=model)
-
-    def imu_packets(self, lidar: Lidar, samples: ImuSamples) -> Payloads:
-        """There are none."""
-        raise NotImplementedError(lidar.pattern.model)
 
     def companions(self, lidar: Lidar) -> Mapping[str, bytes]:
         """None: all sensors of a model are taken as alike."""

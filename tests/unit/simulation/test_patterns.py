@@ -162,7 +162,7 @@ def test_the_imu_of_a_lidar_is_read_as_it_measured(model):
     rng, at_ns = np.random.default_rng(1), stamps_ns[0] + np.arange(10) * 10_000_000
     samples = ImuSamples(at_ns, rng.normal(size=(10, 3)), rng.normal(9.0, 1.0, size=(10, 3)))
 
-    sent = family_of(model).imu_packets(lidar, samples)
+    sent = family_of(model).imu(model).packets(samples)
     found = reader.samples(datagrams_of(sent, t_ns=at_ns), clock).imu
 
     np.testing.assert_allclose(found.t_ns, at_ns, atol=2000)

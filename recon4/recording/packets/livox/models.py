@@ -153,9 +153,6 @@ class LivoxModel:
     names_noise: bool = True
     """Whether the manual calls returns with 01 in bits 0-1 or 2-3 of their tag noise of high
     confidence. The tags of a Mid-360 only grade how sure a point is."""
-    imu_m: tuple[float, float, float] | None = None
-    """Position of the IMU in the frame of the points [m]; its axes are those of the points. None =
-    no IMU, or not stated."""
 
     @property
     def shot_s(self) -> float:
@@ -163,15 +160,13 @@ class LivoxModel:
         return 1.0 / self.shots_hz
 
 
-_AVIA = (-0.04165, -0.02326, 0.0284)
-_HORIZON = (-0.05512, -0.02226, 0.0297)
 MODELS = {
     model.name: model
     for model in (
         LivoxModel(name="Mid-40", sdk=1, lines=1, shots_hz=100_000),
         LivoxModel(name="Mid-70", sdk=1, lines=1, shots_hz=100_000),
-        LivoxModel(name="Avia", sdk=1, lines=6, shots_hz=240_000, imu_m=_AVIA),
-        LivoxModel(name="Horizon", sdk=1, lines=6, shots_hz=240_000, imu_m=_HORIZON),
+        LivoxModel(name="Avia", sdk=1, lines=6, shots_hz=240_000),
+        LivoxModel(name="Horizon", sdk=1, lines=6, shots_hz=240_000),
         LivoxModel(name="Tele-15", sdk=1, lines=6, shots_hz=240_000),
         LivoxModel(
             name="Mid-360",
@@ -179,7 +174,6 @@ MODELS = {
             lines=4,
             shots_hz=200_000,
             names_noise=False,
-            imu_m=(0.011, 0.02329, -0.04412),
         ),
         LivoxModel(name="HAP", sdk=2, lines=6, shots_hz=452_000),
     )
