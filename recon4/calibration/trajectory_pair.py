@@ -27,7 +27,7 @@ from scipy.signal import correlate
 
 from recon4.calibration.tuning_methods import TRAJECTORY_PAIR, TrajectoryPairTuning
 from recon4.errors import CalibrationError
-from recon4.geometry.se3 import SE3, Array, so3_exp, so3_log
+from recon4.geometry.se3 import SE3, Array, align_points, so3_exp, so3_log
 from recon4.model.trajectory import Times, Trajectory
 
 Flags = NDArray[np.bool_]
@@ -149,18 +149,17 @@ class _Problem:
         return one.at(t_ns).inverse() @ one.at(t_ns + self._motion_ns)
 
     def rotation(self) -> Array:
-        """Rotation of the mount by Kabsch, from the rotation vectors of the motions."""
+        """Rotation of the mount, which aligns the rotation vectors of the motions."""
         A = self._motions(self._a, self.t_b_ns + round(1e9 * self._offset_s))
         turn_a, turn_b = so3_log(A.R), so3_log(self._B.R)
-        U, S, Vt = np.linalg.svd(turn_a.T @ turn_b)
-        turned = np.rad2deg(np.sqrt(S[1] / len(turn_a)))
+        second = np.linalg.svd(turn_b, compute_uv=False)[1]
+        turned = np.rad2deg(second / np.sqrt(len(turn_b)))
         if turned < self._settings.least_turn_deg:
             raise CalibrationError(
                 f"the walk turns about one axis only (about another by {turned:.2f}° in "
                 f"{self._settings.motion_s:g} s): the rotation of the mount is not observable"
             )
-        sign = np.sign(np.linalg.det(U @ Vt))
-        return np.asarray(U @ np.diag([1.0, 1.0, sign]) @ Vt)
+        return align_points(turn_a, turn_b).R
 
     def _errors(self, x: Array) -> tuple[Array, Array]:
         """Rotation [rad] and translation [m] between ``A X`` and ``X B``, (N, 3) each.

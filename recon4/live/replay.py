@@ -172,11 +172,11 @@ def _later(line: bytes, shift_ns: int) -> bytes:
 
 def _datagrams(file: Path) -> Iterator[ReplayDatagram]:
     for batch in read_pcap(file, ImportReport()):
-        columns = (batch.t_ns, batch.source, batch.port, batch.start, batch.length)
+        columns = (batch.t_ns, batch.source, batch.port)
         rows = zip(*(column.tolist() for column in columns), strict=True)
-        for t_ns, source, port, start, length in rows:
-            payload = batch.buffer[start : start + length].tobytes()
-            is_json = length not in _STAMP_AT and payload.startswith(b"{")
+        for row, (t_ns, source, port) in enumerate(rows):
+            payload = batch.payload(row)
+            is_json = len(payload) not in _STAMP_AT and payload.startswith(b"{")
             yield ReplayDatagram(t_ns, address_text(source), port, payload, is_json)
 
 

@@ -77,7 +77,7 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
             if np.any(batch.length[rows] == DATA_SIZE):
                 return ScanStreams(scans, heads, has_lidar=True)
             for row in rows.tolist():
-                payload = _payload(batch, row)
+                payload = batch.payload(row)
                 if not is_scan_datagram(payload):
                     continue
                 key = address_text(int(batch.source[row])), int(batch.port[row])
@@ -179,7 +179,7 @@ class ScanCapture:
     def _decode_samples(self, slot: Datagrams) -> Iterator[ImuSamples | GnssSamples]:
         ports = [port for port in (self.rig.imu_port, self.rig.gnss_port) if port]
         rows = np.flatnonzero(np.isin(slot.port, ports)).tolist()
-        texts = [_payload(slot, row) for row in rows]
+        texts = [slot.payload(row) for row in rows]
         for samples in self._samples.push(slot.t_ns[rows].tolist(), texts):
             if samples is not None:
                 yield samples
@@ -197,7 +197,7 @@ class _StampedMessages:
     def of(self, slot: Datagrams) -> Iterator[tuple[int, ScanMessage | HeadMessage]]:
         """Messages of the sensor in a slot with their times [ns]; damaged ones are counted."""
         for row in np.flatnonzero(self._mine(slot)).tolist():
-            message = decode_scan_datagram(_payload(slot, row))
+            message = decode_scan_datagram(slot.payload(row))
             if message is None:
                 self._report.count("scans_damaged")
                 continue
@@ -319,11 +319,6 @@ def read_scan_captures(files: Sequence[Path], report: ImportReport) -> LaserScan
     if scans.odometry is None:
         report.derive("no odometry: motion is predicted from the scans before")
     return scans
-
-
-def _payload(datagrams: Datagrams, row: int) -> bytes:
-    start = int(datagrams.start[row])
-    return datagrams.buffer[start : start + int(datagrams.length[row])].tobytes()
 
 
 def _sensor(rig: Rig, kind: str) -> tuple[int, Sensor] | None:
