@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from typing import Any
 
@@ -14,48 +15,94 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
-from recon4.recording.packets.companions import companions_of, described_in
+from recon4.recording.packets.companions import described_in
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.families import FAMILIES
-from recon4.recording.packets.family import Companion, PacketSensor, same_start
+from recon4.recording.packets.family import Companion, PacketSensor, Recognized, same_start
 from recon4.recording.packets.lidar_imu import LidarImu
-from recon4.recording.packets.messages import PACKET_MESSAGES
-from recon4.recording.packets.streams import recognized
+from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
+from recon4.recording.packets.streams import HEAD_BYTES, first_datagrams, recognized
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
 _STRING = "std_msgs/msg/String"
-_PROBED_MESSAGES = 50
 _PROBED_PACKETS = 4500
 """Packets at the beginning of a topic from which its sensor is known: more than a second, as some
 send their angles once a second."""
 _MOST_TEXT = 1 << 20
 
 
-class PacketTopics:
-    """The topics of a bag with packets, and what describes their LiDARs."""
+class BagPackets:
+    """The packets of a bag: heads of topics, each read once, and what describes the LiDARs.
 
-    def __init__(
-        self,
-        bag: Bag,
-        rig: Rig,
-        settings: IngestSettings,
-        *,
-        imu_topic: str,
-        report: ImportReport,
-    ) -> None:
-        """Read what describes the LiDARs: files beside the bag, texts in it.
+    What was read while the bag was open stays known.
+    """
+
+    def __init__(self, bag: Bag, companions: Sequence[Companion]) -> None:
+        """Read the texts of drivers, as the metadata of an Ouster.
 
         Args:
             bag: An open bag.
-            rig: With the topics of its LiDARs.
-            settings: Limits of the range.
-            imu_topic: Topic of an IMU whose messages are read; empty = that of a LiDAR.
-            report: Receives counts, and what was derived.
+            companions: Files that describe its LiDARs.
         """
-        self._bag, self._rig, self._settings, self._report = bag, rig, settings, report
-        self._imu = LidarImu(rig, other=imu_topic, report=report)
-        self._companions = [*described_in(rig), *bag_companions(bag)]
+        self.bag = bag
+        self._texts = _texts(bag)
+        self.companions = [*self._texts, *companions]
+        self._heads: dict[str, Datagrams] = {}
+        self._found: dict[str, Recognized | None] = {}
+
+    def head(self, topic: str) -> Datagrams:
+        """The first packets of a topic."""
+        if topic not in self._heads:
+            self._heads[topic] = head_of(self.bag, topic)
+        return self._heads[topic]
+
+    def found(self, topic: str) -> Recognized | None:
+        """What the packets of a topic are; None = not those of a known LiDAR."""
+        if topic not in self._found:
+            self._found[topic] = recognized(self.head(topic), self.companions)
+        return self._found[topic]
+
+    def model(self, topic: str) -> str:
+        """The model of a topic's LiDAR; ``generic`` = not known."""
+        found = self.found(topic)
+        return found.model if found is not None and found.model else "generic"
+
+    @property
+    def data_topics(self) -> list[BagTopic]:
+        """Topics with data packets."""
+        topics = [t for t in self.bag.topics if t.type in DATA_MESSAGES and t.messages]
+        return [topic for topic in topics if not self._has_samples(topic)]
+
+    @property
+    def sample_topics(self) -> list[str]:
+        """Topics with other packets of LiDARs; some drivers send all in one type of message."""
+        topics = [t for t in self.bag.topics if t.type in PACKET_MESSAGES and t.messages]
+        return [topic.name for topic in topics if self._has_samples(topic)]
+
+    @property
+    def describing_topics(self) -> set[str]:
+        """Topics whose text describes a LiDAR."""
+        texts = self._texts
+        return {one.name for one in texts if any(family.describes(one) for family in FAMILIES)}
+
+    def _has_samples(self, topic: BagTopic) -> bool:
+        found = self.found(topic.name)
+        is_samples = found is not None and found.kind == "samples"
+        return PACKET_MESSAGES[topic.type].samples or is_samples
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class PacketTopics:
+    """Opens the readers of the packets of a bag."""
+
+    packets: BagPackets
+    rig: Rig
+    """With the topics of its LiDARs."""
+    settings: IngestSettings
+    imu: LidarImu
+    report: ImportReport
+    """Receives counts, and what was derived."""
 
     def readers(self, row: int, sensor: Sensor) -> dict[str, PacketReader]:
         """The reader of a sensor's packets, by topic: those with points, and the others.
@@ -63,24 +110,25 @@ class PacketTopics:
         Raises:
             ConfigError: If its packets cannot be decoded.
         """
+        beside = self._samples_of(sensor)
         of = PacketSensor(
             row=row,
             sensor=sensor,
-            head=head_of(self._bag, sensor.topic),
-            beside=join_datagrams([head_of(self._bag, name) for name in self._samples_of(sensor)]),
-            companions=self._companions,
-            settings=self._settings,
-            report=self._report,
+            head=self.packets.head(sensor.topic),
+            beside=join_datagrams([self.packets.head(name) for name in beside]),
+            companions=[*described_in(self.rig), *self.packets.companions],
+            settings=self.settings,
+            report=self.report,
         )
-        decoder = open_decoder(of, alone=len(self._rig.sensors) == 1)
-        topics = [sensor.topic, *self._samples_of(sensor)]
-        return {topic: PacketReader(decoder, sensor.name, self._imu) for topic in topics}
+        decoder = open_decoder(of, alone=len(self.rig.sensors) == 1)
+        reader = PacketReader(decoder, sensor.name, self.imu)
+        return dict.fromkeys((sensor.topic, *beside), reader)
 
     def _samples_of(self, sensor: Sensor) -> list[str]:
         """Topics with other packets, each of the sensor whose topic is most alike."""
-        lidars = [other.topic for other in self._rig.sensors if other.topic]
-        beside = [t.name for t in self._bag.topics if has_samples(self._bag, t)]
-        return [name for name in beside if _most_alike(name, lidars) == sensor.topic]
+        lidars = [other.topic for other in self.rig.sensors if other.topic]
+        names = self.packets.sample_topics
+        return [name for name in names if _most_alike(name, lidars) == sensor.topic]
 
 
 class PacketReader:
@@ -133,38 +181,16 @@ def packets_in(message: BagMessage, content: Any) -> Datagrams:
 def head_of(bag: Bag, topic: str) -> Datagrams:
     """The first packets of a topic."""
     parts: list[Datagrams] = []
-    for message in islice(bag.messages([topic]), _PROBED_PACKETS):
+    count = size = 0
+    for message in bag.messages([topic]):
         content = bag.decode(message)
         if content is not None:
             parts.append(packets_in(message, content))
-        if sum(map(len, parts)) >= _PROBED_PACKETS:
+            count += len(parts[-1])
+            size += len(parts[-1].buffer)
+        if count >= _PROBED_PACKETS or size >= HEAD_BYTES:
             break
-    return join_datagrams(parts)
-
-
-def model_of_packets(bag: Bag, topic: BagTopic) -> str:
-    """The model of a topic's LiDAR; ``generic`` = not known."""
-    found = recognized(head_of(bag, topic.name), bag_companions(bag))
-    return found.model if found is not None and found.model else "generic"
-
-
-def has_samples(bag: Bag, topic: BagTopic) -> bool:
-    """Whether a topic has packets of a LiDAR without points: some drivers send all in one type."""
-    row = PACKET_MESSAGES.get(topic.type)
-    if row is None or not topic.messages:
-        return False
-    found = None if row.samples else recognized(head_of(bag, topic.name))
-    return row.samples or (found is not None and found.kind == "samples")
-
-
-def describing_topics(bag: Bag) -> set[str]:
-    """Topics whose text describes a LiDAR."""
-    return {one.name for one in _texts(bag) if any(family.describes(one) for family in FAMILIES)}
-
-
-def bag_companions(bag: Bag) -> list[Companion]:
-    """Files beside a bag, and the texts of its drivers, as the metadata of an Ouster."""
-    return [*_texts(bag), *companions_of(bag.paths)]
+    return first_datagrams(join_datagrams(parts))
 
 
 def _texts(bag: Bag) -> list[Companion]:

@@ -27,7 +27,7 @@ from recon4.recording.bag_messages import (
     stamp_clock,
     stamp_ns,
 )
-from recon4.recording.bag_packets import PacketTopics, has_samples, model_of_packets
+from recon4.recording.bag_packets import BagPackets, PacketTopics
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.driver_topics import no_lidar_text, unread_text
@@ -40,6 +40,8 @@ from recon4.recording.formats.bags import (
 from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, read_mounts
+from recon4.recording.packets.family import Companion
+from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
@@ -90,8 +92,16 @@ class BagRecording:
         *,
         settings: IngestSettings,
         report: ImportReport,
+        companions: Sequence[Companion] = (),
     ) -> None:
         """Read the head of the bag and choose the rig.
+
+        Args:
+            paths: The bags.
+            rig: None = chosen from what is in the bag.
+            settings: Topics, units and limits.
+            report: Receives what was found and detected.
+            companions: Files that describe the LiDARs.
 
         Raises:
             RecordingError: If the bag cannot be read or has no LiDAR data.
@@ -101,7 +111,8 @@ class BagRecording:
         with Bag(paths, report) as bag:
             self.seconds = bag.seconds
             self.topics = bag.topics
-            self.streams = lidar_streams(bag, rig, settings, report=report)
+            self._packets = BagPackets(bag, companions)
+            self.streams = lidar_streams(self._packets, rig, settings, report=report)
             lidars = [stream.topic for stream in self.streams]
             beside = [topic for topic in bag.topics if topic.name in lidars]
             self.imu = choose_imu(bag, named_imu(rig, settings), report, lidars=beside)
@@ -149,7 +160,11 @@ class BagRecording:
         kinds = {topic.name: topic for topic in bag.topics}
         found: dict[str, TopicReader] = {}
         packets = PacketTopics(
-            bag, self.rig, self._settings, imu_topic=self.imu_topic, report=self._report
+            self._packets,
+            self.rig,
+            self._settings,
+            LidarImu(self.rig, other=self.imu_topic, report=self._report),
+            self._report,
         )
         for row, sensor in enumerate(self.rig.sensors):
             topic = kinds.get(sensor.topic)
@@ -174,12 +189,12 @@ class BagRecording:
 
 
 def lidar_streams(
-    bag: Bag, rig: Rig | None, settings: IngestSettings, *, report: ImportReport
+    packets: BagPackets, rig: Rig | None, settings: IngestSettings, *, report: ImportReport
 ) -> list[Stream]:
     """LiDARs of an open bag: raw packets if there are any, else clouds as measured.
 
     Args:
-        bag: The bag.
+        packets: Packets of an open bag.
         rig: Topics that it names are read, whatever they hold.
         settings: Names the only LiDAR to read, if it is chosen.
         report: Receives which clouds are not read, and why.
@@ -187,8 +202,7 @@ def lidar_streams(
     Raises:
         ConfigError: If the settings name a topic that is not there.
     """
-    packets = [t for t in bag.topics if t.type in DATA_MESSAGES and t.messages]
-    scans = [t for t in packets if not has_samples(bag, t)]
+    bag, scans = packets.bag, packets.data_topics
     clouds = [t for t in bag.topics if is_cloud(t)]
     if settings.lidar_topic:
         there = [t.name for t in (*scans, *clouds)]
@@ -197,11 +211,11 @@ def lidar_streams(
         clouds = [t for t in clouds if t.name == settings.lidar_topic]
     by_rig = {sensor.topic for sensor in rig.sensors} if rig is not None else set()
     if scans:
-        # The clouds of a driver repeat its packets; another make's are a LiDAR of their own.
-        apart = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
-        if repeated := [t.name for t in clouds if t not in apart]:
-            report.derive(f"raw packets are read, not {', '.join(repeated)}")
-        return [Stream(t.name, _model(bag, t), topic=t.name) for t in (*scans, *apart)]
+        beside = _beside_packets(clouds, by_rig, report)
+        return [
+            *(Stream(t.name, packets.model(t.name), topic=t.name) for t in scans),
+            *(Stream(t.name, _model(bag, t), topic=t.name) for t in beside),
+        ]
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
     used = [one for one in found if not one.why_not]
     if unread := unread_text(bag.topics):
@@ -231,7 +245,10 @@ def _cloud_stream(bag: Bag, one: CloudTopic) -> Stream:
 def _beside_packets(
     clouds: Sequence[BagTopic], by_rig: set[str], report: ImportReport
 ) -> list[BagTopic]:
-    """Clouds that do not repeat packets: named by the rig, or in messages of another make."""
+    """Clouds that do not repeat packets: named by the rig, or in messages of another make.
+
+    Those that a driver publishes of its packets are the same points.
+    """
     read = [t for t in clouds if t.name in by_rig or t.type != CLOUD]
     if repeated := [t.name for t in clouds if t not in read]:
         report.derive(f"raw packets are read, not {', '.join(repeated)}")
@@ -240,8 +257,6 @@ def _beside_packets(
 
 def _model(bag: Bag, topic: BagTopic) -> str:
     """Detect the sensor of a topic from its first readable messages."""
-    if topic.type in DATA_MESSAGES:
-        return model_of_packets(bag, topic)
     for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
         content = bag.decode(message)
         if content is None:

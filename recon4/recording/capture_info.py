@@ -8,7 +8,7 @@ from pathlib import Path
 
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import capture_files
-from recon4.recording.packets.companions import companions_of
+from recon4.recording.packets.family import Companion
 from recon4.recording.packets.streams import PacketStream, require_one_capture, scan_pcap
 from recon4.recording.scan_capture import ScanStreams, scan_streams
 
@@ -21,7 +21,9 @@ _WHOLE_PACKETS = 100_000
 _UNREAD_LISTED = 10
 
 
-def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
+def describe_capture(
+    info: RecordingInfo, path: Path, companions: Sequence[Companion]
+) -> RecordingInfo:
     """Sensors, samples and unread streams of capture files.
 
     Raises:
@@ -30,10 +32,8 @@ def describe_capture(info: RecordingInfo, path: Path) -> RecordingInfo:
     files = capture_files(path)
     require_one_capture(files)
     most = _WHOLE_PACKETS if info.bytes <= WHOLE_BYTES else _HEAD_PACKETS
-    beside = companions_of([path])
-    streams = [
-        stream for file in files for stream in scan_pcap(file, max_packets=most, companions=beside)
-    ]
+    scans = [scan_pcap(file, max_packets=most, companions=companions) for file in files]
+    streams = [stream for scan in scans for stream in scan]
     names = {"samples": "other packets of a LiDAR", "IMU": "IMU samples", "GNSS": "GNSS samples"}
     samples = [s for s in streams if s.kind in names]
     scanners = scan_streams(files)

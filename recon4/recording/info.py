@@ -15,7 +15,7 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.bag_messages import cloud_table
-from recon4.recording.bag_packets import describing_topics
+from recon4.recording.bag_packets import BagPackets
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
 from recon4.recording.first_rig import first_rig_text
@@ -41,6 +41,7 @@ from recon4.recording.nearby_samples import samples_beside
 from recon4.recording.open import KINDS, open_recording
 from recon4.recording.openers.frames import frames_model
 from recon4.recording.openers.request import OpenRequest
+from recon4.recording.packets.companions import companion_paths, companions_of
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.point_fields import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
@@ -55,8 +56,15 @@ _LASER_GAP_S = 1.0
 """Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
 
 
-def describe(path: Path, *, settings: IngestSettings | None = None) -> RecordingInfo:
+def describe(
+    path: Path, *, settings: IngestSettings | None = None, near: Sequence[Path] = ()
+) -> RecordingInfo:
     """Read a small recording completely, and head and directory of a large one.
+
+    Args:
+        path: File or folder.
+        settings: Of the stage that reads it; None = the usual ones.
+        near: Files beside it, for a process that may not list its folder.
 
     Raises:
         RecordingError: If it cannot be read or is nothing that recon4 knows.
@@ -76,13 +84,14 @@ def describe(path: Path, *, settings: IngestSettings | None = None) -> Recording
     report = ImportReport()
     if kind is RecordingKind.LINE_TABLES:
         return describe_line_tables(info, path)
+    beside = companion_paths([path], near) if kind in (*CAPTURES, *BAGS) else []
     if kind in CAPTURES:
-        info = describe_capture(info, path)
+        info = describe_capture(info, path, companions_of([path, *beside]))
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
     elif kind in BAGS:
-        info = _describe_bag(info, path, settings, report=report)
-    return _with_head(info, path, settings, report=report)
+        info = _describe_bag(info, [path, *beside], settings, report=report)
+    return _with_head(info, [path, *beside], settings, report=report)
 
 
 def _size(path: Path) -> int:
@@ -94,10 +103,11 @@ def _size(path: Path) -> int:
 
 
 def _describe_bag(
-    info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
+    info: RecordingInfo, paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
 ) -> RecordingInfo:
-    with Bag(bag_paths(path), report) as bag:
-        streams = lidar_streams(bag, None, settings, report=report)
+    with Bag(bag_paths(paths[0]), report) as bag:
+        packets = BagPackets(bag, companions_of(paths))
+        streams = lidar_streams(packets, None, settings, report=report)
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
         whole = info.bytes <= WHOLE_BYTES
@@ -112,7 +122,7 @@ def _describe_bag(
             gaps += _bag_gaps(bag, [topic.name for topic, _, _ in lines.sensors])
         known = {s.label for s in sensors}
         other = [t for t in bag.topics if t.name not in known]
-        describing = describing_topics(bag)
+        describing = packets.describing_topics
         return replace(
             info,
             t_first_ns=bag.t_first_ns,
@@ -299,15 +309,15 @@ def _first_rig(found: Rig | None, to_complete: Rig | None, recording: str) -> st
 
 
 def _with_head(
-    info: RecordingInfo, path: Path, settings: IngestSettings, *, report: ImportReport
+    info: RecordingInfo, paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
 ) -> RecordingInfo:
     """Add the findings of opening the recording and reading its first second."""
-    head = RecordingHead()
+    path, head = paths[0], RecordingHead()
     missing = list(info.missing)
     rig: Rig | None = None
     to_complete: Rig | None = None
     try:
-        recording = open_recording(OpenRequest((path,), None, settings, report))
+        recording = open_recording(OpenRequest(tuple(paths), None, settings, report))
         rig = recording.rig
         whole = info.bytes <= WHOLE_BYTES
         head = read_head(recording, settings, whole=whole, report=report)

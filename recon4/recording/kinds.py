@@ -244,7 +244,7 @@ def located_sources(sources: Sources) -> Sources:
     """
     sources.require()
     recordings = [located(path) for path in sources.recordings]
-    beside = [file for path in recordings if _has_packets(path) for file in companion_paths(path)]
+    beside = companion_paths(filter(_has_packets, recordings), sources.near)
     return replace(sources, recordings=tuple(dict.fromkeys([*recordings, *beside])))
 
 

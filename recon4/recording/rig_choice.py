@@ -28,6 +28,8 @@ class Stream:
     address: str = ""
     port: int = 0
     topic: str = ""
+    serial: str = ""
+    """Serial number, where several LiDARs send from one address to one port."""
     frame: str = ""
     """Frame of its points in a bag; empty = not known."""
     points: int = 0
@@ -116,13 +118,19 @@ def rig_to_complete(streams: Sequence[Stream]) -> Rig:
     for number, stream in enumerate(streams):
         name = stream.topic.strip("/").replace("/", "_") or f"lidar{number}"
         one = single_rig(stream).sensors[0]
-        sensors.append(replace(one, name=name, address=stream.address))
-    with_imu = [s.name for s in sensors if lidar_model(s.model).has_imu]
+        sensors.append(replace(one, name=name, address=stream.address, serial=stream.serial))
+    rig = replace(single_rig(streams[0]), name="found in the recording")
+    return with_lidars(rig, sensors)
+
+
+def with_lidars(rig: Rig, sensors: Sequence[Sensor]) -> Rig:
+    """A rig with these LiDARs, and the IMU in the first one that has one."""
+    holder = next((one for one in sensors if lidar_model(one.model).has_imu), None)
     return replace(
-        single_rig(streams[0]),
-        name="found in the recording",
+        rig,
         sensors=tuple(sensors),
-        imu_sensor=next(iter(with_imu), ""),
+        T_body_imu=imu_mount(holder) if holder else SE3.identity(),
+        imu_sensor=holder.name if holder else "",
     )
 
 

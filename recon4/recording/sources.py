@@ -28,6 +28,9 @@ class Sources:
     """CSV file, in place of the recording's IMU samples."""
     gnss: Path | None = None
     """CSV file, in place of the recording's GNSS samples."""
+    near: tuple[Path, ...] = ()
+    """Files beside the recordings (`recon4.recording.files_near`), for a process
+    that may not list their folders."""
 
     @staticmethod
     def of(

@@ -27,6 +27,7 @@ from typing import Literal
 
 import msgspec
 
+from recon4.recording.files_near import files_near
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.atomic import sweep as sweep_unfinished
 from recon4.store.locks import trying_lock
@@ -77,7 +78,9 @@ class JobFolder:
         sweep_unfinished(self.path)
         for name in ("pid", "heartbeat", "outcome.json"):
             (self.path / name).unlink(missing_ok=True)
+        near = [str(file) for path in inputs.recordings for file in files_near(Path(path))]
         request = {"project": str(project), "inputs": asdict(inputs), "limits": asdict(limits)}
+        request["near"] = near
         write_json(self.path / "request.json", request)
 
     def sweep(self) -> None:
@@ -93,6 +96,11 @@ class JobFolder:
         for name in ("recordings", "settings"):
             inputs[name] = tuple(inputs[name])
         return Path(request["project"]), Inputs(**inputs)
+
+    def near(self) -> tuple[Path, ...]:
+        """Files beside the recordings, which the worker may read but not list."""
+        request = json.loads((self.path / "request.json").read_text("utf-8"))
+        return tuple(map(Path, request["near"]))
 
     def limits(self) -> Limits:
         """Resource limits of the worker."""

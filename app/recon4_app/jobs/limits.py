@@ -36,7 +36,7 @@ def worker_policy(folder: JobFolder) -> Policy:
     times = [path.parent / "times.txt" for path in given if path.is_dir()]
     free = shutil.disk_usage(folder.path).free - limits.reserve_bytes
     return Policy(
-        read=(*given, *times, *judging_folders(project.parent / STATE)),
+        read=(*given, *folder.near(), *times, *judging_folders(project.parent / STATE)),
         write=(project, folder.path),
         temporary=folder.temporary,
         memory_bytes=limits.memory_bytes,

@@ -94,6 +94,7 @@ def process(folder: JobFolder, progress: Progress) -> None:
         rig=load_rig(inputs.rig) if inputs.rig else None,
         imu=Path(inputs.imu) if inputs.imu else None,
         gnss=Path(inputs.gnss) if inputs.gnss else None,
+        near=folder.near(),
     )
     settings = override(preset(inputs.preset), list(inputs.settings))
     refuse_if_full(project, sources.paths, reserve_bytes=folder.limits().reserve_bytes)

@@ -82,7 +82,7 @@ def inspect_recording(path: Path, beside: tuple[Path, ...]) -> RecordingSummary:
     from recon4.model.plain import finite_or_none
     from recon4.recording.info import describe
 
-    info = describe(path)
+    info = describe(path, near=beside)
     suited = _suited(beside)
     samples = " ".join(info.samples)
     located = "GNSS" in samples or "GNSS" in suited

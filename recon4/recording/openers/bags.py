@@ -7,11 +7,12 @@ from pathlib import Path
 
 from recon4.model.rig import Rig
 from recon4.recording.bag_recording import BagRecording
+from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.bags import Bag
 from recon4.recording.kinds import bag_paths
 from recon4.recording.line_recording import LineRecording, profiler_rig
 from recon4.recording.openers.request import OpenRequest, Recording
-from recon4.recording.packets.companions import COMPANION_SUFFIXES
+from recon4.recording.packets.companions import companions_of
 from recon4.recording.report import ImportReport
 
 
@@ -28,7 +29,11 @@ def open_line_bag(request: OpenRequest) -> Recording | None:
 def open_lidar_bag(request: OpenRequest) -> Recording:
     """Clouds or packets of LiDARs, in the topics that the rig or their contents name."""
     bag = BagRecording(
-        _files(request), request.rig, settings=request.settings, report=request.report
+        _files(request),
+        request.rig,
+        settings=request.settings,
+        report=request.report,
+        companions=companions_of(request.paths),
     )
     return Recording(bag.rig, bag.read, bag.seconds)
 

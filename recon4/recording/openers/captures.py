@@ -8,17 +8,16 @@ from functools import partial
 from pathlib import Path
 
 from recon4.model.rig import Rig, load_rig
+from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.datagrams import address_text
 from recon4.recording.kinds import capture_files
 from recon4.recording.line_recording import WUERZBURG
 from recon4.recording.openers.request import Item, OpenRequest, Recording
-from recon4.recording.packets.capture import WAIT_S, PacketCapture
-from recon4.recording.packets.companions import COMPANION_SUFFIXES
+from recon4.recording.packets.capture import WAIT_S, ChooseRig, PacketCapture
 from recon4.recording.packets.family import PacketSamples
 from recon4.recording.packets.livox.lvx import read_lvx_head
 from recon4.recording.packets.streams import PacketStream, require_one_capture
-from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import Stream, choose_rig
+from recon4.recording.rig_choice import Stream, choose_rig, rig_to_complete, with_lidars
 from recon4.recording.scan_capture import ScanCapture, scan_streams
 
 
@@ -34,51 +33,49 @@ def open_scan_capture(request: OpenRequest) -> Recording | None:
 
 def open_lidar_capture(request: OpenRequest) -> Recording:
     """Packets of LiDARs; they are searched for in every capture that nobody else reads."""
-    files, settings, report = _files(request), request.settings, request.report
-    rig = request.rig
-    files += [path for path in request.paths if path.suffix.lower() in COMPANION_SUFFIXES]
-    if rig is None:
-        heads = PacketCapture(files, None, settings=settings, report=report)
-        found = heads.rig.sensors
-        streams = [Stream(f"{s.address}:{s.port}", s.model, s.address, s.port) for s in found]
-        rig = choose_rig(streams, report)
+    return _opened(request, request.rig or partial(choose_rig, report=request.report))
+
+
+def open_lvx(request: OpenRequest) -> Recording:
+    """Files of Livox Viewer; several devices are mounted as the file says."""
+    return _opened(request, request.rig or partial(_rig_of_devices, request=request))
+
+
+def _opened(request: OpenRequest, rig: Rig | ChooseRig) -> Recording:
     pcap = PacketCapture(
-        files,
+        [*_files(request), *_companions(request)],
         rig,
-        settings=settings,
-        report=report,
+        settings=request.settings,
+        report=request.report,
         open_file=request.open_file,
     )
     return Recording(pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=WAIT_S)
 
 
-def open_lvx(request: OpenRequest) -> Recording:
-    """Files of Livox Viewer; several devices are mounted as the file says."""
-    if request.rig is None:
-        request = replace(request, rig=_rig_of_devices(request))
-    return open_lidar_capture(request)
-
-
-def _rig_of_devices(request: OpenRequest) -> Rig | None:
-    """The devices of LVX files with the mounts in them; None = one device, or no mounts."""
+def _rig_of_devices(streams: Sequence[Stream], request: OpenRequest) -> Rig:
+    """The devices of LVX files with the mounts in them, if there are several with mounts."""
     files = _files(request)
     devices = {
         address_text(device.address): device
         for file in files
         for device in read_lvx_head(file).devices
     }
-    heads = PacketCapture(files, None, settings=request.settings, report=ImportReport())
-    found = [(sensor, devices[sensor.address]) for sensor in heads.rig.sensors]
+    heads = rig_to_complete(streams)
+    found = [(sensor, devices[sensor.address]) for sensor in heads.sensors]
     mounted = [
         replace(sensor, T_body_sensor=device.mount, serial=device.serial)
         for sensor, device in found
         if device.mount is not None
     ]
     if len(found) < 2 or len(mounted) < len(found):
-        return None
+        return choose_rig(streams, request.report)
     names = ", ".join(f"{s.name} ({s.model}, {s.serial})" for s in mounted)
     request.report.derive(f"no rig given: {names} are mounted as the file says")
-    return replace(heads.rig, sensors=tuple(mounted))
+    return with_lidars(heads, mounted)
+
+
+def _companions(request: OpenRequest) -> list[Path]:
+    return [path for path in request.paths if path.suffix.lower() in COMPANION_SUFFIXES]
 
 
 def _files(request: OpenRequest) -> list[Path]:

@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import heapq
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
 from recon4.errors import EmptyRecording
-from recon4.geometry.se3 import SE3
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
+from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.datagrams import Datagrams, address_number, join_datagrams
 from recon4.recording.formats.pcap import OpenFile, open_plain
-from recon4.recording.packets.companions import COMPANION_SUFFIXES, companions_of, described_in
+from recon4.recording.packets.companions import companions_of, described_in
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.family import PacketSamples, PacketSensor
@@ -30,6 +30,7 @@ from recon4.recording.packets.streams import (
     unread_text,
 )
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import Stream
 from recon4.recording.samples.datagrams import SampleDecoder
 from recon4.settings import IngestSettings
 
@@ -52,19 +53,27 @@ class _Channel:
     decoder: PacketDecoder
 
 
+ChooseRig = Callable[[Sequence[Stream]], Rig]
+"""Chooses the rig of the LiDARs that were found.
+
+Raises:
+    ConfigError: If it cannot.
+"""
+
+
 class PacketCapture:
     """The recording in one or several capture files, all sensors on one clock.
 
-    ``rig`` is the one given; without one, a rig with one sensor a data stream, all mounted at the
-    origin. Streams go to the sensors of a given rig by address and port, but no trickle when a full
-    stream fits too; a sensor left over gets a stream left over, in order, which is reported.
-    A sensor that is not in the heads of the files is read from when it first sends.
+    ``rig`` is the one given, or the one chosen of what sends. Streams go to the sensors of a given
+    rig by address and port, but no trickle when a full stream fits too; a sensor left over gets a
+    stream left over, in order, which is reported. A sensor that is not in the heads of the files is
+    read from when it first sends.
     """
 
     def __init__(
         self,
         paths: Sequence[Path],
-        rig: Rig | None,
+        rig: Rig | ChooseRig,
         *,
         settings: IngestSettings,
         report: ImportReport,
@@ -75,7 +84,7 @@ class PacketCapture:
         Args:
             paths: Capture files, and files that describe their LiDARs; the same stream in files
                 that follow each other is one sensor, in files of the same time it is two.
-            rig: The rig, or None to make one of what is found.
+            rig: The rig, or what chooses one of the LiDARs that send.
             settings: Range limits and reorder window.
             report: Takes counts, warnings and what was derived.
             open_file: How to open the files for reading; a live capture's file still grows.
@@ -84,11 +93,13 @@ class PacketCapture:
             UnknownFormat: If a file is not a capture file.
             EmptyRecording: If there is no data packet of a LiDAR in the heads of the files and no
                 rig, whose ports and addresses identify later ones.
-            ConfigError: If the model of a sensor is not decoded from packets.
+            ConfigError: If the model of a sensor is not decoded from packets, or no rig can be
+                chosen.
         """
         self._report = report
         heads = ImportReport()
-        self._companions = [*described_in(rig), *companions_of(paths)]
+        given = rig if isinstance(rig, Rig) else None
+        self._companions = [*described_in(given), *companions_of(paths)]
         self._paths = [path for path in paths if path.suffix.lower() not in COMPANION_SUFFIXES]
         scans = (
             scan_pcap(path, open_file=open_file, report=heads, companions=self._companions)
@@ -96,21 +107,24 @@ class PacketCapture:
         )
         self.streams = [stream for scan in scans for stream in scan]
         groups = _sensors_of(self.streams)
-        if not groups and rig is None:
+        if given is None and not groups:
             found = _found_instead(self.streams, heads)
             raise EmptyRecording(
                 f"{paths[0].name}: no data packets of a LiDAR that is read; found: {found}"
             )
-        for stream in self.streams:
-            for remark in stream.remarks if rig is None else ():
-                report.warn(f"{stream.label}: {remark}")
-        self.rig = rig or _rig_of(groups)
+        self.rig = rig if isinstance(rig, Rig) else self._chosen(rig, groups)
         self._warn_of_others()
         self._imu = LidarImu(self.rig, other=self._own_imu(), report=report)
         self._settings = settings
         self._channels = self._assign(groups)
         self._claimed = {(s.source, s.port) for s in self.streams if s.kind == "data"}
         self._samples, self._open = SampleDecoder(report), open_file
+
+    def _chosen(self, choose: ChooseRig, groups: list[tuple[PacketStream, ...]]) -> Rig:
+        for stream in self.streams:
+            for remark in stream.remarks:
+                self._report.warn(f"{stream.label}: {remark}")
+        return choose([_lidar(group[0]) for group in groups])
 
     def read(self) -> Iterator[Shots | PacketSamples]:
         """Stream the whole recording once; the shots of one sensor are in order of time."""
@@ -184,13 +198,10 @@ class PacketCapture:
     def _decode_samples(self, datagrams: Datagrams) -> Iterator[PacketSamples]:
         """Samples of an IMU or a GNSS receiver on separate ports."""
         ports = {port for port in (self.rig.imu_port, self.rig.gnss_port) if port}
-        rows = np.flatnonzero(np.isin(datagrams.port, list(ports)))
-        if not len(rows):
-            return
-        ends = (datagrams.start + datagrams.length)[rows].tolist()
-        starts = datagrams.start[rows].tolist()
-        texts = [datagrams.buffer[a:b].tobytes() for a, b in zip(starts, ends, strict=True)]
-        yield PacketSamples(*self._samples.push(datagrams.t_ns[rows].tolist(), texts))
+        mine = datagrams.take(np.isin(datagrams.port, list(ports)))
+        if len(mine):
+            texts = [mine.payload(row) for row in range(len(mine))]
+            yield PacketSamples(*self._samples.push(mine.t_ns.tolist(), texts))
 
     def _assign(self, groups: list[tuple[PacketStream, ...]]) -> list[_Channel]:
         chosen = _match(self.rig.sensors, groups, self._report)
@@ -277,25 +288,14 @@ def _place(stream: PacketStream) -> tuple[str, int, str]:
     return stream.source, stream.port, stream.shared
 
 
-def _rig_of(groups: list[tuple[PacketStream, ...]]) -> Rig:
-    sensors = tuple(
-        Sensor(
-            name=f"lidar{number}",
-            model=streams[0].model or "generic",
-            T_body_sensor=SE3.identity(),
-            address=streams[0].source,
-            port=streams[0].port,
-            serial=streams[0].found.serial if streams[0].found and streams[0].shared else "",
-        )
-        for number, streams in enumerate(groups)
-    )
-    return Rig(
-        name="found in the recording",
-        sensors=sensors,
-        T_body_imu=SE3.identity(),
-        imu_time_offset_s=0.0,
-        p_body_antenna=np.zeros(3),
-        gnss_time_offset_s=0.0,
+def _lidar(stream: PacketStream) -> Stream:
+    """The LiDAR that sends a stream."""
+    return Stream(
+        f"{stream.source}:{stream.port}",
+        stream.model or "generic",
+        stream.source,
+        stream.port,
+        serial=stream.found.serial if stream.found and stream.shared else "",
     )
 
 

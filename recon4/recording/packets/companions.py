@@ -1,4 +1,8 @@
-"""Small files beside a recording that describe its LiDARs: metadata, tables of angles."""
+"""Small files beside a recording that describe its LiDARs: metadata, tables of angles.
+
+They are found once, before a recording is opened (`companion_paths`), and are sources like it: a
+changed file makes a new map. Readers use those that are given.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +10,11 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from recon4.model.rig import Rig
+from recon4.recording.files_near import COMPANION_SUFFIXES, files_near
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, same_start
 
-COMPANION_SUFFIXES = frozenset({".json", ".csv", ".yaml", ".yml", ".xml", ".dat", ".cal"})
-MAX_COMPANION_BYTES = 1 << 20
-_MOST_FILES = 100
+_MAX_BYTES = 1 << 20
 
 
 def described_in(rig: Rig | None) -> list[Companion]:
@@ -24,49 +27,39 @@ def described_in(rig: Rig | None) -> list[Companion]:
 
 def is_companion(path: Path) -> bool:
     """Whether a file describes a LiDAR, by its contents."""
-    return bool(_read([path]))
+    return bool(companions_of([path]))
 
 
-def companion_paths(recording: Path) -> list[Path]:
-    """The files beside or in a recording that describe a LiDAR."""
-    files = [file for folder in _folders_of(recording) for file in _files_in(folder)]
-    return [path for path in files if path != recording and is_companion(path)]
+def companion_paths(recordings: Iterable[Path], near: Iterable[Path] = ()) -> list[Path]:
+    """The files near some recordings that describe a LiDAR, by their contents.
 
-
-def _folders_of(recording: Path) -> list[Path]:
-    """Where files of a recording lie: a rosbag2 is a folder of its own."""
-    if not recording.is_dir():
-        return [recording.parent]
-    is_bag = (recording / "metadata.yaml").exists()
-    return [recording, recording.parent] if is_bag else [recording]
-
-
-def _files_in(folder: Path) -> list[Path]:
-    try:
-        return sorted(file for file in folder.iterdir() if not file.is_symlink())
-    except OSError:  # a confined process may not list it; what it may read was given
-        return []
+    Args:
+        recordings: Files or folders.
+        near: What `files_near` found before the process was confined: it may not list folders.
+    """
+    listed = [file for recording in recordings for file in files_near(recording)]
+    return [path for path in dict.fromkeys([*near, *listed]) if is_companion(path)]
 
 
 def companions_of(paths: Sequence[Path]) -> list[Companion]:
-    """The files among the sources that describe a LiDAR, and those beside them.
+    """The files among sources that describe a LiDAR.
 
     Args:
         paths: Recordings, files or folders, and such files.
     """
-    beside = [file for path in paths for file in companion_paths(path)]
-    recordings = [path.stem for path in paths if path.suffix.lower() not in COMPANION_SUFFIXES]
-    return _read(dict.fromkeys([*paths, *beside]), recordings)
+    others = [path.stem for path in paths if path.suffix.lower() not in COMPANION_SUFFIXES]
+    small = (path for path in dict.fromkeys(paths) if path.suffix.lower() in COMPANION_SUFFIXES)
+    found = (_read(path, others) for path in small)
+    return [one for one in found if one is not None]
 
 
-def _read(paths: Iterable[Path], recordings: Sequence[str] = ()) -> list[Companion]:
-    small = [path for path in paths if path.suffix.lower() in COMPANION_SUFFIXES]
-    found = []
-    for path in small[:_MOST_FILES]:
-        try:
-            if path.is_file() and path.stat().st_size <= MAX_COMPANION_BYTES:
-                alike = (same_start(path.stem, name) for name in recordings)
-                found.append(Companion(path.name, path.read_bytes(), max(alike, default=0)))
-        except OSError:
-            continue
-    return [one for one in found if any(family.describes(one) for family in FAMILIES)]
+def _read(path: Path, recordings: Sequence[str]) -> Companion | None:
+    try:
+        if not path.is_file() or path.stat().st_size > _MAX_BYTES:
+            return None
+        content = path.read_bytes()
+    except OSError:  # gone, or of somebody else
+        return None
+    alike = (same_start(path.stem, name) for name in recordings)
+    one = Companion(path.name, content, max(alike, default=0))
+    return one if any(family.describes(one) for family in FAMILIES) else None

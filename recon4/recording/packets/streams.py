@@ -39,8 +39,8 @@ _TIMED_PACKETS = 1000
 """Datagrams from which the times of a file are estimated."""
 MAX_STREAMS = 256
 """Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
-_HEAD_BYTES = 64 << 20
-_KEPT_BYTES = 8 << 20
+_SCANNED_BYTES = 64 << 20
+HEAD_BYTES = 8 << 20
 """Of the first packets of a sensor, which its family looks at to prepare the decoder: more than a
 second of most LiDARs, in which some send all that packets say of their lasers."""
 
@@ -213,7 +213,7 @@ def late_stream(
             t_end_ns=int(mine.t_ns[-1]),
             whole=False,
             found=found,
-            head=_first(mine),
+            head=first_datagrams(mine),
         )
     return None
 
@@ -236,7 +236,7 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
         count = min(len(batch), left)
         parts.append(batch.take(slice(count)))
         left -= count
-        if not left or bytes_read > _HEAD_BYTES:
+        if not left or bytes_read > _SCANNED_BYTES:
             bytes_read += int(batch.start[count - 1] + batch.length[count - 1]) if count else 0
             read_ratio = min(1.0, bytes_read / path.stat().st_size)
             break
@@ -284,7 +284,7 @@ def _stream(head: _Head, datagrams: Datagrams) -> PacketStream:
         t_last_ns=last,
         t_end_ns=last if whole else first + round((last - first) / head.read_ratio),
         whole=whole,
-        head=_first(datagrams),
+        head=first_datagrams(datagrams),
     )
 
 
@@ -308,7 +308,7 @@ def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:
     return replace(stream, utc_offset_ns=offset_ns)
 
 
-def _first(datagrams: Datagrams) -> Datagrams:
-    """As many as `_KEPT_BYTES` hold."""
-    kept = np.cumsum(datagrams.length) <= _KEPT_BYTES
+def first_datagrams(datagrams: Datagrams) -> Datagrams:
+    """As many as `HEAD_BYTES` hold."""
+    kept = np.cumsum(datagrams.length) <= HEAD_BYTES
     return datagrams.take(kept)

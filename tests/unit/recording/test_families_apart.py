@@ -10,6 +10,7 @@ from recon4.recording.formats.datagrams import Datagrams, datagrams_of
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.messages import PACKET_MESSAGES
+from recon4.recording.packets.streams import recognized
 from recon4.recording.report import ImportReport
 
 MAKERS = {
@@ -62,3 +63,25 @@ def test_packets_are_taken_by_their_own_family_alone(folder, maker, data):
     found = [families_of(head) for head in heads(data(folder))]
 
     assert found and found == [[maker]] * len(found)
+
+
+@pytest.mark.parametrize(
+    ("folder", "model"),
+    [
+        ("hesai/xt32", "XT32"),
+        ("hesai/xt32m", "XT32M2X"),
+        ("hesai/40p", "Pandar40P"),
+        ("hesai/qt64", "QT64"),
+        ("hesai/qt128", "QT128"),
+        ("robosense/helios16P", "Helios 5515"),  # by its device packets, whatever its folder says
+        ("velodyne/vlp16", "VLP-16"),
+        ("velodyne/vlp32", "VLP-32C"),
+        ("velodyne/vls128", "VLS-128"),
+    ],
+)
+def test_the_model_of_a_bag_is_known_from_its_packets(folder, model, data):
+    (head,) = heads(data(f"packets/nebula/{folder}"))
+
+    found = recognized(head)
+
+    assert (found.kind, found.model) == ("data", model)

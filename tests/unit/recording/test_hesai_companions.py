@@ -5,6 +5,7 @@ import pytest
 
 from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.kinds import located_sources
 from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.hesai.angles import Angles
@@ -13,6 +14,8 @@ from recon4.recording.packets.hesai.family import HESAI
 from recon4.recording.packets.hesai.models import MODELS
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import rig_to_complete
+from recon4.recording.sources import Sources
 from tests.unit.recording.hesai_mirrors import mirror_table
 from tests.unit.recording.hesai_packets import WIDE, packet_sensor, table_of
 from tests.unit.recording.test_hesai_packets import decoded_with, spin
@@ -108,7 +111,7 @@ def inertial_values(count):
 
 def samples_and_points(path, companions=()):
     report = ImportReport()
-    capture = PacketCapture([path, *companions], None, settings=WIDE, report=report)
+    capture = PacketCapture([path, *companions], rig_to_complete, settings=WIDE, report=report)
     parts = list(capture.read())
     shots = [part for part in parts if isinstance(part, Shots)]
     imu = [part.imu for part in parts if not isinstance(part, Shots) and part.imu is not None]
@@ -163,7 +166,8 @@ def test_a_table_beside_a_capture_is_found(tmp_path):
     (tmp_path / table.name).write_bytes(table.content)
     report = ImportReport()
 
-    capture = PacketCapture([tmp_path / "walk.pcap"], None, settings=WIDE, report=report)
+    paths = located_sources(Sources.of(tmp_path / "walk.pcap")).recordings
+    capture = PacketCapture(paths, rig_to_complete, settings=WIDE, report=report)
 
     assert capture.rig.sensors[0].model == "XT32"
     assert any("angles of its beams from correction.csv" in text for text in report.derived)

@@ -7,10 +7,12 @@ from rosbags.typesys import get_types_from_msg
 from recon4.errors import ConfigError
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
+from recon4.recording.kinds import located_sources
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.hesai.models import MODELS
 from recon4.recording.report import ImportReport
+from recon4.recording.sources import Sources
 from tests.builders import bag_path
 from tests.robot_bags import RobotBag
 from tests.unit.recording.hesai_packets import WIDE, table_of
@@ -50,7 +52,8 @@ def test_a_bag_of_the_makers_driver_is_read(kind, tmp_path):
     (tmp_path / table.name).write_bytes(table.content)
 
     report = ImportReport()
-    parts = open_recording(OpenRequest((path,), None, WIDE, report)).read()
+    paths = located_sources(Sources.of(path)).recordings
+    parts = open_recording(OpenRequest(paths, None, WIDE, report)).read()
     shots = [part for part in parts if isinstance(part, Shots)]
 
     expected, _ = decoded(model, payloads)

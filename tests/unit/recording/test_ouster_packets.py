@@ -5,10 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.recording.bag_packets import head_of
-from recon4.recording.formats.bags import Bag
 from recon4.recording.packets.family import Companion
-from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
 from recon4.recording.packets.ouster.data_packets import checksums
 from recon4.recording.packets.ouster.encode import (
@@ -266,15 +263,3 @@ def test_packets_of_others_are_not_recognized(data):
         beside_it = companion(root / "ouster" / "OS-1-128_v2.3.0_1024x10.json")
         assert len(head) > 0
         assert OUSTER.recognize(head, [beside_it]) is None
-
-
-def test_packets_of_others_in_bags_are_not_recognized(data):
-    checked = 0
-    for file in sorted(data("packets/nebula").rglob("*.db3")):
-        with Bag([file], ImportReport()) as bag:
-            for topic in bag.topics:
-                if topic.type in DATA_MESSAGES:
-                    head = head_of(bag, topic.name)
-                    assert OUSTER.recognize(head.take(slice(100)), ()) is None
-                    checked += 1
-    assert checked >= 8

@@ -11,6 +11,7 @@ from recon4.geometry.se3 import SE3
 from recon4.model.rig import Sensor
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.info import describe
+from recon4.recording.kinds import located_sources
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.family import Companion
@@ -18,6 +19,7 @@ from recon4.recording.packets.ouster.encode import metadata_json
 from recon4.recording.packets.ouster.models import nominal_metadata
 from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
+from recon4.recording.sources import Sources
 from tests.builders import T0_NS
 from tests.security.fuzz.kinds_ouster import packets_of
 from tests.unit.recording.ouster_packets import WIDE, datagrams_of, opened
@@ -39,7 +41,8 @@ def beside(data, tmp_path):
 def read(path, sensors=None):
     """Report, shots by sensor, and inertial samples."""
     report = ImportReport()
-    request = OpenRequest((path,), rig(*sensors) if sensors else None, WIDE, report)
+    paths = located_sources(Sources.of(path)).recordings
+    request = OpenRequest(paths, rig(*sensors) if sensors else None, WIDE, report)
     shots, samples = {}, []
     for part in open_recording(request).read():
         if isinstance(part, Shots):

@@ -11,6 +11,7 @@ from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.packets.streams import scan_pcap
 from recon4.recording.packets.velodyne.encode import PcapWriter, encode_position, rmc_sentence
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import rig_to_complete
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS, WIDE, rig, sensor, spin
 
 FIRST, SECOND = "192.168.1.201", "192.168.1.202"
@@ -29,7 +30,7 @@ def capture(path, *parts):
     return path
 
 
-def read(paths, rig_given=None, settings=WIDE):
+def read(paths, rig_given=rig_to_complete, settings=WIDE):
     report = ImportReport()
     recording = PacketCapture(paths, rig_given, settings=settings, report=report)
     points: dict[int, int] = {}
@@ -243,7 +244,7 @@ def test_both_sensors_are_on_one_clock_though_neither_has_gps(tmp_path):
     )
     report = ImportReport()
     firsts = {}
-    for part in PacketCapture([path], None, settings=WIDE, report=report).read():
+    for part in PacketCapture([path], rig_to_complete, settings=WIDE, report=report).read():
         if isinstance(part, Shots) and len(part):
             firsts.setdefault(part.sensor, part.t_ns[0])
 

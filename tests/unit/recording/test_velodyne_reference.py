@@ -34,6 +34,7 @@ from recon4.recording.packets.velodyne.data_packets import (
 from recon4.recording.packets.velodyne.models import DATA_SIZE, DUAL, MODELS, velodyne_model
 from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import rig_to_complete
 from recon4.recording.samples.clean import join
 from tests.unit.recording.packet_builders import WIDE, rig, sensor
 
@@ -263,7 +264,7 @@ def test_monterey_is_on_gps_time_with_positions_and_inertial_samples(data):
     report = ImportReport()
     recording = PacketCapture(
         [data("packets/veloview/monterey-first-100-packets.pcap")],
-        None,
+        rig_to_complete,
         settings=WIDE,
         report=report,
     )

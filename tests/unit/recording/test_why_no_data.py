@@ -9,6 +9,7 @@ from recon4.errors import EmptyRecording
 from recon4.recording.info import describe
 from recon4.recording.packets.capture import PacketCapture
 from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import rig_to_complete
 from tests.unit.recording.packet_builders import T0_NS, WIDE, rig, sensor, spin
 from tests.unit.recording.test_pcap_streams import FIRST, SECOND, capture, read
 
@@ -163,6 +164,6 @@ def test_counts_of_the_head_are_not_counted_twice(tmp_path):
     path = cut_to(capture(tmp_path / "cut.pcap", (FIRST, 2368, spin(700))), 1300)
     report = ImportReport()
 
-    list(PacketCapture([path], None, settings=WIDE, report=report).read())
+    list(PacketCapture([path], rig_to_complete, settings=WIDE, report=report).read())
 
     assert report.counts["records"] == report.counts["packets"] == 700
