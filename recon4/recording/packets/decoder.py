@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from recon4.errors import ConfigError
@@ -127,8 +129,14 @@ class PacketDecoder:
         return self._layout.sample_sizes
 
     def samples(self, datagrams: Datagrams) -> PacketSamples | None:
-        """What the other packets of the sensor tell; None = nothing."""
-        return self._layout.samples(datagrams, self.clock)
+        """What the other packets of the sensor tell; None = nothing.
+
+        The time offset of the rig file counts for its IMU as for its points.
+        """
+        found = self._layout.samples(datagrams, self.clock)
+        if found is None or found.imu is None or not self._offset_ns:
+            return found
+        return replace(found, imu=replace(found.imu, t_ns=found.imu.t_ns + self._offset_ns))
 
     def flush(self) -> Shots:
         """Give out what was held back."""

@@ -53,7 +53,7 @@ class PacketSamples:
     """Samples in the packets of a LiDAR; None where there are none."""
 
     imu: ImuSamples | None = None
-    """In the frame and on the clock of the rig file's IMU: m/s², rad/s."""
+    """In the frame of the points and on the clock of the packets: m/s², rad/s."""
     gnss: GnssSamples | None = None
 
 

@@ -1,6 +1,7 @@
 """Every model fires by its own pattern, and its packets say what the rays met."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -13,6 +14,7 @@ from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.ingest import ingest
+from recon4.recording.packets.decoder import open_decoder
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor
 from recon4.recording.packets.sensor_clock import SensorClock
@@ -61,20 +63,23 @@ def packets_of(lidar, firings):
     return family_of(lidar.pattern.model).data_packets(lidar, firings, START_NS + start_ns)
 
 
+def packet_sensor(lidar, payloads, report):
+    """What the reader knows of a sensor."""
+    files = family_of(lidar.pattern.model).companions(lidar).items()
+    return PacketSensor(
+        row=0,
+        sensor=lidar.sensor,
+        head=datagrams_of(payloads, port=lidar.sensor.port),
+        companions=[Companion(name, content) for name, content in files],
+        settings=IngestSettings(min_range_m=0.0, max_range_m=900.0),
+        report=report,
+    )
+
+
 def opened(lidar, payloads, report):
     """The reader's side of a sensor."""
     family = next(f for f in FAMILIES if f.name == lidar_model(lidar.pattern.model).maker)
-    files = family_of(lidar.pattern.model).companions(lidar).items()
-    return family.open(
-        PacketSensor(
-            row=0,
-            sensor=lidar.sensor,
-            head=datagrams_of(payloads, port=lidar.sensor.port),
-            companions=[Companion(name, content) for name, content in files],
-            settings=IngestSettings(min_range_m=0.0, max_range_m=900.0),
-            report=report,
-        )
-    )
+    return family.open(packet_sensor(lidar, payloads, report))
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -168,6 +173,28 @@ def test_the_imu_of_a_lidar_is_read_as_it_measured(model):
     np.testing.assert_allclose(found.t_ns, at_ns, atol=2000)
     np.testing.assert_allclose(found.gyro_rad_s, samples.gyro_rad_s, atol=1e-4)
     np.testing.assert_allclose(found.accel_m_s2, samples.accel_m_s2, atol=1e-3)
+
+
+@pytest.mark.parametrize("model", ["OS0-32", "Mid-360"])
+def test_the_time_offset_of_a_lidar_counts_for_points_and_imu_alike(model):
+    lidar = lidar_of(model)
+    late = replace(lidar, sensor=replace(lidar.sensor, time_offset_s=0.25))
+    payloads = packets_of(lidar, fired(lidar, packets=300))
+    at_ns = opened(lidar, payloads, ImportReport()).stamps_ns(payloads)
+    sent = (
+        family_of(model)
+        .imu(model)
+        .packets(ImuSamples(at_ns[:10], np.ones((10, 3)), np.full((10, 3), 9.0)))
+    )
+
+    def times(sensor):
+        decoder = open_decoder(packet_sensor(sensor, payloads, ImportReport()))
+        shots = [decoder.push(at_ns, payloads), decoder.flush()]
+        last_ns = max(part.t_ns.max() for part in shots if len(part))
+        return last_ns, decoder.samples(datagrams_of(sent, t_ns=at_ns[:10])).imu.t_ns[0]
+
+    (point_ns, imu_ns), (late_point_ns, late_imu_ns) = times(lidar), times(late)
+    assert late_point_ns - point_ns == late_imu_ns - imu_ns == 250_000_000
 
 
 def test_a_rig_of_two_makes_has_ports_of_both_and_the_imu_that_is_in_one():

@@ -30,7 +30,7 @@ from recon4.recording.packets.hesai.layouts import HesaiLayout
 from recon4.recording.packets.hesai.mirrors import MirrorTable
 from recon4.recording.packets.hesai.models import HesaiModel
 from recon4.recording.packets.hesai.points import MirrorPoints, SpinningPoints
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,8 +122,7 @@ class HesaiFormat:
             return None
         self._imu_ns = int(t_ns[later][-1])
         self._sensor.report.count("imu_samples", int(later.sum()))
-        t_ns = t_ns[later] + round(self._sensor.sensor.time_offset_s * SECOND_NS)
-        imu = ImuSamples(t_ns, found.gyro_rad_s[later], found.accel_m_s2[later])
+        imu = ImuSamples(t_ns[later], found.gyro_rad_s[later], found.accel_m_s2[later])
         return PacketSamples(imu=imu)
 
     def _fields(self, payloads: Payloads) -> Fields:

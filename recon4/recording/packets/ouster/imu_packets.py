@@ -23,7 +23,7 @@ from recon4.recording.packets.ouster.layouts import (
     numbers,
 )
 from recon4.recording.packets.ouster.metadata import OusterMetadata
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 
 LEGACY_IMU = np.dtype(
     [
@@ -100,10 +100,9 @@ class ImuPackets:
 
         Args:
             metadata: How the chip is turned, and the port of its packets.
-            sensor: Its time offset is added; its report takes the counts.
+            sensor: Its report takes the counts.
         """
         self._R_sensor_imu, self._report = metadata.R_sensor_imu, sensor.report
-        self._offset_ns = round(sensor.sensor.time_offset_s * SECOND_NS)
         self._stated_port, self._serial = metadata.imu_port, metadata.serial
         self._port: int | None = None
         self._last_ns = np.iinfo(np.int64).min
@@ -131,7 +130,7 @@ class ImuPackets:
             return None
         self._last_ns = int(t_ns[later][-1])
         return ImuSamples(
-            t_ns[later] + self._offset_ns,
+            t_ns[later],
             gyro[later] @ self._R_sensor_imu.T,
             accel[later] @ self._R_sensor_imu.T,
         )

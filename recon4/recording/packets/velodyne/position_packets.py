@@ -143,13 +143,12 @@ class PositionDecoder:
         """Start with nothing seen.
 
         Args:
-            sensor: Its time offset is added to inertial samples.
+            sensor: For its name.
             clock: The clock of its data packets.
             report: Takes counts and remarks.
         """
         self._clock, self._report = clock, report
         self._name = sensor.name
-        self._offset_ns = round(sensor.time_offset_s * SECOND_NS)
         self._sentence = b""
         self._imu_ns = self._gnss_ns = np.iinfo(np.int64).min
 
@@ -194,7 +193,7 @@ class PositionDecoder:
             "frame; the zero of these gyroscopes is not calibrated (tens of degrees a second)"
         )
         return ImuSamples(
-            t_ns=t_ns[kept] + self._offset_ns,
+            t_ns=t_ns[kept],
             gyro_rad_s=value[:, :, 0] * _GYRO_RAD_S,
             accel_m_s2=accel * _ACCEL_M_S2,
         )
