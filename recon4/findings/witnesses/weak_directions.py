@@ -157,7 +157,7 @@ def _finding(stretch: WeakStretch, level: Level, uncertainty: dict[str, float]) 
         level,
         {
             "degeneracy": stretch.degeneracy,
-            "sd_m": stretch.sd_m,
+            "sd_m": stretch.sd_m if stated else WEAK_DIRECTION.unlimited_m,
             "known": stated and stretch.sd_m < WEAK_DIRECTION.unlimited_m,
             "unlimited": stated and stretch.sd_m >= WEAK_DIRECTION.unlimited_m,
             "unstated": not stated,

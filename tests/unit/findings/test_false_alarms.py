@@ -1,5 +1,6 @@
 """Kinds that accused maps that were right, or were silent of one that was not."""
 
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -76,3 +77,14 @@ def test_one_multiframe_that_did_not_converge_counts_if_it_is_far_from_where_it_
         for one in found
         if one.kind is FindingKind.NOT_CONVERGED
     )
+
+
+def test_a_weak_direction_of_unknown_size_is_stored():
+    steps = {"lost": np.zeros(40, bool), "degeneracy": np.zeros(40)}
+    steps |= {"t_mid_ns": np.arange(40) * 10**8, "t_m": np.zeros((40, 3))}
+
+    found = check_walk(WalkRecord(steps=steps), preset("indoor"))
+
+    weak = [one for one in found if one.kind is FindingKind.WEAK_DIRECTION]
+    assert len(weak) == 1 and "degeneracy 0.0000" in text_of(weak[0])
+    json.dumps([one.values for one in found], allow_nan=False)
