@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 4
+AUDIT_VERSION = 5
 """Raise it when witnesses find something else in the same walk: then finished projects are audited
 again."""
 

@@ -136,6 +136,8 @@ class LineFigures(msgspec.Struct, frozen=True, kw_only=True):
     """How far the clock of the IMU is ahead of that of the 2-D laser; None = it is not [s]."""
     bridged_s: float = 0.0
     """Time without a tracked scan, which the IMU bridges [s]."""
+    rest_s: float = 0.0
+    """Time at rest by the IMU, where no 2-D laser observes the motion [s]."""
     profiler_ahead_s: float | None = None
     """How far the clock of the profiler is ahead of both; None = it is not [s]."""
     mount_change: str = ""

@@ -12,6 +12,7 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, so3_exp
 from recon4.model.trajectory import Times, Trajectory
+from recon4.profiler.at_rest import AtRest
 from recon4.profiler.imu_chain import (
     Drive,
     ImuChain,
@@ -56,15 +57,18 @@ def fuse(drive: Drive, poses: PlanarPoses | None) -> ImuChain:
 
     Args:
         drive: IMU samples.
-        poses: By 2-D SLAM; None = by the IMU alone, which drifts.
+        poses: By 2-D SLAM; None = by the IMU alone, which drifts unless it is at rest.
     """
     chain = initial_chain(drive)
+    rest = AtRest.of(drive)
     if poses is not None and len(poses.t_ns):
         chain = _with_heading(chain, poses)
     for _ in range(FUSION.rounds):
         measured = level_walk(chain)
         if poses is not None:
             measured = measured + _planar(chain, poses)
+        else:
+            measured = measured + rest.information(chain)
         step = linearize(chain).solve(measured)
         chain = chain.moved(step)
         if np.abs(step[:, 3:6]).max() < FUSION.small_m:

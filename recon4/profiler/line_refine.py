@@ -21,6 +21,7 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import turned_round
 from recon4.model.pose_graph import PoseGraph
 from recon4.model.trajectory import Trajectory
+from recon4.profiler.at_rest import AtRest
 from recon4.profiler.imu_chain import (
     POSITION,
     ImuChain,
@@ -76,6 +77,8 @@ class LineRefiner:
     settings: LineTuning
     planes: PlaneTuning
     hold: PlanarHold
+    rest: AtRest | None
+    """Where no 2-D laser observes the motion; None = one does."""
     progress: Progress
 
     def refine(self, chain: ImuChain) -> tuple[ImuChain, list[RefineRound], Matched | None]:
@@ -115,6 +118,8 @@ class LineRefiner:
         if matched.matches == 0:
             return chain, None, matched
         measured = matched.information + self.hold.information(chain)
+        if self.rest is not None:
+            measured = measured + self.rest.information(chain)
         step = linear.solve(measured, anchor=self._anchor())
         largest_m = float(np.linalg.norm(step[:, POSITION], axis=1).max())
         done = RefineRound(
@@ -284,7 +289,9 @@ def refine_lines(
     steps = load_arrays(odometry / "steps.npz", ["weak_sd_m", "lost"])
     known = observed_motion(frames.t_mid_ns, drive.knot_ns, **steps)
     hold = PlanarHold.of(start, drive.knot_ns, known)
-    refiner = LineRefiner(frames, scans, tuned(LineTuning, settings.lines), PLANES, hold, progress)
+    rest = None if known.any() else AtRest.of(drive)
+    tuning = tuned(LineTuning, settings.lines)
+    refiner = LineRefiner(frames, scans, tuning, PLANES, hold, rest, progress)
     chain, rounds, matched = refiner.refine(chain)
     support = None
     if matched is not None:

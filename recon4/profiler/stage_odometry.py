@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
@@ -14,6 +15,7 @@ from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.laser_scans import LaserScans
 from recon4.model.odometry_figures import LineFigures, OdometryFigures
 from recon4.model.trajectory import Times, Trajectory
+from recon4.profiler.at_rest import AtRest
 from recon4.profiler.clock_audit import profiler_ahead_s, some_points
 from recon4.profiler.fusion import fuse
 from recon4.profiler.imu_chain import Drive, linearize, make_drive
@@ -59,8 +61,8 @@ def run_line_odometry(
     chain = fuse(drive, planar.poses if planar else None)
     trajectory = linearize(chain).trajectory()
     save_trajectory(out / "trajectory.npz", trajectory)
-    lost = _lost(frames.t_mid_ns, planar, drive)
-    _save_steps(out / "steps.npz", frames, trajectory, planar=planar, lost=lost)
+    known = _known(frames.t_mid_ns, planar, drive)
+    _save_steps(out / "steps.npz", frames, trajectory, planar=planar, known=known)
     ahead_s, change = _profiler_error(
         frames, planar, trajectory, min_range_m=tuned(LineTuning, settings.lines).min_range_m
     )
@@ -69,14 +71,15 @@ def run_line_odometry(
         imu=_imu_state(drive, frames),
         mirrored=planar is not None and planar.mirrored,
         imu_ahead_s=_imu_ahead_s(planar),
-        bridged_s=float(lost.sum() * frames.index["duration_ns"][0]) * 1e-9,
+        rest_s=float(known.still.sum() * frames.index["duration_ns"][0]) * 1e-9,
+        bridged_s=float(known.lost.sum() * frames.index["duration_ns"][0]) * 1e-9,
         profiler_ahead_s=ahead_s,
         mount_change=change,
     )
-    _report(trajectory, frames, lost, progress=progress)
+    _report(trajectory, frames, known.lost, progress=progress)
     return OdometryFigures(
         multiframes=len(frames),
-        lost=int(lost.sum()),
+        lost=int(known.lost.sum()),
         imu=drive.has_imu,
         lines=lines,
     )
@@ -149,10 +152,28 @@ def _profiler_error(
     return ahead_s if is_ahead else None, change.describe() if change and is_moved else ""
 
 
-def _lost(t_ns: Times, planar: PlanarMap | None, drive: Drive) -> NDArray[np.bool_]:
-    """Multiframes farther in time from a tracked 2-D scan than what bridges it can."""
+@dataclass(frozen=True, slots=True, eq=False)
+class _KnownMotion:
+    """How the motion of each multiframe is known."""
+
+    lost: NDArray[np.bool_]
+    """Farther in time from a tracked 2-D scan than what bridges it can, (N,)."""
+    still: NDArray[np.bool_]
+    """At rest by the IMU, where no 2-D laser observes the motion, (N,)."""
+
+
+def _known(t_ns: Times, planar: PlanarMap | None, drive: Drive) -> _KnownMotion:
+    """How the motion at the middle of each multiframe is known."""
+    none = np.zeros(len(t_ns), np.bool_)
     if planar is None:
-        return np.zeros(len(t_ns), np.bool_)
+        still = AtRest.of(drive).still
+        interval = np.searchsorted(drive.knot_ns, t_ns, side="right") - 1
+        return _KnownMotion(none, np.asarray(still[np.clip(interval, 0, len(still) - 1)]))
+    return _KnownMotion(_lost(t_ns, planar, drive), none)
+
+
+def _lost(t_ns: Times, planar: PlanarMap, drive: Drive) -> NDArray[np.bool_]:
+    """Multiframes farther in time from a tracked 2-D scan than what bridges it can."""
     known = planar.poses.t_ns
     after = np.clip(np.searchsorted(known, t_ns), 1, len(known) - 1)
     away_ns = np.minimum(np.abs(t_ns - known[after - 1]), np.abs(known[after] - t_ns))
@@ -166,7 +187,7 @@ def _save_steps(
     trajectory: Trajectory,
     *,
     planar: PlanarMap | None,
-    lost: NDArray[np.bool_],
+    known: _KnownMotion,
 ) -> None:
     """One row a multiframe, with the columns of the odometry of LiDARs."""
     t_ns, count = frames.t_mid_ns, len(frames)
@@ -190,13 +211,13 @@ def _save_steps(
         error_m=np.full(count, np.nan),
         match_ratio=ratio,
         rounds=np.ones(count, np.int64),
-        converged=~lost,
+        converged=~known.lost,
         degeneracy=degeneracy,
         prediction_offset_m=np.zeros(count),
-        lost=lost,
+        lost=known.lost,
         motion_cov=np.tile(motion, (count, 1, 1)),
         weak_direction=weak,
-        stationary=np.zeros(count, np.bool_),
+        stationary=known.still,
         weak_sd_m=weak_sd_m,
     )
 

@@ -60,6 +60,24 @@ IMU_CHAIN = ImuChainTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AtRestTuning:
+    """When an IMU feels no motion. Of a robot that waits: 0.01 rad/s, 0.02 m/s²."""
+
+    window_s: float = 1.0
+    """Time over which the samples are compared [s]."""
+    turn_rad_s: float = 0.02
+    accel_m_s2: float = 0.06
+    """Standard deviations of calm samples, over all axes; who holds a scanner moves more."""
+    walk_rad: float = 2e-4
+    """Random walk of the attitude at rest [rad/sqrt(s)] …"""
+    walk_m: float = 1e-3
+    """… and of the position [m/sqrt(s)]."""
+
+
+AT_REST = AtRestTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class LineRefineTuning:
     """Refinement of line scans."""
 

@@ -49,7 +49,7 @@ def _refine_lines(
     return found.save(context.out)
 
 
-LINE_ODOMETRY = Stage("odometry", 5, LineOdometryReads, _line_odometry, OdometryFigures)
+LINE_ODOMETRY = Stage("odometry", 6, LineOdometryReads, _line_odometry, OdometryFigures)
 TURN_GRAPH = Stage(
     "graph",
     3,
@@ -57,4 +57,4 @@ TURN_GRAPH = Stage(
     _sweep_graph,
     GraphFigures,
 )
-LINE_REFINE = Stage("refine", 4, LineRefineReads, _refine_lines, RefineFigures)
+LINE_REFINE = Stage("refine", 5, LineRefineReads, _refine_lines, RefineFigures)

@@ -8,6 +8,7 @@ from recon4.findings.finding import Finding, Level, Value
 from recon4.findings.kinds import FindingKind
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
+from recon4.findings.witnesses.tuning import LASER_MISSING
 from recon4.model.odometry_figures import LineFigures
 
 
@@ -48,7 +49,10 @@ def line_findings(lines: LineFigures) -> Iterator[Finding]:
 
 def _laser(lines: LineFigures) -> Iterator[Finding]:
     if lines.laser == "none":
-        yield finding(FindingKind.LASER_MISSING, Level.CHECK)
+        drifts = lines.rest_s < LASER_MISSING.rests_ratio * lines.walk_s
+        values: dict[str, Value] = {"rest_s": lines.rest_s, "rests": lines.rest_s > 0.0}
+        level = Level.CHECK if drifts else Level.NOTE
+        yield finding(FindingKind.LASER_MISSING, level, values | {"drifts": drifts})
     elif lines.laser == "at other times":
         first_s, last_s = lines.laser_span_s or (0.0, 0.0)
         values = {"first_s": first_s, "last_s": last_s, "walk_s": lines.walk_s}

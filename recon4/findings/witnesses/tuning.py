@@ -169,3 +169,14 @@ class TrackingWitnessTuning:
 
 
 TRACKING_WITNESS = TrackingWitnessTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LaserMissingTuning:
+    """Line scans without a 2-D laser."""
+
+    rests_ratio: float = 0.95
+    """At rest for this part of the time, the first trajectory does not drift."""
+
+
+LASER_MISSING = LaserMissingTuning()

@@ -6,6 +6,7 @@ import pytest
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
+from recon4.profiler.at_rest import AtRest
 from recon4.profiler.fusion import PlanarPoses, attitude, fuse
 from recon4.profiler.imu_chain import covers, initial_chain, linearize, make_drive
 from recon4.settings import OdometrySettings
@@ -123,3 +124,33 @@ def test_samples_with_a_hole_do_not_cover_the_walk(walked):
     assert covers(imu, (0, round(SECONDS * 1e9)))
     assert not covers(holed, (0, round(SECONDS * 1e9)))
     assert covers(holed, (5_000_000_000, 6_000_000_000))
+
+
+def resting(imu, *, sway_m_s2):
+    """Samples of a scanner at rest, of the noise and the biases of a cheap IMU; it may sway."""
+    t_s, rng = 1e-9 * imu.t_ns, np.random.default_rng(4)
+    accel = rng.normal([0.1, -0.05, 9.8], 0.01, (len(t_s), 3))
+    accel[:, 0] += sway_m_s2 * np.sin(2.0 * np.pi * 0.7 * t_s)
+    return ImuSamples(imu.t_ns, rng.normal([0.01, 0.0, -0.01], 0.003, (len(t_s), 3)), accel)
+
+
+def test_without_a_2_d_laser_a_scanner_at_rest_does_not_drift(walked):
+    _, walking = walked
+
+    still = fuse(drive_of(resting(walking, sway_m_s2=0.0)), None).knots.T_a_b
+    swaying = fuse(drive_of(resting(walking, sway_m_s2=0.3)), None).knots.T_a_b
+
+    assert np.ptp(still.t, axis=0).max() < 2e-3
+    assert np.rad2deg(np.abs((still[0].inverse() @ still[-1]).rpy())).max() < 0.2
+    assert np.ptp(swaying.t, axis=0).max() > 0.2
+
+
+def test_nobody_who_walks_is_at_rest(walked):
+    truth, imu = walked
+    drive = drive_of(imu)
+    steps_m = np.linalg.norm(np.diff(truth.at(drive.knot_ns).t, axis=0), axis=1)
+
+    still = AtRest.of(drive).still
+
+    assert steps_m[still].max(initial=0.0) < 2e-3
+    assert still.mean() < 0.1
