@@ -126,6 +126,9 @@ _POINTS = {
     "points_wrong_time": _lost(
         "points", "a time more than two revolutions from the others, dropped", apart=True
     ),
+    "points_without_joint": _lost(
+        "points", "without a pose of the joint that moves their sensor, left out", apart=True
+    ),
     "points_late": _lost(
         "points", "came after their frame was done, dropped: are the clocks of the sensors equal?"
     ),
@@ -260,8 +263,13 @@ _SCANS = {
     "lines_empty": _usual("", "without a return", noun="line scans"),
     "lines_missing": _lost("lines", "never arrived", apart=True),
     "lines_out_of_order": _lost("lines", "earlier than the one before, left out", apart=True),
-    "lines_without_angle": _lost("lines", "without an angle of the head, left out", stated=True),
+    "lines_without_angle": _lost(
+        "lines", "without an angle or a pose of the head, left out", stated=True
+    ),
     "head_angles_invalid": _lost("messages", "angles of the head that are no numbers, left out"),
+    "joint_poses_wrong_time": _lost("messages", "poses of a joint of another time, left out"),
+    "joint_poses_repeated": _usual("", "of a time that was there before", noun="poses of a joint"),
+    "joint_poses_beyond_limit": _lost("messages", "poses of a joint beyond the limit, left out"),
     "head_stands": _stated("the head stands still", noun="times"),
 }
 COUNT_WORDINGS: dict[str, CountWording] = {

@@ -28,7 +28,7 @@ from recon4.recording.bag_messages import (
     stamp_ns,
 )
 from recon4.recording.bag_packets import BagPackets, PacketTopics
-from recon4.recording.clock_compare import LIDAR
+from recon4.recording.clock_compare import LIDAR, warn_of_other_joint_clock
 from recon4.recording.cloud_points import CloudDecoder, model_of_points
 from recon4.recording.driver_topics import no_lidar_text, unread_text
 from recon4.recording.formats.bags import (
@@ -39,7 +39,7 @@ from recon4.recording.formats.bags import (
 )
 from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
-from recon4.recording.mounts import SampleTopics, read_mounts
+from recon4.recording.mounts import SampleTopics, on_their_joints, read_mounts
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import DATA_MESSAGES
@@ -121,10 +121,12 @@ class BagRecording:
             by_setting = Named(settings.odometry_topic)
             self.odometry_topic = choose_topic(bag, by_setting, ODOMETRY_KIND, report=report)
             mounts = read_mounts(bag, [*lidars, self.imu_topic, self.fix_topic], report)
+            mounts = on_their_joints(bag, mounts, lidars=lidars, imu=self.imu_topic, report=report)
         if not self.streams:
             raise EmptyRecording(no_lidar_text(paths[0].name, self.topics))
         samples = SampleTopics(self.imu_topic, self.fix_topic)
         self.rig = mounted_rig(rig, self.streams, samples, mounts=mounts, report=report)
+        self._moving = mounts.moving
 
     def read(self) -> Iterator[Item]:
         """Stream the bag once; messages of one topic are in order of time."""
@@ -148,13 +150,29 @@ class BagRecording:
             if content is None:
                 continue
             if message.topic in lidars:
-                yield from lidars[message.topic].push(message, content)
+                yield from self._on_joint(
+                    message.topic, lidars[message.topic].push(message, content)
+                )
             else:
                 yield from samples[message.topic].push(message, content)
-        for lidar in lidars.values():
-            yield from lidar.flush()
+        for topic, lidar in lidars.items():
+            yield from self._on_joint(topic, lidar.flush())
+        for mount in self._moving.values():
+            warn_of_other_joint_clock(mount.text, self._report)
         for batch in samples.values():
             yield from batch.flush()
+
+    def _on_joint(self, topic: str, items: Iterator[Item]) -> Iterator[Item]:
+        """What a LiDAR gives, its points in the frame of what carries its joint if it has one."""
+        mount = self._moving.get(topic)
+        for item in items:
+            if mount is None or not isinstance(item, Shots):
+                yield item
+                continue
+            placed, unknown = mount.place(item)
+            self._report.count("points_without_joint", unknown)
+            if len(placed):
+                yield placed
 
     def _lidars(self, bag: Bag) -> dict[str, TopicReader]:
         kinds = {topic.name: topic for topic in bag.topics}

@@ -12,13 +12,15 @@ from recon4.model.count_words import FREE_CLOCK
 from recon4.recording.clock_names import described, known_offset_s
 from recon4.recording.report import ImportReport
 
-LIDAR, IMU_CLOCK, GNSS_CLOCK = "LiDAR", "IMU", "GNSS"
+LIDAR, IMU_CLOCK, GNSS_CLOCK, JOINT = "LiDAR", "IMU", "GNSS", "joint"
 _OTHER_S = 1.0
 """Clocks that differ by less may be messages that travel for longer [s]."""
 _STEADY_S = 0.5
 """Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
 _TRAVEL_S = 0.1
 """Messages of sensors on one clock lag behind by amounts that differ by less [s]."""
+_JOINT_S = 0.25
+"""Messages of a joint and of its sensor travel for times that differ by less [s]."""
 _LEAST = 3
 
 
@@ -77,6 +79,21 @@ def warn_of_free_clocks(report: ImportReport, *, imu_file: bool) -> None:
         f"no GPS drives the clock of {', '.join(free)}, whose times are those of the recorder: "
         f"{apart}. If points and IMU do not fit, give [imu] time_offset_s in the rig file"
     )
+
+
+def warn_of_other_joint_clock(joint: str, report: ImportReport) -> None:
+    """Warn of a joint whose poses are not on the clock of the sensor that it moves.
+
+    Args:
+        joint: What moves, for people.
+        report: Has the lags, and receives the warning.
+    """
+    ahead_s = clock_offset_s(JOINT, report)
+    if abs(ahead_s) > _JOINT_S:
+        report.doubt(
+            f"the times of the joint are ahead of the sensor's by {described(ahead_s)}, by when "
+            f"both were recorded: points may be placed by the pose of another time; {joint}"
+        )
 
 
 def _spread(lag_s: np.ndarray) -> float:

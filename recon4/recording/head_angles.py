@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from typing import Protocol
+
 import numpy as np
 
 from recon4.errors import RecordingError
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
+from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
 
 _STUCK_RAD = float(np.deg2rad(0.05))
@@ -18,11 +22,43 @@ _BEYOND_NS = 100_000_000
 """Angles are extrapolated over at most this time [ns]."""
 
 
+class Head(Protocol):
+    """What moves the beam of a profiler."""
+
+    across: int
+    """Second axis of the plane of a line; the first one is x: 1 = y, 2 = z."""
+
+    def ready(self, end_ns: int) -> bool:
+        """Whether it is known where the head points at a time."""
+        ...
+
+    def overdue(self, end_ns: int, now_ns: int) -> bool:
+        """Whether a line that ended at ``end_ns`` has waited long enough."""
+        ...
+
+    def turn(self, line: Shots) -> tuple[Shots, float] | None:
+        """A line in the frame that does not turn, and the angle of its first shot [rad].
+
+        None = it is not known where the head pointed.
+        """
+        ...
+
+    def finish(self, seconds: float) -> None:
+        """Judge the head over the whole recording.
+
+        Raises:
+            RecordingError: If it stood still all the time.
+        """
+        ...
+
+
 class HeadAngles:
-    """Angles as they come in, interpolated linearly at the times of shots.
+    """Angles about z as they come in, interpolated linearly at the times of shots.
 
     Angles reported within one revolution are made continuous.
     """
+
+    across = 2
 
     def __init__(self, name: str, rate_rad_s: float, report: ImportReport) -> None:
         """Prepare.
@@ -83,12 +119,18 @@ class HeadAngles:
             np.where(wanted < 0.0, angle[0] + slope * wanted, found), dtype=np.float64
         )
 
-    def finish(self, seconds: float) -> None:
-        """Judge the head over the whole recording.
+    def turn(self, line: Shots) -> tuple[Shots, float] | None:
+        """See `Head.turn`."""
+        angle = self.at(line.t_ns)
+        if angle is None:
+            return None
+        c, s = np.cos(angle), np.sin(angle)
+        x, y, z = line.xyz.astype(np.float64).T
+        xyz = np.stack([c * x - s * y, s * x + c * y, z], axis=1).astype(np.float32)
+        return replace(line, xyz=xyz), float(angle[0])
 
-        Raises:
-            RecordingError: If it stood still all the time.
-        """
+    def finish(self, seconds: float) -> None:
+        """See `Head.finish`."""
         if self._rate_rad_s or self._stands_since is None:
             return
         self._close_standing(self._t_ns[-1] if self._t_ns else 0)

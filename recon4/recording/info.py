@@ -23,7 +23,7 @@ from recon4.recording.folders import folder_gaps, frames_label, list_frames, tim
 from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
-from recon4.recording.info_head import RecordingHead, judge_samples, read_head
+from recon4.recording.info_head import RecordingHead, judge_samples, kind_of_walk, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (
     BAGS,
@@ -112,7 +112,7 @@ def _describe_bag(
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
         whole = info.bytes <= WHOLE_BYTES
         gaps = _bag_gaps(bag, [s.topic for s in streams]) if whole else ()
-        lines = line_topics(bag.topics)
+        lines = line_topics(bag)
         if lines is not None:
             sensors += tuple(
                 _line_sensor(bag, topic, model, content=content)
@@ -210,6 +210,7 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
     )
     return replace(
         info,
+        walk="2-D laser: a plan of what its plane meets, because no LiDAR or profiler is there",
         t_first_ns=first,
         t_last_ns=last,
         sensors=(sensor,),
@@ -344,6 +345,7 @@ def _with_head(
     return replace(
         info,
         sensors=sensors,
+        walk=kind_of_walk(rig) if rig is not None else "",
         gaps=(*info.gaps, *head.jumps),
         samples=tuple(samples),
         missing=tuple(missing),

@@ -94,6 +94,20 @@ def read_head(
     return head
 
 
+def kind_of_walk(rig: Rig) -> str:
+    """Which workflow a recording with points has, and what decides that."""
+    row = rig.row_of("profiler")
+    if row is None:
+        names = ", ".join(sensor.topic or sensor.name for sensor in rig.sensors)
+        return f"LiDAR: frames of points in space, of {names}"
+    sensor = rig.sensors[row]
+    moved = sensor.head_topic or "a head of constant rate" * bool(sensor.head_rate_rad_s)
+    return (
+        f"profiler: every line of {sensor.topic or sensor.name} lies elsewhere in space, because "
+        f"{moved or 'its head'} moves it"
+    )
+
+
 def _usable_points(item: object, settings: IngestSettings, report: ImportReport) -> int:
     if isinstance(item, Shots):
         return len(drop_invalid(item, settings=settings, report=report))

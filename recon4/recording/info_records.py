@@ -39,6 +39,8 @@ class RecordingInfo:
     path: str
     kind: str
     bytes: int
+    walk: str = ""
+    """Kind of walk it is mapped as, and why; empty = it cannot be mapped."""
     t_first_ns: int = 0
     t_last_ns: int = 0
     """Both 0 = the recording has no times."""
@@ -74,6 +76,7 @@ class RecordingInfo:
         if absolute or self.t_last_ns > self.t_first_ns:
             start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
             lines.append(f"time      {start}, {about}{self.seconds:.2f} s")
+        lines += [f"walk      {self.walk}"] if self.walk else []
         for sensor in self.sensors:
             lines += _sensor_lines(sensor, about)
         lines += [f"samples   {text}" for text in self.samples]

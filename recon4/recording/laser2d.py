@@ -13,6 +13,7 @@ from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se2 import between, from_se3
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, Ranges, joined_scans
+from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 from recon4.recording.bag_messages import SampleBatch, join_poses, pose_row, stamp_clock
 from recon4.recording.formats.bags import LASER_SCAN, Bag
@@ -20,9 +21,9 @@ from recon4.recording.formats.carmen import REAR, CarmenScans, is_carmen, read_c
 from recon4.recording.kinds import RecordingKind, bag_paths, capture_files, recognize
 from recon4.recording.laser_mount import LaserMount, LaserRecording, mount_of_bag
 from recon4.recording.laser_tables import is_laser_table, read_laser_table
-from recon4.recording.line_recording import profiler_rig
 from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.packets.streams import require_one_capture
+from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.range_units import in_meters
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
@@ -40,12 +41,13 @@ _MOUNTING_SD = 1e-3
 """Spread of the pose of the laser on the robot [m, rad] that is only rounding."""
 
 
-def is_laser2d(path: Path, kind: RecordingKind | None = None) -> bool:
+def is_laser2d(path: Path, kind: RecordingKind | None = None, *, rig: Rig | None = None) -> bool:
     """Whether a path is a recording of a 2-D laser without any LiDAR or profiler.
 
     Args:
         path: A file or folder.
         kind: Of the recording; None = not known yet.
+        rig: A rig without a profiler that was given; None = none was given.
 
     Raises:
         RecordingError: If it cannot be read.
@@ -60,7 +62,7 @@ def is_laser2d(path: Path, kind: RecordingKind | None = None) -> bool:
     report = ImportReport()
     with Bag(bag_paths(path), report) as bag:
         kinds = {topic.type for topic in bag.topics if topic.messages}
-        has_lines = profiler_rig(bag.topics, None, report) is not None
+        has_lines = rig is None and profiler_rig(bag, None, report) is not None
         lidars = any(t.is_points or t.type in DATA_MESSAGES for t in bag.topics if t.messages)
         return LASER_SCAN in kinds and not lidars and not has_lines
 

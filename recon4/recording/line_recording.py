@@ -13,16 +13,25 @@ import numpy as np
 from recon4.errors import ConfigError, CorruptFile, EmptyRecording
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
-from recon4.model.rig import Rig, load_rig
+from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import cloud_table, stamp_clock, stamp_ns
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
-from recon4.recording.formats.bags import CLOUD, LASER_SCAN, Bag, BagMessage, BagTopic
-from recon4.recording.head_angles import HeadAngles
+from recon4.recording.formats.bags import (
+    CLOUD,
+    LASER_SCAN,
+    TRANSFORMS,
+    Bag,
+    BagMessage,
+    BagTopic,
+)
+from recon4.recording.head_angles import Head, HeadAngles
+from recon4.recording.joint_head import JointHead
 from recon4.recording.mount_check import compare_mounts
 from recon4.recording.mounts import SampleTopics, read_mounts
+from recon4.recording.moving_mounts import MovingMount, moving_mount
 from recon4.recording.range_units import LaserUnit, line_factor
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
@@ -34,28 +43,9 @@ from recon4.settings import IngestSettings
 
 JOINTS = "sensor_msgs/msg/JointState"
 LineItem = Shots | LineScans | LaserScans | ImuSamples
-WUERZBURG = "wuerzburg"
 _LINES_AT_ONCE = 64
 _NAMES_LISTED = 20
 _MISSING_RATIO = 0.02
-
-
-def profiler_rig(topics: Sequence[BagTopic], rig: Rig | None, report: ImportReport) -> Rig | None:
-    """The rig, if it has a profiler; without a given one the shipped rig if its topics are there.
-
-    Args:
-        topics: Of the bag.
-        rig: The rig that was given.
-        report: Receives that a rig was chosen.
-    """
-    if rig is not None:
-        return rig if rig.row_of("profiler") is not None else None
-    shipped = load_rig(WUERZBURG)
-    row = shipped.row_of("profiler")
-    if row is None or shipped.sensors[row].topic not in {topic.name for topic in topics}:
-        return None
-    report.derive(f"no rig given: the topics match the preset {WUERZBURG}, its mounting is used")
-    return shipped
 
 
 class LineRecording:
@@ -93,7 +83,8 @@ class LineRecording:
             raise EmptyRecording(
                 f"{paths[0].name}: no line scans of {rig.sensors[row].name}; topics: {names}"
             )
-        self._head = self._find_head(rig, row)
+        self._joint = self._find_joint(rig.sensors[row])
+        self._head = "" if self._joint else self._find_head(rig, row)
         self._scans = self._find_scans(rig)
         found = {row: self._lines} | ({self._laser_row: self._scans} if self._scans else {})
         sensors = [replace(s, topic=found.get(k, s.topic)) for k, s in enumerate(rig.sensors)]
@@ -121,8 +112,13 @@ class LineRecording:
 
     @property
     def head_topic(self) -> str:
-        """Topic of the head's angles; empty = it turns at a constant rate."""
+        """Topic of the head's angles; empty = it turns at a constant rate, or by transforms."""
         return self._head
+
+    @property
+    def joint(self) -> MovingMount | None:
+        """How transforms move the profiler; None = a head with angles does."""
+        return self._joint
 
     @property
     def scans_topic(self) -> str:
@@ -137,7 +133,10 @@ class LineRecording:
 
     def _read(self, bag: Bag) -> Iterator[LineItem]:
         sensor = self.rig.sensors[self._row]
-        head = HeadAngles(sensor.name, sensor.head_rate_rad_s, self._report)
+        angles = HeadAngles(sensor.name, sensor.head_rate_rad_s, self._report)
+        head: Head = angles
+        if self._joint is not None:
+            head = JointHead(sensor.name, self._joint, self._report)
         topics = (self._lines, self._head, self._scans)
         stamps = {topic: stamp_clock(bag, topic) for topic in topics}
         lines = LineAssembly(
@@ -155,7 +154,7 @@ class LineRecording:
             if content is None:
                 continue
             if message.topic == self._head:
-                self._push_angle(head, message, content, stamps=stamps[self._head])
+                self._push_angle(angles, message, content, stamps=stamps[self._head])
             elif message.topic == self._lines:
                 yield from lines.push(message, content)
             elif message.topic == self._scans:
@@ -183,6 +182,32 @@ class LineRecording:
     def _offset_ns(self, row: int | None) -> int:
         return 0 if row is None else round(1e9 * self.rig.sensors[row].time_offset_s)
 
+    def _find_joint(self, sensor: Sensor) -> MovingMount | None:
+        """How transforms move the profiler, if the rig names their topic or no angles are there.
+
+        Raises:
+            ConfigError: If the rig names transforms, and no joint of them moves the profiler.
+        """
+        types = {topic.name: topic.type for topic in self.topics if topic.messages}
+        is_named = types.get(sensor.head_topic, "") in TRANSFORMS
+        has_angles = bool(sensor.head_rate_rad_s or sensor.head_topic) or JOINTS in types.values()
+        if not is_named and (has_angles or not has_frames(self.topics)):
+            return None
+        with Bag(self._paths, ImportReport()) as bag:
+            mounts = read_mounts(bag, [self._lines], ImportReport())
+            frame = mounts.frame_of(self._lines)
+            joint = moving_mount(bag, mounts.graph, frame, report=self._report)
+        if joint is None and is_named:
+            raise ConfigError(
+                f"{sensor.name}: expected a joint in {sensor.head_topic} that moves its frame "
+                f"{frame or '(no name)'}, got none"
+            )
+        if joint is not None:
+            self._report.derive(
+                f"{sensor.name}: its mount moves, the rig has that of {joint.base}; {joint.text}"
+            )
+        return joint
+
     def _find_head(self, rig: Rig, row: int) -> str:
         """Topic of the head's angles; empty = it turns at a constant rate.
 
@@ -206,8 +231,8 @@ class LineRecording:
         there = ", ".join(t.name for t in joints) or "none"
         raise ConfigError(
             f"{sensor.name}: the angles of its head are missing: expected topic "
-            f"{sensor.head_topic or '(one)'} of type {JOINTS}, got {there}; with a head of "
-            "constant rate, head_rate_deg_s in the rig file"
+            f"{sensor.head_topic or '(one)'} of type {JOINTS}, got {there}; a head may also "
+            "move by a joint of /tf, or at a constant rate: head_rate_deg_s in the rig file"
         )
 
     def _find_scans(self, rig: Rig) -> str:
@@ -229,7 +254,7 @@ class LineAssembly:
         self,
         row: int,
         rig: Rig,
-        head: HeadAngles,
+        head: Head,
         *,
         report: ImportReport,
         stamps: StampClock | None = None,
@@ -311,7 +336,9 @@ class LineAssembly:
             if message.type == CLOUD:
                 table = cloud_table(content)
                 return self._clouds.decode(table, t_ns=t_ns, period_ns=10_000_000)
-            return line_of_scan(content, self._row, t_ns, report=self._report)
+            return line_of_scan(
+                content, self._row, t_ns, report=self._report, across=self._head.across
+            )
         except CorruptFile as error:
             self._report.count("messages_corrupt")
             self._report.warn(f"{message.topic}: left out: {error}")
@@ -324,14 +351,11 @@ class LineAssembly:
             if not (final or self._head.ready(end_ns) or self._head.overdue(end_ns, now_ns)):
                 return
             self._waiting.pop(0)
-            angle = self._head.at(shots.t_ns)
-            if angle is None:
+            turned = self._head.turn(shots)
+            if turned is None:
                 self._report.count("lines_without_angle")
-                continue
-            c, s = np.cos(angle), np.sin(angle)
-            x, y, z = shots.xyz.astype(np.float64).T
-            xyz = np.stack([c * x - s * y, s * x + c * y, z], axis=1).astype(np.float32)
-            self._done.append((replace(shots, xyz=xyz), float(angle[0])))
+            else:
+                self._done.append(turned)
 
     def deliver(self) -> Iterator[LineItem]:
         """The lines whose head angle is known by now."""

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
-from recon4.recording.formats.bags import BagTopic
-from recon4.recording.line_recording import JOINTS, profiler_rig
+from recon4.recording.formats.bags import TRANSFORMS, Bag, BagTopic
+from recon4.recording.line_recording import JOINTS
+from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
 
 
 @dataclass(frozen=True, slots=True)
 class LineTopics:
-    """Topics of a shipped rig with a profiler."""
+    """Topics of a rig with a profiler, the shipped one or that of a laser on a joint."""
 
     sensors: tuple[tuple[BagTopic, str, str], ...]
     """Topic, kind of sensor, and what its messages are."""
@@ -20,12 +20,12 @@ class LineTopics:
     """What the rig has and the bag lacks."""
 
 
-def line_topics(topics: Sequence[BagTopic]) -> LineTopics | None:
+def line_topics(bag: Bag) -> LineTopics | None:
     """Topics of line scans and what belongs to them; None = the bag has no line scans."""
-    rig = profiler_rig(topics, None, ImportReport())
+    rig = profiler_rig(bag, None, ImportReport())
     if rig is None:
         return None
-    filled = {topic.name: topic for topic in topics if topic.messages}
+    filled = {topic.name: topic for topic in bag.topics if topic.messages}
     contents = {"profiler": "line scans", "laser2d": "scans"}
     names = {"profiler": "profiler", "laser2d": "2-D laser"}
     found, missing = [], []
@@ -37,7 +37,9 @@ def line_topics(topics: Sequence[BagTopic]) -> LineTopics | None:
         if not sensor.head_topic:
             continue
         if sensor.head_topic in filled:
-            found.append((filled[sensor.head_topic], "head", "angles"))
+            head = filled[sensor.head_topic]
+            moves = ("joint", "transforms") if head.type in TRANSFORMS else ("head", "angles")
+            found.append((head, *moves))
         else:
             missing.append(f"angles of the head ({sensor.head_topic}, {JOINTS})")
     return LineTopics(tuple(found), tuple(missing))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 
 import numpy as np
@@ -20,6 +20,7 @@ from recon4.recording.frame_graph import (
     last_name,
     mount_text,
 )
+from recon4.recording.moving_mounts import MovingMount, moving_mount
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, single_rig
 from recon4.recording.transform_messages import frame_of, has_frames, read_frames
@@ -39,6 +40,8 @@ class Mounts:
     """Topic -> frame of its messages; topics without a readable message or a name are missing."""
     any_stated: bool
     """Whether the bag has transforms or a description of a robot at all."""
+    moving: Mapping[str, MovingMount] = field(default_factory=dict)
+    """Topic of a LiDAR on a joint that moves -> its mount; its frame is that of the base."""
 
     def frame_of(self, topic: str) -> str:
         """The frame of a topic; empty = not known."""
@@ -126,6 +129,37 @@ def _warn_disputed(mounts: Mounts, report: ImportReport) -> None:
         report.count("transforms_contradictory")
         if one.child in on_path:
             report.doubt(f"transforms of the bag contradict each other; not used: {one.text}")
+
+
+def on_their_joints(
+    bag: Bag, mounts: Mounts, *, lidars: Sequence[str], imu: str, report: ImportReport
+) -> Mounts:
+    """The mounts with LiDARs on joints that move in the frame of what carries the joint.
+
+    Args:
+        bag: An open bag.
+        mounts: What it states.
+        lidars: Topics of its LiDARs.
+        imu: Topic of the IMU; one that moves with a LiDAR feels the motion of the joint, too.
+        report: Receives which joints move.
+    """
+    of_imu = {joint.child for joint in mounts.graph.joints_above(mounts.frame_of(imu))}
+    moving: dict[str, MovingMount] = {}
+    for topic in lidars:
+        frame = mounts.frame_of(topic)
+        joints = {joint.child for joint in mounts.graph.joints_above(frame)}
+        if joints and joints == of_imu:
+            report.derive(f"{topic} and {imu} turn together: the body is what the joint moves")
+            continue
+        mount = moving_mount(bag, mounts.graph, frame, report=report)
+        if mount is not None:
+            moving[topic] = mount
+            report.derive(
+                f"{topic}: its mount moves, every point is placed in {mount.base} by the mount of "
+                f"its time; {mount.text}"
+            )
+    frames = {**mounts.frames, **{topic: mount.base for topic, mount in moving.items()}}
+    return replace(mounts, frames=frames, moving=moving)
 
 
 # -- a rig

@@ -32,14 +32,15 @@ _MAX_ANGLE_RAD = 100.0
 """Angles of more than some turns are wrong [rad]; degrees are rejected with them."""
 
 
-def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport) -> Shots:
-    """The returns of a line: in the x-z plane of the head, angles from x towards z.
+def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport, across: int = 2) -> Shots:
+    """The returns of a line: angles from x towards the second axis of the plane of the head.
 
     Args:
         scan: The message.
         row: Of the profiler in the rig.
         t_ns: Time of the first shot [ns].
         report: Receives what was derived.
+        across: The second axis, see `recon4.recording.head_angles.Head`.
 
     Raises:
         CorruptFile: If its angles are no numbers, or it has no or too many shots.
@@ -51,7 +52,8 @@ def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport) -> Sho
     number = np.flatnonzero(seen)
     angle = float(scan.angle_min) + step_rad * number
     r = ranges[seen].astype(np.float64)
-    xyz = np.stack([r * np.cos(angle), np.zeros(len(r)), r * np.sin(angle)], axis=1)
+    xyz = np.zeros((len(r), 3))
+    xyz[:, 0], xyz[:, across] = r * np.cos(angle), r * np.sin(angle)
     intensities = np.asarray(scan.intensities, np.float32)
     if len(intensities) == len(ranges):
         intensity = np.clip(np.nan_to_num(intensities[seen]), 0, 65535).astype(np.uint16)

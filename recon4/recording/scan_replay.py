@@ -16,7 +16,8 @@ from recon4.recording.bag_messages import imu_row, stamp_ns
 from recon4.recording.formats.bags import LASER_SCAN, Bag
 from recon4.recording.kinds import BAGS, PLANAR, bag_paths, recognize
 from recon4.recording.laser2d import is_laser2d, read_laser2d
-from recon4.recording.line_recording import LineRecording, profiler_rig
+from recon4.recording.line_recording import LineRecording
+from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import IMU_HEADER
 from recon4.recording.scan_datagrams import encode_head, encode_scan, encode_scans_row
@@ -74,7 +75,7 @@ def datagrams_of_scans(recording: Path, rig: Rig | None) -> Iterator[ScanDatagra
 def _line_rig(recording: Path, rig: Rig | None) -> Rig | None:
     """The rig of a bag with line scans; None = it has none."""
     with Bag(bag_paths(recording), ImportReport()) as bag:
-        return profiler_rig(bag.topics, rig, ImportReport())
+        return profiler_rig(bag, rig, ImportReport())
 
 
 def _of_laser(recording: Path, rig: Rig | None) -> Iterator[ScanDatagram]:
@@ -101,6 +102,10 @@ def _of_lines(recording: Path, rig: Rig) -> Iterator[ScanDatagram]:
     paths = bag_paths(recording)
     found = LineRecording(paths, rig, report=ImportReport())
     kinds = {topic.name: topic.type for topic in found.topics}
+    if found.joint is not None:
+        raise UnknownFormat(
+            f"{recording.name}: datagrams have angles of a head, no transforms: {found.joint.text}"
+        )
     if kinds[found.lines_topic] != LASER_SCAN:
         raise UnknownFormat(
             f"{recording.name}: only lines that are {LASER_SCAN} can be sent, those of "

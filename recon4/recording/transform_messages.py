@@ -187,7 +187,7 @@ class _Statements:
             if number >= MAX_READ:
                 self._report.derive(f"{name}: its first {MAX_READ} transforms are read")
                 break
-            numbers = _numbers(one.transform)
+            numbers = numbers_of(one.transform)
             pair = self._pair(name, (one.header.frame_id, one.child_frame_id), numbers)
             if pair is None:
                 continue
@@ -203,7 +203,7 @@ class _Statements:
     def _pair(self, name: str, pair: _Pair, numbers: _Numbers) -> _Pair | None:
         """The frames of a transform; None (counted) = it makes no sense."""
         pair = frame_name(pair[0]), frame_name(pair[1])
-        wrong = _fault(pair, numbers)
+        wrong = transform_fault(pair, numbers)
         if not wrong:
             return pair
         self._report.count("transforms_invalid")
@@ -211,12 +211,13 @@ class _Statements:
         return None
 
 
-def _numbers(transform: Any) -> _Numbers:
+def numbers_of(transform: Any) -> tuple[float, ...]:
+    """Position [m] and quaternion of a transform: x, y, z, qx, qy, qz, qw."""
     t, q = transform.translation, transform.rotation
     return t.x, t.y, t.z, q.x, q.y, q.z, q.w
 
 
-def _fault(pair: _Pair, numbers: _Numbers) -> str:
+def transform_fault(pair: tuple[str, str], numbers: tuple[float, ...]) -> str:
     """Why a transform makes no sense; empty = it does."""
     if not all(pair):
         return "expected two names of frames"

@@ -32,7 +32,7 @@ def is_planar(sources: Sources) -> bool:
         return False  # only the rig file may know which topic is of the profiler
     first, *others = sources.recordings
     # The tables of a walk with a profiler may come in any order.
-    return is_laser2d(first) and not any(map(is_line_table, others))
+    return is_laser2d(first, rig=sources.rig) and not any(map(is_line_table, others))
 
 
 def check_planar(sources: Sources) -> None:

@@ -10,9 +10,10 @@ from recon4.recording.bag_recording import BagRecording
 from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.bags import Bag
 from recon4.recording.kinds import bag_paths
-from recon4.recording.line_recording import LineRecording, profiler_rig
+from recon4.recording.line_recording import LineRecording
 from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.packets.companions import companions_of
+from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport
 
 
@@ -45,7 +46,5 @@ def _files(request: OpenRequest) -> list[Path]:
 
 def _profiler_rig(files: Sequence[Path], request: OpenRequest) -> Rig | None:
     """The rig of a bag with line scans; None = it has none."""
-    if request.rig is not None:
-        return profiler_rig((), request.rig, request.report)
     with Bag(files, ImportReport()) as bag:
-        return profiler_rig(bag.topics, None, request.report)
+        return profiler_rig(bag, request.rig, request.report)

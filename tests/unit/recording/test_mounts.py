@@ -229,13 +229,13 @@ def test_several_lidars_that_nobody_places_need_a_rig_and_the_error_says_why(
         opened(write_walk(tmp_path, transforms, lidars=("a", "b")))
 
 
-def test_a_moving_mount_is_none(tmp_path):
+def test_a_mount_that_moves_as_a_body_in_the_world_is_none(tmp_path):
     path = bag_path(tmp_path, "db3")
     with RobotBag(path, "db3") as bag:
         for k in range(10):
             bag.tf(
                 ("base_link", "a", mount(z=1)),
-                ("base_link", "b", mount(yaw=5 * k)),
+                ("base_link", "b", mount(0.3 * k, yaw=5 * k)),
                 topic="/tf",
                 t_ns=T0_NS + k,
             )

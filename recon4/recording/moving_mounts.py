@@ -1,0 +1,232 @@
+"""Sensors on joints that move: where each is in the part that carries the joint, by time.
+
+A bag states a joint that moves in the transforms of ``/tf``, each with its own time. Every point is
+placed by the pose of its own time. So the frame that carries the joint, which does not move with
+it, is the frame of the sensor for everything that follows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.geometry.se3 import SE3, Array, so3_log
+from recon4.kernels.imu import place_points
+from recon4.model.trajectory import Times, Trajectory
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.bag_messages import stamp_ns
+from recon4.recording.clock_compare import JOINT
+from recon4.recording.formats.bags import Bag
+from recon4.recording.frame_graph import FrameGraph, MovingJoint
+from recon4.recording.report import ImportReport
+from recon4.recording.stamps import strays
+from recon4.recording.transform_messages import frame_name, numbers_of, transform_fault
+
+_MOST_POSES = 2_000_000
+"""Of one joint: five hours at 100 a second."""
+_LONGEST_NS = 250_000_000
+"""Between two poses of a joint that moved, farther apart, its pose is not known [ns]."""
+_BEYOND_NS = 100_000_000
+"""The first and the last motion continue for this time [ns]."""
+_STANDS = (np.deg2rad(0.1), 1e-3)
+"""A joint that moved by less between two poses stood still [rad], [m]."""
+_TRAVEL_M = 1.0
+"""No joint of a sensor shifts it farther: what does is a pose in the world [m]."""
+_OFF_AXIS = 0.1
+"""A joint turns about one axis: turns about others are a smaller part of it than this."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MovingMount:
+    """Mount of a sensor on a joint that moves, or on several."""
+
+    base: str
+    """Frame of the part that carries the joint."""
+    T_base_sensor: Trajectory
+    """Poses of the sensor."""
+    angle_rad: Array
+    """How far it has turned about the axis of the joint at each pose, continuous [rad], (K,)."""
+    text: str
+    """Joint, range, number of poses, for people."""
+
+    def known(self, t_ns: Times) -> NDArray[np.bool_]:
+        """Whether the pose is known at each time, (N,)."""
+        poses = self.T_base_sensor
+        left = np.clip(np.searchsorted(poses.t_ns, t_ns, side="right") - 1, 0, len(poses) - 2)
+        inside = (t_ns >= poses.t_ns[0] - _BEYOND_NS) & (t_ns <= poses.t_ns[-1] + _BEYOND_NS)
+        return np.asarray(inside & self._sure_steps()[left])
+
+    def _sure_steps(self) -> NDArray[np.bool_]:
+        """Whether the pose between two poses is known, (K - 1,)."""
+        poses, T = self.T_base_sensor, self.T_base_sensor.T_a_b
+        moved = np.linalg.norm(np.diff(T.t, axis=0), axis=1) > _STANDS[1]
+        turned = np.abs(np.diff(self.angle_rad)) > _STANDS[0]
+        return np.asarray(np.diff(poses.t_ns) <= _LONGEST_NS) | ~(moved | turned)
+
+    def place(self, shots: Shots) -> tuple[Shots, int]:
+        """The points in the frame of the base, and the number of those whose pose is unknown."""
+        rows = np.flatnonzero(self.known(shots.t_ns))
+        poses, zero_ns = self.T_base_sensor, int(self.T_base_sensor.t_ns[0])
+        xyz = place_points(
+            1e-9 * (poses.t_ns - zero_ns).astype(np.float64),
+            np.ascontiguousarray(poses.T_a_b.R),
+            np.ascontiguousarray(poses.T_a_b.t),
+            1e-9 * (shots.t_ns[rows] - zero_ns).astype(np.float64),
+            shots.xyz[rows].astype(np.float64),
+        )
+        placed = replace(
+            shots,
+            t_ns=shots.t_ns[rows],
+            xyz=xyz.astype(np.float32),
+            intensity=shots.intensity[rows],
+            ring=shots.ring[rows],
+            echo=shots.echo[rows],
+        )
+        return placed, len(shots) - len(rows)
+
+    def angle_at(self, t_ns: int) -> float:
+        """How far the joint has turned at a time [rad]."""
+        t_s = (self.T_base_sensor.t_ns - t_ns) * 1e-9
+        return float(np.interp(0.0, t_s, self.angle_rad))
+
+
+def moving_mount(
+    bag: Bag, graph: FrameGraph, frame: str, *, report: ImportReport
+) -> MovingMount | None:
+    """The mount of a frame on the joints above it; None = none moves, or it is no joint.
+
+    Args:
+        bag: An open bag.
+        graph: Its frames.
+        frame: Of a sensor.
+        report: Receives what was read, and counts what is left out.
+    """
+    joints = graph.joints_above(frame)
+    if not joints:
+        return None
+    poses = _read_poses(bag, joints, report)
+    for joint in joints:
+        why = _why_no_joint(poses[joint.child])
+        if why:
+            report.derive(f"{joint.parent} -> {joint.child} ({joint.source}) is no joint: {why}")
+            return None
+    T_base_sensor = _composed(graph, joints, frame, poses=poses)
+    if T_base_sensor is None:
+        return None
+    angle_rad = _turned_rad(T_base_sensor.T_a_b)
+    names = ", ".join(f"{j.parent} -> {j.child}" for j in joints)
+    seconds = float(np.ptp(T_base_sensor.t_ns)) * 1e-9
+    text = (
+        f"{names} turns by {np.rad2deg(np.ptp(angle_rad)):.0f}° ({joints[0].source}, "
+        f"{len(T_base_sensor)} poses in {seconds:.1f} s)"
+    )
+    return MovingMount(joints[-1].parent, T_base_sensor, angle_rad, text)
+
+
+def _read_poses(
+    bag: Bag, joints: Sequence[MovingJoint], report: ImportReport
+) -> dict[str, Trajectory]:
+    """Poses of joints by their child frame, in order of time; counts what is left out."""
+    wanted = {(joint.parent, joint.child): joint.child for joint in joints}
+    found: dict[str, list[tuple[float, ...]]] = {joint.child: [] for joint in joints}
+    times: dict[str, list[int]] = {joint.child: [] for joint in joints}
+    for message in bag.messages({joint.source for joint in joints}):
+        content = bag.decode(message)
+        for one in content.transforms if content is not None else ():
+            child = _wanted(one, wanted)
+            if child is None:
+                continue
+            if len(times[child]) >= _MOST_POSES:
+                report.count("joint_poses_beyond_limit")
+                continue
+            t_ns = stamp_ns(one.header.stamp)
+            report.note_lag(JOINT, message.t_ns - t_ns)
+            times[child].append(t_ns)
+            found[child].append(numbers_of(one.transform))
+    return {
+        child: _in_order(np.array(times[child], np.int64), found[child], report) for child in found
+    }
+
+
+def _wanted(one: Any, wanted: Mapping[tuple[str, str], str]) -> str | None:
+    """The child frame, if a transform is a sound one of a joint."""
+    pair = frame_name(one.header.frame_id), frame_name(one.child_frame_id)
+    child = wanted.get(pair)
+    return None if child is None or transform_fault(pair, numbers_of(one.transform)) else child
+
+
+def _in_order(t_ns: Times, rows: list[tuple[float, ...]], report: ImportReport) -> Trajectory:
+    """Poses at increasing times; single ones of another time and repeated ones are left out."""
+    numbers = np.array(rows, np.float64).reshape(-1, 7)
+    stray = strays(t_ns) | (t_ns <= 0)
+    report.count("joint_poses_wrong_time", int(stray.sum()))
+    order = np.flatnonzero(~stray)[np.argsort(t_ns[~stray], kind="stable")]
+    later = np.diff(t_ns[order], prepend=np.int64(-1)) > 0
+    report.count("joint_poses_repeated", int((~later).sum()))
+    kept = order[later]
+    return Trajectory(t_ns[kept], SE3.from_quat(numbers[kept, 3:], numbers[kept, :3]))
+
+
+def _why_no_joint(poses: Trajectory) -> str:
+    """Why poses are not those of a joint; empty = they are."""
+    if len(poses) < 2:
+        return "its transforms have no times"
+    travel_m = float(np.ptp(poses.T_a_b.t, axis=0).max())
+    if travel_m > _TRAVEL_M:
+        return f"it moves by {travel_m:.1f} m, as a body in the world"
+    off = _off_axis(poses.T_a_b)
+    if off > _OFF_AXIS:
+        return f"{off:.0%} of its turns are about other axes than its main one"
+    return ""
+
+
+def _turns(T: SE3) -> Array:
+    """Turns from pose to pose about the axes of the base [rad], (K - 1, 3)."""
+    return np.asarray(so3_log(T.R[1:] @ np.swapaxes(T.R[:-1], 1, 2)), dtype=np.float64)
+
+
+def _axis(turns: Array) -> Array:
+    """The axis that most turns are about, unit vector, (3,)."""
+    return np.asarray(np.linalg.eigh(turns.T @ turns)[1][:, -1], dtype=np.float64)
+
+
+def _off_axis(T: SE3) -> float:
+    """Part of the turns that is about other axes than the main one."""
+    turns = _turns(T)
+    about = turns @ _axis(turns)
+    total = float(np.linalg.norm(turns))
+    return float(np.linalg.norm(turns - about[:, None] * _axis(turns))) / total if total else 0.0
+
+
+def _turned_rad(T: SE3) -> Array:
+    """Angle about the main axis since the first pose [rad], (K,)."""
+    turns = _turns(T)
+    return np.concatenate([[0.0], np.cumsum(turns @ _axis(turns))])
+
+
+def _composed(
+    graph: FrameGraph,
+    joints: Sequence[MovingJoint],
+    frame: str,
+    *,
+    poses: Mapping[str, Trajectory],
+) -> Trajectory | None:
+    """Poses of a frame in the part that carries its joints, at the times of all of their poses."""
+    chains = [poses[joint.child] for joint in joints]
+    first_ns, last_ns = max(c.t_ns[0] for c in chains), min(c.t_ns[-1] for c in chains)
+    t_ns = np.unique(np.concatenate([chain.t_ns for chain in chains]))
+    t_ns = t_ns[(t_ns >= first_ns) & (t_ns <= last_ns)]
+    if len(t_ns) < 2:
+        return None
+    T_at_sensor, at = SE3.identity(len(t_ns)), frame
+    for joint in joints:
+        T_child_at = graph.T_a_b(joint.child, at)
+        if T_child_at is None:
+            return None
+        T_at_sensor = poses[joint.child].at(t_ns) @ (T_child_at @ T_at_sensor)
+        at = joint.parent
+    return Trajectory(t_ns, T_at_sensor)
