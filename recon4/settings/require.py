@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
 from typing import Any, get_type_hints
 
 from recon4.errors import ConfigError
@@ -37,18 +39,25 @@ def require(valid: bool, rule: str, value: object) -> None:
         raise ConfigError(f"{rule}, got {value}")
 
 
+@cache
+def _ranges(group: type) -> Mapping[str, ValueRange]:
+    """The ranges of the fields that have one; read once, as records are made for every walk."""
+    hints = get_type_hints(group, include_extras=True)
+    found = {name: range_of(hint) for name, hint in hints.items()}
+    return {name: limits for name, limits in found.items() if limits is not None}
+
+
 class Checked:
     """Base of the groups of settings: every number is within its range."""
 
     __slots__ = ()
 
     def __post_init__(self) -> None:
-        hints = get_type_hints(type(self), include_extras=True)
-        for field in fields(self):  # type: ignore[arg-type]  # every group is a dataclass
-            limits, value = range_of(hints[field.name]), getattr(self, field.name)
-            if limits is not None:
-                inside = limits.low <= value <= limits.high
-                require(inside, f"{field.name} must be {limits}", value)
+        group: type = type(self)
+        for name, limits in _ranges(group).items():
+            value = getattr(self, name)
+            if not limits.low <= value <= limits.high:
+                raise ConfigError(f"{name} must be {limits}, got {value}")
         self.check()
 
     def check(self) -> None:
