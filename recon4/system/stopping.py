@@ -12,6 +12,7 @@ print a traceback instead: then it is raised again a moment later, and nothing i
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import sys
@@ -22,7 +23,7 @@ from contextlib import suppress
 from types import FrameType, TracebackType
 from typing import Any, NoReturn, Self
 
-from recon4.system.tuning import STOPPING
+from recon4.system.tuning import PROCESSES, STOPPING
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 OF_A_TERMINAL = (signal.SIGINT, signal.SIGHUP)
@@ -42,6 +43,7 @@ def end_process(work: Callable[[StopSignals], int]) -> NoReturn:
     """
     stop = StopSignals()
     stop.catch()
+    gc.set_threshold(PROCESSES.collected_after)
     try:
         code = work(stop)
         stop.ignore_from_now()

@@ -6,6 +6,7 @@ import. It confines itself as its first message demands, then serves calls until
 
 from __future__ import annotations
 
+import gc
 import importlib
 import os
 import sys
@@ -17,6 +18,7 @@ from recon4.errors import Recon4Error
 from recon4.sandbox.private_cache import use_private_cache
 from recon4.system.processes import die_with_parent
 from recon4.system.stopping import leave_terminal_to_parent
+from recon4.system.tuning import PROCESSES
 from recon4_app.compute_pool.confinement import confine_child
 from recon4_app.compute_pool.messages import (
     FAILED,
@@ -39,6 +41,7 @@ def main(arguments: list[str]) -> None:
     die_with_parent(int(lifeline))
     kernels = use_private_cache(Path(scratch) / "kernels")
     leave_terminal_to_parent()
+    gc.set_threshold(PROCESSES.collected_after)
     if "--background" in rest:
         os.nice(CHILD_PRIORITY.background_nice)
     # Output of a library must not mix with our messages.
