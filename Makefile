@@ -42,11 +42,10 @@ demo: $(VENV)/installed-run site
 	$(BIN)/recon4 demo --out demo $(if $(HEADLESS),--headless)
 
 # Browser tests wait most of the time: they run beside the others, which leave them the processor.
-# What takes one processor only runs beside something that takes the other.
+# The kernels take one processor for a minute, which comes first: what needs none takes the other.
 test:
 	@$(MAKE) --no-print-directory -j2 $(SYNC) $(VENV)/installed-dev web
-	@$(MAKE) --no-print-directory -j2 $(SYNC) kernels format lint bytecode site
-	@$(MAKE) --no-print-directory -j3 $(SYNC) types unit e2e
+	@$(MAKE) --no-print-directory -j3 $(SYNC) kernels bytecode site types format lint unit e2e
 
 # Format, lint, types, the rules of the house, and the unit tests of the rooms that were touched.
 quick:
@@ -64,10 +63,10 @@ lint: $(VENV)/installed-dev
 types: $(VENV)/installed-dev
 	$(BIN)/mypy
 
-unit: $(VENV)/installed-dev site
+unit: $(VENV)/installed-dev site kernels bytecode
 	nice -n 9 $(BIN)/python -m pytest -n 3 --dist loadfile --no-loadscope-reorder -m 'not e2e and not study' --durations=10
 
-e2e: $(VENV)/installed-dev site
+e2e: $(VENV)/installed-dev site kernels bytecode
 	$(BIN)/python -m pytest -m e2e --durations=10
 
 web:
