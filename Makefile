@@ -8,6 +8,7 @@
 #   make studies             the tests that are too long for every run: a few minutes
 #   make bench               benchmarks, by hand: they need a quiet machine
 #   make docs                write what is generated: settings, findings, HTTP types, NOTICE
+#   make signatures          write recon4/kernels/signatures.txt: which kernels an installation compiles
 #   make examples            run the programs in examples/ and write their pages
 #   make constraints         pin the versions that are installed now
 #   make lock                write requirements/*.lock: every file of every version, with its hash
@@ -35,7 +36,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs examples constraints lock audit sbom clean
+.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs signatures examples constraints lock audit sbom clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run site
@@ -100,6 +101,9 @@ docs: $(VENV)/installed-dev
 	$(BIN)/python -m tools.http_types
 	$(BIN)/python -m tools.reference_pages
 	$(BIN)/python -m tools.notice
+
+signatures: $(VENV)/installed-dev
+	$(BIN)/python -m tools.kernel_signatures
 
 examples: $(VENV)/installed-dev
 	$(BIN)/python -m tools.example_programs

@@ -75,7 +75,7 @@ def seen_through(
     """
     return max(
         seen_through_ratio(
-            view.nearest_m, other.points, T.R, T.t,
+            view.nearest_m, other.points, np.ascontiguousarray(T.R), T.t,
             settings.relative_tolerance, settings.absolute_tolerance_m,
         )
         for view, other, T in (
@@ -90,7 +90,7 @@ def _inside(
     return inside_ratio(
         view.nearest_m,
         other.points,
-        T_view_other.R,
+        np.ascontiguousarray(T_view_other.R),
         T_view_other.t,
         settings.relative_tolerance,
         settings.absolute_tolerance_m,

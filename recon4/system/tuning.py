@@ -6,22 +6,6 @@ from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class CompileTuning:
-    """What is compiled after an installation."""
-
-    lidar_s: float = 5.0
-    profiler_s: float = 8.0
-    """Length of the simulated walks [s]."""
-    frames: int = 20
-    """Multiframes that are mapped."""
-    pixel_m: float = 0.05
-    """Edge of a pixel of the slice that is drawn [m]."""
-
-
-COMPILING = CompileTuning()
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class NeedsTuning:
     """What recon4 needs of a machine."""
 

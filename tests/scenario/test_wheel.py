@@ -34,6 +34,25 @@ print(recon4.__file__, recon4_app.__file__)
 """
 
 
+COMMAND_WITH_KERNELS = """
+import atexit, sys
+from recon4.__main__ import main
+
+@atexit.register
+def kernels_that_no_installation_compiles():
+    from recon4.kernels.signatures import kernel_name, kernels
+    modules = [m for name, m in sys.modules.items() if name.startswith("recon4.kernels.")]
+    used = {one for m in modules for one in vars(m).values() if hasattr(one, "overloads")}
+    listed = {name: kernel.signatures for name, kernel in kernels().items()}
+    for one in used:
+        for signature in set(one.overloads) - set(listed.get(kernel_name(one), ())):
+            print(kernel_name(one), *signature, file=sys.stderr)
+    print(f"{len(used)} kernels seen", file=sys.stderr)
+
+main()
+"""
+
+
 @pytest.fixture(scope="module")
 def wheel(tmp_path_factory):
     """Built from a copy: the site of the checkout is served by other tests meanwhile."""
@@ -66,7 +85,9 @@ def installed(wheel, tmp_path_factory):
 def demo(installed, tmp_path_factory):
     """A folder in which the demo has run, and what it wrote."""
     folder = tmp_path_factory.mktemp("demo")
-    return folder, recon4(installed, folder, "demo", "--headless", "--seconds", "5")
+    command = [installed / "python", "-P", "-c", COMMAND_WITH_KERNELS]
+    arguments = ["demo", "--headless", "--seconds", "5"]
+    return folder, run([*command, *arguments], folder)
 
 
 def pip(*arguments):
@@ -93,11 +114,13 @@ def alone():
 
 
 def recon4(installed, folder, *arguments):
-    done = subprocess.run(
-        [installed / "recon4", *arguments], cwd=folder, env=alone(), capture_output=True, text=True
-    )
+    return run([installed / "recon4", *arguments], folder).stdout
+
+
+def run(command, folder):
+    done = subprocess.run(command, cwd=folder, env=alone(), capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
-    return done.stdout
+    return done
 
 
 @contextmanager
@@ -133,10 +156,18 @@ def test_the_help_is_that_of_the_installed_package(installed, tmp_path):
 
 
 def test_the_demo_makes_a_map(demo):
-    folder, said = demo
+    folder, done = demo
 
-    assert "50 multiframes (0 lost)" in said
+    assert "50 multiframes (0 lost)" in done.stdout
     assert (folder / "demo" / "office" / "map.laz").stat().st_size > 1_000_000
+
+
+def test_an_installation_compiles_every_kernel_that_a_map_calls(demo):
+    said = demo[1].stderr.splitlines()
+    kernels = [line for line in said if re.match(r"[a-z0-9_]+\.[a-z0-9_]+ ", line)]
+
+    assert re.search(r"[1-9]\d\d kernels seen", demo[1].stderr)
+    assert kernels == [], "python -m tools.kernel_signatures"
 
 
 def test_pages_documentation_and_viewer_are_served(installed, demo):

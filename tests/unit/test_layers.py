@@ -28,8 +28,8 @@ MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/untrusted": {"recon4.errors"},
     "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
-    "recon4/system/compile_kernels.py": {"recon4"},
-    "recon4/system/compile_packets.py": {"recon4"},
+    "recon4/system/compile_kernels.py": {"recon4.kernels.signatures", "recon4.progress"}
+    | {"recon4.sandbox", "recon4.store.locks", "recon4.system"},
     "recon4/archive": STAGE | {"recon4.archive", "recon4.review"},
     "recon4/progress.py": {"recon4.errors", "recon4.model.events"},
     "recon4/settings": {"recon4.errors", "recon4.settings"},
@@ -138,7 +138,6 @@ NOBODY_IMPORTS = {
         "recon4/cli/main.py",
         "recon4/cli/findings.py",
         "recon4/workflows/calibration_methods.py",
-        "recon4/system/compile_kernels.py",
         "app/recon4_app/cli/serve.py",
         "app",
     },

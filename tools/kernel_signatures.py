@@ -1,0 +1,164 @@
+"""Which types the kernels are called with: ``python -m tools.kernel_signatures`` writes them.
+
+Short simulated walks do each kind of work with an empty cache, and the signatures that Numba
+compiles meanwhile become `recon4/kernels/signatures.txt`, which `recon4 compile` compiles.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from numba import types
+from numba.core import event
+
+from recon4.geometry.se3 import SE3
+from recon4.kernels.signatures import SIGNATURES, kernel_name, spelled
+from recon4.live.mapper.live_map import LiveMap
+from recon4.mapping.tiles import TileSet
+from recon4.model.rig import Sensor
+from recon4.pipeline import process
+from recon4.progress import Silent
+from recon4.recording.formats.datagrams import datagrams_of
+from recon4.recording.packets.decoder import open_decoder
+from recon4.recording.packets.family import Companion, PacketSensor
+from recon4.recording.report import ImportReport
+from recon4.recording.sources import Sources
+from recon4.registration.odometry import Odometry
+from recon4.settings import IngestSettings, override, preset
+from recon4.settings.reads import OdometryReads, part_of
+from recon4.simulation.backpack import measured_seconds, prepare_backpack, simulate_backpack
+from recon4.simulation.families.families import family_of, pattern_of
+from recon4.simulation.lidar import Firings, Lidar, LidarModel
+from recon4.simulation.setup import prepare
+from recon4.simulation.simulate import simulate
+from recon4.slam2d.correlative import LikelihoodField
+from recon4.slam2d.occupancy import OccupancyGrid, crossing_ratio
+from recon4.slices.doubles import find_double_walls
+from recon4.slices.points import extent
+from recon4.slices.slice_image import RasterGrid, draw
+from recon4.slices.slice_plane import SlicePlane
+from recon4.store.frames import FrameStore
+from recon4.store.project import read_artifacts
+
+FEW = ["map.voxel_m=0.1"]
+LIDAR_S, PROFILER_S = 5.0, 8.0
+FRAMES = 20
+PIXEL_M = 0.05
+MODELS = ("VLP-16", "XT32", "OS0-32", "Mid-360")
+"""One model for each decoder that people often need; the others compile when they are met."""
+PACKETS = 20
+START_NS = 1_700_000_000_000_000_000
+
+
+class Compiled(event.Listener):
+    """Remembers the kernels that Numba compiles, as lines of ``signatures.txt``."""
+
+    def __init__(self) -> None:
+        self.lines: set[str] = set()
+
+    def on_start(self, event: event.Event) -> None:
+        """A kernel with literal arguments is compiled with the one that calls it."""
+        dispatcher, arguments = event.data["dispatcher"], event.data["args"]
+        ours = dispatcher.py_func.__module__.startswith("recon4.kernels.")
+        if ours and not any(isinstance(of, types.Literal) for of in arguments):
+            text = ", ".join(spelled(of) for of in arguments)
+            self.lines.add(f"{kernel_name(dispatcher)} of({text})")
+
+    def on_end(self, event: event.Event) -> None:
+        """Nothing."""
+
+
+def main() -> None:
+    """Write ``signatures.txt``: another process does, which finds no compiled kernel."""
+    with tempfile.TemporaryDirectory() as cache:
+        command = [sys.executable, "-c", "from tools.kernel_signatures import write; write()"]
+        subprocess.run(command, env={**os.environ, "NUMBA_CACHE_DIR": cache}, check=True)
+
+
+def write() -> None:
+    """Write what is compiled by this process."""
+    compiled = Compiled()
+    with tempfile.TemporaryDirectory() as folder, event.install_listener("numba:compile", compiled):
+        _lidars(Path(folder))
+        _backpack(Path(folder))
+    SIGNATURES.write_text("".join(f"{line}\n" for line in sorted(compiled.lines)), "ascii")
+
+
+def _lidars(folder: Path) -> None:
+    """Packets, a map of LiDARs, its slices, a live map, and odometry without an IMU."""
+    _packets()
+    walk, project = folder / "walk", folder / "map"
+    simulate(prepare("office", seconds=LIDAR_S, seed=1), walk, bag=False, progress=Silent())
+    sources = Sources((walk / "recording.pcap",), None, walk / "imu.csv", None)
+    process(sources, project, settings=override(preset("indoor"), FEW))
+    made = read_artifacts(project)
+    tiles = TileSet.open(made["map"])
+    find_double_walls(tiles)
+    plane = SlicePlane.horizontal(1.0)
+    paper = RasterGrid(extent(tiles, plane), PIXEL_M)
+    draw(tiles, plane, paper, color="height")
+    draw(tiles, plane, paper, color="sensor")
+    store = FrameStore.open(made["frames"])
+    frames = list(store)[:FRAMES]
+    settings = preset("indoor")
+    live = LiveMap(store.rig, settings)
+    without_imu = Odometry(store.rig, part_of(settings, OdometryReads))
+    if store.imu is not None:
+        live.extend_imu(store.imu)
+    for frame in frames:
+        live.push(frame)
+        without_imu.push(frame)
+
+
+def _backpack(folder: Path) -> None:
+    """A map of line scans; the loop closure of 2-D maps, which a walk of seconds has none of."""
+    setup = prepare_backpack("hall", figure="circle", seconds=PROFILER_S, seed=3)
+    simulate_backpack(setup, folder / "lines", progress=Silent())
+    sources = Sources((folder / "lines" / "rosbag2",), setup.rig)
+    process(sources, folder / "lines-map", settings=override(preset("indoor"), FEW))
+    scans = next(scans for _, scans in measured_seconds(setup) if scans is not None)
+    points, at = scans.points(0), np.zeros(2)
+    field = LikelihoodField.of(points)
+    field.search(
+        points, initial_pose=np.zeros(3), half_window_m=1.0, half_window_rad=0.1, min_score=0.5
+    )
+    grid = OccupancyGrid(0.1, 0.4, 0.6)
+    grid.add_scan(points, at)
+    crossing_ratio(grid, [(points, at)])
+
+
+def _packets() -> None:
+    """Decode a few packets of each of `MODELS`."""
+    for model in MODELS:
+        _decode(Sensor(name="lidar", model=model, T_body_sensor=SE3.identity()))
+
+
+def _decode(sensor: Sensor) -> None:
+    pattern, family = pattern_of(sensor.model), family_of(sensor.model)
+    lidar = Lidar.drawn(sensor, pattern, model=LidarModel.perfect(), rng=np.random.default_rng(1))
+    start_ns = pattern.packet_ns * np.arange(PACKETS, dtype=np.int64)
+    t_ns = start_ns[:, None, None] + pattern.offset_ns
+    nothing = np.zeros(t_ns.shape, np.uint8)
+    turn = np.asarray(2.0 * np.pi * lidar.turn_rate_hz * 1e-9 * t_ns, np.float64)
+    firings = Firings(t_ns, turn, nothing.astype(np.uint32), nothing, nothing)
+    payloads = family.data_packets(lidar, firings, START_NS + start_ns)
+    of = PacketSensor(
+        row=0,
+        sensor=sensor,
+        head=datagrams_of((START_NS + start_ns).tolist(), [one.tobytes() for one in payloads]),
+        companions=[Companion(*one) for one in family.companions(lidar).items()],
+        settings=IngestSettings(),
+        report=ImportReport(),
+    )
+    decoder = open_decoder(of)
+    decoder.push(START_NS + start_ns, payloads)
+    decoder.flush()
+
+
+if __name__ == "__main__":
+    main()
