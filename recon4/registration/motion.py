@@ -282,8 +282,8 @@ def _predict(
     state: MotionState, t_ns: Times, gyro: Array, *, accel: Array, noise: Array
 ) -> Prediction:
     t_s = (t_ns - t_ns[0]) * 1e-9
-    P0 = np.ascontiguousarray(state.P)  # a kernel is compiled for each layout
-    R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, P0, noise)
+    start = np.ascontiguousarray(state.P)  # a kernel is compiled for each layout
+    R, p, v, Phi, P = propagate(t_s, gyro, accel, state.R, state.vector, start, noise)
     R = proper(R)
     vector = state.vector.copy()
     vector[VECTOR.position], vector[VECTOR.velocity] = p[-1], v
