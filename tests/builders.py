@@ -282,7 +282,7 @@ class Bag:
     def cloud(self, topic, t_ns, table):
         codes = {"i1": 1, "u1": 2, "i2": 3, "u2": 4, "i4": 5, "u4": 6, "f4": 7, "f8": 8}
         dtype = np.dtype([(name, column.dtype) for name, column in table.items()])
-        points = np.zeros(len(table["x"]), dtype)
+        points = np.zeros(len(next(iter(table.values()))), dtype)
         fields = []
         for name, column in table.items():
             points[name] = column

@@ -70,6 +70,18 @@ SetOption = Annotated[
     list[str] | None,
     typer.Option("--set", metavar="GROUP.NAME=VALUE", help="Change one setting; repeatable."),
 ]
+FieldsOption = Annotated[
+    str, typer.Option(metavar="ROLE=COLUMN,…", help="Columns of points: x=px:mm,…,time=t:us.")
+]
+CalibrateOption = Annotated[
+    str,
+    typer.Option(
+        metavar="auto|beams|off|SENSORS",
+        help="auto: calibrate a rig file that contradicts the recording; beams: single beams as "
+        "well; off: do not compare them; SENSORS: calibrate these only, as vertical,imu,gnss. "
+        "Default: compare and warn.",
+    ),
+]
 JsonOption = Annotated[bool, typer.Option("--json", help="Write JSON for programs.")]
 
 
@@ -82,14 +94,17 @@ def info(
     rig_out: Annotated[
         Path | None, typer.Option(help="Write a first rig file of its sensors, .toml.")
     ] = None,
+    *,
+    fields: FieldsOption = "",
 ) -> None:
     """Say what a recording holds, what will be derived and what is missing."""
     confine_command(write=[rig_out.parent] if rig_out else [])
     from dataclasses import asdict
 
     from recon4.recording.info import describe
+    from recon4.recording.recipes.given import recipe_given
 
-    found = describe(recording)
+    found = describe(recording, fields=recipe_given(fields))
     if rig_out:
         from recon4.recording.first_rig import write_first_rig
 
@@ -111,16 +126,9 @@ def process(  # noqa: PLR0913 - an argument for each option
     rig: Annotated[str, typer.Option(help="Rig preset or .toml; default: worked out.")] = "",
     imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
     gnss: Annotated[Path | None, typer.Option(help="GNSS/INS samples as CSV.")] = None,
+    fields: FieldsOption = "",
     preset: PresetOption = "indoor",
-    calibrate: Annotated[
-        str,
-        typer.Option(
-            metavar="auto|beams|off|SENSORS",
-            help="auto: calibrate a rig file that contradicts the recording; beams: single beams "
-            "as well; off: do not compare them; SENSORS: calibrate these only, as "
-            "vertical,imu,gnss. Default: compare and warn.",
-        ),
-    ] = "",
+    calibrate: CalibrateOption = "",
     assignments: SetOption = None,
     verbose: Annotated[
         bool, typer.Option("-v", "--verbose", help="Show what the odometry tried to assume.")
@@ -137,13 +145,13 @@ def process(  # noqa: PLR0913 - an argument for each option
 
     from recon4.cli.terminal import describe_summary, describe_tried, watcher
     from recon4.model.events import Warned
-    from recon4.model.rig import load_rig
     from recon4.pipeline import process as run
     from recon4.recording.kinds import located_elsewhere
     from recon4.recording.nearby_samples import unread_samples
+    from recon4.recording.recipes.given import rig_given
 
     with watcher() as progress:
-        sources = Sources(tuple(recordings), load_rig(rig) if rig else None, imu, gnss)
+        sources = Sources(tuple(recordings), rig_given(recordings, rig, fields), imu, gnss)
         for text in (*unread_samples(sources), *located_elsewhere(sources)):
             progress.event(Warned(text=text))
         summary = run(sources, out, settings=chosen, preset=preset, progress=progress)
@@ -322,9 +330,8 @@ def run(arguments: list[str], stop: StopSignals) -> int:
         The exit code.
     """
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(
-            name, "1"
-        )  # small matrices: more threads only get in each other's way
+        # Small matrices: more threads only get in each other's way.
+        os.environ.setdefault(name, "1")
     try:
         code, complaint = _run(arguments, stop)
     except BaseException:

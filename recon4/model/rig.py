@@ -17,6 +17,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
 from recon4.model.lidars import LIDARS, lidar_model
+from recon4.model.point_recipes import PointRecipe, parse_fields
 from recon4.model.toml_tables import TomlTable, parse_toml
 from recon4.untrusted.bounded import read_text_limited
 
@@ -42,7 +43,7 @@ DEFAULT_PORTS: dict[SensorKind, int] = {
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "description", "kind", "head_topic",
-    "head_rate_deg_s", "beams",
+    "head_rate_deg_s", "beams", "fields",
 }  # fmt: skip
 _IMU_KEYS = _MOUNTING_KEYS | {"topic", "sensor"}
 _GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial", "topic"}
@@ -86,6 +87,8 @@ class Sensor:
     beside the recording, or not needed."""
     beams: BeamCorrections | None = None
     """Corrections of its single beams; None = those of the data sheet."""
+    fields: PointRecipe | None = None
+    """What the columns of its points are; None = they have common names."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -288,6 +291,7 @@ def format_rig(rig: Rig) -> str:
         lines += [f"serial = {_quoted(sensor.serial)}"] if sensor.serial else []
         described = sensor.description
         lines += [f"description = {_quoted(described)}"] if described else []
+        lines += [sensor.fields.toml()] if sensor.fields else []
         lines += [f"enabled = {str(sensor.enabled).lower()}", ""]
         lines += format_beams(sensor.beams)
     lines += ["[imu]"]
@@ -338,8 +342,9 @@ def _sensor(row: TomlTable) -> Sensor:
         )
     if kind != "profiler" and ("head_topic" in row or "head_rate_deg_s" in row):
         raise ConfigError(f"{row.where}: only a profiler has a head, this is a {kind}")
-    if kind != "lidar" and "beams" in row:
-        raise ConfigError(f"{row.where}: only a lidar has corrections of beams, this is a {kind}")
+    for key, what in (("beams", "corrections of beams"), ("fields", "columns of points")):
+        if kind != "lidar" and key in row:
+            raise ConfigError(f"{row.where}: only a lidar has {what}, this is a {kind}")
     name = row.text("name")
     if not name:
         raise ConfigError(f"{row.where}: name must be a text, got {row.get('name')!r:.80}")
@@ -358,6 +363,7 @@ def _sensor(row: TomlTable) -> Sensor:
         serial=row.text("serial"),
         description=row.text("description", most=MAX_RIG_BYTES),
         beams=parse_beams(row.get("beams"), f"{row.where}: beams", model=model),
+        fields=parse_fields(row.get("fields"), f"{row.where}: fields"),
     )
 
 

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from itertools import islice
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.formats.bags import Bag, BagMessage
-from recon4.recording.formats.cloud_files import Table
-from recon4.recording.formats.message_limits import MAX_CLOUD_POINTS, require_apart_fields
-from recon4.recording.formats.point_messages import PointMessage
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured import declared_absent
 from recon4.recording.stamps import StampClock
@@ -24,59 +20,12 @@ from recon4.recording.stamps import StampClock
 _BATCH = 500
 """Number of IMU samples delivered at a time."""
 _STAMPS_PROBED = 9
-_FIELD_TYPES = {1: "i1", 2: "u1", 3: "i2", 4: "u2", 5: "i4", 6: "u4", 7: "f4", 8: "f8"}
 _FIX_QUALITY = {
     **{-2: GnssQuality.SINGLE, 0: GnssQuality.SINGLE},
     **{1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED},
 }
 """Of each ``NavSatStatus``; -2 is a driver that does not tell."""
 _NOTHING = (np.nan,) * 3
-
-
-def cloud_table(cloud: Any) -> Table:
-    """Fields of a ``PointCloud2``, or of another message of points, by lower-case name.
-
-    Raises:
-        CorruptFile: If the data are shorter than the layout.
-    """
-    if isinstance(cloud, PointMessage):
-        return cloud.table
-    order = ">" if cloud.is_bigendian else "<"
-    known = [f for f in cloud.fields if f.datatype in _FIELD_TYPES]
-    step, width, height = int(cloud.point_step), int(cloud.width), int(cloud.height)
-    row_step = int(cloud.row_step) or step * width
-    data: NDArray[np.uint8] = np.asarray(cloud.data, np.uint8)
-    if step <= 0 or row_step < step * width or len(data) < row_step * height:
-        raise CorruptFile(
-            f"a cloud of {width} x {height} points of {step} bytes in rows of {row_step} "
-            f"does not fit into {len(data)} bytes"
-        )
-    if width * height > MAX_CLOUD_POINTS:
-        raise CorruptFile(
-            f"a cloud of {width} x {height} points: expected at most {MAX_CLOUD_POINTS}"
-        )
-    require_apart_fields([(int(f.offset), int(_FIELD_TYPES[f.datatype][1])) for f in known])
-    dtype = _point_dtype(known, step, order)
-    rows = data[: row_step * height].reshape(height, row_step)[:, : step * width]
-    points = np.ascontiguousarray(rows).reshape(-1).view(dtype)
-    return {
-        field.name.lower(): points[field.name].astype(points[field.name].dtype.newbyteorder("="))
-        for field in known
-    }
-
-
-def _point_dtype(fields: Sequence[Any], step: int, order: str) -> np.dtype[np.void]:
-    try:
-        return np.dtype(
-            {
-                "names": [f.name for f in fields],
-                "formats": [order + _FIELD_TYPES[f.datatype] for f in fields],
-                "offsets": [int(f.offset) for f in fields],
-                "itemsize": step,
-            }
-        )
-    except ValueError as error:
-        raise CorruptFile(f"the fields of a cloud do not fit into {step} bytes: {error}") from error
 
 
 # -- samples

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import Any, Protocol
@@ -11,6 +12,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError
+from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -18,7 +20,6 @@ from recon4.recording.assembly.assembler import moved
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.bag_messages import (
     SampleBatch,
-    cloud_table,
     first_stamps,
     fix_row,
     join_fixes,
@@ -37,12 +38,19 @@ from recon4.recording.formats.bags import (
     BagMessage,
     BagTopic,
 )
+from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, on_their_joints, read_mounts
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import DATA_MESSAGES
+from recon4.recording.recipes.bag_points import (
+    declared_recipes,
+    overlooked_columns,
+    unknown_points,
+)
+from recon4.recording.recipes.refuse import require_known
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.stamp_order import StampOrder
@@ -82,6 +90,19 @@ _PROBED_MESSAGES = 50
 """Messages of a topic that are decoded to detect its content."""
 
 
+@dataclass(frozen=True, slots=True)
+class Given:
+    """What a person gives with a bag that describes its LiDARs."""
+
+    companions: Sequence[Companion] = ()
+    """Files with their metadata or angles."""
+    fields: PointRecipe | None = None
+    """What the columns of its points are, without a rig."""
+
+
+_NOTHING = Given()
+
+
 class BagRecording:
     """Streams shots and samples of one bag or of several consecutive ones."""
 
@@ -92,7 +113,7 @@ class BagRecording:
         *,
         settings: IngestSettings,
         report: ImportReport,
-        companions: Sequence[Companion] = (),
+        given: Given = _NOTHING,
     ) -> None:
         """Read the head of the bag and choose the rig.
 
@@ -101,7 +122,7 @@ class BagRecording:
             rig: None = chosen from what is in the bag.
             settings: Topics, units and limits.
             report: Receives what was found and detected.
-            companions: Files that describe the LiDARs.
+            given: What describes the LiDARs.
 
         Raises:
             RecordingError: If the bag cannot be read or has no LiDAR data.
@@ -110,8 +131,10 @@ class BagRecording:
         self._paths, self._settings, self._report = paths, settings, report
         with Bag(paths, report) as bag:
             self.seconds = bag.seconds
+            self._recipes = declared_recipes(bag, rig, given.fields, report=report)
+            bag.use_recipes(self._recipes)
             self.topics = bag.topics
-            self._packets = BagPackets(bag, companions)
+            self._packets = BagPackets(bag, given.companions)
             self.streams = lidar_streams(self._packets, rig, settings, report=report)
             lidars = [stream.topic for stream in self.streams]
             beside = [topic for topic in bag.topics if topic.name in lidars]
@@ -133,6 +156,7 @@ class BagRecording:
         # OpenRequest was reported already when the head was read.
         with Bag(self._paths, ImportReport()) as bag:
             bag.report = self._report
+            bag.use_recipes(self._recipes)
             yield from self._read(bag)
 
     def _read(self, bag: Bag) -> Iterator[Item]:
@@ -218,12 +242,12 @@ def lidar_streams(
         report: Receives which clouds are not read, and why.
 
     Raises:
-        ConfigError: If the settings name a topic that is not there.
+        ConfigError: If the settings name a topic that is not there, or the points need a recipe.
     """
     bag, scans = packets.bag, packets.data_topics
     clouds = [t for t in bag.topics if is_cloud(t)]
     if settings.lidar_topic:
-        there = [t.name for t in (*scans, *clouds)]
+        there = [t.name for t in (*scans, *clouds, *(t for t in bag.topics if t.columns))]
         require_topic(settings.lidar_topic, there, "ingest.lidar_topic")
         scans = [t for t in scans if t.name == settings.lidar_topic]
         clouds = [t for t in clouds if t.name == settings.lidar_topic]
@@ -235,7 +259,7 @@ def lidar_streams(
             *(Stream(t.name, _model(bag, t), topic=t.name) for t in beside),
         ]
     found = judged_clouds(bag, clouds, by_rig) if clouds else []
-    used = [one for one in found if not one.why_not]
+    used = [one for one in found if not one.why_not and one.has_places]
     if unread := unread_text(bag.topics):
         named = {settings.lidar_topic, *by_rig}
         lidars = [one for one in used if one.is_measured or one.topic.name in named]
@@ -245,6 +269,11 @@ def lidar_streams(
         names = ", ".join(one.topic.name for one in used)
         others = ", ".join(f"{one.topic.name} ({one.why_not})" for one in found if one.why_not)
         report.derive(f"LiDAR: {names} is read, not {others}")
+    unknown = unknown_points(bag, found, only=settings.lidar_topic)
+    if not used:
+        require_known([(one.stream, one.proposal) for one in unknown], bag.paths[0].name)
+    for text in (*(f"not read: {u.text()}" for u in unknown), *overlooked_columns(bag, used)):
+        report.derive(text)
     return [_cloud_stream(bag, one) for one in used]
 
 
@@ -257,6 +286,7 @@ def _cloud_stream(bag: Bag, one: CloudTopic) -> Stream:
         frame=one.frame,
         points=one.points,
         detail=one.detail,
+        fields=bag.recipes.get(name),
     )
 
 

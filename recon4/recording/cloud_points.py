@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import UnknownFormat
+from recon4.errors import ConfigError, UnknownFormat
 from recon4.model.import_notes import CLOUDS_UNTIMED
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
@@ -61,7 +61,16 @@ class CloudDecoder:
             points_lead: Absolute times of points count, however far they are from the stamps
                 (file names in local time); otherwise the stamps do (one clock for a whole bag).
             settings: Unit of the points, and whether the motion of the sensor is inside.
+
+        Raises:
+            ConfigError: If the unit is said twice.
         """
+        fields = sensor.fields
+        if fields is not None and fields.has_lengths and settings.points_unit_m != 1.0:
+            raise ConfigError(
+                f"{sensor.name}: the fields say the unit of the points ({fields.text()[:200]}): "
+                f"expected no ingest.points_unit_m, got {settings.points_unit_m:g}"
+            )
         self._row, self._report = sensor_row, report
         self._name, self._model = sensor.name, sensor.model
         self._clock = PointClock(sensor.name, report, points_lead=points_lead)

@@ -54,16 +54,23 @@ def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
             "page: All settings; command: --set ingest.lidar_topic=TOPIC)"
         )
     unknown = [topic for topic in topics if topic.columns and not topic.is_points]
-    why += "".join(f"; {_unknown_points(topic)}" for topic in unknown[:_NAMES_LISTED])
+    why += "".join(f"; {needed_text(t.name, t.columns)}" for t in unknown[:_NAMES_LISTED])
     return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
 
 
-def _unknown_points(topic: BagTopic) -> str:
-    """What a type of the bag's own lacks to be read as points."""
-    names = ", ".join(name[:40] for name in topic.columns[:_NAMES_LISTED])
+def needed_text(name: str, columns: Sequence[str]) -> str:
+    """What points of unknown columns lack to be read.
+
+    Args:
+        name: Topic or file.
+        columns: Their names.
+    """
+    names = ", ".join(column[:40] for column in columns[:_NAMES_LISTED])
     return (
-        f"{topic.name} has lists of {names}: it is read as "
-        "points of a LiDAR if they are named x, y, z, and a time, ring or intensity"
+        f"{name} has lists of {names}: it is read as points of a LiDAR if they are named x, y, z, "
+        "and a time, ring or intensity, or if a rig file says which columns they are: fields = "
+        '{ x = "COLUMN", y = "COLUMN", z = "COLUMN", time = "COLUMN" } (or range, azimuth, '
+        "elevation) in its [[sensor]]"
     )
 
 

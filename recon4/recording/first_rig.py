@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.errors import ConfigError
@@ -9,13 +10,16 @@ from recon4.model.rig import Rig, format_rig
 from recon4.store.atomic import write_text
 
 
-def first_rig_text(rig: Rig, recording: str, *, mounted: bool) -> str:
+def first_rig_text(
+    rig: Rig, recording: str, *, mounted: bool, uncertain: Sequence[str] = ()
+) -> str:
     """A rig as TOML text, with what remains to be measured as comments.
 
     Args:
         rig: The sensors of the recording.
         recording: Its name.
-        mounted: Whether the recording says how they are mounted.
+        mounted: Whether the recording says how they are mounted, or there is only one.
+        uncertain: What else a person should look at.
     """
     lines = [
         f"# Sensors of {' '.join(recording.split())}. Body: x forward, y left, z up.",
@@ -26,6 +30,7 @@ def first_rig_text(rig: Rig, recording: str, *, mounted: bool) -> str:
             f"# Measure xyz_m [m] and rpy_deg (roll, pitch, yaw) [°] of {names}: all are 0 here.",
             "# A centimeter and a degree are enough; recon4 calibrate finds the rest.",
         ]
+    lines += [f"# Uncertain: {' '.join(text.split())}" for text in uncertain]
     text = format_rig(rig)
     if not mounted:
         text = text.replace("quat_xyzw = [0.0, 0.0, 0.0, 1.0]", "rpy_deg = [0.0, 0.0, 0.0]")

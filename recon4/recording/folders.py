@@ -12,6 +12,7 @@ import numpy as np
 from recon4.errors import CorruptFile, EmptyRecording, RecordingError, UnknownFormat
 from recon4.geometry.se3 import SE3
 from recon4.model.multiframe import Multiframe
+from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.assembly.assembler import TimeGap, drop_invalid
@@ -19,12 +20,15 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.cloud_files import (
     CLOUD_SUFFIXES,
+    Table,
     is_cloud_file,
     is_mesh,
     read_cloud,
 )
+from recon4.recording.formats.point_messages import POINTS
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
 from recon4.recording.frame_times import ASSUMED_NS, frame_times
+from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
@@ -133,7 +137,9 @@ def read_frames(
     for file, stamp in zip(frames.files, frames.t_ns, strict=True):
         report.count("files")
         try:
-            shots = _shots(decoder, file, int(stamp) + offset_ns, period_ns=frames.period_ns)
+            at_ns = int(stamp) + offset_ns
+            table = read_points(file, sensor.fields)
+            shots = _shots(decoder, table, file.name, t_ns=at_ns, period_ns=frames.period_ns)
         except RecordingError as error:
             failed = error
             report.count("files_corrupt")
@@ -179,12 +185,26 @@ def folder_gaps(frames: FrameFiles, name: str, gap_s: float) -> list[TimeGap]:
     ]
 
 
-def _shots(decoder: CloudDecoder, file: Path, stamp_ns: int, *, period_ns: int) -> Shots:
+def read_points(file: Path, fields: PointRecipe | None) -> Table:
+    """The points of a file; with a recipe in columns with common names.
+
+    Raises:
+        CorruptFile: If it is damaged, or lacks a column.
+    """
     table = read_cloud(file)
+    if fields is None:
+        return table
     try:
-        return decoder.decode(table, t_ns=stamp_ns, period_ns=period_ns)
-    except UnknownFormat as error:
+        return as_points(fields, {POINTS: table})
+    except CorruptFile as error:
         raise CorruptFile(f"{file.name}: {error}") from error
+
+
+def _shots(decoder: CloudDecoder, table: Table, name: str, *, t_ns: int, period_ns: int) -> Shots:
+    try:
+        return decoder.decode(table, t_ns=t_ns, period_ns=period_ns)
+    except UnknownFormat as error:
+        raise CorruptFile(f"{name}: {error}") from error
 
 
 def _multiframe(shots: Shots, frame_id: int, start_ns: int, *, period_ns: int) -> Multiframe:

@@ -11,10 +11,10 @@ import numpy as np
 
 from recon4.errors import ConfigError, RecordingError
 from recon4.model.lidars import lidar_model
+from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import TimeGap
-from recon4.recording.bag_messages import cloud_table
 from recon4.recording.bag_packets import BagPackets
 from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
@@ -22,6 +22,7 @@ from recon4.recording.first_rig import first_rig_text
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
+from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
 from recon4.recording.info_head import RecordingHead, judge_samples, kind_of_walk, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
@@ -44,8 +45,9 @@ from recon4.recording.openers.request import OpenRequest
 from recon4.recording.packets.companions import companion_paths, companions_of
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.point_fields import INTENSITY_FIELDS, RING_FIELDS, TIME_FIELDS, find_field
+from recon4.recording.recipes.bag_points import declared_recipes
 from recon4.recording.report import ImportReport
-from recon4.recording.rig_choice import UnknownMounts
+from recon4.recording.rig_choice import RigToComplete
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
@@ -57,7 +59,11 @@ _LASER_GAP_S = 1.0
 
 
 def describe(
-    path: Path, *, settings: IngestSettings | None = None, near: Sequence[Path] = ()
+    path: Path,
+    *,
+    settings: IngestSettings | None = None,
+    near: Sequence[Path] = (),
+    fields: PointRecipe | None = None,
 ) -> RecordingInfo:
     """Read a small recording completely, and head and directory of a large one.
 
@@ -65,9 +71,11 @@ def describe(
         path: File or folder.
         settings: Of the stage that reads it; None = the usual ones.
         near: Files beside it, for a process that may not list its folder.
+        fields: What the columns of its points are, if they have no common names.
 
     Raises:
         RecordingError: If it cannot be read or is nothing that recon4 knows.
+        ConfigError: If the fields do not fit.
     """
     settings = settings or IngestSettings()
     given = path
@@ -85,13 +93,14 @@ def describe(
     if kind is RecordingKind.LINE_TABLES:
         return describe_line_tables(info, path)
     beside = companion_paths([path], near) if kind in (*CAPTURES, *BAGS) else []
+    request = OpenRequest((path, *beside), None, settings, report, fields=fields)
     if kind in CAPTURES:
-        info = describe_capture(info, path, companions_of([path, *beside]))
+        info = describe_capture(info, path, companions_of(request.paths))
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
     elif kind in BAGS:
-        info = _describe_bag(info, [path, *beside], settings, report=report)
-    return _with_head(info, [path, *beside], settings, report=report)
+        info = _describe_bag(info, request)
+    return _with_head(info, request)
 
 
 def _size(path: Path) -> int:
@@ -102,12 +111,14 @@ def _size(path: Path) -> int:
 # -- bags
 
 
-def _describe_bag(
-    info: RecordingInfo, paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
-) -> RecordingInfo:
-    with Bag(bag_paths(paths[0]), report) as bag:
-        packets = BagPackets(bag, companions_of(paths))
-        streams = lidar_streams(packets, None, settings, report=report)
+def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
+    with Bag(bag_paths(request.paths[0]), request.report) as bag:
+        bag.use_recipes(declared_recipes(bag, None, request.fields, report=ImportReport()))
+        packets = BagPackets(bag, companions_of(request.paths))
+        try:
+            streams = lidar_streams(packets, None, request.settings, report=request.report)
+        except RigToComplete:  # said when the recording is opened
+            streams = []
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
         whole = info.bytes <= WHOLE_BYTES
@@ -241,7 +252,7 @@ def _describe_frames(info: RecordingInfo, path: Path, settings: IngestSettings) 
     ]
     sensor = SensorInfo(
         label=path.name,
-        model=frames_model(frames.files),
+        model=frames_model(frames.files, None),
         content=frames_label(frames),
         count=len(frames.files),
         rate_hz=frames.rate_hz,
@@ -302,23 +313,24 @@ def _with_rotation(
     )
 
 
-def _first_rig(found: Rig | None, to_complete: Rig | None, recording: str) -> str:
+def _first_rig(found: Rig | None, to_complete: RigToComplete | None, recording: str) -> str:
     """A rig file of the sensors, as text; empty = none is known."""
-    if to_complete is not None:
-        return first_rig_text(to_complete, recording, mounted=False)
-    return first_rig_text(found, recording, mounted=True) if found is not None else ""
+    if to_complete is None:
+        return first_rig_text(found, recording, mounted=True) if found is not None else ""
+    rig = to_complete.rig
+    several = len(rig.sensors) > 1
+    uncertain = to_complete.uncertain
+    return first_rig_text(rig, recording, mounted=not several, uncertain=uncertain)
 
 
-def _with_head(
-    info: RecordingInfo, paths: Sequence[Path], settings: IngestSettings, *, report: ImportReport
-) -> RecordingInfo:
+def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
     """Add the findings of opening the recording and reading its first second."""
-    path, head = paths[0], RecordingHead()
-    missing = list(info.missing)
+    path, settings, report = request.paths[0], request.settings, request.report
+    head, missing = RecordingHead(), list(info.missing)
     rig: Rig | None = None
-    to_complete: Rig | None = None
+    to_complete: RigToComplete | None = None
     try:
-        recording = open_recording(OpenRequest(tuple(paths), None, settings, report))
+        recording = open_recording(request)
         rig = recording.rig
         whole = info.bytes <= WHOLE_BYTES
         head = read_head(recording, settings, whole=whole, report=report)
@@ -326,7 +338,9 @@ def _with_head(
             report.warn(report.why_no_points())
         judge_samples(head, rig, settings, whole=whole, report=report)
     except ConfigError as error:
-        to_complete = error.rig if isinstance(error, UnknownMounts) else None
+        if request.fields is not None:
+            raise
+        to_complete = error if isinstance(error, RigToComplete) else None
         missing.append(f"rig: {error}")
     except RecordingError as error:
         missing.append(str(error))

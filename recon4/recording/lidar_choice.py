@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import RecordingError
-from recon4.recording.bag_messages import cloud_table
 from recon4.recording.formats.bags import IMU, ODOMETRY, Bag, BagTopic
+from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
 from recon4.recording.point_fields import EXACT_TIME, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
@@ -49,6 +49,11 @@ class CloudTopic:
     def stamps(self) -> Set[int]:
         """Of the first messages [ns]."""
         return self.clouds.keys()
+
+    @property
+    def has_places(self) -> bool:
+        """Whether there are columns x, y and z; without a message nobody knows."""
+        return not self.fields or {"x", "y", "z"} <= self.fields
 
     @property
     def is_placed(self) -> bool:

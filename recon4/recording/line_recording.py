@@ -16,7 +16,7 @@ from recon4.model.line_scans import LineScans
 from recon4.model.rig import Rig, Sensor
 from recon4.model.samples import ImuSamples
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.bag_messages import cloud_table, stamp_clock, stamp_ns
+from recon4.recording.bag_messages import stamp_clock, stamp_ns
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import (
@@ -27,6 +27,7 @@ from recon4.recording.formats.bags import (
     BagMessage,
     BagTopic,
 )
+from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.head_angles import Head, HeadAngles
 from recon4.recording.joint_head import JointHead
 from recon4.recording.mount_check import compare_mounts

@@ -6,7 +6,18 @@ from typing import Any
 
 EXACT_TIME = "t_ns"
 """Absolute times that are nanoseconds by the definition of their message: no unit is estimated."""
-TIME_FIELDS = ("t", "time", "timestamp", "time_stamp", "offset_time", "time_offset", "t_us")
+NS_TIME = "time [ns]"
+"""Times whose unit a recipe says, of any clock or since the stamp; no field has this name."""
+TIME_FIELDS = (
+    NS_TIME,
+    "t",
+    "time",
+    "timestamp",
+    "time_stamp",
+    "offset_time",
+    "time_offset",
+    "t_us",
+)
 RING_FIELDS = ("ring", "channel", "line", "laser_id", "beam")
 INTENSITY_FIELDS = ("intensity", "i", "reflectivity", "signal", "scalar_intensity")
 

@@ -12,6 +12,7 @@ from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import described
+from recon4.recording.point_fields import NS_TIME
 from recon4.recording.report import ImportReport
 
 Values = NDArray[Any]
@@ -121,7 +122,8 @@ class PointClock:
             raise CorruptFile(f"{self._name}: time field of type {values.dtype}")
         try:
             numbers = _numbers(values)
-            unit = self._unit(numbers, t_ns, period_ns, full_turn=full_turn)
+            is_known = key == NS_TIME
+            unit = self._unit(numbers, t_ns, period_ns, full_turn=full_turn, is_known=is_known)
             revolution_ns = _revolution_ns(numbers, unit, period_ns, full_turn=full_turn)
             return self._placed(numbers, unit, t_ns, revolution_ns=revolution_ns)
         except _UnusableTimes as reason:
@@ -131,7 +133,9 @@ class PointClock:
             )
             return None
 
-    def _unit(self, numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool) -> float:
+    def _unit(
+        self, numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool, is_known: bool
+    ) -> float:
         """Nanoseconds of one unit.
 
         Raises:
@@ -139,6 +143,19 @@ class PointClock:
         """
         if full_turn and numbers.span == 0.0:
             raise _UnusableTimes(f"all points of a revolution have the time {numbers.middle:g}")
+        unit = 1.0
+        if not is_known:
+            unit = self._detected_unit(numbers, t_ns, period_ns, full_turn=full_turn)
+        # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
+        if full_turn and numbers.span * unit < 1e9 * _TURN_S[0]:
+            raise _UnusableTimes(
+                f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
+            )
+        return unit
+
+    def _detected_unit(
+        self, numbers: _Numbers, t_ns: int, period_ns: int, *, full_turn: bool
+    ) -> float:
         by_span = _unit_of_turn(numbers) if full_turn else _unit_of_part(numbers, period_ns)
         unit = _unit_of_clock(numbers, t_ns, period_ns) or _unit_of_dates(numbers) or by_span
         self._known_unit = unit or self._known_unit
@@ -147,11 +164,6 @@ class PointClock:
         if not unit:
             raise _UnusableTimes(
                 f"from first to last point {numbers.span:g}, no revolution in any unit"
-            )
-        # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
-        if full_turn and numbers.span * unit < 1e9 * _TURN_S[0]:
-            raise _UnusableTimes(
-                f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
             )
         return unit
 

@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.model.lidars import lidar_model
+from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig, Sensor, imu_mount, load_rig
 from recon4.recording.report import ImportReport
 
@@ -36,6 +37,8 @@ class Stream:
     """Usual number of points of a cloud; 0 = not known."""
     detail: int = 0
     """How much of what a LiDAR measures its clouds have (`CloudTopic.detail`)."""
+    fields: PointRecipe | None = None
+    """What the columns of its points are; None = they have common names."""
 
     @property
     def likeness(self) -> tuple[int, bool, int]:
@@ -43,18 +46,23 @@ class Stream:
         return self.detail, self.model != "generic", self.points
 
 
-class UnknownMounts(ConfigError):
-    """Several LiDARs, and nothing says how they are mounted."""
+class RigToComplete(ConfigError):
+    """A recording that needs a rig; one is there for a person to complete."""
 
-    def __init__(self, text: str, rig: Rig) -> None:
+    def __init__(self, text: str, rig: Rig, uncertain: Sequence[str] = ()) -> None:
         """Prepare.
 
         Args:
             text: What is missing, and what to do.
             rig: The LiDARs, all at the origin of the body.
+            uncertain: What a person should look at, besides the mounts of several LiDARs.
         """
         super().__init__(text)
-        self.rig = rig
+        self.rig, self.uncertain = rig, tuple(uncertain)
+
+
+class UnknownMounts(RigToComplete):
+    """Several LiDARs, and nothing says how they are mounted."""
 
 
 def choose_rig(streams: Sequence[Stream], report: ImportReport, *, why: str = "") -> Rig:
@@ -159,6 +167,7 @@ def single_rig(stream: Stream) -> Rig:
         T_body_sensor=SE3.identity(),
         port=stream.port or 2368,
         topic=stream.topic,
+        fields=stream.fields,
     )
     return Rig(
         name=f"single {stream.model}",

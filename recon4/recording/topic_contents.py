@@ -70,9 +70,17 @@ class Fault:
     text: str
 
 
-def read_contents(bag: Bag, topics: Sequence[BagTopic]) -> dict[str, Contents]:
-    """Decode the first messages of some topics, in one pass over the head of an open bag."""
-    large = {*DATA_MESSAGES, *(topic.type for topic in topics if topic.is_points)}
+def read_contents(
+    bag: Bag, topics: Sequence[BagTopic], *, as_sent: bool = False
+) -> dict[str, Contents]:
+    """Decode the first messages of some topics, in one pass over the head of an open bag.
+
+    Args:
+        bag: An open bag.
+        topics: Some of its topics.
+        as_sent: Points without their recipes.
+    """
+    large = {*DATA_MESSAGES, *(topic.type for topic in topics if topic.is_points or topic.columns)}
     most = dict.fromkeys(large, _PROBED_CLOUDS)
     waiting = {
         t.name: min(t.messages, most.get(t.type, _PROBED_MESSAGES)) for t in topics if t.messages
@@ -86,7 +94,7 @@ def read_contents(bag: Bag, topics: Sequence[BagTopic]) -> dict[str, Contents]:
         if waiting[message.topic] <= 0:
             continue
         waiting[message.topic] -= 1
-        content = bag.decode(message)
+        content = bag.decode(message, as_sent=as_sent)
         if content is not None:
             header = getattr(content, "header", None)  # messages of packets may have none
             t_ns = stamp_ns(header.stamp) if header is not None else 0

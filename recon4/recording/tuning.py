@@ -15,3 +15,31 @@ class IngestTuning(IngestSettings):
     """Packets out of order by at most this are sorted [s]."""
     gap_s: float = 0.2
     """A jump of the clock larger than this is reported as a gap [s]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RecipeTuning:
+    """What the points of a recipe must be like (`recon4/recording/recipes`)."""
+
+    nearest_m: float = 0.2
+    """Half of the points of a cloud are farther away [m]; a unit that is wrong is so by 10 and
+    more."""
+    farthest_m: float = 150.0
+    """Half of them are nearer [m]; LiDARs of backpacks measure 100 to 300 m at most."""
+    angle_tolerance_rad: float = 0.1
+    """By which angles may be beyond a turn, or beyond the zenith [rad]."""
+    cloud_periods: tuple[float, float] = (0.1, 5.0)
+    """Duration of a cloud in those from cloud to cloud: part of a turn, or clouds that were not
+    recorded; units differ by 1000."""
+    coarsest: float = 0.02
+    """Largest step of the times in durations from cloud to cloud, as in `PointClock`."""
+    cone_rad: float = 0.005
+    """Median spread of the elevations of a ring [rad], 0.3°, as for rings of clouds."""
+    turn_rad: float = 2.0
+    """Points that turn to the left by more are mirrored [rad]; a scan to and fro turns less in one
+    direction for all of its rings."""
+    fewest_points: int = 20
+    """A list with fewer is none of a LiDAR."""
+
+
+RECIPES = RecipeTuning()

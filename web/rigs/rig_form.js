@@ -46,6 +46,7 @@ const NEW_SENSOR = {
   serial: "",
   description: "",
   beams: null,
+  fields: "",
 };
 
 export class RigForm extends HTMLElement {
@@ -196,6 +197,7 @@ export class RigForm extends HTMLElement {
         this.#text(sensor, "address", { label: "Address", path: `${path}.address`, hint: "any" }),
         this.#text(sensor, "topic", { label: "Topic", path: `${path}.topic`, hint: "detected" }),
         this.#text(sensor, "serial", { label: "Serial number", path: `${path}.serial` }),
+        this.#text(sensor, "fields", { label: "Columns", path: `${path}.fields`, hint: "known" }),
       ]),
       sensor.kind === "profiler" ? this.#head(sensor, path) : nothing,
       html`<div class="title-row">

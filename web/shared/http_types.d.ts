@@ -987,6 +987,7 @@ export interface SensorContent {
   serial?: string;
   description?: string;
   beams?: BeamsContent | null;
+  fields?: string;
 }
 
 export interface SensorModel {

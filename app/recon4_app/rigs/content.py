@@ -11,6 +11,7 @@ import numpy as np
 from recon4.errors import ConfigError, WrongSettings
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, parse_beams
+from recon4.model.point_recipes import PointRecipe, parse_fields_text
 from recon4.model.rig import SENSOR_MODELS, Rig, Sensor, imu_mount
 from recon4.model.serial_device import parse_serial_device
 from recon4.untrusted.names import visible
@@ -168,6 +169,7 @@ def _sensor_problems(sensor: SensorContent, where: str, label: str) -> Iterator[
             f"{label}: expected at most {RIG_CONTENT.largest_head_deg_s:g} °/s",
         )
     yield from _beams_problems(sensor, f"{where}.beams", label)
+    yield from _fields_problems(sensor, f"{where}.fields", label)
     if sensor.address and not _is_address(sensor.address):
         got = visible(sensor.address)
         yield f"{where}.address", f"{label}: expected an address like 192.168.1.201, got {got!r}"
@@ -181,6 +183,16 @@ def _beams_problems(sensor: SensorContent, field: str, label: str) -> Iterator[P
         _beams(sensor)
     except ConfigError as error:
         yield field, visible(str(error), most=300)
+
+
+def _fields_problems(sensor: SensorContent, field: str, label: str) -> Iterator[Problem]:
+    if sensor.fields and sensor.kind != "lidar":
+        yield field, f"{label}: only a lidar has columns of points"
+        return
+    try:
+        _fields(sensor)
+    except ConfigError as error:
+        yield field, str(error)
 
 
 def _mount_problems(xyz_m: Triple, rpy: Triple, *, where: str, label: str) -> Iterator[Problem]:
@@ -240,12 +252,18 @@ def _sensor(content: SensorContent) -> Sensor:
         serial=content.serial.strip(),
         description=content.description,
         beams=_beams(content),
+        fields=_fields(content),
     )
 
 
 def _beams(content: SensorContent) -> BeamCorrections | None:
     table = content.beams and content.beams.model_dump()
     return parse_beams(table, f"{content.name}: beams", model=content.model)
+
+
+def _fields(content: SensorContent) -> PointRecipe | None:
+    text = content.fields.strip()
+    return parse_fields_text(text, f"{content.name}: fields") if text else None
 
 
 def _sensor_content(sensor: Sensor) -> SensorContent:
@@ -265,6 +283,7 @@ def _sensor_content(sensor: Sensor) -> SensorContent:
         serial=visible(sensor.serial),
         description=sensor.description,
         beams=_beams_content(sensor.beams),
+        fields=sensor.fields.text() if sensor.fields else "",
     )
 
 

@@ -66,6 +66,8 @@ class SensorContent(RigPart):
     """Metadata or table of angles of this very sensor, as its maker writes them."""
     beams: BeamsContent | None = None
     """Corrections of single beams; null = none."""
+    fields: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
+    """What the columns of its points are, as `x=px:mm,y=py:mm,z=pz:mm`; empty = common names."""
 
 
 class ImuContent(RigPart):

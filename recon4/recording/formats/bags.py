@@ -8,7 +8,7 @@ What a file may ask for is in `recon4.recording.formats.limits`.
 from __future__ import annotations
 
 import heapq
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
 from functools import cache
@@ -16,11 +16,13 @@ from pathlib import Path
 from typing import Any, Protocol, Self
 
 from recon4.errors import CorruptFile, EmptyRecording
+from recon4.model.point_recipes import PointRecipe
 from recon4.recording.folders import natural
 from recon4.recording.formats import db3
 from recon4.recording.formats.bag1 import Bag1, is_bag1
 from recon4.recording.formats.bag_folder import BagMetadata, read_metadata
 from recon4.recording.formats.chunks import BagIndex, RawMessage
+from recon4.recording.formats.cloud_tables import cloud_lists
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.limits import (
     MAX_MESSAGE_BYTES,
@@ -32,10 +34,11 @@ from recon4.recording.formats.limits import (
 )
 from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
-from recon4.recording.formats.point_messages import PointReader, point_readers
+from recon4.recording.formats.point_messages import PointMessage, PointReader, point_readers
 from recon4.recording.formats.scratch import scratch_folder
 from recon4.recording.formats.zstd_file import decompress_file
-from recon4.recording.packets.messages import DATA_MESSAGES, DEFINITIONS
+from recon4.recording.packets.messages import DATA_MESSAGES, DEFINITIONS, PACKET_MESSAGES
+from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
 
 CLOUD = "sensor_msgs/msg/PointCloud2"
@@ -67,7 +70,7 @@ class BagTopic:
     columns: tuple[str, ...] = ()
     """Fields of a point, lower case, if the type is one of points that the bag itself defines."""
     is_points: bool = False
-    """Whether its messages are points whose fields are known."""
+    """Whether its messages are points whose fields are known, or have a recipe."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,6 +107,8 @@ class Bag:
             report: Receives what had to be salvaged.
         """
         self._paths = paths
+        self.recipes: Mapping[str, PointRecipe] = {}
+        """Topic -> what the columns of its points are."""
         self.report = report
         """Receives damage; may be replaced while the bag is open."""
         self._stack = ExitStack()
@@ -148,6 +153,11 @@ class Bag:
         """Time from the first measured message to the last one [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
+    def use_recipes(self, recipes: Mapping[str, PointRecipe]) -> None:
+        """Decode the messages of some topics to points with common names, by recipes."""
+        self.recipes = recipes
+        self.topics = tuple(self._topic(t.name, t.type, t.messages) for t in self.topics)
+
     def messages(self, topics: Collection[str]) -> Iterator[BagMessage]:
         """Messages of some topics in order of recording, as a stream.
 
@@ -158,21 +168,34 @@ class Bag:
         streams = [self._of_source(source, set(topics), budget) for source in self._sources]
         yield from heapq.merge(*streams, key=lambda message: message.t_ns)
 
-    def decode(self, message: BagMessage) -> Any | None:
-        """Decode a message to an object with its fields; None (counted) if it is damaged."""
-        store = _typestore(self.ros1)
+    def decode(self, message: BagMessage, *, as_sent: bool = False) -> Any | None:
+        """Decode a message to an object with its fields; None (counted) if it is damaged.
+
+        Args:
+            message: One of `messages`.
+            as_sent: Without the recipe of its topic.
+        """
         try:
-            if message.type in self._points:
-                return self._points[message.type].read(message.data, ros1=self.ros1)
-            check_message(message.type, message.data, ros1=self.ros1)
-            if self.ros1:
-                return store.deserialize_ros1(message.data, message.type)
-            return store.deserialize_cdr(message.data, message.type)
+            content = self._decoded(message)
+            recipe = None if as_sent else self.recipes.get(message.topic)
+            if recipe is None:
+                return content
+            table = as_points(recipe, cloud_lists(content))
+            return PointMessage(content.header, table, content.data)
         except CorruptFile as error:
             self._left_out(f"{message.topic}: left out: {error}")
         except Exception:  # damaged bytes raise errors of many kinds in generated code
             self._left_out(f"{message.topic}: messages that cannot be decoded are left out")
         return None
+
+    def _decoded(self, message: BagMessage) -> Any:
+        store = _typestore(self.ros1)
+        if message.type in self._points:
+            return self._points[message.type].read(message.data, ros1=self.ros1)
+        check_message(message.type, message.data, ros1=self.ros1)
+        if self.ros1:
+            return store.deserialize_ros1(message.data, message.type)
+        return store.deserialize_cdr(message.data, message.type)
 
     def _left_out(self, why: str) -> None:
         self.report.count("messages_corrupt")
@@ -291,7 +314,9 @@ class Bag:
             for topic in source.index.topics.values():
                 key = (topic.topic, topic.msgtype)
                 counts[key] = counts.get(key, 0) + topic.msgcount
-                definitions[topic.msgtype] = definitions.get(topic.msgtype) or topic.definition
+                if topic.msgtype not in PACKET_MESSAGES:
+                    known = definitions.get(topic.msgtype)
+                    definitions[topic.msgtype] = known or topic.definition
         self._points = point_readers(definitions)
         self.topics = tuple(self._topic(n, t, c) for (n, t), c in sorted(counts.items()))
         filled = [s.index for s in self._sources if s.index.message_count]
@@ -312,9 +337,10 @@ class Bag:
 
     def _topic(self, name: str, kind: str, messages: int) -> BagTopic:
         reader = self._points.get(kind)
-        if reader is None:
-            return BagTopic(name, kind, messages, is_points=kind == CLOUD)
-        return BagTopic(name, kind, messages, reader.columns, reader.is_known)
+        columns = reader.columns if reader else ()
+        is_known = reader.is_known if reader else kind == CLOUD
+        is_points = is_known or (bool(columns) and name in self.recipes)
+        return BagTopic(name, kind, messages, columns, is_points)
 
     def _first_measured(self) -> BagMessage | None:
         report, self.report = self.report, ImportReport()  # damage is reported when it is read

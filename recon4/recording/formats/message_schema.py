@@ -77,6 +77,19 @@ class MessageSchema:
                 found[field.name] = tuple(name for name, _ in leaves)
         return found
 
+    def number_lists(self) -> tuple[str, ...]:
+        """Names of the lists of numbers."""
+        return tuple(f.name for f in self.fields if f.is_list and f.kind in _NUMBERS)
+
+    def numbers(self) -> tuple[str, ...]:
+        """Names of the single numbers, those of inner structures as ``stamp.sec``."""
+        found = []
+        for field in self.fields:
+            leaves = [] if field.is_list else _leaves(field.kind, self.types)
+            names = [name for name, _ in leaves if not any(map(str.isdigit, name.split(".")))]
+            found += [f"{field.name}.{name}" if name else field.name for name in names]
+        return tuple(found)
+
 
 def parse_schema(kind: str, definition: str) -> MessageSchema:
     """Parse the definition of a message.

@@ -6,7 +6,7 @@ All become a `PointMessage`; its table takes the path of a cloud (`recon4.record
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import SimpleNamespace
 from typing import Any
 
@@ -49,6 +49,10 @@ float32[] values
 """
 
 
+POINTS, ARRAYS = "points", "arrays"
+"""Names of the list of points of a known type, and of that made of lists of numbers."""
+WHOLE = "*"
+"""Name of the list with the numbers of a message as a whole, (1,) each."""
 _LATEST_NS = 1 << 62
 """Later times do not occur."""
 
@@ -60,9 +64,11 @@ class PointMessage:
     header: Any
     """With ``stamp.sec``, ``stamp.nanosec`` and ``frame_id``."""
     table: Columns
-    """Fields by lower-case name."""
+    """Fields by lower-case name; none if the message has none with common names."""
     data: NDArray[np.uint8]
     """The whole message."""
+    lists: Mapping[str, Columns] = field(default_factory=dict)
+    """All lists of points in it by name, for recipes."""
 
     @property
     def width(self) -> int:
@@ -144,7 +150,8 @@ class PointReader:
     """Reads the messages of points of one type."""
 
     schema: MessageSchema
-    table: Callable[[Any], Columns]
+    table: Callable[[Any], Columns] | None
+    """The points of a type that is known; None = of the bag's own lists."""
     columns: tuple[str, ...]
     """Names of the fields of a point, lower case; empty = they are in the messages."""
 
@@ -152,10 +159,16 @@ class PointReader:
     def is_known(self) -> bool:
         """Whether the fields have common names: coordinates, and something that a LiDAR measures.
 
-        Corners of polygons and poses are lists of points too.
+        Corners of polygons and poses are lists of points too, and so may be lists of numbers.
         """
         names = set(self.columns)
-        return not names or ({"x", "y", "z"} <= names and not names.isdisjoint(_OF_LIDARS))
+        if self.table is not None:
+            return True
+        return (
+            len(self.schema.lists()) == 1
+            and {"x", "y", "z"} <= names
+            and not names.isdisjoint(_OF_LIDARS)
+        )
 
     def read(self, data: bytes, *, ros1: bool) -> PointMessage:
         """Read a message.
@@ -165,17 +178,15 @@ class PointReader:
         """
         message = read_message(self.schema, data, ros1=ros1)
         try:
-            table = self.table(message)
+            lists = _lists(self.schema, message) if self.table is None else {}
+            table = self.table(message) if self.table else next(iter(lists.values()))
         except (KeyError, TypeError, AttributeError) as error:
             raise CorruptFile(f"a message of points without a field: {error}") from error
         header = getattr(message, "header", None)
         if self.schema.kind_of("header") != "std_msgs/Header":
             header = SimpleNamespace(stamp=SimpleNamespace(sec=0, nanosec=0), frame_id="")
-        return PointMessage(
-            header,
-            {name.lower(): column for name, column in table.items()},
-            np.frombuffer(data, np.uint8),
-        )
+        table = _lower(table)
+        return PointMessage(header, table, np.frombuffer(data, np.uint8), lists or {POINTS: table})
 
 
 def point_readers(definitions: Mapping[str, str]) -> dict[str, PointReader]:
@@ -210,18 +221,41 @@ def point_reader(kind: str, definition: str) -> PointReader | None:
         return point_reader(kind, "") if row and definition else None
     if row is not None:
         return PointReader(schema, row.table, ())
-    lists = {name: columns for name, columns in schema.lists().items() if len(columns) >= 3}
-    if len(lists) != 1:
+    columns = [c for of_list in schema.lists().values() for c in of_list if len(of_list) >= 3]
+    numbers = schema.number_lists()
+    columns += numbers if len(numbers) >= 3 else ()
+    if not columns:
         return None
-    name, columns = next(iter(lists.items()))
-    return PointReader(schema, _list_of(name), tuple(one.lower() for one in columns))
+    return PointReader(schema, None, tuple(dict.fromkeys(one.lower() for one in columns)))
 
 
-def _list_of(name: str) -> Callable[[Any], Columns]:
-    """The columns of the list of points of a type that a bag defines."""
+def _lists(schema: MessageSchema, message: Any) -> dict[str, Columns]:
+    """The lists of points of a message: of structures, and numbers in lists of one length.
 
-    def table(message: Any) -> Columns:
-        found: Columns = getattr(message, name)
-        return found
+    A message without any has an empty one. The numbers of the message as a whole are `WHOLE`.
+    """
+    found = {
+        name.lower(): _lower(getattr(message, name))
+        for name, columns in schema.lists().items()
+        if len(columns) >= 3
+    }
+    numbers = {name: getattr(message, name) for name in schema.number_lists()}
+    lengths = [len(values) for values in numbers.values()]
+    count = max(set(lengths), key=lambda n: (lengths.count(n), n), default=0)
+    alike = {name: values for name, values in numbers.items() if len(values) == count}
+    if len(alike) >= 3:
+        found[ARRAYS] = _lower(alike)
+    single = {name.lower(): _number(message, name) for name in schema.numbers()}
+    return (found or {ARRAYS: {}}) | ({WHOLE: single} if single else {})
 
-    return table
+
+def _number(message: Any, name: str) -> NDArray[Any]:
+    """A number of a message, inner ones as ``header.stamp.sec``, (1,)."""
+    value = message
+    for part in name.split("."):
+        value = getattr(value, part)
+    return np.array([value])
+
+
+def _lower(columns: Columns) -> Columns:
+    return {name.lower(): column for name, column in columns.items()}

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from recon4.model.rig import Rig
-from recon4.recording.bag_recording import BagRecording
+from recon4.recording.bag_recording import BagRecording, Given
 from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.bags import Bag
 from recon4.recording.kinds import bag_paths
@@ -34,7 +34,7 @@ def open_lidar_bag(request: OpenRequest) -> Recording:
         request.rig,
         settings=request.settings,
         report=request.report,
-        companions=companions_of(request.paths),
+        given=Given(companions_of(request.paths), request.fields),
     )
     return Recording(bag.rig, bag.read, bag.seconds)
 

@@ -7,11 +7,12 @@ from functools import partial
 from pathlib import Path
 
 from recon4.errors import ConfigError, RecordingError, UnknownFormat
+from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.recording.cloud_points import model_of_points
-from recon4.recording.folders import folder_gaps, list_frames, read_frames
-from recon4.recording.formats.cloud_files import read_cloud
+from recon4.recording.folders import folder_gaps, list_frames, read_frames, read_points
 from recon4.recording.openers.request import OpenRequest, Recording
+from recon4.recording.recipes.file_points import require_fields
 from recon4.recording.rig_choice import Stream, choose_rig
 from recon4.recording.tuning import IngestTuning
 from recon4.settings.tuning import tuned
@@ -27,8 +28,12 @@ def open_frames(request: OpenRequest) -> Recording:
         raise UnknownFormat("give the folder of the frames, not several files or folders")
     frames = list_frames(paths[0])
     rig = request.rig
+    fields = request.fields if rig is None else rig.sensors[0].fields
+    period_s = frames.period_ns / 1e9
+    require_fields(paths[0].name, frames.files, fields, period_s=period_s, report=report)
     if rig is None:
-        rig = choose_rig([Stream(paths[0].name, frames_model(frames.files))], report)
+        model = frames_model(frames.files, fields)
+        rig = choose_rig([Stream(paths[0].name, model, fields=fields)], report)
     _require_one_lidar(rig, paths[0])
     sensor = rig.sensors[0]
     gaps = folder_gaps(frames, sensor.name, tuned(IngestTuning, settings).gap_s)
@@ -55,11 +60,11 @@ def _require_one_lidar(rig: Rig, path: Path) -> None:
         )
 
 
-def frames_model(files: Sequence[Path]) -> str:
+def frames_model(files: Sequence[Path], fields: PointRecipe | None) -> str:
     """Detect the sensor from the first readable file."""
     for file in files[:3]:
         try:
-            return model_of_points(read_cloud(file))
+            return model_of_points(read_points(file, fields))
         except RecordingError:
             continue
     return "generic"

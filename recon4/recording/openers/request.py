@@ -9,6 +9,7 @@ from pathlib import Path
 from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.model.multiframe import Multiframe
+from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
@@ -34,6 +35,8 @@ class OpenRequest:
     """Receives what was found and detected."""
     open_file: OpenFile = open_plain
     """Opens capture files; a live capture uses a tail file."""
+    fields: PointRecipe | None = None
+    """What the columns of the points are, where no rig says it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -41,6 +41,7 @@ from tests.security.fuzz.kinds_live import LIVE_KINDS
 from tests.security.fuzz.kinds_livox import LIVOX_KINDS
 from tests.security.fuzz.kinds_ouster import OUSTER_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
+from tests.security.fuzz.kinds_recipes import RECIPE_KINDS
 from tests.security.fuzz.kinds_robosense import ROBOSENSE_KINDS
 from tests.security.fuzz.kinds_wide import WIDE_KINDS
 
@@ -352,6 +353,7 @@ KINDS: dict[str, Kind] = {
     for kind in (
         *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
         *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS, *WIDE_KINDS),
+        *RECIPE_KINDS,
     )
 }
 """By name."""

@@ -4,19 +4,16 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+from rosbags.typesys import Stores, get_typestore
 
 from recon4.errors import CorruptFile, EmptyRecording
-from recon4.recording.assembly.shots import Shots
 from recon4.recording.exact_times import ExactClock
 from recon4.recording.formats.message_schema import parse_schema, read_message
 from recon4.recording.formats.point_messages import POINT_MESSAGES, point_reader
 from recon4.recording.info import describe
-from recon4.recording.open import open_recording
-from recon4.recording.openers.request import OpenRequest
 from recon4.recording.report import ImportReport
-from recon4.settings import IngestSettings
 from tests.builders import T0_NS, Bag, bag_path
+from tests.unit.recording.point_bags import header, read, register
 
 CUSTOM = "livox_ros_driver/msg/CustomMsg"
 CUSTOM2 = "livox_ros_driver2/msg/CustomMsg"
@@ -40,23 +37,6 @@ float32 x
 float32 y
 float32 z
 """
-
-
-def register(store, kind, definition):
-    types = {}
-    first, *others = definition.split("===\n")
-    for text in others:
-        head, _, body = text.partition("\n")
-        types |= get_types_from_msg(body, head.removeprefix("MSG:").strip().replace("/", "/msg/"))
-    types |= get_types_from_msg(first, kind)
-    store.register({name: made for name, made in types.items() if name not in store.types})
-
-
-def header(store, t_ns, frame="livox_frame"):
-    time = store.types["builtin_interfaces/msg/Time"](t_ns // 10**9, t_ns % 10**9)
-    fields = {"stamp": time, "frame_id": frame}
-    kind = store.types["std_msgs/msg/Header"]
-    return kind(**({"seq": 3} if "seq" in kind.__dataclass_fields__ else {}), **fields)
 
 
 @pytest.mark.parametrize("ros1", [True, False])
@@ -160,13 +140,6 @@ def livox_bag(tmp_path, kind, *, message=CUSTOM, stamps=None, bases=None, step_n
             )
             bag.write("/livox/lidar", message, stamp, content)
     return path
-
-
-def read(path, **settings):
-    report = ImportReport()
-    recording = open_recording(OpenRequest((path,), None, IngestSettings(**settings), report))
-    shots = [item for item in recording.read() if isinstance(item, Shots)]
-    return recording, shots, report
 
 
 @pytest.mark.parametrize("kind", ["bag1", "db3", "mcap"])
@@ -295,10 +268,10 @@ def test_a_type_that_the_bag_defines_is_read_by_its_definition(kind, tmp_path):
 
 
 def test_points_of_unknown_fields_are_named_with_what_would_be_needed(tmp_path):
-    words = r"/own has lists of forward, y, z, time_offset.*named x, y, z"
+    words = r"/own has lists of ahead, y, z, time_offset.*named x, y, z"
 
     with pytest.raises(EmptyRecording, match=words):
-        read(own_bag(tmp_path, "mcap", x="forward"))
+        read(own_bag(tmp_path, "mcap", x="ahead"))
 
 
 def test_corners_and_poses_are_no_points():

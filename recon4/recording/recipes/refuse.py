@@ -1,0 +1,62 @@
+"""Refuses points that need a recipe, with the proposed one ready for a rig file."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from recon4.errors import ConfigError
+from recon4.recording.driver_topics import needed_text
+from recon4.recording.recipes.check import RecipeSample, require_fitting
+from recon4.recording.recipes.propose import Proposal
+from recon4.recording.report import ImportReport
+from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
+
+
+class UnknownFields(RigToComplete):
+    """The only points are in columns without common names; a rig with recipes for them is there."""
+
+
+def proposal_text(name: str, proposal: Proposal) -> str:
+    """What points have, and the recipe for them as a line of a rig file."""
+    if proposal.recipe is None:
+        return needed_text(name, proposal.columns)
+    doubts = f" (uncertain: {'; '.join(proposal.uncertain)})" * bool(proposal.uncertain)
+    return f"{name}: {proposal.recipe.toml()}{doubts}"
+
+
+def with_doubts(proposal: Proposal, sample: RecipeSample) -> Proposal:
+    """A proposal with what the check of recipes says against it."""
+    if proposal.recipe is None:
+        return proposal
+    report = ImportReport()
+    try:
+        require_fitting(proposal.recipe, sample, report)
+    except ConfigError as error:
+        report.warn(str(error))
+    return proposal.with_doubts(report.warnings)
+
+
+def require_known(unknown: Sequence[tuple[Stream, Proposal]], name: str) -> None:
+    """Refuse a recording whose only points need a recipe.
+
+    Args:
+        unknown: The LiDARs, each with the recipe that is proposed.
+        name: Of the recording.
+
+    Raises:
+        UnknownFields: With the recipes, ready for a rig file; without any nothing is raised.
+    """
+    ready = [(stream, one) for stream, one in unknown if one.recipe is not None]
+    if not ready:
+        return
+    lines = [f"{name}: the columns of the points have no common names; proposed for a rig file:"]
+    lines += [f"  {proposal_text(stream.label, one)}" for stream, one in ready]
+    recipe = ready[0][1].recipe
+    assert recipe is not None
+    lines.append(
+        "Look at what is uncertain, then use it (page: Make a rig of these sensors; command: "
+        f"recon4 info RECORDING --rig-out rig.toml, then --rig rig.toml; or --fields "
+        f"{recipe.text()})"
+    )
+    doubts = [f"{stream.label}: {text}" for stream, one in ready for text in one.uncertain]
+    raise UnknownFields("\n".join(lines), rig_to_complete([s for s, _ in ready]), doubts)
