@@ -36,7 +36,7 @@ from recon4.store.frames import FrameStore
 from recon4.store.project import Project
 from recon4.store.stage import StageRunner
 from recon4.workflows import stages
-from tests.benchmarks.proving_ground import _inputs
+from tests.benchmarks.proving_ground import simulated_inputs
 
 WALKS = ("office/12/100", "garage/1/60", "garage:1/2/80", "storeys/1/60", "staircase/3/60")
 _FALSE_M, _FALSE_RAD = 0.3, np.deg2rad(3.0)
@@ -89,7 +89,7 @@ def prepared(spec: str, out: Path) -> DriftedWalk:
     with Project.open(folder / "project") as project:
         project.describe(preset="indoor", rig=rig.name, inputs=[])
         runner = StageRunner(project, preset("indoor"), Silent())
-        frames = runner.run(stages.FRAMES, **_inputs(recording, rig))
+        frames = runner.run(stages.FRAMES, **simulated_inputs(recording, rig, project))
         odometry = runner.run(stages.ODOMETRY, frames=frames)
     return DriftedWalk(
         FrameStore.open(frames.folder), OdometryTrack.load(odometry.folder), recording

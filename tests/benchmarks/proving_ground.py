@@ -28,10 +28,12 @@ from recon4.errors import Recon4Error
 from recon4.findings.finding import Finding
 from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
-from recon4.model.rig import Rig, format_rig, load_rig
+from recon4.model.rig import Rig, load_rig
 from recon4.model.usability import MapVerdict, Usability
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
+from recon4.recording.kinds import located_sources
+from recon4.recording.sources import Sources
 from recon4.report.assessment import assess
 from recon4.settings import preset
 from recon4.simulation.crowd import Crowd
@@ -39,9 +41,9 @@ from recon4.simulation.degradation import parse_degradations
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
 from recon4.simulation.worlds import build_world
-from recon4.store.hashing import hash_json
 from recon4.store.project import Project, ProjectDescription, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
+from recon4.workflows.choice import import_inputs
 from recon4.workflows.lidar import LIDAR, to_trajectory
 from recon4.workflows.map_results import report_facts
 from recon4.workflows.summary import About
@@ -178,20 +180,19 @@ def _process(
         project.describe(preset=name, rig=rig.name, inputs=[])
         runner = StageRunner(project, settings, Silent())
         run = WorkflowRun(runner)
-        run.stage(LIDAR.imports, **_inputs(recording, rig))
+        run.stage(LIDAR.imports, **simulated_inputs(recording, rig, project))
         LIDAR.before_review(run)
         to_trajectory(run)
         about = About(ProjectDescription(recording.name, name), settings)
         return runner.runs, tuple(assess(report_facts(runner.runs, about, created="")).findings)
 
 
-def _inputs(recording: Path, rig: Rig) -> dict[str, Input | None]:
-    """A project is used for one recording only, so names are keys enough."""
-    samples = {name: recording / f"{name}.csv" for name in ("imu", "gnss")}
-    return {
-        "recordings": Input("recording", (recording / "recording.pcap",)),
-        "rig": Input(hash_json(format_rig(rig)), rig),
-    } | {n: Input(n, path) if path.exists() else None for n, path in samples.items()}
+def simulated_inputs(recording: Path, rig: Rig, project: Project) -> dict[str, Input | None]:
+    """What ``recon4 process`` reads of a simulated recording: descriptions of LiDARs, too."""
+    tables = {name: recording / f"{name}.csv" for name in ("imu", "gnss")}
+    given = {name: path for name, path in tables.items() if path.exists()}
+    sources = located_sources(Sources.of(recording / "recording.pcap", rig=rig, **given))
+    return import_inputs(sources, project.ledger, Silent(), planar=False)
 
 
 def values_of(degradation: str) -> dict[str, float]:

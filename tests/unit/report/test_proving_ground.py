@@ -2,12 +2,17 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from recon4.findings.finding import Finding, Level
 from recon4.findings.kinds import FindingKind
+from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.simulation.degradation import KINDS
+from recon4.simulation.families.families import family_of, pattern_of
+from recon4.simulation.lidar import Lidar, LidarModel
 from recon4.simulation.worlds import build_world
+from recon4.store.project import Project
 from tests.benchmarks.proving_draws import (
     ONLY_OUTDOORS,
     SENSORS,
@@ -25,6 +30,7 @@ from tests.benchmarks.proving_ground import (
     matrix,
     read_lines,
     run_walk,
+    simulated_inputs,
     table,
     values_of,
 )
@@ -85,6 +91,24 @@ def test_drawn_runs_have_all_sensors_and_only_errors_that_these_can_have():
         applies(d, outdoors=True, rig=one) for d in ("swap-lidars", "wrong-model", "dead-beams")
     )
     assert applies("wrong-model", outdoors=False, rig=rig_of("office/1"))
+
+
+def test_recordings_are_read_with_what_describes_their_lidars(tmp_path):
+    rig, pattern = rig_of("office/1/OS0-32"), pattern_of("OS0-32")
+    rng = np.random.default_rng(1)
+    lidar = Lidar.drawn(rig.sensors[0], pattern, model=LidarModel(), rng=rng)
+    ((name, content),) = family_of("OS0-32").companions(lidar).items()
+    metadata = tmp_path / name
+    metadata.write_bytes(content)
+    with PcapWriter(tmp_path / "recording.pcap"):
+        pass
+
+    with Project.open(tmp_path / "project") as project:
+        inputs = simulated_inputs(tmp_path, rig, project)
+
+    recordings = inputs["recordings"]
+    assert recordings is not None and metadata in recordings.value
+    assert inputs["imu"] is None
 
 
 def test_a_line_that_was_cut_off_is_run_again(tmp_path):
