@@ -110,7 +110,44 @@ def _first(route: dict[str, str]) -> str:
     return text.split("\n\n")[0]
 
 
-PAGES = {"cli.md": commands_page, "python-api.md": python_page, "http.md": http_page}
+def lidars_page() -> str:
+    """The facts of all models of LiDAR, and what they were compared with."""
+    from recon4.model.lidars import CHECKED, LIDARS
+
+    head = (
+        "| model | maker | beams | view ° | from m | range m | deviation cm | beam mrad "
+        "| compared with |"
+    )
+    rows = [
+        f"| {m.name} | {m.maker} | {m.beams or ''} | {m.azimuth_deg:g} x "
+        f"{m.elevation_deg[0]:g} to {m.elevation_deg[1]:g} | {m.min_range_m:g} | {m.range_m:g} "
+        f"| {100.0 * m.range_sd_m:g} | {1000.0 * m.divergence_rad:g} | {CHECKED.get(m.name, '')} |"
+        for m in LIDARS.values()
+    ]
+    table = "\n".join([head, "|---|---|---:|---|---:|---:|---:|---:|---|", *rows])
+    return "\n\n".join(["# LiDARs", MADE, _LIDARS_TEXT, table]) + "\n"
+
+
+_LIDARS_TEXT = """What recon4 knows of each model, from `recon4/model/lidars.py`.
+Range: usual range at 10 % reflectivity. Deviation: standard deviation of a range; half of the
+accuracy where the maker states only that. Beam: full divergence in its wider direction.
+
+Rows without an entry in the last column are as remembered from the manuals: no copy was at hand.
+
+| fact | who uses it |
+|---|---|
+| view | bands in which segments of sensors without rings are drawn |
+| view, beams | cells in which moving objects are searched: as wide as rings are apart |
+| from | nearer points are dropped and counted, as those of the carrier are |
+| deviation | fitted surfaces (`map.range_noise_m`) from 1.5 cm on, the simulator |
+| range, beam | the simulator |"""
+
+PAGES = {
+    "cli.md": commands_page,
+    "http.md": http_page,
+    "lidars.md": lidars_page,
+    "python-api.md": python_page,
+}
 """Name of a page -> what makes it."""
 
 

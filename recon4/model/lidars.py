@@ -1,57 +1,15 @@
 """The LiDARs that recon4 knows: what weights, overlap, surfaces and the simulator use of each.
 
-Sources are the user manuals and data sheets of the makers, named at each row's group. How the
-packets of a model are decoded is in `recon4.recording.packets`.
+Sources are the user manuals and data sheets of the makers, named at each row's group; what
+`CHECKED` names was compared with copies and quotations of them. How the packets of a model are
+decoded is in `recon4.recording.packets`.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from typing import Literal
+from dataclasses import replace
 
-Scanning = Literal["spinning", "solid-state", "rosette"]
-"""``spinning``: rings around an axis. ``solid-state``: lines in a limited view. ``rosette``: a
-pattern that does not repeat."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LidarFacts:
-    """One model."""
-
-    name: str
-    """As in rig files."""
-    maker: str
-    """Family of its packets."""
-    beams: int
-    """Rings, or lines; 0 = unknown."""
-    scanning: Scanning = "spinning"
-    elevation_deg: tuple[float, float]
-    """Lowest and highest direction above the horizontal plane of the sensor [°]."""
-    azimuth_deg: float = 360.0
-    """Horizontal field of view [°]."""
-    min_range_m: float
-    """Nearer returns are not of surfaces [m]."""
-    range_m: float
-    """Usual range at 10 % reflectivity [m]."""
-    accuracy_m: float
-    """Standard deviation of a range [m]."""
-    divergence_rad: float
-    """Full angle of a beam [rad]."""
-    port: int = 2368
-    """UDP port of its data packets, unless it was set to another."""
-    sample_ports: tuple[int, ...] = ()
-    """UDP ports of its other packets: IMU, positions, device data."""
-    has_imu: bool = False
-    """Whether its packets have an IMU."""
-    p_sensor_imu_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    """Where the IMU is in the frame of the points, whose axes it has [m]; 0 = within a centimeter,
-    or not known."""
-
-    @property
-    def has_rings(self) -> bool:
-        """Whether its points lie on rings: the same elevation again and again."""
-        return self.scanning == "spinning"
-
+from recon4.model.lidar_facts import LidarFacts
 
 _VLP16 = LidarFacts(
     name="VLP-16",
@@ -60,7 +18,7 @@ _VLP16 = LidarFacts(
     elevation_deg=(-15.0, 15.0),
     min_range_m=0.4,
     range_m=50.0,
-    accuracy_m=0.03,
+    range_sd_m=0.015,
     divergence_rad=0.003,
     sample_ports=(8308,),
 )
@@ -73,7 +31,7 @@ _VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3), 63-9
         name="HDL-32E",
         beams=32,
         elevation_deg=(-30.67, 10.67),
-        accuracy_m=0.02,
+        range_sd_m=0.01,
         has_imu=True,
     ),
     replace(_VLP16, name="Puck LITE"),
@@ -85,7 +43,7 @@ _VELODYNE = (  # manuals 63-9243 D, 63-9325, 63-9113, 63-9194 (HDL-64E S3), 63-9
         min_range_m=0.5,
         range_m=220.0,
     ),
-    replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), accuracy_m=0.02),
+    replace(_VLP16, name="HDL-64E", beams=64, elevation_deg=(-24.9, 2.0), range_sd_m=0.02),
 )
 
 _XT32 = LidarFacts(
@@ -95,7 +53,7 @@ _XT32 = LidarFacts(
     elevation_deg=(-16.0, 15.0),
     min_range_m=0.05,
     range_m=80.0,
-    accuracy_m=0.01,
+    range_sd_m=0.005,
     divergence_rad=0.002,
 )
 _PANDAR40P = replace(
@@ -105,7 +63,7 @@ _PANDAR40P = replace(
     elevation_deg=(-25.0, 15.0),
     min_range_m=0.3,
     range_m=200.0,
-    accuracy_m=0.02,
+    range_sd_m=0.01,
 )
 _QT64 = replace(
     _XT32,
@@ -114,7 +72,7 @@ _QT64 = replace(
     elevation_deg=(-52.1, 52.1),
     min_range_m=0.1,
     range_m=20.0,
-    accuracy_m=0.02,
+    range_sd_m=0.015,
     divergence_rad=0.005,
 )
 _HESAI = (  # user manuals of Hesai, chapter "Specifications"; not all state a divergence
@@ -124,7 +82,7 @@ _HESAI = (  # user manuals of Hesai, chapter "Specifications"; not all state a d
     _PANDAR40P,
     replace(_PANDAR40P, name="Pandar64", beams=64),
     replace(_PANDAR40P, name="Pandar128", beams=128, has_imu=True),
-    replace(_PANDAR40P, name="OT128", beams=128, has_imu=True),
+    replace(_PANDAR40P, name="OT128", beams=128, range_sd_m=0.015, has_imu=True),
     _QT64,
     replace(_QT64, name="QT128", beams=128, elevation_deg=(-52.6, 52.6), min_range_m=0.05),
     replace(
@@ -135,6 +93,7 @@ _HESAI = (  # user manuals of Hesai, chapter "Specifications"; not all state a d
         elevation_deg=(-12.5, 12.9),
         azimuth_deg=120.0,
         min_range_m=0.5,
+        range_m=210.0,
     ),
     replace(_QT64, name="JT16", beams=16, elevation_deg=(0.6, 40.7), range_m=30.0, has_imu=True),
     replace(_QT64, name="JT128", beams=128, elevation_deg=(-5.0, 90.0), range_m=30.0, has_imu=True),
@@ -149,7 +108,7 @@ _AVIA = LidarFacts(
     azimuth_deg=70.4,
     min_range_m=1.0,
     range_m=190.0,
-    accuracy_m=0.02,
+    range_sd_m=0.02,
     divergence_rad=0.0049,
     has_imu=True,
     p_sensor_imu_m=(-0.04165, -0.02326, 0.0284),
@@ -227,7 +186,7 @@ _OS1 = LidarFacts(
     elevation_deg=(-21.2, 21.2),
     min_range_m=0.5,
     range_m=90.0,
-    accuracy_m=0.015,
+    range_sd_m=0.015,
     divergence_rad=0.0031,
     port=7502,
     sample_ports=(7503,),
@@ -240,7 +199,7 @@ _OUSTER_KINDS = (  # data sheets of revision 7, firmware 3.0: precision in the m
         name="OS0",
         elevation_deg=(-45.0, 45.0),
         range_m=35.0,
-        accuracy_m=0.02,
+        range_sd_m=0.02,
         divergence_rad=0.0061,
     ),
     _OS1,
@@ -250,7 +209,7 @@ _OUSTER_KINDS = (  # data sheets of revision 7, firmware 3.0: precision in the m
         elevation_deg=(-11.25, 11.25),
         min_range_m=0.8,
         range_m=200.0,
-        accuracy_m=0.04,
+        range_sd_m=0.04,
         divergence_rad=0.0016,
     ),
     replace(
@@ -258,7 +217,7 @@ _OUSTER_KINDS = (  # data sheets of revision 7, firmware 3.0: precision in the m
         name="OSDome",
         elevation_deg=(0.0, 90.0),
         range_m=20.0,
-        accuracy_m=0.02,
+        range_sd_m=0.02,
         divergence_rad=0.0061,
     ),
 )
@@ -276,7 +235,7 @@ _OUSTER = (
         elevation_deg=(-16.6, 16.6),
         min_range_m=0.8,
         range_m=40.0,
-        accuracy_m=0.03,
+        range_sd_m=0.03,
         divergence_rad=0.0023,
     ),
 )
@@ -289,16 +248,24 @@ _HELIOS = LidarFacts(
     sample_ports=(7788,),
     elevation_deg=(-16.0, 15.0),
     min_range_m=0.2,
-    range_m=110.0,
-    accuracy_m=0.02,
+    range_m=90.0,
+    range_sd_m=0.01,
     divergence_rad=0.0026,
+)
+_BPEARL = replace(
+    _HELIOS,
+    name="Bpearl",
+    elevation_deg=(0.0, 90.0),
+    min_range_m=0.1,
+    range_m=30.0,
+    range_sd_m=0.015,
 )
 _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0, M1 2.0, E1 1.0
     _HELIOS,
-    replace(_HELIOS, name="Helios 5515", elevation_deg=(-55.0, 15.0)),
-    replace(_HELIOS, name="Helios 16P", beams=16, elevation_deg=(-15.0, 15.0), range_m=90.0),
-    replace(_HELIOS, name="Bpearl", elevation_deg=(0.0, 90.0), min_range_m=0.1, range_m=30.0),
-    replace(_HELIOS, name="Bpearl V4", elevation_deg=(0.0, 90.0), min_range_m=0.1, range_m=30.0),
+    replace(_HELIOS, name="Helios 5515", elevation_deg=(-55.0, 15.0), min_range_m=0.1),
+    replace(_HELIOS, name="Helios 16P", beams=16, elevation_deg=(-15.0, 15.0)),
+    _BPEARL,
+    replace(_BPEARL, name="Bpearl V4"),
     replace(
         _HELIOS,
         name="Ruby Plus",
@@ -319,7 +286,7 @@ _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0,
         azimuth_deg=120.0,
         min_range_m=0.5,
         range_m=150.0,
-        accuracy_m=0.03,
+        range_sd_m=0.015,
         divergence_rad=0.0035,
     ),
     replace(
@@ -331,7 +298,7 @@ _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0,
         azimuth_deg=120.0,
         min_range_m=0.1,
         range_m=30.0,
-        accuracy_m=0.03,
+        range_sd_m=0.015,
         divergence_rad=0.0045,
     ),
 )
@@ -343,7 +310,7 @@ _GENERIC = LidarFacts(
     elevation_deg=(-90.0, 90.0),
     min_range_m=0.4,
     range_m=50.0,
-    accuracy_m=0.03,
+    range_sd_m=0.015,
     divergence_rad=0.003,
 )
 
@@ -351,6 +318,34 @@ LIDARS: dict[str, LidarFacts] = {
     model.name: model for model in (*_VELODYNE, *_HESAI, *_LIVOX, *_OUSTER, *_ROBOSENSE, _GENERIC)
 }
 """All models by name; ``generic`` is any LiDAR whose points come as clouds."""
+
+_REPORTS = "public reports that quote the maker's pages"
+_MANUALS = "public code that quotes the manual"
+CHECKED: dict[str, str] = {
+    "VLP-16": "HELIOS++, scanners_tls.xml, after manual 63-9243 E (its beam is narrower)",
+    "HDL-64E": "HELIOS++, scanners_tls.xml",
+    "XT16": _REPORTS,
+    "XT32": _REPORTS,
+    "XT32M2X": _REPORTS,
+    "QT128": _REPORTS,
+    "OT128": _REPORTS,
+    "AT128": f"{_REPORTS}; not its deviation",
+    "JT16": f"{_REPORTS}; not its deviation",
+    "Avia": _REPORTS,
+    "Mid-70": "HELIOS++, scanners_als.xml, with its beam; public reports",
+    "Mid-360": "user manual v1.0, pages 13 and 20, as quoted; not its beam",
+    "HAP": "user manual, table 1.2.1, with its beam",
+    "OS1-16": "data sheet of the first generation, with its beam",
+    "OS1-32": f"{_MANUALS}: data sheet of revision 7; not its deviation",
+    "OS1-64": f"{_MANUALS}: data sheet of revision 7; not its deviation",
+    "OS1-128": f"{_MANUALS}: data sheet of revision 7; not its deviation",
+    "OSDome-128": f"{_MANUALS}: data sheet of revision 7, firmware 3.1",
+    "Helios 32": _REPORTS,
+    "Helios 5515": _REPORTS,
+    "Bpearl": _REPORTS,
+}
+"""Models whose view, ranges and deviation were compared, and with what; others are as remembered
+from their manuals."""
 
 
 def lidar_model(name: str) -> LidarFacts:

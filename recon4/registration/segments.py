@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels.segments import draw_pairs, segment_ends
-from recon4.model.lidars import LidarFacts, lidar_model
+from recon4.model.lidar_facts import LidarFacts
+from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.registration.tuning import SEGMENTS, SegmentTuning

@@ -79,7 +79,7 @@ class LidarModel:
         reach = other.range_m / own.range_m
         return replace(
             self,
-            range_sd_m=self.range_sd_m * (other.accuracy_m / own.accuracy_m),
+            range_sd_m=self.range_sd_m * (other.range_sd_m / own.range_sd_m),
             min_range_m=self.min_range_m * (other.min_range_m / own.min_range_m),
             max_range_m=min(self.max_range_m * reach, pattern.unit_m * pattern.most_units),
             weakest_signal=self.weakest_signal / reach**2,

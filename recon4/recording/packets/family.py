@@ -185,7 +185,7 @@ class PacketFamily(Protocol):
 
     @property
     def name(self) -> str:
-        """As in `recon4.model.lidars.LidarFacts.maker`."""
+        """As in `recon4.model.lidar_facts.LidarFacts.maker`."""
         ...
 
     @property

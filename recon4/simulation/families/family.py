@@ -36,7 +36,7 @@ class SimulatedFamily(Protocol):
 
     @property
     def name(self) -> str:
-        """As in `recon4.model.lidars.LidarFacts.maker`."""
+        """As in `recon4.model.lidar_facts.LidarFacts.maker`."""
         ...
 
     def pattern(self, model: str) -> FiringPattern | None:

@@ -22,7 +22,7 @@ from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
 from recon4.settings import IngestSettings
 from recon4.simulation.families.families import family_of, pattern_of, simulated_models
-from recon4.simulation.lidar import Lidar, LidarModel
+from recon4.simulation.lidar import Firings, Lidar, LidarModel
 from recon4.simulation.setup import imu_row, prepare, rig_of_lidars
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
@@ -80,6 +80,23 @@ def opened(lidar, payloads, report):
     """The reader's side of a sensor."""
     family = next(f for f in FAMILIES if f.name == lidar_model(lidar.pattern.model).maker)
     return family.open(packet_sensor(lidar, payloads, report))
+
+
+@pytest.mark.parametrize("model", ["VLP-16", "OS0-32", "XT32", "JT128", "Mid-360", "Airy"])
+def test_a_second_of_which_all_packets_are_lost_has_none(model):
+    lidar = lidar_of(model)
+    shape = (0, *lidar.pattern.offset_ns.shape)
+    firings = Firings(
+        np.empty(shape, np.int64),
+        np.empty(shape),
+        np.empty(shape, np.uint32),
+        *np.empty((2, *shape), np.uint8),
+    )
+
+    assert len(packets_of(lidar, firings)) == 0
+    imu = family_of(model).imu(model)
+    none = ImuSamples(np.empty(0, np.int64), *np.empty((2, 0, 3)))
+    assert imu is None or len(imu.packets(none)) == 0
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -145,7 +162,7 @@ def test_errors_grow_and_shrink_as_the_data_sheets_say():
     facts = lidar_model("Mid-360")
 
     assert vlp16 == own
-    assert mid360.range_sd_m == pytest.approx(0.015 * facts.accuracy_m / 0.03)
+    assert mid360.range_sd_m == pytest.approx(facts.range_sd_m)
     assert mid360.min_range_m == pytest.approx(facts.min_range_m)
     assert mid360.weakest_signal == pytest.approx(0.1 / facts.range_m**2)
     assert LidarModel.perfect().of(pattern_of("Mid-360")).range_sd_m == 0.0

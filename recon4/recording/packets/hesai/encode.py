@@ -6,6 +6,7 @@ simulator can place the beams.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -135,7 +136,9 @@ def write_inertial(
     samples["clock"] = clock
     samples["accel"], samples["gyro"] = values[:, :3], values[:, 3:]
     at = layout.imu_at
-    packets[:, at : at + TAIL_SAMPLE.itemsize] = samples.view(np.uint8).reshape(len(packets), -1)
+    packets[:, at : at + TAIL_SAMPLE.itemsize] = samples.view(np.uint8).reshape(
+        len(packets), TAIL_SAMPLE.itemsize
+    )
     checksums.write(packets, layout)
 
 
@@ -158,5 +161,6 @@ def encode_jt16_inertial(stamp_us: NDArray[np.integer], values: NDArray[np.integ
 
 def _write(packets: Payloads, at: int, values: NDArray[np.integer], *, kind: str) -> None:
     """Numbers of one field, one a packet."""
-    rows = np.asarray(values).astype(kind).view(np.uint8).reshape(len(packets), -1)
-    packets[:, at : at + rows.shape[1]] = rows
+    numbers = np.asarray(values).astype(kind)
+    size = numbers.itemsize * math.prod(numbers.shape[1:])  # also of no packets at all
+    packets[:, at : at + size] = numbers.view(np.uint8).reshape(len(packets), size)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import zlib
 from dataclasses import dataclass
 
@@ -68,7 +69,7 @@ def encode_points(
     header = _header(t_ns, layout.sdk, layout.data_type, time_type=time_type)
     if layout.sdk == 2:
         header["interval"], header["points"] = interval, layout.shots
-    return _joined(header, records.view(np.uint8).reshape(len(t_ns), -1))
+    return _joined(header, _bytes(records))
 
 
 def encode_imu(
@@ -85,7 +86,7 @@ def encode_imu(
     header = _header(t_ns, sdk, SDK1_IMU_TYPE if sdk == 1 else SDK2_IMU_TYPE, time_type=time_type)
     if sdk == 2:
         header["interval"], header["points"] = _IMU_INTERVAL, 1
-    return _joined(header, samples.view(np.uint8).reshape(len(t_ns), -1))
+    return _joined(header, _bytes(samples))
 
 
 def _write_spherical(records: NDArray[np.void], xyz_m: NDArray[np.floating], unit_m: float) -> None:
@@ -124,7 +125,8 @@ def _dates(t_ns: Times) -> NDArray[np.uint8]:
 
 
 def _bytes(values: NDArray[np.generic]) -> NDArray[np.uint8]:
-    return np.ascontiguousarray(values).view(np.uint8).reshape(len(values), -1)
+    size = values.itemsize * math.prod(values.shape[1:])  # also of no packets at all
+    return np.ascontiguousarray(values).view(np.uint8).reshape(len(values), size)
 
 
 def _joined(header: NDArray[np.void], body: NDArray[np.uint8]) -> Payloads:
