@@ -120,6 +120,7 @@ _POINTS = {
     "points": _read("points"),
     "points_no_return": _usual("", "without an echo", noun="shots"),
     "points_near": _usual("", "nearer than ingest.min_range_m", noun="points"),
+    "points_blind": _usual("", "nearer than their LiDAR measures well", noun="points"),
     "points_far": _usual("", "farther than ingest.max_range_m", noun="points"),
     "points_noise": _usual("", "noise of high confidence by their tag, left out", noun="points"),
     "points_invalid": _usual("", "not finite or at the origin: no echo", noun="points"),

@@ -15,7 +15,8 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times, Trajectory
-from recon4.recording.assembly.assembler import TimeGap, drop_invalid
+from recon4.recording.assembly.assembler import TimeGap
+from recon4.recording.assembly.range_limits import drop_invalid
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.cloud_files import (

@@ -7,15 +7,14 @@ from dataclasses import dataclass, field, replace
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, Sensor
+from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.extent import extent_text
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
@@ -97,6 +96,7 @@ class Assembler:
         self._on_cut, self._begun = on_cut, False
         self._settings, self._report = tuned(IngestTuning, settings), report
         self._beams = [sensor.beams for sensor in rig.sensors]
+        self._blind_m = [blind_range_m(sensor) for sensor in rig.sensors]
         self._wait_ns = int(wait_s * 1e9)
         self._streams = [
             _Stream(s.name, delivers=s.kind != "laser2d", spins=_spins(s)) for s in rig.sensors
@@ -119,7 +119,12 @@ class Assembler:
         Raises:
             ConfigError: If the clocks of the sensors have nothing to do with each other.
         """
-        kept = drop_invalid(self._corrected(shots), settings=self._settings, report=self._report)
+        kept = drop_invalid(
+            self._corrected(shots),
+            settings=self._settings,
+            report=self._report,
+            blind_m=self._blind_m[shots.sensor],
+        )
         for part in _runs(kept, round(self._settings.gap_s * 1e9)):
             self._take(part)
         if self._start_ns is None and not self._head_complete():
@@ -309,34 +314,11 @@ class Assembler:
             start, end = np.searchsorted(shots.t_ns, [start_ns, end_ns]).tolist()
             stream.late += start
             if end > start:
-                taken.append(_rows(shots, slice(start, end)))
+                taken.append(shots.take(slice(start, end)))
             if end < len(shots):
-                left.append(_rows(shots, slice(end, None)))
+                left.append(shots.take(slice(end, None)))
         stream.waiting = left
         return taken
-
-
-def drop_invalid(shots: Shots, *, settings: IngestSettings, report: ImportReport) -> Shots:
-    """Remove points that are not finite, at the origin, too near or too far; counts them."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        square = np.einsum("ni,ni->n", shots.xyz, shots.xyz)
-    bad = ~np.isfinite(square) | (square == 0.0)
-    near = ~bad & (square < settings.min_range_m**2)
-    far = ~bad & (square > settings.max_range_m**2)
-    report.count("points_invalid", int(np.count_nonzero(bad)))
-    report.count("points_near", int(np.count_nonzero(near)))
-    report.count("points_far", int(np.count_nonzero(far)))
-    if np.count_nonzero(far) > len(shots) // 2 and "points_far" not in report.details:
-        _say_extent(shots.xyz[far], settings.max_range_m, report)
-    drop = bad | near | far
-    return _rows(shots, ~drop) if drop.any() else shots
-
-
-def _say_extent(xyz: NDArray[np.float32], max_range_m: float, report: ImportReport) -> None:
-    """Say once where points are of which most are too far: the unit or the origin may be wrong."""
-    text = extent_text(xyz.astype(np.float64))
-    report.details["points_far"] = text
-    report.warn(f"most points of a cloud are farther than {max_range_m:g} m: {text}")
 
 
 def _runs(shots: Shots, gap_ns: int) -> list[Shots]:
@@ -345,18 +327,7 @@ def _runs(shots: Shots, gap_ns: int) -> list[Shots]:
         return []
     back = (np.flatnonzero(np.diff(shots.t_ns) < -gap_ns) + 1).tolist()
     ends = zip([0, *back], [*back, len(shots)], strict=True)
-    return [_rows(shots, slice(start, end)) for start, end in ends] if back else [shots]
-
-
-def _rows(shots: Shots, rows: NDArray[np.bool_] | slice) -> Shots:
-    return Shots(
-        shots.sensor,
-        shots.t_ns[rows],
-        shots.xyz[rows],
-        shots.intensity[rows],
-        shots.ring[rows],
-        shots.echo[rows],
-    )
+    return [shots.take(slice(start, end)) for start, end in ends] if back else [shots]
 
 
 def moved(shots: Shots, shift_ns: int) -> Shots:

@@ -30,3 +30,14 @@ class Shots:
 
     def __len__(self) -> int:
         return len(self.t_ns)
+
+    def take(self, rows: NDArray[np.bool_] | slice) -> Shots:
+        """Some of the shots, in their order."""
+        return Shots(
+            self.sensor,
+            self.t_ns[rows],
+            self.xyz[rows],
+            self.intensity[rows],
+            self.ring[rows],
+            self.echo[rows],
+        )

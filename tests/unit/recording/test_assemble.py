@@ -9,7 +9,8 @@ import pytest
 from recon4.errors import ConfigError
 from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
-from recon4.recording.assembly.assembler import Assembler, drop_invalid, moved
+from recon4.recording.assembly.assembler import Assembler, moved
+from recon4.recording.assembly.range_limits import drop_invalid
 from recon4.recording.assembly.rotation import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
@@ -229,6 +230,26 @@ def test_bad_points_are_dropped_by_reason():
     assert len(kept) == len(shots) - 5
     expected = {"points_invalid": 3, "points_near": 1, "points_far": 1}
     assert report.counts == expected
+
+
+@pytest.mark.parametrize(
+    ("model", "range_m", "dropped"),
+    [
+        ("Avia", 0.9, {"points_blind": 1}),  # it measures from 1 m on
+        ("Avia", 1.1, {}),
+        ("VLP-16", 0.9, {}),
+        ("Avia", 0.3, {"points_near": 1}),  # of the carrier
+        ("VLP-16", 0.3, {"points_near": 1}),
+    ],
+)
+def test_points_nearer_than_their_lidar_measures_well_are_dropped(model, range_m, dropped):
+    rig, report, shots = load_rig("single-vlp16"), ImportReport(), spin(seconds=0.1)
+    rig = replace(rig, sensors=(replace(rig.sensors[0], model=model),))
+    shots.xyz[7] = [range_m, 0.0, 0.0]
+
+    Assembler(rig, settings=SETTINGS, report=report).push(shots)
+
+    assert report.counts == dropped
 
 
 def test_nothing_in_gives_nothing_out():

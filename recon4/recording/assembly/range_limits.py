@@ -1,0 +1,52 @@
+"""Which points of a sensor are used at all, by their range."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.model.lidars import lidar_model
+from recon4.model.rig import Sensor
+from recon4.recording.assembly.shots import Shots
+from recon4.recording.extent import extent_text
+from recon4.recording.report import ImportReport
+from recon4.settings import IngestSettings
+
+
+def blind_range_m(sensor: Sensor) -> float:
+    """Range below which a sensor measures nothing well [m]."""
+    return lidar_model(sensor.model).min_range_m if sensor.kind == "lidar" else 0.0
+
+
+def drop_invalid(
+    shots: Shots, *, settings: IngestSettings, report: ImportReport, blind_m: float = 0.0
+) -> Shots:
+    """Remove points that are not finite, at the origin, too near or too far; counts them.
+
+    Args:
+        shots: Of one sensor.
+        settings: Range limits.
+        report: Receives the counts.
+        blind_m: Range below which the sensor measures nothing well [m].
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        square = np.einsum("ni,ni->n", shots.xyz, shots.xyz)
+    bad = ~np.isfinite(square) | (square == 0.0)
+    near = ~bad & (square < settings.min_range_m**2)
+    blind = ~bad & ~near & (square < blind_m**2)
+    far = ~bad & (square > settings.max_range_m**2)
+    report.count("points_invalid", int(np.count_nonzero(bad)))
+    report.count("points_near", int(np.count_nonzero(near)))
+    report.count("points_blind", int(np.count_nonzero(blind)))
+    report.count("points_far", int(np.count_nonzero(far)))
+    if np.count_nonzero(far) > len(shots) // 2 and "points_far" not in report.details:
+        _say_extent(shots.xyz[far], settings.max_range_m, report)
+    drop = bad | near | blind | far
+    return shots.take(~drop) if drop.any() else shots
+
+
+def _say_extent(xyz: NDArray[np.float32], max_range_m: float, report: ImportReport) -> None:
+    """Say once where points are of which most are too far: the unit or the origin may be wrong."""
+    text = extent_text(xyz.astype(np.float64))
+    report.details["points_far"] = text
+    report.warn(f"most points of a cloud are farther than {max_range_m:g} m: {text}")
