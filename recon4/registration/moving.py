@@ -24,6 +24,7 @@ from recon4.kernels.free_space import NO_SURFACE, find_moving_points, nearest_ra
 from recon4.kernels.imu import place_points
 from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import HiddenPoints
+from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import MovingFigures
 from recon4.model.rig import Rig
@@ -74,6 +75,7 @@ class FreeSpace:
         self._frames, self._trajectory, self._piece = frames, trajectory, piece
         self.rows = _regular(frames.t_mid_ns, piece >= 0)
         self._t_ns: Times = frames.t_mid_ns[self.rows]
+        self._shape = image_shape(frames.rig)
         self._views: dict[int, _View] = {}
 
     def moving(self, frame: Multiframe, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
@@ -113,12 +115,19 @@ class FreeSpace:
         frame, rig = self._frames[row], self._frames.rig
         T_odom_body = self._trajectory.at(np.array([frame.t_mid_ns]))
         T_odom_sensor = T_odom_body @ rig.T_body_sensor
-        images = np.full((len(rig.sensors), MOVING.rows, MOVING.columns), NO_SURFACE, np.float32)
+        images = np.full((len(rig.sensors), *self._shape), NO_SURFACE, np.float32)
         p_odom = _placed(frame, self._trajectory, rig)
         for sensor, image in enumerate(images):
             T = T_odom_sensor[sensor]
             nearest_ranges(p_odom[frame.sensor == sensor], T.R, T.t, image)
         return _View(frame.t_mid_ns, int(self._piece[row]), T_odom_sensor, images)
+
+
+def image_shape(rig: Rig) -> tuple[int, int]:
+    """Rows (elevation) and columns (azimuth) of the images of ranges of a rig's sensors."""
+    steps_deg = [lidar_model(sensor.model).ring_step_deg for sensor in rig.sensors]
+    cell_deg = max(MOVING.least_cell_deg, *steps_deg)
+    return round(180.0 / cell_deg), round(360.0 / cell_deg)
 
 
 def find_moving(frames: RecordedFrames, trajectory: Trajectory, piece: Times) -> MovingFigures:

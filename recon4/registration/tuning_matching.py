@@ -86,9 +86,9 @@ class MovingTuning:
     reach_ns: int = 10_500_000_000
     """Points are compared with scans at least and at most this far away in time [ns]: trajectories
     drift, and who walks along has left his place after seconds."""
-    rows: int = 90
-    columns: int = 180
-    """Of an image of ranges: cells of 2°, as far apart as the rings of a VLP-16."""
+    least_cell_deg: float = 2.0
+    """Cells of an image of ranges [°]; wider where the rings of a LiDAR are farther apart: a cell
+    between two rings has no return, and who stands before it is not seen through."""
     margin_m: float = 0.3
     margin_per_m: float = 0.05
     """How far behind a point everything lies if a scan sees through it; the same by its range."""

@@ -285,7 +285,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 31, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    41,
+    42,
     OdometryReads,
     _odometry,
     OdometryFigures,

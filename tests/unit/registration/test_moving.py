@@ -1,5 +1,6 @@
 """People and vehicles that stand where other scans see through."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,7 @@ from recon4.model.frames import RecordedFrames
 from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import MovingFigures, MovingOutcome, OdometryFigures
-from recon4.model.rig import Rig, Sensor
+from recon4.model.rig import Rig, Sensor, load_rig
 from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Silent
@@ -21,6 +22,7 @@ from recon4.registration.moving import (
     StandingFrames,
     find_moving,
     hide_moving,
+    image_shape,
     with_points_around,
 )
 from recon4.registration.stage import run_odometry
@@ -43,9 +45,9 @@ RIG = Rig(
 RINGS_DEG = np.arange(-29.0, 30.0, 2.0)
 
 
-def rays() -> Array:
+def rays(rings_deg: Array) -> Array:
     """Unit directions of a scan, (N, 3)."""
-    azimuth, elevation = np.meshgrid(np.deg2rad(np.arange(360.0) + 0.3), np.deg2rad(RINGS_DEG))
+    azimuth, elevation = np.meshgrid(np.deg2rad(np.arange(360.0) + 0.3), np.deg2rad(rings_deg))
     flat = np.cos(elevation)
     directions = [flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)]
     return np.stack(directions, axis=-1).reshape(-1, 3)
@@ -75,13 +77,18 @@ NONE = np.empty((0, 2))
 class Walk:
     """Multiframes of a walk along the hall, with pillars that walk along and others that stand."""
 
-    rig = RIG
-
     def __init__(
-        self, walking: Array = NONE, standing: Array = NONE, *, seconds: float = 8.0
+        self,
+        walking: Array = NONE,
+        standing: Array = NONE,
+        *,
+        seconds: float = 8.0,
+        model: str = "VLP-16",
+        rings_deg: Array = RINGS_DEG,
     ) -> None:
         """Places of pillars by where the carrier is, and by where it begins [m], (M, 2)."""
-        self._walking, self._standing = walking, standing
+        self.rig = replace(RIG, sensors=(replace(RIG.sensors[0], model=model),))
+        self._walking, self._standing, self._rings_deg = walking, standing, rings_deg
         t_s = np.arange(0.0, seconds + 0.1, 0.005)
         omega = 2.0 * np.pi / STRIDE_S
         accel = np.zeros((len(t_s), 3))
@@ -97,7 +104,7 @@ class Walk:
         return np.array([-5.0 + SPEED_M_S * (t_s - np.sin(omega * t_s) / omega), 0.3, 0.0])
 
     def __getitem__(self, k: int) -> Multiframe:
-        origin, d = self.place(self.t_mid_ns[k]), rays()
+        origin, d = self.place(self.t_mid_ns[k]), rays(self._rings_deg)
         room = room_ranges(origin, d)
         begin = self.place(0.0)
         stands = [pillar_ranges(origin, d, begin + np.append(p, 0.0)) for p in self._standing]
@@ -111,7 +118,7 @@ class Walk:
             duration_ns=FRAME_NS,
             xyz=(ranges[:, None] * d).astype(np.float32),
             intensity=(100 * (ranges < behind)).astype(np.uint16),
-            ring=np.repeat(np.arange(len(RINGS_DEG)), 360).astype(np.uint8),
+            ring=np.repeat(np.arange(len(self._rings_deg)), 360).astype(np.uint8),
             sensor=np.zeros(n, np.uint8),
             echo=np.zeros(n, np.uint8),
             dt_ns=np.full(n, FRAME_NS // 2, np.int32),
@@ -148,6 +155,15 @@ def test_people_who_walk_along_are_found_with_their_part_of_the_view() -> None:
 
     assert true > 0.15
     assert 0.7 * true < found < 1.05 * true
+
+
+def test_people_are_found_between_rings_that_are_wider_apart() -> None:
+    walk = Walk(GROUP, model="OS0-32", rings_deg=np.linspace(-45.0, 45.0, 32))
+    true = np.mean([np.mean(walk[k].intensity == ON_PILLAR) for k in range(20, 60, 10)])
+
+    assert ratios(walk)[2:6].mean() > 0.7 * true > 0.1
+    assert image_shape(walk.rig) == (62, 124)
+    assert image_shape(load_rig("4recon")) == (90, 180)
 
 
 def test_pillars_that_stand_are_none() -> None:
