@@ -24,10 +24,12 @@ from recon4.mapping.scratch import Scratch
 from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
-from recon4.mapping.tuning import BUCKETS, MAP_BUILD
+from recon4.mapping.tuning import BUCKETS, MAP_BUILD, TILE_SURFACES
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
+from recon4.model.lidars import lidar_model
+from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import MapSettings
@@ -80,7 +82,8 @@ def build_map(
     progress = progress or Silent()
     grid, frames = Grid.of(settings), inputs.frames
     t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
-    recipe = Recipe(grid, settings, inputs.intensity, t_ns, inputs.covariances)
+    noise_m = settings.range_noise_m or surface_noise_m(frames.rig)
+    recipe = Recipe(grid, settings, inputs.intensity, t_ns, noise_m, inputs.covariances)
     with (
         TemporaryDirectory(dir=out, prefix="buckets-") as folder,
         TileWriter(out, _fields(recipe, inputs), tile_m=grid.tile_m) as writer,
@@ -100,6 +103,12 @@ def build_map(
     made = TileSet.open(out)
     progress.event(MapBuilt(points=len(made), removed=dict(removed)))
     return made
+
+
+def surface_noise_m(rig: Rig) -> float:
+    """How far returns lie from their surface: by the ranges of the least exact LiDAR in use [m]."""
+    used = [lidar_model(sensor.model) for sensor in rig.sensors if sensor.enabled]
+    return max([TILE_SURFACES.least_noise_m, *(model.range_sd_m for model in used)])
 
 
 def _fields(recipe: Recipe, inputs: MapInputs) -> list[str]:

@@ -66,6 +66,8 @@ class Recipe:
     intensity: IntensityTable | None
     t_ns: Times
     """Start of each multiframe [ns], (F,)."""
+    noise_m: float
+    """Standard deviation of a range [m]."""
     covariances: PoseCovariances | None = None
     """Of the multiframes; None = no deviations of the points."""
 
@@ -131,7 +133,7 @@ def _blocks(
 
 
 def _surfaces(records: Records, recipe: Recipe, scratch: Scratch) -> FittedSurfaces:
-    grid, noise_m = recipe.grid, recipe.settings.range_noise_m
+    grid, noise_m = recipe.grid, recipe.noise_m
     found = fit_surfaces(records, grid, noise_m=noise_m, scratch=scratch)
     return with_sparse_places(records, found, grid, noise_m=noise_m, scratch=scratch)
 

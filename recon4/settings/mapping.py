@@ -17,8 +17,9 @@ class MapSettings(Checked):
     surface: Literal["raw", "fitted"] = "fitted"
     """Where points lie: where they were measured, or on the surface fitted to all returns around
     them, as far as there is one. Then tiles have both positions, and stray returns are marked."""
-    range_noise_m: Annotated[float, ValueRange(0.001, 0.05, "m")] = 0.015
-    """Standard deviation of a range, to tell one surface from two [m]."""
+    range_noise_m: Annotated[float, ValueRange(0, 0.05, "m")] = 0.0
+    """Standard deviation of a range, to tell one surface from two [m]; 0 = of the least exact LiDAR
+    in use, at least 15 mm."""
     max_range_m: Annotated[float, ValueRange(0.5, 130, "m")] = 60.0
     """Points farther from the sensor are not in the map [m]."""
     tile_m: Annotated[float, ValueRange(1, 100, "m")] = 5.0

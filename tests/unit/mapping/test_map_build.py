@@ -338,18 +338,6 @@ def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(
         TileSet.open(folder)
 
 
-def test_a_smaller_noise_of_ranges_smooths_a_noisy_floor_less(tmp_path):
-    walk = room_walk(frames=8, points=5000, noise_m=0.01)
-    off_m = []
-    for noise_m in (0.015, 0.001):
-        settings = MapSettings(voxel_m=0.02, range_noise_m=noise_m)
-        xyz = everything(build(walk, tmp_path / f"{noise_m}", settings))
-        floor = (np.abs(xyz[:, 2] + 1.4) < 0.05) & (np.abs(xyz[:, :2]) < 2.0).all(axis=1)
-        off_m.append(np.abs(xyz[floor, 2] + 1.4).mean())
-
-    assert off_m[0] < 0.8 * off_m[1]
-
-
 def test_surfaces_are_fitted_unless_the_documents_are_followed():
     assert MapSettings().surface == "fitted"
     assert preset("thesis").map.surface == "raw"
