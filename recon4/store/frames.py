@@ -1,11 +1,11 @@
-"""Columnar store of multiframes: one ``.npy`` file per column, streamed out, memory-mapped in.
+"""Store of multiframes: compressed one by one, streamed out, read on demand.
 
-    xyz.npy intensity.npy ring.npy sensor.npy echo.npy dt_ns.npy    one row per point
-    index.npy                                                       one row per multiframe
-    imu.npz gnss.npz                                                if there are any
+    points.zst          the points of one multiframe after the other (`recon4.store.packed_points`)
+    index.npy           one row per multiframe
+    imu.npz gnss.npz    if there are any
     rig.toml report.json
 
-Points of frame ``k`` are rows ``index["start"][k]`` to ``index["stop"][k]`` of every column.
+The points of frame ``k`` are the bytes from ``index["end"][k - 1]`` to ``index["end"][k]``.
 """
 
 from __future__ import annotations
@@ -26,11 +26,12 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.beams import beam_change
 from recon4.model.hidden import MOVING_POINTS, HiddenPoints
-from recon4.model.multiframe import COLUMNS, Multiframe
+from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.store.arrays import load_array, load_record, save_record
+from recon4.store.earlier_frames import EARLIER_INDEX, earlier_columns, is_earlier
 from recon4.untrusted.bounded import read_json_object
 
 INDEX = np.dtype(
@@ -40,15 +41,18 @@ INDEX = np.dtype(
         ("duration_ns", "<i8"),
         ("start", "<i8"),
         ("stop", "<i8"),
+        ("end", "<i8"),
+        ("step", "<i8"),
     ]
 )
-"""One row of ``index.npy``."""
+"""One row of ``index.npy``: ``start`` and ``stop`` count points of all multiframes, ``end`` bytes
+of ``points.zst``; ``step`` is the power of two of the step of the coordinates [m]."""
+POINTS = "points.zst"
 
 CALIBRATED_RIG = "rig.toml"
 """In the folder of the stage ``calibration``: the calibrated rig, if it is used."""
 CALIBRATION_SLICES = "slices.json"
 """There, too: what the LiDARs see with the rig file and with the calibrated rig."""
-_HEADER_BYTES = 128
 _MAX_REPORT_BYTES = 64 << 20
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
@@ -56,26 +60,23 @@ _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 class FrameWriter:
     """Appends multiframes to a folder, with one multiframe in memory.
 
-    The headers of the columns get their length when the ``with`` block ends without an error.
     After an error the folder has no ``index.npy`` and `FrameStore` rejects it.
     """
 
     def __init__(self, folder: Path, rig: Rig) -> None:
-        """Create the folder's column files.
+        """Create the folder's files.
 
         Raises:
             StoreError: If the folder cannot be written.
         """
         self._folder = folder
         self._points = 0
-        self._rows: list[tuple[int, int, int, int, int]] = []
-        self._files: dict[str, BinaryIO] = {}
+        self._bytes = 0
+        self._rows: list[tuple[int, int, int, int, int, int, int]] = []
         with storing(folder):
             folder.mkdir(parents=True, exist_ok=True)
             (folder / "rig.toml").write_text(format_rig(rig), "utf-8")
-            for name in COLUMNS:
-                self._files[name] = (folder / f"{name}.npy").open("wb")
-                self._files[name].write(_header(name, 0))
+            self._file: BinaryIO = (folder / POINTS).open("wb")
 
     def __enter__(self) -> Self:
         return self
@@ -87,8 +88,7 @@ class FrameWriter:
             if kind is None:
                 self._finish()
         finally:
-            for file in self._files.values():
-                _close_quietly(file)
+            _close_quietly(self._file)
 
     def __len__(self) -> int:
         return len(self._rows)
@@ -104,14 +104,16 @@ class FrameWriter:
         Raises:
             StoreError: If it cannot be written (`NoSpace` when the disk is full).
         """
+        from recon4.store.packed_points import pack
+
         assert frame.frame_id == len(self._rows), "frame ids count from 0 without holes"
+        data, step = pack(frame)
         with storing(self._folder):
-            for name, (dtype, width) in COLUMNS.items():
-                column = np.ascontiguousarray(getattr(frame, name), dtype=dtype)
-                assert column.shape == ((len(frame), width) if width > 1 else (len(frame),))
-                self._files[name].write(column.data)
+            self._file.write(data)
         start, self._points = self._points, self._points + len(frame)
-        self._rows.append((frame.frame_id, frame.t_ns, frame.duration_ns, start, self._points))
+        self._bytes += len(data)
+        times = frame.frame_id, frame.t_ns, frame.duration_ns
+        self._rows.append((*times, start, self._points, self._bytes, step))
 
     def add(
         self,
@@ -132,11 +134,8 @@ class FrameWriter:
 
     def _finish(self) -> None:
         with storing(self._folder):
-            for name, file in self._files.items():
-                file.seek(0)
-                file.write(_header(name, self._points))
-                file.flush()
-                os.fsync(file.fileno())
+            self._file.flush()
+            os.fsync(self._file.fileno())
             with (self._folder / "index.npy").open("wb") as file:
                 np.save(file, np.array(self._rows, dtype=INDEX))
                 file.flush()
@@ -147,13 +146,13 @@ class FrameWriter:
 class FrameStore:
     """The multiframes of a recording, read on demand.
 
-    ``store[k]`` maps frame ``k`` only, and the mapping ends with the frame: memory depends on the
-    frames in use, not on the walk. The arrays are copied on write; the files never change.
+    ``store[k]`` reads frame ``k`` only: memory depends on the frames in use, not on the walk. The
+    arrays belong to the frame; the files never change.
     """
 
     folder: Path
     index: NDArray[np.void]
-    """`INDEX` records, (N,)."""
+    """`INDEX` records, (N,); of an earlier version without ``end`` and ``step``."""
     rig: Rig
     """Of the recording, or calibrated."""
     imu: ImuSamples | None
@@ -179,13 +178,15 @@ class FrameStore:
         Raises:
             StoreError: If something is missing or the files do not fit each other.
         """
+        earlier = is_earlier(folder)
         try:
-            index = load_array(folder / "index.npy", INDEX)
+            index = load_array(folder / "index.npy", EARLIER_INDEX if earlier else INDEX)
             recorded = load_rig(folder / "rig.toml")
         except (StoreError, ConfigError) as error:
             raise StoreError(f"{folder.name} is not a finished frame store: {error}") from error
-        _check_index(folder, index)
-        _check_columns(folder, int(index["stop"][-1]) if len(index) else 0)
+        _check_order(folder, index)
+        if not earlier:
+            _check_points(folder, index)
         rig = rig or recorded
         if [sensor.name for sensor in rig.sensors] != [s.name for s in recorded.sensors]:
             raise StoreError(f"{folder.name}: the calibrated rig has other sensors")
@@ -208,8 +209,7 @@ class FrameStore:
         if not -len(self) <= k < len(self):
             raise IndexError(f"frame {k} of {len(self)}")
         row = self.index[k]
-        start, stop = int(row["start"]), int(row["stop"])
-        columns = {name: _map_rows(self.folder, name, start, stop=stop) for name in COLUMNS}
+        columns = self._columns(k % len(self))
         if self.rig is not self.recorded:
             columns["dt_ns"] = columns["dt_ns"] + self._clock_change_ns()[columns["sensor"]]
             columns["xyz"] = self._with_beams(columns["xyz"], columns["ring"], columns["sensor"])
@@ -217,6 +217,23 @@ class FrameStore:
             int(row["frame_id"]), int(row["t_ns"]), int(row["duration_ns"]), **columns
         )
         return self.hidden.seen(frame) if self.hidden else frame
+
+    def _columns(self, k: int) -> dict[str, NDArray[Any]]:
+        from recon4.store.packed_points import unpack
+
+        row = self.index[k]
+        start, stop = int(row["start"]), int(row["stop"])
+        if self.index.dtype == EARLIER_INDEX:
+            return earlier_columns(self.folder, start, stop)
+        first, where = int(self.index["end"][k - 1]) if k else 0, f"{self.folder.name}/{POINTS}"
+        try:
+            with (self.folder / POINTS).open("rb") as file:
+                file.seek(first)
+                data = file.read(int(row["end"]) - first)
+        except OSError as error:
+            raise StoreError(f"{where} cannot be read: {error.strerror}") from error
+        where = f"{where}: multiframe {k}"
+        return unpack(data, stop - start, step=int(row["step"]), where=where)
 
     def __iter__(self) -> Iterator[Multiframe]:
         return (self[k] for k in range(len(self)))
@@ -296,37 +313,8 @@ def _gnss(path: Path, change_s: float) -> GnssSamples | None:
     return replace(samples, t_ns=samples.t_ns + round(1e9 * change_s)) if change_s else samples
 
 
-def _shape(name: str, rows: int) -> tuple[int, ...]:
-    width = COLUMNS[name][1]
-    return (rows, width) if width > 1 else (rows,)
-
-
-def _header(name: str, rows: int) -> bytes:
-    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
-    shape = _shape(name, rows)
-    text = f"{{'descr': '{COLUMNS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
-    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
-    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
-
-
-def _map_rows(folder: Path, name: str, start: int, *, stop: int) -> NDArray[Any]:
-    dtype = np.dtype(COLUMNS[name][0])
-    if start == stop:
-        return np.empty(_shape(name, 0), dtype)
-    offset = _HEADER_BYTES + start * dtype.itemsize * COLUMNS[name][1]
-    shape = _shape(name, stop - start)
-    try:
-        # "c" instead of "r": Numba needs no second compilation for a writable array.
-        mapped = np.memmap(folder / f"{name}.npy", dtype, mode="c", offset=offset, shape=shape)
-    except (OSError, ValueError, OverflowError) as error:
-        raise StoreError(f"{folder.name}/{name}.npy cannot be read: {error}") from error
-    return mapped.view(np.ndarray)
-
-
-def _check_index(folder: Path, index: NDArray[np.void]) -> None:
+def _check_order(folder: Path, index: NDArray[np.void]) -> None:
     """Check that frames count from 0 and their points follow each other."""
-    if not len(index):
-        return
     stops = np.concatenate([[0], index["stop"]])
     good = (index["frame_id"] == np.arange(len(index))) & (index["start"] == stops[:-1])
     good &= np.diff(stops) >= 0
@@ -338,16 +326,23 @@ def _check_index(folder: Path, index: NDArray[np.void]) -> None:
         )
 
 
-def _check_columns(folder: Path, points: int) -> None:
-    for name, (dtype, width) in COLUMNS.items():
-        path = folder / f"{name}.npy"
-        expected = _HEADER_BYTES + points * np.dtype(dtype).itemsize * width
-        found = path.stat().st_size if path.is_file() else -1
-        if found != expected:
-            raise StoreError(
-                f"{folder.name}/{name}.npy: expected {expected} bytes for {points} points, "
-                f"got {found if found >= 0 else 'no file'}"
-            )
+def _check_points(folder: Path, index: NDArray[np.void]) -> None:
+    """Check that the bytes of the frames follow each other and fill their file."""
+    ends = np.concatenate([[0], index["end"]])
+    good = (np.diff(ends) > 0) & (np.abs(index["step"]) < 128)
+    if not good.all():
+        row = int(np.argmin(good))
+        raise StoreError(
+            f"{folder.name}/index.npy: row {row}: expected bytes from {ends[row]} on, "
+            f"got {index[row]}"
+        )
+    path = folder / POINTS
+    found = path.stat().st_size if path.is_file() else -1
+    if found != ends[-1]:
+        raise StoreError(
+            f"{folder.name}/{POINTS}: expected {ends[-1]} bytes of {len(index)} multiframes, "
+            f"got {found if found >= 0 else 'no file'}"
+        )
 
 
 def _read_report(path: Path) -> dict[str, object]:

@@ -38,13 +38,13 @@ from websockets.exceptions import ConnectionClosed
 from recon4.live.project_files import begin
 from recon4.live.session import CaptureSession, stretched
 from recon4.model.rig import load_rig
+from recon4.store.frames import POINTS
 from tests.loopback import an_address
 from tests.service.running import server_process
 
 READY_WITHIN_S = 1800.0
-_PUNCHED = ("xyz", "intensity", "ring", "sensor", "echo", "dt_ns")
 _KEPT_BYTES = 64 << 20
-"""At the end of a column: still on its way to the disk."""
+"""At the end of the points: still on their way to the disk."""
 MIB = 2**20
 
 
@@ -117,12 +117,11 @@ def memory_mib(project: Path, server: int) -> dict[str, float]:
 
 
 def punch(folder: Path) -> None:
-    """Give the space of columns already written back to the disk."""
-    for name in _PUNCHED:
-        path = folder / f"{name}.npy"
-        if path.exists() and (size := path.stat().st_size - _KEPT_BYTES) > 1 << 20:
-            some = ["fallocate", "-p", "-o", str(1 << 20), "-l", str(size - (1 << 20)), str(path)]
-            subprocess.run(some, check=True)
+    """Give the space of points already written back to the disk."""
+    path = folder / POINTS
+    if path.exists() and (size := path.stat().st_size - _KEPT_BYTES) > 1 << 20:
+        some = ["fallocate", "-p", "-o", str(1 << 20), "-l", str(size - (1 << 20)), str(path)]
+        subprocess.run(some, check=True)
 
 
 @contextmanager

@@ -41,6 +41,7 @@ from recon4.simulation.degradation import parse_degradations
 from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import record
 from recon4.simulation.worlds import build_world
+from recon4.store.frames import POINTS
 from recon4.store.project import Project, ProjectDescription, read_artifacts
 from recon4.store.stage import Input, StageRun, StageRunner
 from recon4.workflows.choice import import_inputs
@@ -315,10 +316,9 @@ def _simulate(walk: str, folders: Mapping[str, Path], *, seconds: float) -> None
 
 def _keep(recording: Path, project: Path, into: Path) -> None:
     shutil.rmtree(into, ignore_errors=True)
-    points = ("xyz.npy", "intensity.npy", "ring.npy", "sensor.npy", "echo.npy", "dt_ns.npy")
     if project.is_dir():
         for stage, folder in read_artifacts(project).items():
-            shutil.copytree(folder, into / stage, ignore=shutil.ignore_patterns(*points))
+            shutil.copytree(folder, into / stage, ignore=shutil.ignore_patterns(POINTS))
     into.mkdir(parents=True, exist_ok=True)
     for name in ("truth.tum", "world.json"):
         shutil.copy(recording / name, into)

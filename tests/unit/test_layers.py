@@ -37,7 +37,7 @@ MAY_IMPORT = {
     "recon4/model": MODEL,
     "recon4/kernels": {"recon4.kernels"},
     "recon4/sandbox": {"recon4.sandbox"},
-    "recon4/store": MODEL | {"recon4.store"},
+    "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
     "recon4/live": STAGE
     | {"recon4.live", "recon4.registration", "recon4.sandbox", "recon4.system.runtime_folder"}

@@ -263,9 +263,9 @@ _ALL = (
         prepare=tables.frame_store,
     ),
     Kind(
-        name="npy-column",
-        file_name="xyz.npy",
-        seeds=tables.frame_column,
+        name="zst-points",
+        file_name="points.zst",
+        seeds=tables.frame_points,
         read=_store,
         prepare=tables.frame_store,
     ),

@@ -170,9 +170,9 @@ def frame_index() -> tuple[bytes, ...]:
     return _of_folder(frame_store, "index.npy")
 
 
-def frame_column() -> tuple[bytes, ...]:
-    """``xyz.npy`` of a frame store."""
-    return _of_folder(frame_store, "xyz.npy")
+def frame_points() -> tuple[bytes, ...]:
+    """``points.zst`` of a frame store."""
+    return _of_folder(frame_store, "points.zst")
 
 
 def tiles(folder: Path) -> None:
