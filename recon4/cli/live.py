@@ -84,11 +84,10 @@ def record(
     from recon4.live.headless import Headless
     from recon4.live.project_files import begin, discard
     from recon4.live.session import CaptureSession
-    from recon4.model.rig import load_rig
     from recon4.settings import preset as preset_named
     from recon4.system.stopping import StoppedBySignal, StopSignals
 
-    loaded = load_rig(rig)
+    loaded = _described_rig(rig)
     preset_named(preset)
     stop = context.find_object(StopSignals)
     assert stop is not None
@@ -110,6 +109,19 @@ def record(
     _write(f"next: recon4 process {session.capture} --rig {recordings / 'rig.toml'} --out {out}")
     if ended.done is None or ended.done.problem:
         raise typer.Exit(1)
+
+
+def _described_rig(rig: str) -> Rig:
+    """A rig preset or file, with the files beside it that describe its LiDARs."""
+    from recon4.model.rig import load_rig
+    from recon4.recording.files_near import files_near
+    from recon4.recording.packets.companions import with_descriptions
+
+    beside = files_near(Path(rig)) if Path(rig).suffix else []
+    loaded, used = with_descriptions(load_rig(rig), beside)
+    for name, file in used.items():
+        _write(f"{name} is described by {file} beside the rig file")
+    return loaded
 
 
 def _reporter(rig: Rig) -> Callable[[Newest, str], None]:

@@ -8,8 +8,10 @@ from typing import Literal
 from recon4.live.newest import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
+from recon4.live.session import loopback_address
 from recon4.live.tuning import CAPTURE_WARNINGS
 from recon4.model.import_counts import ratio_text
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.model.usability import WEAK_SD_M
 
@@ -58,11 +60,23 @@ def rates(rig: Rig, status: Status) -> dict[str, float]:
     """Datagrams per second of each sensor of a rig, of its IMU and its GNSS receiver."""
     senders = status.senders
     found = {s.name: sum(_rate(s, one) for one in _mine(s, senders)) for s in rig.sensors}
-    for name, port in (("IMU", rig.imu_port), ("GNSS", rig.gnss_port)):
-        if name == "IMU" and not (_needs_imu(rig) or any(one.port == port for one in senders)):
-            continue
-        found[name] = sum(one.per_s for one in senders if port and one.port == port)
+    imu = _imu_senders(rig, senders)
+    if imu or (_needs_imu(rig) and not _with_imu(rig)):
+        found["IMU"] = sum(one.per_s for one in imu)
+    found["GNSS"] = sum(one.per_s for one in senders if one.port == rig.gnss_port != 0)
     return found
+
+
+def _imu_senders(rig: Rig, senders: list[Sender]) -> list[Sender]:
+    """Senders of IMU samples: the IMU of the rig, else what LiDARs with one send beside points."""
+    own = [one for one in senders if rig.imu_port and one.port == rig.imu_port]
+    ports = {port for sensor in _with_imu(rig) for port in lidar_model(sensor.model).sample_ports}
+    return own or [one for one in senders if one.port in ports]
+
+
+def _with_imu(rig: Rig) -> list[Sensor]:
+    """LiDARs with an IMU; some send its samples in their data packets."""
+    return [s for s in rig.sensors if s.kind == "lidar" and lidar_model(s.model).has_imu]
 
 
 def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:
@@ -71,9 +85,14 @@ def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:
         one
         for one in senders
         if one.port == sensor.port
-        and sensor.address in {"", one.source}
+        and (not sensor.address or one.source in _addresses(sensor))
         and (_rate(sensor, one) > 0 or one.silent_s > 0.5)
     ]
+
+
+def _addresses(sensor: Sensor) -> set[str]:
+    """Where the packets of a sensor come from, or those of its replay on this computer."""
+    return {sensor.address, loopback_address(sensor.address)} - {""}
 
 
 def _rate(sensor: Sensor, sender: Sender) -> float:
@@ -126,7 +145,7 @@ def _arriving(rig: Rig, status: Status) -> str:
     for sensor in rig.sensors:
         there = [one for one in status.senders if one.port == sensor.port]
         if sensor.kind != "lidar":
-            other = [one for one in there if one.per_s > 0 and one.source != sensor.address]
+            other = [one for one in there if one.per_s > 0 and one.source not in _addresses(sensor)]
             if sensor.address and other:
                 return (
                     f"{sensor.name} is expected from {sensor.address}, but datagrams for port "
@@ -134,7 +153,7 @@ def _arriving(rig: Rig, status: Status) -> str:
                     "in the sender"
                 )
             continue
-        data = [one for one in there if one.data_per_s > 0 and one.source != sensor.address]
+        data = [one for one in there if one.data_per_s > 0 and one.source not in _addresses(sensor)]
         if sensor.address and data:
             return (
                 f"{sensor.name} is expected from {sensor.address}, but data packets for port "
@@ -165,11 +184,11 @@ def _silent_s(senders: list[Sender], status: Status) -> float:
 
 def _samples(rig: Rig, status: Status) -> list[CaptureFinding]:
     found = []
-    imu = [one for one in status.senders if one.port == rig.imu_port]
+    imu = _imu_senders(rig, status.senders)
     silent_s = _silent_s(imu, status)
-    if rig.imu_port and imu and silent_s >= CAPTURE_WARNINGS.silent_s:
+    if imu and silent_s >= CAPTURE_WARNINGS.silent_s:
         found.append(CaptureFinding("warning", f"IMU silent for {_seconds(silent_s)}: turn slowly"))
-    elif silent_s >= CAPTURE_WARNINGS.silent_s and _needs_imu(rig):
+    elif silent_s >= CAPTURE_WARNINGS.silent_s and _needs_imu(rig) and not _with_imu(rig):
         found.append(CaptureFinding("warning", "No IMU: walk and turn slowly"))
     if status.serial:
         found.append(CaptureFinding("warning", f"GNSS receiver: {status.serial}"))
@@ -190,7 +209,7 @@ def _strangers(rig: Rig, status: Status) -> list[CaptureFinding]:
     for port, sensors in ports.items():
         there = [one for one in status.senders if one.port == port and one.per_s > 0]
         there.sort(key=lambda one: -_rate(sensors[0], one))
-        known = {s.address for s in sensors if s.address} or {
+        known = set[str]().union(*map(_addresses, sensors)) or {
             one.source for one in there[: len(sensors)]
         }
         strangers = sorted({one.source for one in there if one.source not in known})

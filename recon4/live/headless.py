@@ -69,7 +69,9 @@ class Headless:
             mapper = await started(self._session, "mapper")
             await self._receive("mapper")
             await mapper.wait()
-            if self._newest.done is not None:
+            done = self._newest.done
+            if done is not None:
+                self._problem = done.problem and f"There is no map: {done.problem}"
                 return
             self._problem = "the mapper died and was started again; the recording continues"
         self._problem = "the map stopped growing; the recording continues"

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, EmptyRecording
-from recon4.live.session import stretched
+from recon4.live.session import loopback_address, stretched
 from recon4.live.tuning import REPLAY
 from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
 from recon4.progress import Progress
@@ -223,6 +223,6 @@ class _Senders:
 
     def _open(self, source: str) -> socket.socket:
         udp = self._closing.enter_context(socket.socket(socket.AF_INET, socket.SOCK_DGRAM))
-        if self._target.startswith("127."):  # every address of 127/8 is local
-            udp.bind(("127." + source.split(".", 1)[1], 0))
+        if self._target.startswith("127."):
+            udp.bind((loopback_address(source), 0))
         return udp

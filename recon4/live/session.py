@@ -92,6 +92,14 @@ def stretched(t_ns: int, speed: float) -> int:
     return midnight_ns + round((t_ns - midnight_ns) * speed)
 
 
+def loopback_address(address: str) -> str:
+    """The address from which a replay on this computer sends what came from an address.
+
+    Every address of 127/8 is local, so senders stay apart.
+    """
+    return f"127.{address.split('.', 1)[1]}" if "." in address else address
+
+
 def load_session(project: Path) -> CaptureSession:
     """Load the session of a project.
 

@@ -7,9 +7,11 @@ changed file makes a new map. Readers use those that are given.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
-from recon4.model.rig import Rig
+from recon4.model.lidars import lidar_model
+from recon4.model.rig import Rig, Sensor
 from recon4.recording.files_near import COMPANION_SUFFIXES, files_near
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, same_start
@@ -23,6 +25,44 @@ def described_in(rig: Rig | None) -> list[Companion]:
     return [
         Companion(f"{s.name} (rig file)", s.description.encode()) for s in sensors if s.description
     ]
+
+
+def with_descriptions(rig: Rig, files: Sequence[Path]) -> tuple[Rig, dict[str, str]]:
+    """A rig whose LiDARs have the files beside the rig file as descriptions, where that is certain.
+
+    A file is of the LiDAR that its name begins with, or of the only one of its family. A
+    description in the rig file stays.
+
+    Args:
+        rig: The rig.
+        files: Files beside its own.
+
+    Returns:
+        The rig, and by names of LiDARs those of their files.
+    """
+    found = companions_of(files)
+    used: dict[str, str] = {}
+    sensors = []
+    for sensor in rig.sensors:
+        alike = [s for s in rig.sensors if _maker(s) == _maker(sensor)]
+        fit = [one for one in found if not sensor.description and _is_described(sensor, one)]
+        own = [one for one in fit if one.name.startswith(sensor.name)] or fit * (len(alike) == 1)
+        if len(own) == 1:
+            used[sensor.name] = own[0].name
+            sensors.append(replace(sensor, description=own[0].content.decode(errors="replace")))
+        else:
+            sensors.append(sensor)
+    return replace(rig, sensors=tuple(sensors)), used
+
+
+def _maker(sensor: Sensor) -> str:
+    return lidar_model(sensor.model).maker
+
+
+def _is_described(sensor: Sensor, companion: Companion) -> bool:
+    """Whether the family of a LiDAR reads a file."""
+    families = [one for one in FAMILIES if sensor.kind == "lidar" and one.name == _maker(sensor)]
+    return any(family.describes(companion) for family in families)
 
 
 def is_companion(path: Path) -> bool:

@@ -81,6 +81,15 @@ def test_datagrams_from_an_unexpected_address_are_named_not_reported_as_silence(
     assert not any("No LiDAR sends anything" in text for _, text in found)
 
 
+def test_a_replay_on_this_computer_sends_from_the_addresses_of_the_rig_on_the_loopback():
+    replayed = (sender(2368, source="127.0.0.1"), sender(2369, source="127.0.0.2"))
+
+    assert found_in(status(*replayed, IMU), rig=WITH_ADDRESSES) == found_in(
+        status(sender(2368, source="10.0.0.1"), sender(2369, source="10.0.0.2"), IMU),
+        rig=WITH_ADDRESSES,
+    )
+
+
 def test_datagrams_that_are_no_data_packets_are_named_not_reported_as_silence():
     found = found_in(status(sender(2368, 300.0, data_per_s=0.0, source="10.0.0.7"), IMU))
 
@@ -348,3 +357,16 @@ def test_single_bad_scans_are_not_worth_a_warning():
     recent = {"scans": 250, "scans_repeated": 1, "scans_without_returns": 3, "scans_damaged": 1}
 
     assert found_in(status(SCANS, LINES, IMU), rig=BACKPACK, notes=notes(recent=recent)) == []
+
+
+@pytest.mark.parametrize(
+    ("model", "beside"),
+    [("OS0-32", sender(7503, 100.0)), ("JT128", None)],
+    ids=["in packets of its own", "in the data packets"],
+)
+def test_the_imu_of_a_lidar_is_not_missed(model, beside):
+    rig = parse_rig(f'[[sensor]]\nname = "front"\nmodel = "{model}"', where="test")
+    senders = [sender(rig.sensors[0].port, 640.0, data_per_s=640.0), *([beside] if beside else [])]
+
+    assert found_in(status(*senders), rig=rig) == []
+    assert rates(rig, status(*senders)).get("IMU") == (beside.per_s if beside else None)

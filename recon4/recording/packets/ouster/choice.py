@@ -34,7 +34,8 @@ _TRIED = 200
 NEEDED = (
     "packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor "
     "beside the recording (the driver and ouster-cli write it; "
-    "http://SENSOR/api/v1/sensor/metadata; page: upload the folder with both)"
+    "http://SENSOR/api/v1/sensor/metadata; page: upload the folder with both), or for a live "
+    "capture into the rig, as its description (page: Rigs; command: a file beside the rig file)"
 )
 
 

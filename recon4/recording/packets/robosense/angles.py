@@ -92,7 +92,7 @@ def laser_angles(
         raise ConfigError(
             f"packets of a {model.name} need the angles of its {model.lasers} lasers: record its "
             "device packets (DIFOP, port 7788) too, or put a csv file with a row of elevation and "
-            "azimuth [°] per laser beside the recording"
+            "azimuth [°] per laser beside the recording, or into the rig as its description"
         )
     return LaserAngles(
         model.factory_cdeg.astype(np.float64), "another sensor's factory table", False
@@ -105,8 +105,8 @@ def _names(file: str, model: RoboSenseModel) -> bool:
 
 
 def fitting_table(file: Companion, model: RoboSenseModel) -> NDArray[np.float64] | None:
-    """The table of a csv file if it has the lasers and elevations of the model [0.01°]."""
-    table = angles_of_csv(file) if file.name.lower().endswith(".csv") else None
+    """The table of a file if it has the lasers and elevations of the model [0.01°]."""
+    table = angles_of_csv(file)
     if table is None or len(table) != model.lasers:
         return None
     low, high = lidar_model(model.name).elevation_deg

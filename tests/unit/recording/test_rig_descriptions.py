@@ -1,0 +1,71 @@
+"""Files beside a rig file describe its LiDARs: a live capture has no recording to lie beside."""
+
+import json
+
+import numpy as np
+import pytest
+
+from recon4.model.lidars import lidar_model
+from recon4.model.rig import format_rig, parse_rig
+from recon4.recording.packets.companions import described_in, with_descriptions
+from recon4.recording.packets.families import FAMILIES
+from recon4.recording.packets.ouster.encode import metadata_json
+from recon4.recording.packets.ouster.models import nominal_metadata
+
+METADATA = metadata_json(nominal_metadata("OS0-32", profile="LEGACY")).decode()
+FILES = {
+    "OS0-32": ("sensor.json", METADATA),
+    "XT32": (
+        "correction.csv",
+        "Channel,Elevation,Azimuth\n" + "".join(f"{k + 1},{15 - k}.1,0.2\n" for k in range(32)),
+    ),
+    "Airy": ("angles.csv", "".join(f"{e:.2f},0.10\n" for e in np.linspace(0.5, 89.5, 96))),
+}
+
+
+def rig_of(*sensors):
+    rows = [
+        f'[[sensor]]\nname = "{name}"\nmodel = "{model}"\naddress = "10.0.0.{k}"'
+        for k, (name, model) in enumerate(sensors)
+    ]
+    return parse_rig("\n".join(['name = "r"', *rows]), where="rig.toml")
+
+
+@pytest.mark.parametrize("model", FILES)
+def test_a_file_beside_the_rig_file_describes_the_only_lidar_of_its_family(tmp_path, model):
+    name, content = FILES[model]
+    (tmp_path / name).write_text(content)
+    (tmp_path / "notes.json").write_text("{}")
+
+    rig, used = with_descriptions(
+        rig_of(("front", model), ("top", "VLP-16")), sorted(tmp_path.iterdir())
+    )
+
+    assert used == {"front": name}
+    assert [one.description for one in rig.sensors] == [content, ""]
+    (kept,) = described_in(parse_rig(format_rig(rig), where="rig.toml"))
+    (family,) = (one for one in FAMILIES if one.name == lidar_model(model).maker)
+    assert family.describes(kept)
+
+
+def test_of_two_lidars_of_a_family_the_names_of_the_files_decide(tmp_path):
+    for name in ("left_1.json", "right_1.json", "spare.json"):
+        (tmp_path / name).write_text(json.dumps(json.loads(METADATA) | {"prod_sn": name}))
+    rig = rig_of(("left", "OS0-32"), ("right", "OS0-32"))
+
+    _, used = with_descriptions(rig, sorted(tmp_path.iterdir()))
+    _, unnamed = with_descriptions(rig, [tmp_path / "spare.json"])
+
+    assert used == {"left": "left_1.json", "right": "right_1.json"}
+    assert unnamed == {}
+
+
+def test_a_description_in_the_rig_file_stays(tmp_path):
+    name, content = FILES["Airy"]
+    (tmp_path / name).write_text(content)
+    rig, _ = with_descriptions(rig_of(("front", "Airy")), [tmp_path / name])
+    (tmp_path / name).write_text(content.replace("0.10", "0.20"))
+
+    again, used = with_descriptions(rig, [tmp_path / name])
+
+    assert used == {} and again.sensors[0].description == content
