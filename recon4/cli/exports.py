@@ -1,4 +1,6 @@
-"""The command ``recon4 export``: the map of a project, its poses or findings, as files."""
+"""The commands ``recon4 export`` (the map of a project, its poses or findings, as files) and
+``recon4 convert`` (a recording in the format of another program).
+"""
 
 from __future__ import annotations
 
@@ -66,6 +68,29 @@ def export(
         wanted = MapExport(crs=crs, raw=raw, strays=strays, draft=draft)
         made = export_map(project, file, wanted, progress=progress)
     write(f"{made.text} in {file}\n{made.approval.text}")
+
+
+@exports.command()
+def convert(
+    recordings: Annotated[
+        list[Path], typer.Argument(help="A recording of LiDARs: pcap, bag, LVX.")
+    ],
+    *,
+    out: Annotated[Path, typer.Option(help="Folder to make: lidar*.laz, imu*.csv, as MANDEYE.")],
+    rig: Annotated[str, typer.Option(help="Rig preset or .toml; default: worked out.")] = "",
+    imu: Annotated[Path | None, typer.Option(help="IMU samples as CSV.")] = None,
+) -> None:
+    """Write the points and IMU samples of a recording as a walk of MANDEYE, for HDMapping."""
+    confine_command(write=[out.parent])
+    from recon4.cli.terminal import watcher
+    from recon4.recording.mandeye.convert import convert as run
+    from recon4.recording.sources import Sources
+
+    sources = Sources.of(*recordings, rig=rig or None, imu=imu)
+    with watcher() as progress:
+        made = run(sources, out, progress=progress)
+    write(f"{made.points} points and {made.samples} IMU samples in {out}")
+    write("\n".join(f"lost: {text}" for text in made.lost) + "\n" * bool(made.lost), end="")
 
 
 def _write_approval(project: Path, *, draft: bool) -> None:

@@ -127,6 +127,10 @@ _POINTS = {
     "points_wrong_time": _lost(
         "points", "a time more than two revolutions from the others, dropped", apart=True
     ),
+    "points_without_time": _lost("points", "no time, dropped", apart=True),
+    "points_of_lidars_not_in_rig": _usual(
+        "", "of LiDARs that the rig does not list", noun="points"
+    ),
     "points_without_joint": _lost(
         "points", "without a pose of the joint that moves their sensor, left out", apart=True
     ),
@@ -149,6 +153,8 @@ _POINTS = {
     "files": _read("files"),
     "files_corrupt": _lost("files", "cannot be read, left out", stated=True),
     "files_damaged": _stated("damaged, left out", noun="files"),
+    "files_out_of_order": _repaired("files", "numbers in another order than their times, sorted"),
+    "imu_files_missing": _stated("missing: no IMU samples there", noun="files imu*.csv"),
     "files_missing": _stated("named in metadata.yaml, not there", noun="files"),
 }
 _MESSAGES = {

@@ -190,14 +190,9 @@ class CloudDecoder:
         return rings
 
     def _rings_from_elevation(self, elevation: NDArray[np.floating], why: str) -> NDArray[np.uint8]:
-        beams = _beams(self._model, elevation)
-        if beams is None:
-            self._report.derive(f"{self._name}: {why}, {_BANDS} bands of elevation instead")
-            beams = np.deg2rad(np.linspace(-25.0, 15.0, _BANDS))
-        else:
-            self._report.derive(f"{self._name}: {why}, ring from elevation")
-        middles = (beams[1:] + beams[:-1]) / 2.0
-        return np.searchsorted(middles, elevation).astype(np.uint8)
+        rings, how = rings_by_elevation(self._model, elevation)
+        self._report.derive(f"{self._name}: {why}, {how}")
+        return rings
 
     # -- time
 
@@ -248,6 +243,23 @@ class CloudDecoder:
             )
         since_ns = np.rint(np.clip(turn, 0.0, 1.0) * (period_ns - 1)).astype(np.int64)
         return t_ns + since_ns, everyone
+
+
+def rings_by_elevation(
+    model: str, elevation: NDArray[np.floating]
+) -> tuple[NDArray[np.uint8], str]:
+    """Rings of points without, (N,), and how they were found.
+
+    Args:
+        model: Of the sensor; ``generic`` = the beams that the points fit, else bands.
+        elevation: Of each point [rad], (N,).
+    """
+    beams, how = _beams(model, elevation), "ring from elevation"
+    if beams is None:
+        beams, how = np.deg2rad(np.linspace(-25.0, 15.0, _BANDS)), f"{_BANDS} bands of elevation"
+        how += " instead"
+    middles = (beams[1:] + beams[:-1]) / 2.0
+    return np.searchsorted(middles, elevation).astype(np.uint8), how
 
 
 def model_of_points(table: Table) -> str:

@@ -38,6 +38,7 @@ from recon4.recording.laser2d import is_laser2d, read_laser_recording
 from recon4.recording.laser_mount import mounted_scans
 from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
+from recon4.recording.mandeye.info import describe_walk
 from recon4.recording.nearby_samples import samples_beside
 from recon4.recording.open import KINDS, open_recording
 from recon4.recording.openers.frames import frames_model
@@ -98,6 +99,8 @@ def describe(
         info = describe_capture(info, path, companions_of(request.paths))
     elif kind is RecordingKind.FRAMES:
         info = _describe_frames(info, path, settings)
+    elif kind is RecordingKind.MANDEYE:
+        info = describe_walk(info, path)
     elif kind in BAGS:
         info = _describe_bag(info, request)
     return _with_head(info, request)

@@ -23,6 +23,7 @@ from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
 from recon4.recording.laser_tables import LASER_COLUMNS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
+from recon4.recording.mandeye.folder import is_points_file
 from recon4.recording.packets.companions import companion_paths, is_companion
 from recon4.recording.packets.datagram_files import is_datagram_file
 from recon4.recording.packets.livox.lvx import is_lvx
@@ -44,6 +45,7 @@ class RecordingKind(StrEnum):
     CARMEN = "CARMEN log of a 2-D laser"
     LINE_TABLES = "line scans (CSV or NPZ)"
     LASER_TABLE = "scans of a 2-D laser (CSV or NPZ)"
+    MANDEYE = "walk of a MANDEYE device (LAZ and CSV)"
     LIDAR_FILE = "description of a LiDAR (JSON, CSV, YAML, XML or DAT)"
 
 
@@ -121,7 +123,9 @@ class FolderContents:
             self.folder / name
             for kind, names in self.kinds.items()
             for name in names
-            if name != "metadata.yaml" and (kind is not RecordingKind.FRAMES or len(names) == 1)
+            if name != "metadata.yaml"
+            and kind is not RecordingKind.MANDEYE
+            and (kind is not RecordingKind.FRAMES or len(names) == 1)
         ]
         return (*files[:_MOST_FOLDERS], *self.folders)
 
@@ -177,6 +181,8 @@ def _file_kind(path: Path) -> RecordingKind:
         raise EmptyRecording(f"{path.name}: the file is empty (0 bytes)")
     if is_mesh(path):
         raise UnknownFormat(f"{path.name}: a mesh: a finished model, not a recording; {_known()}")
+    if is_points_file(path.name) and head.startswith(b"LASF"):
+        raise UnknownFormat(f"{path.name}: a part of a walk of a MANDEYE device: give its folder")
     for has_content, kind in _BY_CONTENT:
         if has_content(path):
             return kind
@@ -328,6 +334,8 @@ def _kinds_in(path: Path) -> tuple[dict[RecordingKind, list[str]], list[str]]:
             kind = RecordingKind.PCAP
         if kind is not None:
             kinds.setdefault(kind, []).append(name)
+    if parts := sorted(child.name for child in path.iterdir() if is_points_file(child.name)):
+        kinds[RecordingKind.MANDEYE] = parts
     if (lines := table_in(path, "lines")) and is_line_table(lines):
         kinds[RecordingKind.LINE_TABLES] = [lines.name]
     return kinds, meshes

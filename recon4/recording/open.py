@@ -11,6 +11,7 @@ from recon4.recording.kinds import PLANAR, RecordingKind, contents_of, recognize
 from recon4.recording.openers.bags import open_lidar_bag, open_line_bag
 from recon4.recording.openers.captures import open_lidar_capture, open_lvx, open_scan_capture
 from recon4.recording.openers.frames import open_frames
+from recon4.recording.openers.mandeye import open_mandeye
 from recon4.recording.openers.request import Opener, OpenRequest, Recording
 from recon4.recording.openers.tables import open_line_tables
 
@@ -35,6 +36,7 @@ KINDS: Kinds = {
     RecordingKind.BAG1: _BAG,
     RecordingKind.BAG2: _BAG,
     RecordingKind.FRAMES: KindRow((open_frames,)),
+    RecordingKind.MANDEYE: KindRow((open_mandeye,)),
     RecordingKind.LINE_TABLES: KindRow(
         (open_line_tables,), frozenset({RecordingKind.LASER_TABLE, RecordingKind.IMU_CSV})
     ),

@@ -109,9 +109,9 @@ def _remedy(streams: Sequence[Stream], why: str) -> str:
     )
     ports = [stream.port for stream in streams]
     lines.append('name = "my rig"')
-    for stream in streams:
-        name = stream.topic.strip("/").replace("/", "_") or f"lidar_{stream.port}"
-        if not stream.topic and ports.count(stream.port) > 1:
+    for number, stream in enumerate(streams):
+        name = stream.topic.strip("/").replace("/", "_") or f"lidar_{stream.port or number}"
+        if stream.port and ports.count(stream.port) > 1:
             name = f"lidar_{stream.address}_{stream.port}"
         lines += _skeleton(stream, name)
     return "\n".join(lines)
@@ -152,9 +152,10 @@ def _described(stream: Stream) -> str:
 def _skeleton(stream: Stream, name: str) -> list[str]:
     """The part of a rig file of a sensor; its mount is to be filled in."""
     lines = ["[[sensor]]", f"name = {json.dumps(name)}", f"model = {json.dumps(stream.model)}"]
+    lines += [f"serial = {json.dumps(stream.serial)}"] if stream.serial else []
     if stream.topic:
         lines.append(f"topic = {json.dumps(stream.topic)}")
-    else:
+    elif stream.port:
         lines += [f"address = {json.dumps(stream.address)}", f"port = {stream.port}"]
     return [*lines, "xyz_m = [0.0, 0.0, 0.0]", "rpy_deg = [0.0, 0.0, 0.0]"]
 

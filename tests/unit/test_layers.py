@@ -149,7 +149,8 @@ ONLY_HERE = {
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/geometry/raycast.py"},
     "laspy": {"recon4/export/laz.py"}
-    | {f"recon4/recording/formats/{name}.py" for name in ("reference_clouds", "cloud_crs")},
+    | {f"recon4/recording/formats/{name}.py" for name in ("las_records", "cloud_crs")}
+    | {"recon4/recording/mandeye/write.py"},
     "ctypes": {"recon4/sandbox"},
     "viser": {
         "app/recon4_app/viewer/client/show.py",

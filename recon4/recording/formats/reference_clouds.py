@@ -8,28 +8,29 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
 
-from recon4.errors import CorruptFile, Recon4Error, RecordingError, UnknownFormat
+from recon4.errors import CorruptFile, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
 from recon4.recording.formats.cloud_files import cloud_chunks, cloud_fields, cloud_rows
 from recon4.recording.formats.cloud_headers import is_ply
 from recon4.recording.formats.e57_points import E57Points
-from recon4.recording.formats.las_check import check_las
+from recon4.recording.formats.las_records import (
+    CHUNK,
+    MAX_POINTS,
+    las_points,
+    refuse_many,
+    refuse_promise,
+)
 from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
 from recon4.untrusted.bounded import open_regular
 
-CHUNK = 1_000_000
-MAX_POINTS = 400_000_000
-MAX_POINTS_A_BYTE, FREE_POINTS = 40, 5_000_000
-"""Most points a byte of a compressed file, beyond some."""
 MAX_BYTES = 20 << 30
 
 
@@ -139,67 +140,18 @@ def _table(path: Path) -> Iterator[Array]:
     missing = [axis for axis in "xyz" if axis not in fields]
     if missing:
         raise CorruptFile(f"{path.name}: no column {missing}; it has {sorted(fields)[:20]}")
-    _refuse_many(cloud_rows(path), path.name)
+    refuse_many(cloud_rows(path), path.name)
     for table in cloud_chunks(path):
         yield np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
 
 
 def _las(path: Path) -> Iterator[Array]:
-    import laspy
-
-    with open_regular(path) as raw:
-        header, got = check_las(raw, path.name), 0
-        promised = header.points
-        _refuse_many(promised, path.name)
-        if header.compressed:
-            _refuse_promise(path, promised)
-        raw.seek(0)
-        with (
-            _decoding(path.name),
-            laspy.open(raw, laz_backend=laspy.LazBackend.Lazrs, read_evlrs=False) as file,
-        ):
-            for points in file.chunk_iterator(CHUNK):
-                got += len(points)
-                yield np.column_stack([points.x, points.y, points.z]).astype(np.float64)
-    if got != promised:
-        raise CorruptFile(f"{path.name}: cut: {promised} points promised, got {got}")
-
-
-@contextmanager
-def _decoding(name: str) -> Iterator[None]:
-    """Convert errors of a decoder over damaged bytes to `CorruptFile`.
-
-    laspy and lazrs document no errors for them; a panic of Rust is no ``Exception``.
-    """
-    try:
-        yield
-    except (Recon4Error, MemoryError, GeneratorExit, KeyboardInterrupt, SystemExit):
-        raise
-    except BaseException as error:
-        raise CorruptFile(f"{name}: not a sound LAS/LAZ file: {error!r}"[:400]) from error
-
-
-def _refuse_many(points: int, name: str) -> None:
-    if points > MAX_POINTS:
-        raise RecordingError(f"{name}: expected at most {MAX_POINTS} points, got {points}")
-
-
-def _refuse_promise(path: Path, promised: int) -> None:
-    """Refuse more points than a compressed file of this size has unless all are the same.
-
-    A measured point takes a byte or more, a repeated one next to nothing.
-    """
-    size = path.stat().st_size
-    most = max(FREE_POINTS, MAX_POINTS_A_BYTE * size)
-    if promised > most:
-        raise CorruptFile(
-            f"{path.name}: expected at most {most} points in {size} compressed bytes, "
-            f"got {promised}"
-        )
+    for points in las_points(path):
+        yield np.column_stack([points.x, points.y, points.z]).astype(np.float64)
 
 
 def _e57(path: Path) -> Iterator[Array]:
     points = E57Points(path)
-    _refuse_many(points.promised, path.name)
-    _refuse_promise(path, points.promised)
+    refuse_many(points.promised, path.name)
+    refuse_promise(path, points.promised)
     yield from points.chunks(CHUNK)

@@ -39,6 +39,7 @@ from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.kinds_hesai import HESAI_KINDS
 from tests.security.fuzz.kinds_live import LIVE_KINDS
 from tests.security.fuzz.kinds_livox import LIVOX_KINDS
+from tests.security.fuzz.kinds_mandeye import MANDEYE_KINDS
 from tests.security.fuzz.kinds_ouster import OUSTER_KINDS
 from tests.security.fuzz.kinds_planar import PLANAR_KINDS
 from tests.security.fuzz.kinds_recipes import RECIPE_KINDS
@@ -353,7 +354,7 @@ KINDS: dict[str, Kind] = {
     for kind in (
         *(*_ALL, *_recordings(), *LIVE_KINDS, *PLANAR_KINDS),
         *(*HESAI_KINDS, *LIVOX_KINDS, *OUSTER_KINDS, *ROBOSENSE_KINDS, *WIDE_KINDS),
-        *RECIPE_KINDS,
+        *(*RECIPE_KINDS, *MANDEYE_KINDS),
     )
 }
 """By name."""
