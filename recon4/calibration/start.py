@@ -43,7 +43,10 @@ def find_start(walk: RecordedWalk, *, reference: int, settings: CalibrationReads
         return Start(rig, False, ())
     found = align_gyro(walk.trajectory, walk.frames.t_mid_ns, imu)
     if found is not None and (found.mirrored or found.explained < START.min_explained):
-        found = _align_alone(walk, imu, reference, settings=settings) or found
+        alone = _align_alone(walk, imu, reference, settings=settings)
+        if alone is None and walk.lost.mean() > START.most_lost:
+            return Start(rig, False, ())  # LiDARs that lost tracking are no witnesses of turns
+        found = alone or found
     if found is not None and found.mirrored:
         return Start(rig, False, (ImuFault(kind="left-handed"),))
     if found is not None and found.explained < START.min_explained:

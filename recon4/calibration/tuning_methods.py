@@ -159,6 +159,9 @@ class StartTuning:
     """In a shorter walk the accelerations do not cancel out."""
     alone_s: float = 10.0
     """Length of the window that is tracked with the reference LiDAR alone [s]."""
+    most_lost: float = 0.1
+    """Ratio of multiframes that lost tracking from which on the turns of a trajectory say nothing
+    of an IMU: in an open field a hemispherical LiDAR sees 2 % of its shots, and loses half."""
     far_rad: float = float(np.deg2rad(5.0))
     far_s: float = 0.05
     """Smaller errors are found by the joint calibration from the rig file."""

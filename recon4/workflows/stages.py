@@ -292,7 +292,7 @@ ODOMETRY = Stage(
 )
 CALIBRATION = Stage(
     "calibration",
-    14,
+    15,
     CalibrationReads,
     _calibration,
     CalibrationFigures,

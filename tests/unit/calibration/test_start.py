@@ -89,6 +89,17 @@ def test_an_imu_of_another_recording_explains_nothing(dance):
     assert "explains only" in said(start)[0]
 
 
+def test_lidars_that_lost_tracking_accuse_no_imu(dance):
+    rng = np.random.default_rng(1)
+    imu = replace(dance.imu, gyro_rad_s=rng.standard_normal(dance.imu.gyro_rad_s.shape))
+    everywhere = np.ones(len(dance), bool)  # an open field, of which hardly a shot returns
+    walk = RecordedWalk(replace(dance, imu=imu), dance.truth, everywhere, everywhere)
+
+    start = find_start(walk, reference=0, settings=SETTINGS)
+
+    assert start.faults == () and not start.imu_usable
+
+
 def test_the_clock_is_found_between_the_steps_of_the_search(dance):
     imu = replace(dance.imu, t_ns=dance.imu.t_ns + 33_300_000)
     found = align_gyro(dance.truth, dance.t_mid_ns, imu)
