@@ -88,16 +88,13 @@ class Raster:
         )
         inside = (column >= 0) & (column < f.width) & (row >= 0) & (row < f.height)
         pixel = row[inside] * f.width + column[inside]
-        size = len(self.count)
-        self.count += np.bincount(pixel, minlength=size)
-        self.z_sum += np.bincount(pixel, weights=p[inside, 2], minlength=size)
+        _add(self.count, pixel, None)
+        _add(self.z_sum, pixel, p[inside, 2])
         if self.view is not ABOVE:
             return  # intensity is shown from above only
-        self.intensity_sum += np.bincount(pixel, weights=chunk.intensity[inside], minlength=size)
+        _add(self.intensity_sum, pixel, chunk.intensity[inside])
         if chunk.normalized is not None:
-            self.normalized_sum += np.bincount(
-                pixel, weights=chunk.normalized[inside], minlength=size
-            )
+            _add(self.normalized_sum, pixel, chunk.normalized[inside])
 
     def mean(self, total: Array) -> Array:
         """Mean a pixel, NaN where there is no point, (height, width)."""
@@ -111,6 +108,17 @@ class Raster:
         top = np.log1p(np.percentile(seen, 99.5)) if len(seen) else 1.0
         shade = np.clip(np.log1p(self.count) / top, 0.0, 1.0)
         return shade.reshape(self.frame.height, self.frame.width)
+
+
+def _add(
+    total: Array, pixel: NDArray[np.int64], weights: NDArray[np.floating | np.integer] | None
+) -> None:
+    """Add points to the sums of their pixels: a tile touches few rows of a large image."""
+    if len(pixel) == 0:
+        return
+    first = pixel.min()
+    sums = np.bincount(pixel - first, weights=weights)
+    total[first : first + len(sums)] += sums
 
 
 def map_chunks(tiles: TileSet, *, points: int = 8_000_000) -> Iterator[MapChunk]:
