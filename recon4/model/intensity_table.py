@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ SHIFT_ONLY = 0.01
 """Bins with a smaller deviation are shifted, not scaled."""
 
 
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+@dataclass(frozen=True, eq=False, kw_only=True)
 class IntensityTable:
     """``x' = (x - mean_i) * target_std / std_i + target_mean`` with mean and deviation of a bin."""
 
@@ -30,13 +31,13 @@ class IntensityTable:
     incidence_bin_rad: float
     range_bin_m: float
 
-    @property
+    @cached_property  # every tile of a map is normalized by both
     def gain(self) -> NDArray[np.float32]:
         """Factor of each bin; 1 if the deviation is too small as a divisor, (S, B, I, R)."""
         safe = np.where(self.std < SHIFT_ONLY, np.float32(self.target_std or 1.0), self.std)
         return np.asarray((self.target_std or 1.0) / safe, dtype=np.float32)
 
-    @property
+    @cached_property
     def offset(self) -> NDArray[np.float32]:
         """Added after the factor, (S, B, I, R)."""
         return np.asarray(self.target_mean - self.gain * self.mean, dtype=np.float32)
