@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 _KNOWN_S = {18.0: "GPS time against UTC", 37.0: "TAI against UTC", 19.0: "TAI against GPS time"}
 """Since 2017."""
 _WITHIN_S = 0.4
@@ -33,3 +35,21 @@ def described(offset_s: float) -> str:
     """An offset in words, such as ``+18.012 s (GPS time against UTC)``."""
     name = offset_name(offset_s)
     return f"{offset_s:+.3f} s{f' ({name})' if name else ''}"
+
+
+def clocks_text(starts: Sequence[tuple[str, int]]) -> str:
+    """How far the clocks of LiDARs are apart, what that looks like, and the remedy.
+
+    Args:
+        starts: Name of each, and the time of its first point [ns]; the first one is the reference.
+    """
+    (first, start_ns), *others = starts
+    ahead_s = {name: (t_ns - start_ns) / 1e9 for name, t_ns in others}
+    exact_s = {name: known_offset_s(s) for name, s in ahead_s.items() if offset_name(s)}
+    said = [f"{name} is ahead of {first} by {described(s)}" for name, s in ahead_s.items()]
+    remedies = [
+        f"{name} time_offset_s = {'' if name in exact_s else 'about '}{-exact_s.get(name, s):.3f}"
+        for name, s in ahead_s.items()
+    ]
+    remedy = ", ".join(remedies)
+    return f"the clocks of the LiDARs differ: {'; '.join(said)}. In the rig file give {remedy}"

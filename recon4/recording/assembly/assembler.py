@@ -15,6 +15,7 @@ from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.clock_names import clocks_text
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning
 from recon4.settings import IngestSettings
@@ -205,10 +206,7 @@ class Assembler:
         seen = [stream for stream in self._streams if stream.waiting]
         starts = [stream.first_ns for stream in seen if stream.first_ns is not None]
         if max(starts) - min(starts) > _CLOCKS_NS:
-            raise ConfigError(
-                f"the clocks of {', '.join(s.name for s in seen)} differ by "
-                f"{(max(starts) - min(starts)) / 1e9:.3f} s; give time_offset_s in the rig file"
-            )
+            raise ConfigError(clocks_text([(s.name, s.first_ns or 0) for s in seen]))
         for stream in seen:
             if not stream.spins:
                 continue

@@ -188,10 +188,20 @@ def test_sensors_whose_clocks_jump_together_stay_together():
     assert ends[1] - ends[0] == pytest.approx(2_000_000, abs=300_000)
 
 
-def test_clocks_that_have_nothing_in_common_are_refused():
-    with pytest.raises(ConfigError, match=r"clocks of horizontal, vertical differ by 3600"):
+@pytest.mark.parametrize(
+    ("ahead_s", "words"),
+    [
+        (3600, r"vertical is ahead of horizontal by \+3600\.000 s \(whole hours"),
+        (37.1, r"\+37\.100 s \(TAI against UTC\)\. In the rig file give vertical .* = -37\.000"),
+        (-37, r"-37\.000 s \(TAI against UTC\).* vertical time_offset_s = 37\.000"),
+        (25, r"by \+25\.000 s\. In the rig file give vertical time_offset_s = about -25\.000"),
+    ],
+)
+def test_clocks_that_have_nothing_in_common_are_refused_with_their_name_and_remedy(ahead_s, words):
+    late_ns = T0_NS + round(ahead_s * 1e9)
+    with pytest.raises(ConfigError, match=words):
         assemble(
-            [spin(seconds=2.0), spin(sensor=1, seconds=2.0, t0_ns=T0_NS + 3600 * 10**9)],
+            [spin(seconds=2.0), spin(sensor=1, seconds=2.0, t0_ns=late_ns)],
             rig="4recon",
         )
 

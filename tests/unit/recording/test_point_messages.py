@@ -212,6 +212,35 @@ def test_single_damaged_times_are_dropped_and_a_jump_of_the_clock_is_announced()
     assert report.counts["clock_jumps"] == 1 and "jumped by +30.000 s" in report.warnings[0]
 
 
+@pytest.mark.parametrize("kind", ["bag1", "mcap"])
+def test_a_point_cloud_of_livox_has_exact_times_lines_and_echoes_of_no_tag(kind, tmp_path):
+    """PointXYZRTLT: x y z intensity tag line timestamp, the last one a double of nanoseconds."""
+    path, frames, count = bag_path(tmp_path, kind), 3, 4000
+    k = np.arange(count)
+    azimuth, elevation = 2.4 * k, np.deg2rad(-7.0 + 59.0 * (0.618 * k % 1.0))
+    ray = [
+        np.cos(elevation) * np.cos(azimuth),
+        np.cos(elevation) * np.sin(azimuth),
+        np.sin(elevation),
+    ]
+    with Bag(path, kind) as bag:
+        for frame in range(frames):
+            t_ns = T0_NS + frame * 100_000_000
+            x, y, z = (4.0 * one.astype(np.float32) for one in np.stack(ray))
+            stamps = t_ns + 25_000.0 * k
+            table = {"x": x, "y": y, "z": z, "intensity": (k % 150).astype(np.float32)}
+            table |= {"tag": (k % 4).astype(np.uint8), "line": (k % 4).astype(np.uint8)}
+            bag.cloud("/livox/lidar", t_ns, table | {"timestamp": stamps})
+    recording, shots, report = read(path)
+
+    assert recording.rig.sensors[0].model == "Mid-360"
+    assert [len(one) for one in shots] == [count] * frames
+    np.testing.assert_allclose(shots[1].t_ns - T0_NS, 100_000_000 + 25_000 * k, atol=256)
+    np.testing.assert_array_equal(shots[0].intensity, k % 150)
+    np.testing.assert_array_equal(shots[0].ring, k % 4)
+    assert not report.warnings and not report.counts["clouds_wrong_times"]
+
+
 def test_point_cloud_of_ros1_has_its_channels(tmp_path):
     path = bag_path(tmp_path, "bag1")
     kind = "sensor_msgs/msg/PointCloud"
