@@ -41,7 +41,8 @@ def simulate(  # noqa: PLR0913 - options of a command
         str, typer.Option(help="Rigs with a profiler, in the hall: eight, rectangle or circle.")
     ] = "",
     bag: Annotated[
-        bool | None, typer.Option(help="Also write a rosbag2; default: if all are Velodynes.")
+        bool | None,
+        typer.Option(help="Also write a rosbag2 (not of Livox); default: if all are Velodynes."),
     ] = None,
     degrade: Annotated[
         list[str] | None,

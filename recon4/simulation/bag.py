@@ -10,14 +10,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
+from recon4.recording.packets.messages import PACKET_MESSAGES as READ_MESSAGES
+from recon4.simulation.bag_packets import PACKET_MESSAGES
 
-PACKETS_IN_SCAN = 76
-"""What the ROS driver collects into one message: a little more than a revolution."""
-_PACKET_TEXT = "builtin_interfaces/Time stamp\nuint8[1206] data\n"
-_SCAN_TEXT = "std_msgs/Header header\nvelodyne_msgs/VelodynePacket[] packets\n"
 _NO_FIX, _FIX, _AUGMENTED = -1, 0, 2
 
 
@@ -33,7 +32,7 @@ def open_bag(folder: Path, rig: Rig) -> Iterator[BagWriter]:
 
 
 class BagWriter:
-    """Writes messages of a few types; packets are collected to scans sensor by sensor."""
+    """Writes messages of a few types; packets are collected to messages sensor by sensor."""
 
     def __init__(self, writer: Any, rig: Rig) -> None:
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
@@ -41,21 +40,23 @@ class BagWriter:
         self._writer = writer
         self._rig = rig
         self._store = get_typestore(Stores.ROS2_HUMBLE)
-        self._store.register(get_types_from_msg(_PACKET_TEXT, "velodyne_msgs/msg/VelodynePacket"))
-        self._store.register(get_types_from_msg(_SCAN_TEXT, "velodyne_msgs/msg/VelodyneScan"))
-        self._scans = [
-            self._connect(sensor.topic, "velodyne_msgs/msg/VelodyneScan") for sensor in rig.sensors
+        self._messages = [PACKET_MESSAGES[lidar_model(s.model).maker] for s in rig.sensors]
+        for kind in {one.kind for one in self._messages}:
+            for name, text in READ_MESSAGES[kind].definitions.items():
+                self._store.register(get_types_from_msg(text, name))
+        self._topics = [
+            self._connect(sensor.topic, message.kind)
+            for sensor, message in zip(rig.sensors, self._messages, strict=True)
         ]
-        self._waiting: list[list[Any]] = [[] for _ in rig.sensors]
+        self._waiting: list[list[tuple[int, NDArray[np.uint8]]]] = [[] for _ in rig.sensors]
         self._connections: dict[str, object] = {}
 
     def packets(self, row: int, t_ns: Times, payloads: NDArray[np.uint8]) -> None:
-        """Append packets of a sensor, times of arrival (N,) and payloads (N, 1206)."""
-        packet = self._store.types["velodyne_msgs/msg/VelodynePacket"]
-        for t, data in zip(t_ns, payloads, strict=True):
-            self._waiting[row].append(packet(stamp=self._time(int(t)), data=data))
-            if len(self._waiting[row]) == PACKETS_IN_SCAN:
-                self._write_scan(row)
+        """Append packets of a sensor, times of arrival (N,) and payloads (N, B)."""
+        for t, data in zip(t_ns.tolist(), payloads, strict=True):
+            self._waiting[row].append((t, data))
+            if len(self._waiting[row]) == self._messages[row].collected:
+                self._write_packets(row)
 
     def imu(self, samples: ImuSamples) -> None:
         """Append IMU samples on ``/imu/data``."""
@@ -95,20 +96,22 @@ class BagWriter:
             self._write("/gnss/fix", "sensor_msgs/msg/NavSatFix", int(t), message=message)
 
     def flush(self) -> None:
-        """Write the last scans, which are shorter than the others."""
+        """Write the last messages of packets, which are shorter than the others."""
         for row, waiting in enumerate(self._waiting):
             if waiting:
-                self._write_scan(row)
+                self._write_packets(row)
 
-    def _write_scan(self, row: int) -> None:
-        packets, self._waiting[row] = self._waiting[row], []
-        last = packets[-1].stamp
-        t_ns = last.sec * 1_000_000_000 + last.nanosec
-        scan = self._store.types["velodyne_msgs/msg/VelodyneScan"](
-            header=self._header(t_ns, self._rig.sensors[row].name), packets=packets
+    def _write_packets(self, row: int) -> None:
+        waiting, self._waiting[row] = self._waiting[row], []
+        t_ns, message = waiting[-1][0], self._messages[row]
+        content = message.make(
+            self._store.types.__getitem__,
+            self._header(t_ns, self._rig.sensors[row].name),
+            [(self._time(t), data) for t, data in waiting],
         )
-        data = self._store.serialize_cdr(scan, "velodyne_msgs/msg/VelodyneScan")
-        self._writer.write(self._scans[row], t_ns, data)
+        self._writer.write(
+            self._topics[row], t_ns, self._store.serialize_cdr(content, message.kind)
+        )
 
     def _write(self, topic: str, kind: str, t_ns: int, *, message: Any) -> None:
         if topic not in self._connections:

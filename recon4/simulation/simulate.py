@@ -10,6 +10,7 @@ import numpy as np
 
 from recon4.errors import ConfigError, StoreError
 from recon4.progress import Progress
+from recon4.simulation.bag_packets import PACKET_MESSAGES
 from recon4.simulation.degradation import (
     BEAM_ANGLE,
     ONLY_PROFILER,
@@ -42,8 +43,7 @@ def simulate(
         setup: The walk and the sensors, see `prepare`; the same setup gives the same bytes.
         out: Folder to make: it must not exist, or be empty.
         progress: Receives every simulated second.
-        bag: Also write the rosbag2, which doubles the size; None = if all LiDARs are Velodynes,
-            whose packets alone it can have.
+        bag: Also write the rosbag2, which doubles the size; None = if all LiDARs are Velodynes.
         degradations: Errors that the rig file does not know, see
             `recon4.simulation.degradation.KINDS`; None = none.
 
@@ -51,10 +51,16 @@ def simulate(
         ConfigError: If a degradation or the bag cannot be written.
         StoreError: If the folder exists with something in it or cannot be written.
     """
-    others = [s.model for s in setup.rig.sensors if family_of(s.model) is not VELODYNES]
+    families = {sensor.model: family_of(sensor.model) for sensor in setup.rig.sensors}
+    others = [m for m, family in families.items() if family.name not in PACKET_MESSAGES]
     if bag and others:
-        raise ConfigError(f"a rosbag2 is written of Velodynes only, got {', '.join(others)}")
-    bag = not others if bag is None else bag
+        makers = ", ".join(PACKET_MESSAGES)
+        raise ConfigError(
+            f"a rosbag2 is written of packets of {makers}, got {', '.join(others)}, whose driver "
+            "publishes points"
+        )
+    if bag is None:
+        bag = all(family is VELODYNES for family in families.values())
     record(setup, {out: degradations or {}}, bag=bag, progress=progress)
 
 

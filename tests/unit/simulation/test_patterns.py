@@ -246,7 +246,7 @@ def test_the_drawn_sensors_of_a_walk_are_those_of_the_rig():
     [
         ({"dead-beams": 6.0}, None, "dead-beams: at most 4 of a LiDAR here, got 6"),
         ({"wrong-model": 1.0}, None, "wrong-model: only possible if the last LiDAR is a Velodyne"),
-        ({}, True, "a rosbag2 is written of Velodynes only, got Mid-360"),
+        ({}, True, "packets of Velodyne, Hesai, RoboSense, Ouster, got Mid-360, whose"),
     ],
 )
 def test_what_a_model_does_not_have_is_refused(degradations, bag, message, mid360, tmp_path):
