@@ -55,6 +55,7 @@ def main(arguments: list[str]) -> None:
         _confine(setup, Path(scratch), kernels)
         while (message := _read(calls)) is not None:
             _answer(answers, message)
+    gc.freeze()  # the process ends: no search for cycles
 
 
 def _read(calls: BinaryIO) -> bytes | None:
