@@ -129,6 +129,14 @@ def choose_imu(
     return _chosen([trials, settled])
 
 
+def without_imu(frames: FramesWithImu, settings: OdometryReads) -> ImuTrials:
+    """The multiframes tracked by the LiDARs alone: of a gyroscope that does not measure."""
+    imu = ImuAssumption(None, ImuChoice(outcome="not used"))
+    hypothesis = Hypothesis(because=Because.LIDARS_ALONE, imu=imu)
+    windows = [TriedWindow(range(len(frames)))]
+    return ImuTrials(imu, (), _track(frames, hypothesis, settings=settings, windows=windows))
+
+
 def start_and_fastest_turn(
     imu: ImuSamples | None, t_mid_ns: np.ndarray[tuple[int], np.dtype[np.int64]]
 ) -> list[range]:

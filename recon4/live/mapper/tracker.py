@@ -16,7 +16,7 @@ from recon4.model.samples import ImuSamples
 from recon4.recording.samples.clean import join
 from recon4.recording.samples.measured import feels_gravity, imu_channels
 from recon4.registration.hypothesis import ImuAssumption
-from recon4.registration.imu_choice import AS_RECORDED, choose_imu
+from recon4.registration.imu_choice import AS_RECORDED, choose_imu, without_imu
 from recon4.registration.odometry import Odometry
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning
@@ -62,6 +62,8 @@ class Tracker:
         """Pose of the odometry frame in the map; moved by loop closures and relocalization."""
         self.with_imu = False
         """Whether the odometry uses an IMU."""
+        self._turn_rate_changes = False
+        """Whether its gyroscope measures: one that does not is not left to be seen by chance."""
         self.remark = ""
         """Warning about the IMU; empty = none."""
 
@@ -71,6 +73,7 @@ class Tracker:
         if not len(imu):
             return
         self._imu.append(imu)
+        self._turn_rate_changes |= bool(np.any(imu.gyro_rad_s != self._imu[0].gyro_rad_s[0]))
         if self._imu_ns is not None:
             self._imu_hole_ns = max(self._imu_hole_ns, int(imu.t_ns[0]) - self._imu_ns)
         self._imu_ns = int(imu.t_ns[-1])
@@ -112,7 +115,7 @@ class Tracker:
         bad = sum(is_bad for _, is_bad in self._recent)
         if (
             self.with_imu
-            and bad >= LIVE_TRACKER.bad_frames
+            and (bad >= LIVE_TRACKER.bad_frames or not self._turn_rate_changes)
             and self._since_check >= LIVE_TRACKER.tried_frames
         ):
             self._since_check = 0
@@ -156,8 +159,13 @@ class Tracker:
 
     def _check_imu(self, step: OdometryStep) -> OdometryStep:
         """Choose the IMU again by the last multiframes, and go on with what was chosen."""
-        recent = _Recent(self._rig, [frame for frame, _ in self._recent], join(list(self._imu)))
-        found = choose_imu(recent, self._settings, [range(len(recent))])
+        imu = join(list(self._imu))
+        recent = _Recent(self._rig, [frame for frame, _ in self._recent], imu)
+        if imu is not None and imu_channels(imu).no_gyroscope:
+            # Certain, so it needs no proof by the LiDARs.
+            found = without_imu(recent, self._settings)
+        else:
+            found = choose_imu(recent, self._settings, [range(len(recent))])
         if found.best is None or found.imu.choice == AS_RECORDED:
             return step
         self._use(found.imu)
