@@ -7,7 +7,6 @@ and an Ed25519 signature over both. It is valid once its row is in the journal, 
 from __future__ import annotations
 
 import json
-import os
 import secrets
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -28,7 +27,7 @@ from recon4.review.source import graph_key
 from recon4.review.stamp import NO_VERDICT, Stamp, stamp_file
 from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.review.tuning import APPROVALS
-from recon4.store.atomic import atomic_file, atomic_folder, make_folders, sweep, write_json
+from recon4.store.atomic import atomic_folder, link_file, make_folders, sweep, write_json
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import SUMMARY, Project
@@ -188,7 +187,7 @@ def put_back(root: Path, approval: Approval) -> None:
     approval.check_issued()
     for path in sorted(approval.folder.iterdir()):
         if path.name not in ("approval.json", "summary.json"):
-            _link(path, root / path.name)
+            link_file(path, root / path.name)
 
 
 def make_read_only(approval: Approval) -> None:
@@ -204,7 +203,7 @@ def _hand_out(root: Path, approval: Approval) -> None:
     """Replace the results and the summary of the project by the issued ones."""
     with changing(root, SUMMARY, compared=False):
         put_back(root, approval)
-        _link(approval.folder / SUMMARY, root / SUMMARY)
+        link_file(approval.folder / SUMMARY, root / SUMMARY)
 
 
 def _refuse_again(root: Path, asked: _ApprovalRequest) -> None:
@@ -376,12 +375,3 @@ def _write_summary(folder: Path, summary: dict[str, Any], stamp: Stamp) -> None:
     record = dict(summary) | {"approval": json.loads(stamp.json_line())}
     record["hashes"] = dict(summary["hashes"]) | {"results": hashes}
     write_json(folder / "summary.json", record)
-
-
-def _link(source: Path, target: Path) -> None:
-    """Hard-link a file; copy it on file systems without links."""
-    with atomic_file(target) as temporary:
-        try:
-            os.link(source, temporary)
-        except OSError:
-            temporary.write_bytes(source.read_bytes())

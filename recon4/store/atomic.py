@@ -35,7 +35,7 @@ def atomic_file(path: Path) -> Iterator[Path]:
         NoSpace: If the disk is full.
         StoreError: If the path cannot be written.
     """
-    temporary = _temporary_beside(path)
+    temporary = temporary_beside(path)
     try:
         yield temporary
         fsync(temporary)
@@ -62,7 +62,7 @@ def atomic_folder(path: Path) -> Iterator[Path]:
         NoSpace: If the disk is full.
         StoreError: If the path cannot be written.
     """
-    temporary = _temporary_beside(path)
+    temporary = temporary_beside(path)
     try:  # a signal may come as soon as the folder is there
         _make_temporary(temporary, path)
         yield temporary
@@ -113,6 +113,18 @@ def copy_file(source: Path, target: Path) -> None:
         shutil.copyfile(source, temporary)
 
 
+def link_file(source: Path, target: Path) -> None:
+    """Give a file that never changes a second name, atomically; copy it where that is impossible.
+
+    A confined process may not link between folders.
+    """
+    with atomic_file(target) as temporary:
+        try:
+            os.link(source, temporary)
+        except OSError:
+            shutil.copyfile(source, temporary)
+
+
 def sweep(folder: Path) -> list[str]:
     """Remove temporary files and folders of killed recon4 processes; nothing else.
 
@@ -159,7 +171,8 @@ def _is_no_space(error: BaseException) -> bool:
     return isinstance(error, sqlite3.OperationalError) and "full" in str(error)
 
 
-def _temporary_beside(path: Path) -> Path:
+def temporary_beside(path: Path) -> Path:
+    """A free name beside a file or folder; `sweep` removes what is left under it."""
     return path.with_name(f".tmp-{secrets.token_hex(6)}-{path.name}")
 
 

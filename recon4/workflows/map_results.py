@@ -21,7 +21,7 @@ from recon4.review.approved import Approval, approval_of
 from recon4.review.stamp import Stamp
 from recon4.settings import Settings
 from recon4.store.arrays import load_trajectory
-from recon4.store.atomic import copy_file
+from recon4.store.atomic import copy_file, link_file
 from recon4.store.checked import Altered
 from recon4.store.frames import open_frames
 from recon4.store.package_versions import versions
@@ -143,7 +143,7 @@ MAP_RESULTS = Results(
         "poses_covariance.csv": lambda made, path: write_pose_covariances(
             made.run.folder["frames"], made.level, path
         ),
-        "map.laz": lambda made, path: copy_file(made.run.folder["map"] / "map.laz", path),
+        "map.laz": lambda made, path: link_file(made.run.folder["map"] / "map.laz", path),
         "edges.json": lambda made, path: copy_file(made.level / "edges.json", path),
         "graph.g2o": lambda made, path: write_graph(made.level, path),
         "report.html": lambda made, path: write_report(path, made.assessed),
