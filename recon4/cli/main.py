@@ -27,6 +27,7 @@ from recon4.cli.kernel_cache import settle_kernel_cache
 from recon4.cli.live import live
 from recon4.cli.simulation import simulation
 from recon4.cli.slices import slices
+from recon4.cli.storage import space
 from recon4.cli.terminal import write
 from recon4.errors import Cancelled, Recon4Error
 from recon4.system.stopping import StopSignals
@@ -47,15 +48,10 @@ app = typer.Typer(
 
 app.add_typer(users, name="users")
 app.add_typer(keys, name="keys")
-app.add_typer(server)
-app.add_typer(live)
-app.add_typer(simulation)
-app.add_typer(slices)
-app.add_typer(backups)
-app.add_typer(calibration)
-app.add_typer(evaluation)
-app.add_typer(exports)
-app.add_typer(findings)
+for _part in (server, live, simulation, slices, backups, space):
+    app.add_typer(_part)
+for _part in (calibration, evaluation, exports, findings):
+    app.add_typer(_part)
 
 _INTERRUPTED = 130
 """What shells report for a program that Ctrl-C ended."""

@@ -171,14 +171,27 @@ def read_stages(root: Path) -> list[FinishedStage]:
         return ledger.stages()
 
 
+class _Artifacts(dict[str, Path]):
+    """Stage name -> folder of its artifact; a stage without one is an error with a remedy."""
+
+    def __missing__(self, stage: str) -> Path:
+        raise StoreError(
+            f"there is no artifact of the stage {stage}: it was freed, or has not run yet. "
+            "Process the recording again"
+        )
+
+
 def read_artifacts(root: Path) -> dict[str, Path]:
     """Read stage name -> folder of its artifact in the latest run; the project may be open.
+
+    What it returns raises `StoreError` for the name of a stage that has no artifact.
 
     Raises:
         StoreError: If the folder is not a project or its ledger is damaged.
     """
     with _reading(root) as ledger:
-        return {stage: root / "artifacts" / key for stage, key in ledger.current().items()}
+        current = ledger.current().items()
+        return _Artifacts((stage, root / "artifacts" / key) for stage, key in current)
 
 
 def _reading(root: Path) -> Ledger:
@@ -188,7 +201,7 @@ def _reading(root: Path) -> Ledger:
 
 def loose_files(root: Path) -> Iterator[str]:
     """Files written by a run whose hash is in no other file."""
-    for pattern in ("project.json", SUMMARY, LEDGER, "artifacts/*/manifest.json"):
+    for pattern in ("project.json", SUMMARY, LEDGER, "artifacts/[!.]*/manifest.json"):
         yield from (path.relative_to(root).as_posix() for path in sorted(root.glob(pattern)))
     for path in sorted(root.glob("versions/[0-9]*/approval.json")):
         yield path.relative_to(root).as_posix()
