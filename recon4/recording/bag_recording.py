@@ -39,7 +39,7 @@ from recon4.recording.formats.bags import (
     BagTopic,
 )
 from recon4.recording.formats.cloud_tables import cloud_table
-from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds
+from recon4.recording.lidar_choice import CloudTopic, is_cloud, judged_clouds, shared_topics
 from recon4.recording.mount_check import mounted_rig
 from recon4.recording.mounts import SampleTopics, on_their_joints, read_mounts
 from recon4.recording.packets.family import Companion
@@ -131,6 +131,8 @@ class BagRecording:
         self._paths, self._settings, self._report = paths, settings, report
         with Bag(paths, report) as bag:
             self.seconds = bag.seconds
+            self._shared = shared_topics(bag, report)
+            bag.use_sources(self._shared)
             self._recipes = declared_recipes(bag, rig, given.fields, report=report)
             bag.use_recipes(self._recipes)
             self.topics = bag.topics
@@ -156,6 +158,7 @@ class BagRecording:
         # OpenRequest was reported already when the head was read.
         with Bag(self._paths, ImportReport()) as bag:
             bag.report = self._report
+            bag.use_sources(self._shared)
             bag.use_recipes(self._recipes)
             yield from self._read(bag)
 

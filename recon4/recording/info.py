@@ -36,6 +36,7 @@ from recon4.recording.kinds import (
 )
 from recon4.recording.laser2d import is_laser2d, read_laser_recording
 from recon4.recording.laser_mount import mounted_scans
+from recon4.recording.lidar_choice import shared_topics
 from recon4.recording.line_info import describe_line_tables
 from recon4.recording.line_topics import line_topics
 from recon4.recording.mandeye.info import describe_walk
@@ -116,6 +117,7 @@ def _size(path: Path) -> int:
 
 def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
     with Bag(bag_paths(request.paths[0]), request.report) as bag:
+        bag.use_sources(shared_topics(bag, request.report))
         bag.use_recipes(declared_recipes(bag, None, request.fields, report=ImportReport()))
         packets = BagPackets(bag, companions_of(request.paths))
         try:

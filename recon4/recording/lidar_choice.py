@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence, Set
 from dataclasses import dataclass
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -12,11 +13,13 @@ from numpy.typing import NDArray
 from recon4.errors import RecordingError
 from recon4.recording.formats.bags import IMU, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_table
+from recon4.recording.formats.shared_topics import sources_of
 from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
 from recon4.recording.point_fields import EXACT_TIME, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
 from recon4.recording.topic_contents import Contents, read_contents
 from recon4.recording.transform_messages import frame_name, has_frames, read_frames
+from recon4.recording.tuning import SHARED_TOPICS
 
 _WIDEST_CAMERA_RAD = np.deg2rad(65.0)
 """Half of the widest view of a depth camera."""
@@ -224,6 +227,25 @@ def _points(message: Any) -> NDArray[np.float64]:
         return np.zeros((0, 3))
     p = np.column_stack([table[axis] for axis in "xyz"]).astype(np.float64)
     return p[np.isfinite(p).all(axis=1)]
+
+
+def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[str, ...]]:
+    """Topics of points that several LiDARs share, with the sources of their first messages.
+
+    Args:
+        bag: An open bag.
+        report: Receives which they are.
+    """
+    found = {}
+    for topic in bag.topics:
+        if not is_cloud(topic):
+            continue
+        head = islice(bag.messages([topic.name]), SHARED_TOPICS.head)
+        contents = (bag.decode(message, as_sent=True) for message in head)
+        if sources := sources_of(content for content in contents if content is not None):
+            found[topic.name] = sources
+            report.derive(f"{topic.name} is of {len(sources)} LiDARs: {', '.join(sources)}")
+    return found
 
 
 def is_cloud(topic: BagTopic) -> bool:

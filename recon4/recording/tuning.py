@@ -43,3 +43,16 @@ class RecipeTuning:
 
 
 RECIPES = RecipeTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SharedTopicTuning:
+    """How topics that several LiDARs share are known (`formats/shared_topics.py`)."""
+
+    head: int = 12
+    """Messages from which the sensors of a topic are known."""
+    often: int = 2
+    """Of a sensor among them; a driver that changes its frame once is one sensor."""
+
+
+SHARED_TOPICS = SharedTopicTuning()

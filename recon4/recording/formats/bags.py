@@ -11,7 +11,7 @@ import heapq
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -36,6 +36,7 @@ from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
 from recon4.recording.formats.point_messages import PointMessage, PointReader, point_readers
 from recon4.recording.formats.scratch import scratch_folder
+from recon4.recording.formats.shared_topics import SharedTopics
 from recon4.recording.formats.zstd_file import decompress_file
 from recon4.recording.packets.messages import DATA_MESSAGES, DEFINITIONS, PACKET_MESSAGES
 from recon4.recording.recipes.apply import as_points
@@ -106,11 +107,11 @@ class Bag:
             paths: rosbag1 files, rosbag2 folders, ``.db3`` or ``.mcap`` files; not mixed.
             report: Receives what had to be salvaged.
         """
-        self._paths = paths
+        self.paths = paths
+        """The files and folders that are read."""
+        self._shared = SharedTopics({})
         self.recipes: Mapping[str, PointRecipe] = {}
-        """Topic -> what the columns of its points are."""
-        self.report = report
-        """Receives damage; may be replaced while the bag is open."""
+        self.report = report  # receives damage; may be replaced while the bag is open
         self._stack = ExitStack()
         self._sources: list[StorageFile] = []
         self._origins: list[Path] = []
@@ -132,7 +133,7 @@ class Bag:
             UnknownFormat: If the files are of several walks.
         """
         try:
-            for path in self._paths:
+            for path in self.paths:
                 self._open(path)
             self._summarize()
         except BaseException:
@@ -144,14 +145,19 @@ class Bag:
         self._stack.close()
 
     @property
-    def paths(self) -> Sequence[Path]:
-        """The files and folders that are read."""
-        return self._paths
-
-    @property
     def seconds(self) -> float:
         """Time from the first measured message to the last one [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
+
+    def use_sources(self, sources: Mapping[str, Sequence[str]]) -> None:
+        """Read topics that several LiDARs share as one topic for each, ``TOPIC#SOURCE``."""
+        self._shared = SharedTopics(sources)
+        names = {topic.name: self._shared.names(topic.name) for topic in self.topics}
+        self.topics = tuple(
+            replace(t, name=name, messages=t.messages // len(names[t.name]))
+            for t in self.topics
+            for name in names[t.name]
+        )
 
     def use_recipes(self, recipes: Mapping[str, PointRecipe]) -> None:
         """Decode the messages of some topics to points with common names, by recipes."""
@@ -165,8 +171,10 @@ class Bag:
             CorruptFile: If not one chunk of a file can be read.
         """
         budget = Budget(self._stored_bytes)
-        streams = [self._of_source(source, set(topics), budget) for source in self._sources]
-        yield from heapq.merge(*streams, key=lambda message: message.t_ns)
+        stored = self._shared.stored(topics)
+        streams = [self._of_source(source, stored, budget) for source in self._sources]
+        merged = heapq.merge(*streams, key=lambda message: message.t_ns)
+        yield from self._shared.routed(merged, topics, partial(self.decode, as_sent=True))
 
     def decode(self, message: BagMessage, *, as_sent: bool = False) -> Any | None:
         """Decode a message to an object with its fields; None (counted) if it is damaged.
@@ -328,7 +336,7 @@ class Bag:
             ]
         )
         if not filled:
-            names = ", ".join(path.name for path in self._paths)
+            names = ", ".join(path.name for path in self.paths)
             raise EmptyRecording(f"{names}: a bag without messages")
         self.t_first_ns = min(index.start_time for index in filled)
         self.t_last_ns = max(index.end_time for index in filled) - 1
@@ -365,7 +373,7 @@ class Bag:
                 continue
             most = min(MAX_MESSAGE_BYTES, max(RATIO_FLOOR_BYTES, MAX_RATIO * len(data)))
             plain = decompress_partly("zstd", data, most=most, where=topic)
-            budget.charge(len(plain), f"{self._paths[0].name}: {topic}")
+            budget.charge(len(plain), f"{self.paths[0].name}: {topic}")
             yield BagMessage(topic, kind, t_ns, plain)
 
 

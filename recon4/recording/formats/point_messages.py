@@ -69,6 +69,8 @@ class PointMessage:
     """The whole message."""
     lists: Mapping[str, Columns] = field(default_factory=dict)
     """All lists of points in it by name, for recipes."""
+    lidar_id: int | str = ""
+    """Number of the LiDAR among those of one driver; empty = not said."""
 
     @property
     def width(self) -> int:
@@ -186,7 +188,14 @@ class PointReader:
         if self.schema.kind_of("header") != "std_msgs/Header":
             header = SimpleNamespace(stamp=SimpleNamespace(sec=0, nanosec=0), frame_id="")
         table = _lower(table)
-        return PointMessage(header, table, np.frombuffer(data, np.uint8), lists or {POINTS: table})
+        number = getattr(message, "lidar_id", "")
+        return PointMessage(
+            header,
+            table,
+            np.frombuffer(data, np.uint8),
+            lists or {POINTS: table},
+            number if isinstance(number, int) else "",
+        )
 
 
 def point_readers(definitions: Mapping[str, str]) -> dict[str, PointReader]:
