@@ -18,6 +18,7 @@ from recon4.report.intensity import dependencies
 from recon4.report.maps import ABOVE, FRONT, Raster, height_png, ink_png, intensity_png
 from recon4.report.plan import PlanOverlay, PlanPath, frame_around, plan_svg
 from recon4.report.rig import rig_charts
+from recon4.report.stretches import marked_times
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,8 +60,10 @@ def trajectory_figures(
     out: list[ChartFigure] = []
     if final is None or len(final) < 2:
         return out
-    curves = [PlanPath("line-final", (final.T_a_b.t,))]
+    marked = marked_times(findings, float(final.t_ns[-1] - final.t_ns[0]) / 1e9)
+    curves = [PlanPath("line-final", (final.T_a_b.t,)), *marked.paths(final)]
     legend = [("line-final", "final trajectory"), ("mark-start", "start"), ("mark-end", "end")]
+    legend += marked.legend
     if drift is not None and results.odometry is not None:
         moved = drift.T_map_odom @ results.odometry.T_a_b
         curves.insert(0, PlanPath("line-odometry", (moved.t,)))

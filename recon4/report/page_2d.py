@@ -26,6 +26,7 @@ from recon4.report.findings import LEVELS, shown_findings
 from recon4.report.html import changed_settings, environment
 from recon4.report.maps import ABOVE, ImageFrame
 from recon4.report.plan import PlanOverlay, PlanPath, plan_svg
+from recon4.report.stretches import MarkedTimes, marked_times
 from recon4.settings import Settings
 from recon4.store.atomic import write_text
 
@@ -102,14 +103,20 @@ def write_page_2d(path: Path, page: Page2d) -> None:
     write_text(path, text.encode("utf-8", errors="replace").decode("utf-8"))
 
 
+def _marked(page: Page2d) -> MarkedTimes:
+    t_ns = page.trajectory.t_ns
+    return marked_times(page.findings, float(t_ns[-1] - t_ns[0]) / 1e9)
+
+
 def _maps(page: Page2d) -> list[ChartFigure]:
     """The grid alone, under both trajectories, and under the edges."""
     grid, frame = page.grid, page.grid.frame
-    places = page.trajectory.T_a_b.t
+    places, marked = page.trajectory.T_a_b.t, _marked(page)
     walked = PlanOverlay(
         (
             PlanPath("line-odometry", (page.odometry.T_a_b.t,)),
             PlanPath("line-final", (places,)),
+            *marked.paths(page.trajectory),
         ),
         (("mark-start", places[0]), ("mark-end", places[-1])),
     )
@@ -127,6 +134,7 @@ def _maps(page: Page2d) -> list[ChartFigure]:
                 ("line-odometry", "odometry before loop closure"),
                 ("mark-start", "start"),
                 ("mark-end", "end"),
+                *marked.legend,
             ),
         ),
         ChartFigure(
@@ -143,8 +151,9 @@ def _maps(page: Page2d) -> list[ChartFigure]:
 
 
 def _charts(page: Page2d) -> list[tuple[str, str]]:
-    """Uncertainty, and what loop closure corrected, along the path."""
-    along_m = path_length_m(page.trajectory)
+    """Findings over time; along the path uncertainty, and what loop closure corrected."""
+    along_m, marked = path_length_m(page.trajectory), _marked(page)
+    t_s = (page.trajectory.t_ns - page.trajectory.t_ns[0]) / 1e9
     sd = Chart("sd-2d")
     sd.axes.plot(along_m, 100.0 * page.sd_m[: len(along_m)], color=BLUE, lw=1.2)
     sd.axes.set(xlabel="path [m]", ylabel="σ of the position [cm]", ylim=(0.0, None))
@@ -152,7 +161,11 @@ def _charts(page: Page2d) -> list[tuple[str, str]]:
     corrected = Chart("corrected-2d")
     corrected.axes.plot(along_m, 100.0 * np.linalg.norm(moved, axis=1), color=ORANGE, lw=1.2)
     corrected.axes.set(xlabel="path [m]", ylabel="correction [cm]", ylim=(0.0, None))
+    for start_m, end_m, color in marked.shaded_at(t_s, along_m):
+        for chart in (sd, corrected):
+            chart.axes.axvspan(start_m, end_m, color=color, alpha=0.25, lw=0)
     return [
+        *marked.chart(),
         (sd.svg(), "Largest standard deviation of the position relative to the start."),
         (corrected.svg(), "How far loop closure moved each scan from the odometry."),
     ]

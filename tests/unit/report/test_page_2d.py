@@ -75,3 +75,6 @@ def test_a_corridor_is_said_to_be_unobservable_and_where(tmp_path):
     assert "Where the laser hardly observes one direction" in text
     rows = text.split("Where the laser hardly observes one direction")[1].split("</table>")[0]
     assert rows.count("<tr>") == 1 + len(summary.verdict.unobserved)
+    trajectory = text.split("Trajectory of the laser.")[0].rsplit("<svg", 1)[1]
+    assert re.search(r'class="line-(check|do-not-use)"', trajectory), "no stretch on the plan"
+    assert "Findings along the walk" in text
