@@ -42,7 +42,9 @@ def storage(
     What an approval needs always stays.
     """
     from recon4.archive.space import free_space, stored_parts
+    from recon4.cli.confinement import confine_command
 
+    confine_command(write=[project])  # SQLite makes files beside what it reads
     chosen = _chosen(free or [])
     freed = free_space(project, chosen) if chosen else ()
     parts = stored_parts(project)

@@ -1,7 +1,7 @@
 """Commands that read files of users, taken over by such a file: nothing gets out or is changed.
 
 Each command is run as by a user; in place of the function that reads the file runs the attack.
-Figure to hold: 0 of 6 reaches by any of the 8 commands.
+Figure to hold: 0 of 6 reaches by any of the 9 commands.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ COMMANDS = {
     "slice": ("recon4.store.project.read_artifacts", ["slice", "in", "out/a.laz", "--z", "1"]),
     "doubles": ("recon4.store.project.read_artifacts", ["doubles", "in"]),
     "verify": ("recon4.archive.verify.verify", ["verify", "out"]),
+    "storage": ("recon4.archive.space.stored_parts", ["storage", "out"]),
     "calibrate": (
         "recon4.recording.sources.require_files",
         ["calibrate", "in/a.pcap", "--rig", "4recon", "--out", "out/rig.toml"],
