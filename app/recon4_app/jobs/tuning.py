@@ -105,8 +105,9 @@ SILENCE = SilenceTuning()
 class SpaceTuning:
     """Space that a job needs."""
 
-    times_the_input: int = 3
-    """Decoded frames and map together have at most this multiple of the recording's bytes."""
+    times_the_input: int = 12
+    """Multiframes, the map and what is made on the way to it take at most this multiple of the
+    recording's bytes: 10 at the end of an office of 25 s (docs/studies/storage.md)."""
 
 
 SPACE = SpaceTuning()
