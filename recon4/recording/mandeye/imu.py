@@ -91,9 +91,10 @@ def _row(
     cells: Sequence[str], places: Mapping[str, int]
 ) -> tuple[int, float, float, float, float, float, float, int]:
     text = cells[places["timestamp"]]
-    t_ns = int(text) if text.isascii() and text.isdigit() else round(parse_float(text))
-    if not 0 <= t_ns < MANDEYE.latest_s * 1e9:
+    time = int(text) if text.isascii() and text.isdigit() else parse_float(text)
+    if not 0 <= time < MANDEYE.latest_s * 1e9:  # infinity and NaN are no times
         raise ValueError("no time")
+    t_ns = round(time)
     wx, wy, wz, ax, ay, az = (parse_float(cells[places[column]]) for column in NEEDED[1:])
     identity = int(cells[places["imuid"]]) if "imuid" in places else 0
     return t_ns, wx, wy, wz, ax, ay, az, identity

@@ -7,6 +7,8 @@ from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
+from recon4.recording.mandeye.imu import read_imu
+from recon4.recording.report import ImportReport
 from tests.security.fuzz.kind import Kind, Reading
 from tests.security.fuzz.seeds_recordings import read_recording
 from tests.unit.recording.test_mandeye import RIG, write_walk
@@ -39,19 +41,26 @@ def _read(path: Path) -> Reading:
     return Reading(found.items, salvaged=found.outcome != "complete" or bool(found.warnings))
 
 
-MANDEYE_KINDS = tuple(
+def _read_samples(path: Path) -> Reading:
+    report = ImportReport()
+    found = read_imu(path, report)
+    return Reading(len(found.samples.t_ns), salvaged=bool(report.lost()))
+
+
+MANDEYE_KINDS = (
     Kind(
-        name=kind,
-        file_name=f"walk/{name}",
-        seeds=partial(_seeds, name),
+        name="laz-mandeye",
+        file_name="walk/lidar0000.laz",
+        seeds=partial(_seeds, "lidar0000.laz"),
         read=_read,
-        prepare=partial(_beside, name),
-        knows_end=knows_end,
-    )
-    for kind, name, knows_end in (
-        ("laz-mandeye", "lidar0000.laz", True),
-        # Text has no end mark.
-        ("csv-mandeye", "imu0000.csv", False),
-    )
+        prepare=partial(_beside, "lidar0000.laz"),
+    ),
+    Kind(
+        name="csv-mandeye",
+        file_name="imu0000.csv",
+        seeds=partial(_seeds, "imu0000.csv"),
+        read=_read_samples,
+        knows_end=False,  # text has no end mark
+    ),
 )
-"""Each of a whole walk of one LiDAR."""
+"""Points in a whole walk of one LiDAR; samples alone."""

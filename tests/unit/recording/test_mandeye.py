@@ -285,6 +285,17 @@ def test_every_known_form_of_the_imu_file_gives_the_same_samples(head, separator
     np.testing.assert_allclose(samples.accel_m_s2[0], [0.0, 0.1 * G, G])
 
 
+@pytest.mark.parametrize("cell", ["inf", "nan", "-5", "9" * 400, "1e300", "x"])
+def test_a_line_without_a_time_is_dropped_and_counted(cell, tmp_path):
+    path = tmp_path / "imu0000.csv"
+    lines = [" ".join(map(str, row)) for row in ROWS]
+    path.write_text("\n".join([*lines, f"{cell} 0 0 0 0 0 1 0"]), "utf-8")
+    report = ImportReport()
+
+    assert len(read_imu(path, report).samples.t_ns) == len(ROWS)
+    assert report.counts["imu_lines_damaged"] == 1
+
+
 def test_accelerations_in_m_s2_are_kept_and_said(tmp_path):
     path = tmp_path / "imu0000.csv"
     path.write_text("\n".join(f"{t} 0 0 0 0 0 9.81 0" for t, *_ in ROWS), "utf-8")
