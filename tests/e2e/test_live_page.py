@@ -288,8 +288,8 @@ def same_as_from_the_file(live, again):
         process(sources, again, progress=FirstStage())
     fresh = sorted(path.name for path in (again / "artifacts").iterdir())
     assert fresh and set(fresh) <= {path.name for path in (live / "artifacts").iterdir()}
-    files = [path for path in sorted(again.glob("artifacts/*/**/*.npy")) if path.is_file()]
-    assert files
+    files = sorted([*again.glob("artifacts/*/**/*.npy"), *again.glob("artifacts/*/points.zst")])
+    assert {"index.npy", "points.zst"} <= {path.name for path in files}
     for file in files:
         assert file.read_bytes() == (live / file.relative_to(again)).read_bytes(), file.name
 

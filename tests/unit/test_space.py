@@ -13,6 +13,7 @@ from recon4.errors import StoreError
 from recon4.progress import Silent
 from recon4.store.checked import Altered
 from recon4.store.project import Project, read_artifacts
+from recon4_app.jobs.space import size_below
 from tests.project_builder import add_multiframes, approve_project, build_project
 
 
@@ -43,6 +44,17 @@ def test_parts_add_up_to_all_files_and_shared_ones_count_once(office):
 
     assert sum(part.bytes for part in parts) == sum(sizes.values())
     assert [part.bytes for part in parts] == sorted((p.bytes for p in parts), reverse=True)
+
+
+def test_the_storage_page_counts_a_file_with_two_names_once(tmp_path):
+    (tmp_path / "map.laz").write_bytes(bytes(1000))
+    (tmp_path / "artifact").mkdir()
+    os.link(tmp_path / "map.laz", tmp_path / "artifact" / "map.laz")
+    (tmp_path / "other").write_bytes(bytes(10))
+
+    assert size_below(tmp_path) == 1010
+    assert size_below(tmp_path / "artifact" / "map.laz") == 1000
+    assert size_below(tmp_path / "missing") == 0
 
 
 def test_frames_map_and_what_is_damaged_can_be_freed(office):

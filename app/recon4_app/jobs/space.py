@@ -30,14 +30,18 @@ def refuse_if_full(project: Path, inputs: Iterable[Path], *, reserve_bytes: int)
 
 
 def size_below(path: Path) -> int:
-    """Bytes of a file, or of all files below a folder; 0 when there is nothing."""
+    """Bytes of a file, or of all files below a folder; 0 when there is nothing.
+
+    A file with several names (hard links) counts once.
+    """
     if path.is_file():
         return path.stat().st_size
-    size = 0
+    sizes: dict[tuple[int, int], int] = {}
     for parent, _, names in os.walk(path):
         for name in names:
             try:
-                size += os.stat(os.path.join(parent, name), follow_symlinks=False).st_size
+                status = os.stat(os.path.join(parent, name), follow_symlinks=False)
             except FileNotFoundError:
                 continue  # a running job removes files
-    return size
+            sizes[status.st_dev, status.st_ino] = status.st_size
+    return sum(sizes.values())
