@@ -13,6 +13,7 @@
 #   make constraints         pin the versions that are installed now
 #   make lock                write requirements/*.lock: every file of every version, with its hash
 #   make audit               known vulnerabilities of what is locked (needs the network)
+#   make wheel               out/: a wheel with the kernels compiled for this Python
 #   make sbom                out/sbom.json: what is installed, as CycloneDX
 
 SHELL := /bin/sh
@@ -36,7 +37,7 @@ unexport PYTHONDONTWRITEBYTECODE
 # Threads of BLAS that wait for each other cost three busy processes on two cores a seventh.
 export OPENBLAS_NUM_THREADS := 1
 
-.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs signatures examples constraints lock audit sbom clean
+.PHONY: demo test quick touched format lint types web kernels bytecode unit e2e studies bench site docs signatures examples constraints lock audit sbom wheel clean
 .DELETE_ON_ERROR:
 
 demo: $(VENV)/installed-run site
@@ -124,8 +125,14 @@ sbom: $(TOOLS)/installed $(VENV)/installed-run
 	$(TOOLS)/bin/cyclonedx-py environment --pyproject pyproject.toml \
 		--output-reproducible -o out/sbom.json $(BIN)/python
 
+wheel: $(VENV)/installed-dev
+	rm -rf out/kernels
+	NUMBA_CACHE_DIR=$(CURDIR)/out/kernels $(BIN)/recon4 compile
+	RECON4_COMPILED_KERNELS=$$(echo out/kernels/kernels_*) \
+		$(BIN)/python -m pip wheel -q --no-deps --no-build-isolation --wheel-dir out .
+
 clean:
-	rm -rf $(VENV) $(TOOLS) demo site .cache .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(TOOLS) demo site out .cache .mypy_cache .ruff_cache .pytest_cache
 
 $(VENV)/bin/python:
 	@test -n '$(PYTHON)' || { echo 'recon4: needs Python 3.11, 3.12 or 3.13 (found: '"$$(python3 --version 2>&1)"'); name one with make PYTHON=…' >&2; exit 1; }

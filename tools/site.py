@@ -1,7 +1,12 @@
-"""Builds the documentation site: ``python -m tools.site``, and each wheel that is built (hatch)."""
+"""Builds the documentation site: ``python -m tools.site``, and each wheel that is built (hatch).
+
+A wheel brings compiled kernels, too, if the variable `COMPILED_KERNELS` names their folder: `make
+wheel` compiles them first.
+"""
 
 from __future__ import annotations
 
+import os
 import shutil
 import subprocess
 import sys
@@ -10,6 +15,9 @@ from typing import Any
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
+COMPILED_KERNELS = "RECON4_COMPILED_KERNELS"
+CACHED = (".nbi", ".nbc", "")
+"""Endings of Numba's files, and of the mark that all kernels are compiled."""
 SITE = "site"
 """Folder of the built site, in the folder of `zensical.toml`."""
 
@@ -27,14 +35,26 @@ def build(root: Path) -> Path:
     return site
 
 
-class SiteHook(BuildHookInterface[Any]):
-    """Puts the site into a wheel."""
+class WheelHook(BuildHookInterface[Any]):
+    """Puts the site and compiled kernels into a wheel."""
 
     def initialize(self, version: str, build_data: dict[str, Any]) -> None:
         """Build it first, unless the installation only points to the checkout."""
         if version != "editable":
             site = build(Path(self.root))
             build_data["force_include"][str(site)] = "recon4_web/docs"
+            build_data["force_include"].update(_compiled_kernels())
+
+
+def _compiled_kernels() -> dict[str, str]:
+    """Where a wheel has the files of Numba's cache: where Numba looks for them."""
+    folder = os.environ.get(COMPILED_KERNELS)
+    files = sorted(Path(folder).iterdir()) if folder else []
+    return {
+        str(path): f"recon4/kernels/__pycache__/{path.name}"
+        for path in files
+        if path.suffix in CACHED
+    }
 
 
 if __name__ == "__main__":

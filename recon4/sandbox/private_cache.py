@@ -18,6 +18,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import recon4
+from recon4.kernels.processor import instructions
 
 KERNELS = Path(recon4.__file__).parent / "kernels"
 
@@ -126,9 +127,11 @@ def mark_compiled() -> None:
 
 
 def _mark() -> str:
-    """A name that changes with the kernels, Numba and Python."""
-    versions = f"{sys.implementation.cache_tag} {version('numba')}".encode()
-    sources = (path.read_bytes() for path in sorted(KERNELS.glob("*.py")))
+    """A name that changes with the kernels, Numba, Python and the processor's instructions."""
+    versions = f"{sys.implementation.cache_tag} {version('numba')} {instructions()}".encode()
+    sources = (
+        path.read_bytes() for path in sorted((*KERNELS.glob("*.py"), *KERNELS.glob("*.txt")))
+    )
     return f"compiled-{hashlib.sha256(b'|'.join((versions, *sources))).hexdigest()[:16]}"
 
 

@@ -18,6 +18,7 @@ from recon4.sandbox.private_cache import KERNELS
 from tests.deadlines import HANG_S
 from tests.service.running import ROOT, WITHOUT_TLS
 from tests.service.viser_client import camera, viewing
+from tools.site import COMPILED_KERNELS
 
 pytestmark = pytest.mark.slow
 
@@ -77,7 +78,6 @@ def installed(wheel, tmp_path_factory):
     pip("--python", python, "install", "--no-compile", wheel)
     (packages,) = place.glob("lib/python*/site-packages")
     (packages / "libraries.pth").write_text(sysconfig.get_path("purelib") + "\n")
-    with_compiled_kernels(packages / "recon4" / "kernels")
     return place / "bin"
 
 
@@ -91,21 +91,10 @@ def demo(installed, tmp_path_factory):
 
 
 def pip(*arguments):
-    offline = {**os.environ, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1", "PIP_CONFIG_FILE": os.devnull}
+    ours = {COMPILED_KERNELS: str(KERNELS / "__pycache__"), "PIP_CONFIG_FILE": os.devnull}
+    env = {**os.environ, **ours, "PIP_NO_INDEX": "1", "PIP_NO_DEPS": "1"}
     command = [sys.executable, "-m", "pip", "-q", "--disable-pip-version-check"]
-    subprocess.run([*command, *map(str, arguments)], env=offline, check=True)
-
-
-def with_compiled_kernels(kernels):
-    """Else they are compiled for a minute. Numba knows them by the time of their source."""
-    cache = kernels / "__pycache__"
-    cache.mkdir()
-    for path in KERNELS.glob("__pycache__/*"):
-        if path.suffix in (".nbi", ".nbc", ""):
-            copyfile(path, cache / path.name)
-    for source in KERNELS.glob("*.py"):
-        changed = source.stat()
-        os.utime(kernels / source.name, ns=(changed.st_atime_ns, changed.st_mtime_ns))
+    subprocess.run([*command, *map(str, arguments)], env=env, check=True)
 
 
 def alone():
@@ -160,6 +149,17 @@ def test_the_demo_makes_a_map(demo):
 
     assert "50 multiframes (0 lost)" in done.stdout
     assert (folder / "demo" / "office" / "map.laz").stat().st_size > 1_000_000
+
+
+def test_the_wheel_brings_the_kernels_so_that_nothing_is_compiled(wheel, installed, demo):
+    with zipfile.ZipFile(wheel) as file:
+        brought = {name for name in file.namelist() if name.endswith((".nbi", ".nbc"))}
+    packages = next(installed.parent.glob("lib/python*/site-packages"))
+    found = {str(path.relative_to(packages)) for path in packages.glob("recon4/kernels/*/*.nb?")}
+
+    assert len(brought) > 200
+    assert found == brought
+    assert "compiling the kernels" not in demo[1].stderr
 
 
 def test_an_installation_compiles_every_kernel_that_a_map_calls(demo):

@@ -36,7 +36,7 @@ MAY_IMPORT = {
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,
     "recon4/kernels": {"recon4.kernels"},
-    "recon4/sandbox": {"recon4.sandbox"},
+    "recon4/sandbox": {"recon4.sandbox", "recon4.kernels.processor"},
     "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},
     "recon4/live": STAGE
