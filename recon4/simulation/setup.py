@@ -148,7 +148,9 @@ def rig_of_lidars(models: Sequence[str]) -> Rig:
     rig = replace(mounts, name=" and ".join(models), sensors=tuple(sensors))
     for sensor in sensors:
         if family_of(sensor.model).imu(sensor.model) is not None:
-            return replace(rig, T_body_imu=imu_mount(sensor), imu_time_offset_s=0.0)
+            # Named: a reader would take the first LiDAR that has one, simulated or not.
+            place = imu_mount(sensor)
+            return replace(rig, imu_sensor=sensor.name, T_body_imu=place, imu_time_offset_s=0.0)
     return rig
 
 

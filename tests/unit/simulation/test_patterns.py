@@ -168,6 +168,14 @@ def test_errors_grow_and_shrink_as_the_data_sheets_say():
     assert LidarModel.perfect().of(pattern_of("Mid-360")).range_sd_m == 0.0
 
 
+def test_a_rig_names_the_lidar_whose_imu_is_simulated():
+    rig = rig_of_lidars(["JT128", "Avia"])  # both have one, that of the JT128 is not written
+
+    assert rig.imu_sensor == rig.sensors[1].name
+    assert imu_row(rig) == 1
+    assert rig_of_lidars(["XT32"]).imu_sensor == ""
+
+
 def imu_models():
     return [model for model in MODELS if family_of(model).imu(model) is not None]
 
