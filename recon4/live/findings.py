@@ -76,7 +76,8 @@ def _imu_senders(rig: Rig, senders: list[Sender]) -> list[Sender]:
 
 def _with_imu(rig: Rig) -> list[Sensor]:
     """LiDARs with an IMU; some send its samples in their data packets."""
-    return [s for s in rig.sensors if s.kind == "lidar" and lidar_model(s.model).has_imu]
+    lidars = [one for one in rig.sensors if one.kind == "lidar"]
+    return [s for s in lidars if s.name == rig.imu_sensor or lidar_model(s.model).has_imu]
 
 
 def _mine(sensor: Sensor, senders: list[Sender]) -> list[Sender]:

@@ -275,7 +275,13 @@ _ROBOSENSE = (  # user manuals: Helios 1.5, Bpearl 3.2, Ruby Plus 2.0, Airy 1.0,
         range_m=240.0,
     ),
     replace(
-        _HELIOS, name="Airy", beams=96, elevation_deg=(0.0, 90.0), min_range_m=0.1, range_m=30.0
+        _HELIOS,
+        name="Airy",
+        beams=96,
+        elevation_deg=(0.0, 90.0),
+        min_range_m=0.1,
+        range_m=30.0,
+        sample_ports=(7788, 6688),
     ),
     replace(
         _HELIOS,

@@ -215,7 +215,7 @@ def parse_rig(text: str, *, where: str) -> Rig:
     return Rig(
         name=table.text("name", where),
         sensors=sensors,
-        T_body_imu=imu_mount(built_in) if built_in else _mounting(imu),
+        T_body_imu=_mounting(imu) if built_in is None else imu_mount(built_in, _mounting(imu)),
         imu_time_offset_s=imu.number("time_offset_s"),
         p_body_antenna=gnss.vector("lever_arm_m", 3),
         gnss_time_offset_s=gnss.number("time_offset_s"),
@@ -229,14 +229,16 @@ def parse_rig(text: str, *, where: str) -> Rig:
     )
 
 
-def imu_mount(holder: Sensor) -> SE3:
-    """Mounting of the IMU in a LiDAR: the axes of the LiDAR, the place of the data sheet."""
+def imu_mount(holder: Sensor, other: SE3 | None = None) -> SE3:
+    """Mounting of the IMU in a LiDAR: its axes, the place of the data sheet; or the other one."""
+    if other is not None and not lidar_model(holder.model).has_imu:
+        return other  # axes of its own
     place = np.array(lidar_model(holder.model).p_sensor_imu_m)
     return holder.T_body_sensor @ SE3(np.eye(3), place)
 
 
 def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:
-    """The LiDAR with the IMU; its mounting is that of the IMU, whose axes are the LiDAR's.
+    """The LiDAR with the IMU; its mounting is that of the IMU, where that has its axes.
 
     Raises:
         ConfigError: If there is none of this name, or the IMU is also mounted by itself.
@@ -247,11 +249,13 @@ def _imu_sensor(imu: TomlTable, sensors: Sequence[Sensor]) -> Sensor | None:
     names = [sensor.name for sensor in sensors]
     if name not in names:
         raise ConfigError(f"{imu.where}: sensor must be one of {names}, got {name[:80]!r}")
-    if mounted := sorted({"xyz_m", "rpy_deg", "quat_xyzw"} & imu.values.keys()):
+    holder = sensors[names.index(name)]
+    mounted = sorted({"xyz_m", "rpy_deg", "quat_xyzw"} & imu.values.keys())
+    if mounted and lidar_model(holder.model).has_imu:
         raise ConfigError(
             f"{imu.where}: the IMU in {name} is mounted as {name} is: leave out {mounted[0]}"
         )
-    return sensors[names.index(name)]
+    return holder
 
 
 def _calibration(value: object, where: str) -> RigCalibration | None:
@@ -296,7 +300,8 @@ def format_rig(rig: Rig) -> str:
         lines += format_beams(sensor.beams)
     lines += ["[imu]"]
     lines += [f"sensor = {_quoted(rig.imu_sensor)}"] if rig.imu_sensor else []
-    lines += [] if rig.imu_sensor else _mounting_lines(rig.T_body_imu)
+    holders = [lidar_model(one.model) for one in rig.sensors if one.name == rig.imu_sensor]
+    lines += [] if any(one.has_imu for one in holders) else _mounting_lines(rig.T_body_imu)
     lines += [f"time_offset_s = {rig.imu_time_offset_s!r}", f"port = {rig.imu_port}"]
     lines += [f"topic = {_quoted(rig.imu_topic)}"] if rig.imu_topic else []
     lines += ["", "[gnss]"]

@@ -80,9 +80,8 @@ def rig_of(content: RigContent) -> Rig:
 def _imu_mount(content: RigContent) -> SE3:
     """That of the LiDAR that the IMU is in, or its own."""
     holder = next((one for one in content.sensors if one.name == content.imu.sensor), None)
-    if holder is not None:
-        return imu_mount(_sensor(holder))
-    return _mount(content.imu.xyz_m, content.imu.rpy_deg)
+    other = _mount(content.imu.xyz_m, content.imu.rpy_deg)
+    return other if holder is None else imu_mount(_sensor(holder), other)
 
 
 def problems_of(content: RigContent) -> dict[str, str]:

@@ -5,6 +5,7 @@ import json
 import numpy as np
 import pytest
 
+from recon4.errors import ConfigError
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import format_rig, parse_rig
 from recon4.recording.packets.companions import described_in, with_descriptions
@@ -69,3 +70,18 @@ def test_a_description_in_the_rig_file_stays(tmp_path):
     again, used = with_descriptions(rig, [tmp_path / name])
 
     assert used == {} and again.sensors[0].description == content
+
+
+def test_the_rig_turns_the_imu_of_a_lidar_whose_axes_are_not_those_of_the_points():
+    text = format_rig(rig_of(("front", "Airy"))).split("[imu]")[0]
+    text += '[imu]\nsensor = "front"\nrpy_deg = [180.0, 0.0, -90.0]\n'
+
+    rig = parse_rig(text, where="rig.toml")
+    again = parse_rig(format_rig(rig), where="rig.toml")
+
+    assert again.imu_sensor == "front"
+    expected = np.array([[0.0, -1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
+    np.testing.assert_allclose(rig.T_body_imu.R, expected, atol=1e-12)
+    np.testing.assert_allclose(again.T_body_imu.R, expected, atol=1e-9)
+    with pytest.raises(ConfigError, match="leave out rpy_deg"):
+        parse_rig(text.replace('"Airy"', '"JT128"'), where="rig.toml")
