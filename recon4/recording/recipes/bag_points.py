@@ -157,5 +157,6 @@ def overlooked_columns(bag: Bag, clouds: Iterable[CloudTopic]) -> list[str]:
     texts = []
     for name, sample in bag_samples(bag, [t for t in lacking if t.name not in bag.recipes]).items():
         proposal = with_doubts(propose(name, sample.largest, sample.period_s), sample)
-        texts += overlooked(name, proposal, *sample.largest.values())
+        for columns in sample.largest.values():
+            texts += overlooked(name, proposal, columns)
     return texts
