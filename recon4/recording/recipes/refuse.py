@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from recon4.errors import ConfigError
+from recon4.errors import ConfigError, EmptyRecording
 from recon4.recording.driver_topics import needed_text
 from recon4.recording.recipes.check import RecipeSample, require_fitting
 from recon4.recording.recipes.propose import Proposal
@@ -44,11 +44,15 @@ def require_known(unknown: Sequence[tuple[Stream, Proposal]], name: str) -> None
         name: Of the recording.
 
     Raises:
-        UnknownFields: With the recipes, ready for a rig file; without any nothing is raised.
+        UnknownFields: With the recipes, ready for a rig file.
+        EmptyRecording: If nothing is proposed, with what is needed.
     """
     ready = [(stream, one) for stream, one in unknown if one.recipe is not None]
-    if not ready:
+    if not unknown:
         return
+    if not ready:
+        lacking = "; ".join(proposal_text(stream.label, one) for stream, one in unknown)
+        raise EmptyRecording(f"{name}: no LiDAR data; {lacking}")
     lines = [f"{name}: the columns of the points have no common names; proposed for a rig file:"]
     lines += [f"  {proposal_text(stream.label, one)}" for stream, one in ready]
     recipe = ready[0][1].recipe

@@ -198,5 +198,5 @@ def test_a_cloud_without_coordinates_lists_the_fields_it_has(refuse, tmp_path):
 
     said = refuse(cloud_bag(tmp_path, table))
 
-    assert "x, y and z" in said
+    assert "x, y, z" in said
     assert "depth" in said
