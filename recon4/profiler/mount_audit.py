@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from itertools import combinations
 
 import numpy as np
 
@@ -80,10 +81,12 @@ def mount_change(
     found = _lowest(
         np.zeros(5), _COARSE, lambda x: places(x, MOUNT_AUDIT.coarse_points, MOUNT_AUDIT.coarse_m)
     )
-    found = _lowest(found, _FINE, lambda x: places(x, MOUNT_AUDIT.fine_points, MOUNT_AUDIT.fine_m))
-    before, after = (
-        places(x, MOUNT_AUDIT.fine_points, MOUNT_AUDIT.fine_m) for x in (np.zeros(5), found)
-    )
+
+    def fine(change: Array) -> int:
+        return places(change, MOUNT_AUDIT.fine_points, MOUNT_AUDIT.fine_m)
+
+    found = _simplest(_lowest(found, _FINE, fine), fine)
+    before, after = fine(np.zeros(5)), fine(found)
     return MountChange(found[:3], found[3:]) if after <= MOUNT_AUDIT.clear_ratio * before else None
 
 
@@ -99,4 +102,21 @@ def _lowest(start: Array, steps: Array, cost: Callable[[Array], int]) -> Array:
                 best, value = tried[int(np.argmin(costs))], min(costs)
         if np.array_equal(before, best):
             break
+    return best
+
+
+def _simplest(best: Array, cost: Callable[[Array], int]) -> Array:
+    """The change of the fewest coordinates that is as good as the best, within noise of counts.
+
+    A turn and a shift that hardly differ in the points would both be there otherwise, against each
+    other.
+    """
+    limit = cost(best) + np.sqrt(cost(best))
+    used = np.flatnonzero(best)
+    for count in range(len(used)):
+        kept = [np.isin(np.arange(len(best)), some) for some in combinations(used, count)]
+        tried = [np.where(keep, best, 0.0) for keep in kept]
+        costs = [cost(change) for change in tried]
+        if min(costs) <= limit:
+            return tried[int(np.argmin(costs))]
     return best
