@@ -177,7 +177,7 @@ def test_a_full_disk_is_one_line_and_the_next_run_resumes(pcap, process, tmp_pat
     Each run has more room than the one before it and goes on after it.
     """
     command = ["process", str(pcap), "--out", str(tmp_path / "project"), *FEW]
-    for limit_kb in (1, 60, 400, 1000):
+    for limit_kb in (1, 60, 300, 500):
         limited = [sys.executable, "-c", LIMITED, str(1000 * limit_kb), *command]
 
         done = subprocess.run(limited, capture_output=True, text=True, timeout=100, env=os.environ)
