@@ -133,6 +133,12 @@ def begin(page, url):
     expect(page.locator("#place")).to_have_text("Walk")
 
 
+def stop(page):
+    page.get_by_role("button", name="Stop").click()
+    page.locator("#ending").get_by_role("button", name="Stop").click()
+    expect(page.get_by_role("button", name="Make the map")).to_be_visible()
+
+
 def fits(page, inside="main"):
     """Nothing exceeds the page, and all controls are large enough."""
     assert page.evaluate("document.documentElement.scrollWidth <= innerWidth")
@@ -335,6 +341,7 @@ def test_the_stretches_of_findings_are_marked_on_the_map(server, page, screensho
     page.wait_for_function(f"({PIXELS})('bad') > 150 && ({PIXELS})('poor') > 500")
     screenshot(page, "live-findings")
     assert before == [0, 0]
+    stop(page)  # the recorder goes on without its server otherwise
 
 
 def test_everything_fits_on_a_small_phone_both_ways(server, page):
