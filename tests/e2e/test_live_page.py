@@ -177,9 +177,7 @@ def test_a_capture_from_its_start_to_the_map(server, link, walk, page, screensho
     filled = [gap for gap in gaps if all(far(gap, other) for other in later)]
     assert filled, "no gap was filled"
 
-    page.get_by_role("button", name="Stop").click()
-    page.locator("#ending").get_by_role("button", name="Stop").click()
-    expect(page.get_by_role("button", name="Make the map")).to_be_visible()
+    stop(page)
     expect(page.locator("#findings li")).to_have_count(0)
     expect(page.locator("#sensors li")).to_have_count(0)
     marks = (server.root / "walk" / "recordings" / "marks.jsonl").read_text().splitlines()
@@ -334,13 +332,11 @@ def test_the_stretches_of_findings_are_marked_on_the_map(server, page, screensho
 
     page.route_web_socket("**/api/live/stream", relay)
     begin(page, server.url)
-    before = [page.evaluate(PIXELS, name) for name in ("bad", "poor")]
+    assert [page.evaluate(PIXELS, name) for name in ("bad", "poor")] == [0, 0]
     sockets[-1].send(walked_with_problems())
     page.get_by_role("button", name="Follow").click()
-
     page.wait_for_function(f"({PIXELS})('bad') > 150 && ({PIXELS})('poor') > 500")
     screenshot(page, "live-findings")
-    assert before == [0, 0]
     stop(page)  # the recorder goes on without its server otherwise
 
 
