@@ -6,8 +6,9 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, so3_exp, so3_log
 from recon4.model.multiframe import Multiframe
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.room_walks import FRAME_NS, T0_NS, rig_of
 
 LOW_M, HIGH_M = np.array([-4.0, -3.0, -1.2]), np.array([5.0, 3.5, 1.7])

@@ -22,8 +22,8 @@ from recon4.kernels.calibration import (
     add_points,
 )
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.tuning import OdometryTuning
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,11 +22,11 @@ from recon4.calibration.tuning_joint import JOINT
 from recon4.calibration.window import Window, with_trajectory
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.tuning import OdometryTuning
 from recon4.semi_rigid.knots import apply_knots
 from recon4.settings.reads import CalibrationReads
 from recon4.settings.tuning import tuned
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _TIGHT = RoundBounds(cube_m=0.6, max_sd_m=0.03, gate_m=0.08, kernel_m=0.04)
 _PURE = replace(_TIGHT, pure=True)

@@ -13,8 +13,9 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.geometry.se3 import SE3, so3_log
 from recon4.model.odometry_figures import ImuFault
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.settings.reads import CalibrationReads
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _DEG_PER_RAD = float(np.rad2deg(1.0))
 

@@ -28,10 +28,10 @@ from recon4.progress import Progress
 from recon4.recording.formats.datagrams import address_text
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.kinds import capture_files
-from recon4.recording.packets.sensor_clock import HOUR_US
 from recon4.recording.packets.velodyne.models import DATA_SIZE, POSITION_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_replay import datagrams_of_scans, has_scans
+from recon4.units import HOUR_US
 
 _STAMP_AT = {DATA_SIZE: 1200, POSITION_SIZE: 198}
 """Packet size -> offset of its microseconds past the hour."""

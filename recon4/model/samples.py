@@ -12,8 +12,6 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
 
-STANDARD_GRAVITY_M_S2 = 9.80665
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class ImuSamples:

@@ -16,13 +16,14 @@ from recon4.errors import GraphError
 from recon4.geometry.se3 import SE3, Array, proper, so3_exp, so3_log
 from recon4.kernels.imu_chain import SIZE, level_by_gravity, linearize_chain
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.tuning_solve import IMU_CHAIN
 from recon4.registration.motion import imu_at, imu_in_body, level_rotation
 from recon4.registration.tuning import OdometryTuning
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 ROTATION, POSITION, VELOCITY = slice(0, 3), slice(3, 6), slice(6, 9)
 GYRO_BIAS, ACCEL_BIAS = slice(9, 12), slice(12, 15)

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recon4.units import HOUR_S
+
 _KNOWN_S = {18.0: "GPS time against UTC", 37.0: "TAI against UTC", 19.0: "TAI against GPS time"}
 """Since 2017."""
 _WITHIN_S = 0.4
-_HOUR_S = 3600.0
 _DATES_S = 1e8
 
 
@@ -15,7 +16,7 @@ def known_offset_s(offset_s: float) -> float:
     """The exact offset that a measured one is; without a known one, the measured [s]."""
     sign = 1.0 if offset_s > 0 else -1.0
     if abs(offset_s) < _DATES_S:
-        for known in (*_KNOWN_S, round(abs(offset_s) / _HOUR_S) * _HOUR_S):
+        for known in (*_KNOWN_S, round(abs(offset_s) / HOUR_S) * HOUR_S):
             if known and abs(abs(offset_s) - known) < _WITHIN_S:
                 return sign * known
     return offset_s
@@ -26,7 +27,7 @@ def offset_name(offset_s: float) -> str:
     exact = abs(known_offset_s(offset_s))
     if exact in _KNOWN_S:
         return _KNOWN_S[exact]
-    if exact and exact < _DATES_S and exact % _HOUR_S == 0.0:
+    if exact and exact < _DATES_S and exact % HOUR_S == 0.0:
         return "whole hours, as of a time zone"
     return "one of them counts from power-on" if abs(offset_s) > _DATES_S else ""
 

@@ -25,19 +25,19 @@ from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
 from recon4.recording.report import ImportReport
 from recon4.recording.stamps import strays
+from recon4.units import SECOND_NS, SECOND_US
 from recon4.untrusted.bounded import lines_limited
 
 TIME_FILES = ("times.txt", "timestamps.txt")
 ASSUMED_NS = 100_000_000
 """Interval of frames without times [ns]."""
 _MAX_BYTES = 64 << 20
-_SECOND_NS = 1_000_000_000
 _DATE = re.compile(
     r"(\d{4})-(\d\d)-(\d\d)[-_T ](\d\d)[-:](\d\d)[-:](\d\d)(?:[-.](\d{1,9}))?(?:Z|\+00:00)?$"
 )
 _NAME_NUMBER = re.compile(r"(?:^|.*[^\d.])(\d{19}|\d{16}|\d{13}|\d{9,10}[._]\d{1,9})$")
 """Whatever stands before the number must not end in a digit."""
-_LARGEST_S = ((1e11, _SECOND_NS), (1e14, 1_000_000), (1e17, 1000))
+_LARGEST_S = ((1e11, SECOND_NS), (1e14, SECOND_US), (1e17, 1000))
 """Numbers below the first are in units of the second [ns]; larger ones are nanoseconds."""
 
 
@@ -158,7 +158,7 @@ def _number_ns(text: str) -> int | None:
     if not found:
         return None
     if found[3]:  # as numpy.savetxt writes it
-        return _checked(round(float(text) * _SECOND_NS))
+        return _checked(round(float(text) * SECOND_NS))
     whole, fraction = int(found[1]), found[2] or ""
     unit = next((ns for largest, ns in _LARGEST_S if whole < largest), 1)
     part = int(fraction[:18]) * unit // 10 ** min(len(fraction), 18) if fraction else 0
@@ -178,4 +178,4 @@ def _date_ns(text: str) -> int | None:
         date = datetime(year, month, day, hour, minute, second, tzinfo=UTC)
     except ValueError:
         return None
-    return int(date.timestamp()) * _SECOND_NS + int((found[7] or "").ljust(9, "0"))
+    return int(date.timestamp()) * SECOND_NS + int((found[7] or "").ljust(9, "0"))

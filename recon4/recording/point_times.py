@@ -14,6 +14,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.clock_names import described
 from recon4.recording.point_fields import NS_TIME
 from recon4.recording.report import ImportReport
+from recon4.units import HOUR_NS
 
 Values = NDArray[Any]
 
@@ -26,7 +27,6 @@ _TURN_S = (0.01, 0.6)
 """Duration of a revolution, from and to [s]; determines the unit of integer times."""
 _PART_NS = 1e8
 """A cloud that is part of a revolution may be timed from the start of the revolution [ns]."""
-_HOUR_NS = 3_600_000_000_000
 _COUNTER = 1 << 32
 _SHORTEST_CYCLE_NS = 60_000_000_000
 _BULK = 6.0
@@ -282,7 +282,7 @@ def _around(values: Values, middle: Any, finite: NDArray[np.bool_]) -> tuple[NDA
         around = np.where(finite, values, middle).astype(np.float64) - float(middle)
     largest, least = float(values[finite].max()), float(values[finite].min())
     for unit in _UNITS_NS:
-        hour = _HOUR_NS / unit
+        hour = HOUR_NS / unit
         if 0.999 * hour < largest < hour and 0.0 <= least < 0.001 * hour:
             turns = np.sign(around) * (np.abs(around) > hour / 2)
             return np.asarray(around - (turns * hour).astype(around.dtype)), True
@@ -294,7 +294,7 @@ def _cycles_ns(numbers: _Numbers, unit: float) -> Cycles:
     counter_ns = int(numbers.cycle * unit)
     # A cycle of a few seconds would fit any stamp.
     longer = (counter_ns,) if counter_ns > _SHORTEST_CYCLE_NS else ()
-    return (*(() if numbers.wraps else (0,)), *longer, _HOUR_NS)
+    return (*(() if numbers.wraps else (0,)), *longer, HOUR_NS)
 
 
 def _unit_of_clock(numbers: _Numbers, t_ns: int, period_ns: int) -> float:

@@ -24,13 +24,14 @@ from scipy.ndimage import uniform_filter1d
 
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.model.usability import OBSERVED_SD_M
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.motion import imu_in_body
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_imu import FELT
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _V = slice(0, 3)
 

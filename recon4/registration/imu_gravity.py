@@ -12,10 +12,11 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.motion import imu_in_body
 from recon4.registration.tuning_imu import IMU_GRAVITY
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 
 def wrong_gravity(trajectory: Trajectory, imu: ImuSamples, rig: Rig) -> float | None:

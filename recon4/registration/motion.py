@@ -11,7 +11,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array, interpolate, proper, so3_exp, so3_log
 from recon4.kernels.imu import SIZE, propagate
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.state import STATE, VECTOR
@@ -19,6 +19,7 @@ from recon4.registration.tuning import OdometryTuning
 from recon4.registration.tuning_imu import PREDICTION
 from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _VECTOR_SIZE = SIZE - 3
 

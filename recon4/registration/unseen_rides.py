@@ -24,10 +24,11 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.odometry_figures import HeightDoubt
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.registration.motion import imu_in_body
 from recon4.registration.tuning_motion import RIDES
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.simulation.imu import ImuModel
 from recon4.simulation.lidar import Firings
 from recon4.simulation.patterns import FiringPattern
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _BURST_PACKETS = 6
 """Packets are lost in runs of this length on average."""

@@ -8,8 +8,9 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.simulation.walk import Walk
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

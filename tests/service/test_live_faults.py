@@ -31,7 +31,6 @@ from recon4.model.rig import load_rig
 from recon4.progress import Silent
 from recon4.recording.formats.pcap import read_pcap
 from recon4.recording.ingest import ingest
-from recon4.recording.packets.sensor_clock import HOUR_US
 from recon4.recording.packets.velodyne.models import DATA_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.sources import Sources
@@ -40,6 +39,7 @@ from recon4.simulation.setup import prepare
 from recon4.simulation.simulate import simulate
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
+from recon4.units import HOUR_US
 from recon4_app.errors import Conflict
 from recon4_app.live.current_capture import CurrentCapture
 from tests.loopback import an_address

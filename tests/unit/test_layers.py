@@ -17,6 +17,7 @@ from packaging.requirements import Requirement
 ROOT = Path(__file__).parents[2]
 BASE = {
     "recon4.errors",
+    "recon4.units",
     "recon4.untrusted",
     "recon4.progress",
     "recon4.settings",
@@ -26,6 +27,7 @@ STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 
 MAY_IMPORT = {
     "recon4/errors.py": set(),
+    "recon4/units.py": set(),
     "recon4/untrusted": {"recon4.errors"},
     "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
     "recon4/system/compile_kernels.py": {"recon4.kernels.signatures", "recon4.progress"}
@@ -35,7 +37,7 @@ MAY_IMPORT = {
     "recon4/settings": {"recon4.errors", "recon4.settings"},
     "recon4/geometry": {"recon4.geometry"},
     "recon4/model": MODEL,
-    "recon4/kernels": {"recon4.kernels"},
+    "recon4/kernels": {"recon4.kernels", "recon4.units"},
     "recon4/sandbox": {"recon4.sandbox", "recon4.kernels.processor"},
     "recon4/store": MODEL | {"recon4.kernels.packing", "recon4.store"},
     "recon4/recording": STAGE | {"recon4.recording"},

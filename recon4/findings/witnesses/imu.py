@@ -15,9 +15,9 @@ from recon4.findings.witnesses.tuning import IMU_WITNESS
 from recon4.findings.witnesses.uncertainty import known_to
 from recon4.model.import_notes import CLOUDS_UNTIMED, import_notes
 from recon4.model.odometry_figures import HeightDoubt, ImuChoice, ImuFault
-from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.registration.imu_gravity import wrong_gravity
 from recon4.registration.imu_saturation import SaturatedAxis, saturated_axes
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _OUTCOMES = {
     "bias removed": FindingKind.IMU_BIAS_REMOVED,

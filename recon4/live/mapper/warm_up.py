@@ -9,8 +9,9 @@ from recon4.live.mapper.scan_map import ScanMap
 from recon4.model.laser_scans import LaserScans
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.settings import Settings
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 
 def warm_up(rig: Rig, settings: Settings) -> None:

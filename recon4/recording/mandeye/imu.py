@@ -15,10 +15,11 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import CorruptFile
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.recording.report import ImportReport
+from recon4.units import STANDARD_GRAVITY_M_S2
 from recon4.untrusted.bounded import lines_limited, parse_float
 
 COLUMNS = ("timestamp", "gyrox", "gyroy", "gyroz", "accx", "accy", "accz", "imuid", "timestampunix")

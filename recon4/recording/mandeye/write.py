@@ -11,11 +11,12 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.model.rig import Rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.mandeye.tuning import MANDEYE
 from recon4.store.atomic import write_json, write_text
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _HEAD = "timestamp gyroX gyroY gyroZ accX accY accZ imuId timestampUnix"
 

@@ -17,9 +17,10 @@ from recon4.recording.packets.family import PacketFormat, PacketSamples, PacketS
 from recon4.recording.packets.packet_holes import PacketHoles
 from recon4.recording.packets.packet_order import PacketOrder
 from recon4.recording.packets.packet_rotation import Rotation
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.tuning import IngestTuning
 from recon4.settings.tuning import tuned
+from recon4.units import SECOND_NS
 
 
 def open_decoder(

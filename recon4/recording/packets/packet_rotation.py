@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.packets.sensor_clock import SECOND_NS
+from recon4.units import SECOND_NS
 
 
 @dataclass(slots=True)

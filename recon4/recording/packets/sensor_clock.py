@@ -7,10 +7,7 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
-
-SECOND_NS = 1_000_000_000
-HOUR_NS = 3600 * SECOND_NS
-HOUR_US = HOUR_NS // 1000
+from recon4.units import HOUR_NS, HOUR_US, SECOND_NS
 
 _SAME_CLOCK_NS = SECOND_NS // 2
 """A sensor that is this near to the recorder's clock is synchronized with it."""

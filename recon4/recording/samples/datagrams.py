@@ -19,12 +19,12 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from recon4.model.samples import GnssSamples, ImuSamples
-from recon4.recording.packets.sensor_clock import SECOND_NS
 from recon4.recording.packets.velodyne.position_packets import is_on_earth, parse_fix
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
 from recon4.recording.stamps import StampClock
+from recon4.units import SECOND_NS
 
 _UTC_WITHIN_NS = 5 * SECOND_NS // 2
 """Largest difference between an NMEA time and its arrival at which the time is used."""

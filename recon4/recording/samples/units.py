@@ -9,8 +9,9 @@ import numpy as np
 
 from recon4.geometry.se3 import Array, so3_exp
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.recording.report import ImportReport
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 GyroUnit = Literal["auto", "rad_s", "deg_s"]
 

@@ -4,8 +4,9 @@ import pytest
 
 from recon4.live.mapper.latency import Latency
 from recon4.live.mapper.tuning import LATENCY
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
+from recon4.units import SECOND_NS
 from tests.unit.recording.test_packets_clock import PACKET_NS, packets
 
 

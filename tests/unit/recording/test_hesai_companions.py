@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.kinds import located_sources
 from recon4.recording.packets.capture import PacketCapture
@@ -16,6 +15,7 @@ from recon4.recording.packets.velodyne.encode import PcapWriter
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import rig_to_complete
 from recon4.recording.sources import Sources
+from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.unit.recording.hesai_mirrors import mirror_table
 from tests.unit.recording.hesai_packets import WIDE, packet_sensor, table_of
 from tests.unit.recording.test_hesai_packets import decoded_with, spin

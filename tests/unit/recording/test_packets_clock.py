@@ -5,8 +5,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from recon4.recording.packets.sensor_clock import HOUR_NS, SECOND_NS, SensorClock, nearest_hour
+from recon4.recording.packets.sensor_clock import SensorClock, nearest_hour
 from recon4.recording.report import ImportReport
+from recon4.units import HOUR_NS, SECOND_NS
 from tests.unit.recording.packet_builders import LATENCY_NS, T0_NS
 
 PACKET_NS = 1_327_104

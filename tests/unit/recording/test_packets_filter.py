@@ -6,10 +6,10 @@ import pytest
 from recon4.recording.packets.decoder import open_decoder
 from recon4.recording.packets.family import PacketSensor
 from recon4.recording.packets.packet_order import PacketOrder
-from recon4.recording.packets.sensor_clock import SECOND_NS
 from recon4.recording.packets.velodyne.sound_packets import as_packets
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
+from recon4.units import SECOND_NS
 from tests.unit.recording.packet_builders import T0_NS, decode_all, sensor, spin
 
 

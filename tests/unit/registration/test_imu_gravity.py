@@ -7,9 +7,10 @@ from recon4.findings.finding import Level
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.imu import Gravity
 from recon4.model.odometry_figures import OdometryFigures
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.registration.imu_gravity import wrong_gravity
+from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.unit.registration.test_unseen_rides import RIG, walked
 
 

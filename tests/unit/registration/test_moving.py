@@ -15,7 +15,7 @@ from recon4.model.hidden import HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import MovingFigures, MovingOutcome, OdometryFigures
 from recon4.model.rig import Rig, Sensor, load_rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Silent
 from recon4.registration.moving import (
@@ -29,6 +29,7 @@ from recon4.registration.stage import run_odometry
 from recon4.registration.walk import WalkInputs
 from recon4.settings import OdometrySettings, Settings
 from recon4.store.arrays import load_record
+from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.said import odometry_findings, texts
 
 FRAME_NS = 100_000_000

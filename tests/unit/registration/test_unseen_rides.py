@@ -11,7 +11,7 @@ from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.odometry_figures import HeightDoubt
 from recon4.model.rig import load_rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
 from recon4.registration.unseen_rides import (
     HeightContradiction,
@@ -24,6 +24,7 @@ from recon4.simulation.gait import plan_walk
 from recon4.simulation.imu import ImuModel, simulate_imu
 from recon4.simulation.truth import true_trajectory
 from recon4.simulation.worlds import build_world
+from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.room_walks import rig_of
 
 RIG = load_rig("4recon")

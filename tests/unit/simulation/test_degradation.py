@@ -7,7 +7,7 @@ import pytest
 
 from recon4.errors import ConfigError
 from recon4.model.rig import load_rig
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssSamples, ImuSamples
+from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.recording.packets.velodyne.models import MODELS
@@ -19,6 +19,7 @@ from recon4.simulation.lidar import Firings, Lidar, LidarModel
 from recon4.simulation.recorder import true_rig
 from recon4.simulation.setup import models_with, prepare
 from recon4.simulation.simulate import record, simulate
+from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.unit.simulation.rooms import still, walls
 from tests.unit.simulation.test_simulate import datagrams, hashes
 

@@ -22,6 +22,7 @@ from recon4.recording.packets.hesai.layouts import (
     HesaiLayout,
 )
 from recon4.recording.packets.hesai.models import HesaiModel
+from recon4.units import SECOND_US
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -75,7 +76,7 @@ def encode_packets(
     packets[:, : len(model.header)] = np.frombuffer(model.header, np.uint8)
     _write_blocks(packets, layout, blocks)
     _write_tail(packets, model, mode)
-    seconds, micros = np.divmod(np.asarray(stamp_us, dtype=np.int64), stamps.MICROS)
+    seconds, micros = np.divmod(np.asarray(stamp_us, dtype=np.int64), SECOND_US)
     date = stamps.date_of(seconds)
     if layout.tail.date == 16:  # Pandar40P and Pandar64 count years from 2000
         date[:, 0] -= 100
@@ -151,7 +152,7 @@ def encode_jt16_inertial(stamp_us: NDArray[np.integer], values: NDArray[np.integ
     """
     packets = np.zeros(len(stamp_us), dtype=JT16_SAMPLE)
     packets["start"] = np.frombuffer(START + bytes((1, 8, 0, 1)), np.uint8)
-    seconds, packets["micros"] = np.divmod(np.asarray(stamp_us, dtype=np.int64), stamps.MICROS)
+    seconds, packets["micros"] = np.divmod(np.asarray(stamp_us, dtype=np.int64), SECOND_US)
     packets["date"] = stamps.date_of(seconds)
     packets["accel"], packets["gyro"] = values[:, :3], values[:, 3:]
     payloads = packets.view(np.uint8).reshape(-1, JT16_IMU_SIZE)

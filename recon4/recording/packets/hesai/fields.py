@@ -12,8 +12,8 @@ from recon4.recording.packets.hesai import checksums, stamps
 from recon4.recording.packets.hesai.layouts import HEADER, PANDAR40P_BLOCK, HesaiLayout
 from recon4.recording.packets.hesai.models import RETURNS
 from recon4.recording.report import ImportReport
+from recon4.units import TURN_CDEG
 
-_FULL_TURN_CDEG = 36000
 _FASTEST_RPM = 3600.0
 _ECHO = 8
 """Byte of the header that changes with the return mode; behind it the unit of the distance."""
@@ -115,7 +115,7 @@ def sound_packets(
     sound = _same_header(fields, header)
     report.count("packets_wrong_header", int((~sound).sum()))
     checks = (
-        ("packets_wrong_azimuth", (fields.azimuth_cdeg <= _FULL_TURN_CDEG).all(axis=1)),
+        ("packets_wrong_azimuth", (fields.azimuth_cdeg <= TURN_CDEG).all(axis=1)),
         ("packets_wrong_stamp", stamps.is_date(fields.date, fields.micros)),
         ("packets_wrong_speed", fields.speed * speed_rpm <= _FASTEST_RPM),
         ("packets_wrong_crc", checksums.are_right(fields.payloads, fields.layout)),

@@ -12,7 +12,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.hesai import checksums, stamps
@@ -24,6 +24,7 @@ from recon4.recording.packets.hesai.layouts import (
     HesaiLayout,
 )
 from recon4.recording.report import ImportReport
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 TAIL_SAMPLE = np.dtype(
     [

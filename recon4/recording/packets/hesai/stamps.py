@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.packets.sensor_clock import SECOND_NS
+from recon4.units import SECOND_NS, SECOND_US
 
-MICROS = 1_000_000
-"""Microseconds of a second."""
 _FIRST, _LAST = (1, 1, 0, 0, 0), (12, 31, 23, 59, 60)
 """Least and largest month, day, hour, minute and second."""
 _LATEST_S = 1 << 33
@@ -26,7 +24,7 @@ def is_date(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> NDArray[np.b
     calendar = ((date[:, 1:] >= _FIRST) & (date[:, 1:] <= _LAST)).all(axis=1)
     counted = _seconds(date) < _LATEST_S
     dated = np.where(date[:, 0] == 0, counted, calendar)
-    return np.asarray(dated & (micros < MICROS))
+    return np.asarray(dated & (micros < SECOND_US))
 
 
 def time_ns(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> Times:

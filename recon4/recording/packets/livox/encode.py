@@ -9,7 +9,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.model.samples import STANDARD_GRAVITY_M_S2
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import (
@@ -25,6 +24,7 @@ from recon4.recording.packets.livox.models import (
     LivoxModel,
     PointLayout,
 )
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _IMU_INTERVAL = 50_000
 """200 Hz [0.1 µs]."""

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
@@ -47,6 +47,7 @@ from recon4.recording.packets.livox.sound import (
 )
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 _MODES = {1: "single", 2: "dual", 3: "triple"}
 _MOST_PROBED = 200

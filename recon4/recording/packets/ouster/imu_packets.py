@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketSensor, Payloads
@@ -24,6 +24,7 @@ from recon4.recording.packets.ouster.layouts import (
 )
 from recon4.recording.packets.ouster.metadata import OusterMetadata
 from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 LEGACY_IMU = np.dtype(
     [

@@ -26,7 +26,7 @@ from recon4.recording.packets.robosense.solid import (
     SOLID_STAMP_AT,
     SolidModel,
 )
-from recon4.recording.packets.sensor_clock import SECOND_NS
+from recon4.units import SECOND_NS
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -56,9 +56,10 @@ from recon4.recording.packets.robosense.solid import (
     solid_stamps,
     sound_solid,
 )
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.spinning import spinning_points
 from recon4.recording.report import ImportReport
+from recon4.units import SECOND_NS
 
 NAME = "RoboSense"
 _BPEARL_V4 = (3, 4)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, ImuSamples
+from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.packets import stamps_of
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 IMU_ID = bytes.fromhex("aa555a05")
 """First bytes of a packet."""

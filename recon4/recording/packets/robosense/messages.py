@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from recon4.recording.packets.family import MessagePackets
-from recon4.recording.packets.sensor_clock import SECOND_NS
+from recon4.units import SECOND_NS
 
 
 def _messages() -> dict[str, MessagePackets]:

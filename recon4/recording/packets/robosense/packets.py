@@ -10,10 +10,10 @@ from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.angles import LaserAngles
 from recon4.recording.packets.robosense.models import RoboSenseModel
-from recon4.recording.packets.sensor_clock import SECOND_NS
 from recon4.recording.packets.spinning import SpinningTables, beams, distances, variants
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
+from recon4.units import SECOND_NS
 
 _STAMP = np.dtype([("high", ">u2"), ("seconds", ">u4"), ("rest", ">u4")])
 _DATE = np.dtype(

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-from recon4.recording.packets.sensor_clock import HOUR_US
 from recon4.recording.packets.velodyne.models import (
     BLOCK_FLAG,
     BLOCKS,
@@ -23,6 +22,7 @@ from recon4.recording.packets.velodyne.models import (
     STRONGEST,
     VelodyneModel,
 )
+from recon4.units import HOUR_US
 
 _HEADER = np.dtype(
     [

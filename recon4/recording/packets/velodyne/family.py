@@ -23,7 +23,7 @@ from recon4.recording.packets.family import (
     Recognized,
 )
 from recon4.recording.packets.packet_rotation import Rotation
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.velodyne.data_packets import PacketSource, decode_packets
 from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file
 from recon4.recording.packets.velodyne.models import (
@@ -45,6 +45,7 @@ from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_pa
 from recon4.recording.packets.velodyne.wide_models import VLS128
 from recon4.recording.packets.velodyne.wide_packets import WideFormat, dual_packets, sound_wide
 from recon4.recording.report import ImportReport
+from recon4.units import SECOND_NS
 
 NAME = "Velodyne"
 HDL64 = "HDL-64E"

@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.rig import Sensor
-from recon4.model.samples import STANDARD_GRAVITY_M_S2, GnssQuality, GnssSamples, ImuSamples
+from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import PacketSamples
-from recon4.recording.packets.sensor_clock import HOUR_US, SECOND_NS, SensorClock, nearest_hour
+from recon4.recording.packets.sensor_clock import SensorClock, nearest_hour
 from recon4.recording.packets.velodyne.models import POSITION_SIZE
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import height_of_gga
+from recon4.units import DAY_NS, HOUR_US, SECOND_NS, STANDARD_GRAVITY_M_S2
 
-_DAY_NS = 24 * 3600 * SECOND_NS
 _LONGEST_AGE_NS = 5 * SECOND_NS // 2
 """A sentence tells the last full second and stays in the packets until the next one comes."""
 
@@ -95,7 +95,7 @@ def _fix(message: Any, near_ns: int, report: ImportReport) -> NmeaFix | None:
     if message.msgID != "GGA" or message.quality == 0:
         return None
     of_day = _ns(datetime.combine(datetime(1970, 1, 1), message.time, tzinfo=UTC))
-    utc_ns = of_day + round((near_ns - of_day) / _DAY_NS) * _DAY_NS
+    utc_ns = of_day + round((near_ns - of_day) / DAY_NS) * DAY_NS
     height_m = height_of_gga(float(message.alt), message.sep, report)
     known = int(message.quality) in set(GnssQuality)
     quality = GnssQuality(message.quality) if known else GnssQuality.SINGLE

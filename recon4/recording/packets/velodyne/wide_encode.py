@@ -15,8 +15,7 @@ from recon4.recording.packets.velodyne.models import (
     STRONGEST,
 )
 from recon4.recording.packets.velodyne.wide_models import VLS128, VLS128_PRODUCT, WideModel
-
-_HOUR_US = 3_600_000_000
+from recon4.units import HOUR_US
 
 
 def encode_wide(
@@ -50,7 +49,7 @@ def encode_wide(
     rows = np.asarray(returns).reshape(len(t_us), -1, CHANNELS, 2)[:, :used]
     blocks["returns"]["distance"][:, order[:used]] = rows[..., 0]
     blocks["returns"]["intensity"][:, order[:used]] = rows[..., 1]
-    packets["time_us"] = np.asarray(t_us) % _HOUR_US
+    packets["time_us"] = np.asarray(t_us) % HOUR_US
     if model is VLS128:
         packets["return_mode"] = DUAL if dual else STRONGEST
         packets["product"] = VLS128_PRODUCT

@@ -11,7 +11,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketSamples, PacketSensor, Payloads
-from recon4.recording.packets.sensor_clock import SECOND_NS, SensorClock
+from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.spinning import (
     SpinningPackets,
     SpinningTables,
@@ -35,8 +35,8 @@ from recon4.recording.packets.velodyne.wide_models import (
     merged,
 )
 from recon4.recording.report import ImportReport
+from recon4.units import HOUR_NS
 
-_HOUR_NS = 3600 * SECOND_NS
 _MOST_CDEG = 1000
 _S3_LEAST_US = 316.8
 """Packets of an S2 come every 288 µs, of an S3 every 345.6 µs; of two returns in half of it."""
@@ -122,7 +122,7 @@ class WideFormat:
         """Time of the first shot past the hour."""
         stamp_ns = as_packets(payloads)["time_us"].astype(np.int64) * 1000
         early_ns = self._model.early_ns
-        return np.where(stamp_ns < _HOUR_NS, (stamp_ns - early_ns) % _HOUR_NS, stamp_ns)
+        return np.where(stamp_ns < HOUR_NS, (stamp_ns - early_ns) % HOUR_NS, stamp_ns)
 
     def azimuth_cdeg(self, payloads: Payloads) -> NDArray[np.int64]:
         """Of the first block of each packet."""
