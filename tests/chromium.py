@@ -24,6 +24,9 @@ FLAGS = [
     "--disable-background-networking",
     "--disable-component-update",
     "--disable-sync",
+    # Playwright's `ignore_https_errors` answers after the error: a request that met many new
+    # connections was given up (ERR_TOO_MANY_RETRIES). Here there is no error to answer.
+    "--ignore-certificate-errors",
 ]
 
 DRAW_LESS = """{

@@ -85,9 +85,7 @@ def _asked_for(item: pytest.Item) -> bool:
 
 
 @contextmanager
-def browser_context(
-    browser: Browser, look: tuple[str, str], *, ignore_https_errors: bool = False
-) -> Iterator[BrowserContext]:
+def browser_context(browser: Browser, look: tuple[str, str]) -> Iterator[BrowserContext]:
     """A fresh profile of the browser with a screen and a color scheme."""
     screen, scheme = look
     width, height = SCREENS[screen]
@@ -96,7 +94,6 @@ def browser_context(
         color_scheme="dark" if scheme == "dark" else "light",
         has_touch=screen == "phone",
         is_mobile=screen == "phone",
-        ignore_https_errors=ignore_https_errors,
     )
     context.set_default_timeout(60_000)
     if not SCREENSHOTS:

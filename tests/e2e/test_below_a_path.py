@@ -34,7 +34,7 @@ def page(browser, site):
         below = (f"{site.url}/", f"{site.url.replace('https', 'wss', 1)}/", "data:", "blob:")
         url.startswith(below) or outside.append(url)
 
-    with browser_context(browser, ("desktop", "light"), ignore_https_errors=True) as context:
+    with browser_context(browser, ("desktop", "light")) as context:
         page = context.new_page()
         page.on("request", lambda request: note(request.url))
         page.on("websocket", lambda socket: note(socket.url))

@@ -19,7 +19,7 @@ server = served(office(points=20_000), run=secure_server)
 @pytest.fixture
 def page(browser, look) -> Iterator[Page]:
     """A browser that accepts the self-signed certificate, as after comparing the fingerprint."""
-    with browser_context(browser, look, ignore_https_errors=True) as context:
+    with browser_context(browser, look) as context:
         page = context.new_page()
         complaints: list[str] = []
         page.on("pageerror", lambda error: complaints.append(str(error)))

@@ -32,7 +32,7 @@ def laptop(browser):
 
 
 def opened(browser, screen):
-    with browser_context(browser, (screen, "light"), ignore_https_errors=True) as context:
+    with browser_context(browser, (screen, "light")) as context:
         yield context.new_page()
 
 

@@ -124,7 +124,7 @@ PAGES = (
 
 def test_no_text_becomes_markup_or_a_script_on_any_page(server, written, browser):
     expect.set_options(timeout=45_000)  # two busy cores
-    context = browser.new_context(ignore_https_errors=True)
+    context = browser.new_context()
     context.set_default_timeout(60_000)
     caught: list[str] = []
     context.expose_binding(
