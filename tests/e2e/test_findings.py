@@ -120,8 +120,37 @@ def test_a_finding_flies_to_its_stretch_in_the_viewer_and_marks_it(found, page, 
     assert kept_stretch(page.frames[1]) == [20.0, 25.0]
 
 
+@looks("desktop light")
+def test_a_finding_chosen_before_the_viewer_has_loaded_is_opened_there(found, page):
+    asked = []
+
+    def answer_the_second(route):
+        asked.append(route)
+        if len(asked) > 1:
+            route.fulfill(body="<title>Viewer</title>", content_type="text/html")
+
+    page.route("**/viewer/", answer_the_second)
+    page.goto(f"{found.url}/projects/office/")
+    page.locator("iframe").wait_for()
+    entry(page, WEAK).get_by_role("link", name="Show in the map: 40.0 s to 44.0 s").click()
+
+    page.wait_for_function(
+        "() => { const viewer = document.querySelector('iframe');"
+        " return viewer.contentDocument.title === 'Viewer'"
+        " && viewer.contentWindow.location.hash === location.hash; }"
+    )
+    asked[0].abort()
+
+
+MISS_FIRST_KEYS = """let missed = 0;
+addEventListener("keydown", (event) => {
+  if (event.key === "g" && ++missed <= 2) event.stopImmediatePropagation();
+}, true);"""
+
+
 @looks("desktop dark")
 def test_the_link_of_a_finding_opens_where_it_is_and_escape_clears_the_mark(found, page):
+    page.add_init_script(MISS_FIRST_KEYS)  # as a viewer does that is busy or starts
     page.goto(f"{found.url}/projects/office/#span=40,44")
     expect(page.locator("iframe")).to_be_attached()
     viewer = page.frames[1]

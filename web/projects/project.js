@@ -175,10 +175,13 @@ function showMap() {
 
 /** Has the viewer fly to the stretch of the walk in the fragment of the address. */
 function showStretch() {
-  const shown = byId("viewer").querySelector("iframe")?.contentWindow?.location;
-  if (!shown || !location.hash) return;
+  const viewer = byId("viewer").querySelector("iframe");
+  if (!viewer?.contentWindow || !location.hash) return;
   byId("viewer").scrollIntoView({ block: "nearest" });
-  shown.replace(shown.href.split("#")[0] + location.hash); // viser adds a query to it
+  const shown = viewer.contentWindow.location;
+  const loaded = shown.protocol !== "about:"; // before the first answer the frame has no address
+  if (loaded) shown.replace(shown.href.split("#")[0] + location.hash); // viser adds a query to it
+  else viewer.src = viewerUrl(state.id) + location.hash;
 }
 
 function drawLog() {

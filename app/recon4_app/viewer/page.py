@@ -31,21 +31,24 @@ Document.prototype.hasFocus = function () { return !document.hidden; };
 document.addEventListener('visibilitychange', () =>
   dispatchEvent(new Event(document.hidden ? 'blur' : 'focus')));
 // A link names a stretch of the walk in the fragment. It is left where the viewer reads it, and the
-// key that reads it is pressed. viser puts its prefix before the name of what it reads.
-let stretchWaits = false;
-const showStretch = () => {
-  if (!stretchWaits || document.getElementById('cover')) return;
-  stretchWaits = false;
+// key that reads it is pressed until it was read: a viewer that starts or is busy misses keys.
+// viser puts its prefix before the name of what it reads.
+const project = decodeURIComponent(location.pathname.split('/').at(-3));
+const askedStretch = 'viser-user:recon4.stretch.' + project;
+let pressing = 0;
+const pressForStretch = () => {
+  if (localStorage.getItem(askedStretch) === null) return clearInterval(pressing);
+  if (document.readyState === 'loading' || document.getElementById('cover')) return;
   document.documentElement.dispatchEvent(
     new KeyboardEvent('keydown', { key: 'g', code: 'KeyG', bubbles: true }));
 };
 const takeStretch = () => {
   if (!location.hash) return;
-  const project = decodeURIComponent(location.pathname.split('/').at(-3));
-  localStorage.setItem('viser-user:recon4.stretch.' + project, location.hash.slice(1));
+  localStorage.setItem(askedStretch, location.hash.slice(1));
   history.replaceState(null, '', location.pathname + location.search);
-  stretchWaits = true;
-  if (document.readyState !== 'loading') showStretch();
+  clearInterval(pressing);
+  pressing = setInterval(pressForStretch, 1500);
+  pressForStretch();
 };
 takeStretch();
 addEventListener('hashchange', takeStretch);
@@ -58,7 +61,7 @@ addEventListener('DOMContentLoaded', () => new MutationObserver((_, watch) => {
   if (!title || !withText('Edges by')) return;
   watch.disconnect();
   document.getElementById('cover').remove();
-  showStretch();
+  pressForStretch();
   if (innerWidth < 576) title.click();
 }).observe(document, { childList: true, subtree: true, characterData: true }));
 // The list of keys, by its key or button.

@@ -170,7 +170,7 @@ class ClientSession:
 
     def _go_to_stretch(self) -> None:
         """Mark the stretch that the page was asked for, or the marked one again, and fly there."""
-        asked = stretch_from_text(self._screen.asked_stretch(CLIENTS.kept_view_timeout_s))
+        asked = stretch_from_text(self._screen.take_asked_stretch(CLIENTS.kept_view_timeout_s))
         stretch, content = asked or self._view.stretch, self._source.content
         if stretch is None:
             return

@@ -186,12 +186,19 @@ class Screen:
             return None, None
         return kept, time.monotonic() - began_s
 
-    def asked_stretch(self, limit_s: float) -> str | None:
-        """The stretch that the page was last asked to show, as untrusted text."""
+    def take_asked_stretch(self, limit_s: float) -> str | None:
+        """The stretch that the page is asked to show, as untrusted text; the page asks until then.
+
+        None if nothing is asked, or if the browser does not answer in time.
+        """
+        storage = self._client.local_storage
         try:
-            return self._client.local_storage.get_item(self._stretch_key, timeout=limit_s)
+            asked = storage.get_item(self._stretch_key, timeout=limit_s)
         except (TimeoutError, RuntimeError):
             return None
+        if asked is not None:
+            storage.remove_item(self._stretch_key)
+        return asked
 
     def keep_view(self, text: str) -> None:
         """Have the browser keep a view."""
