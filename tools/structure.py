@@ -26,6 +26,11 @@ NUMBERS = "numeric constants of modules"
 
 FOREIGN = (
     "recon4/recording/formats/",
+    "recon4/recording/packets/hesai/firing_times.py",
+    "recon4/recording/packets/hesai/layouts.py",
+    "recon4/recording/packets/livox/models.py",
+    "recon4/recording/packets/ouster/facts.py",
+    "recon4/recording/packets/ouster/layouts.py",
     "recon4/recording/packets/robosense/models.py",
     "recon4/recording/packets/robosense/solid.py",
     "recon4/recording/packets/velodyne/laser_calibration.py",

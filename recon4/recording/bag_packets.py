@@ -21,7 +21,8 @@ from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor, Recognized, same_start
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
-from recon4.recording.packets.streams import HEAD_BYTES, first_datagrams, recognized
+from recon4.recording.packets.streams import first_datagrams, recognized
+from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
@@ -188,7 +189,7 @@ def head_of(bag: Bag, topic: str) -> Datagrams:
             parts.append(packets_in(message, content))
             count += len(parts[-1])
             size += len(parts[-1].buffer)
-        if count >= _PROBED_PACKETS or size >= HEAD_BYTES:
+        if count >= _PROBED_PACKETS or size >= HEAD.bytes:
             break
     return first_datagrams(join_datagrams(parts))
 

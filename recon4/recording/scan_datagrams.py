@@ -22,10 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.laser_scans import LaserScans
+from recon4.recording.limits import LIMITS
 
 MAX_DATAGRAM_BYTES = 65_000
 """Largest datagram that is stored with its headers in a capture file."""
-_LARGEST_NS = 1 << 62
 _RESERVED_BYTES = 400
 
 
@@ -75,7 +75,7 @@ def decode_scan_datagram(payload: bytes) -> ScanMessage | HeadMessage | None:
         if found is None:
             return None
         message = found
-    if message.t_ns is not None and not 0 < message.t_ns < _LARGEST_NS:
+    if message.t_ns is not None and not 0 < message.t_ns < LIMITS.latest_ns:
         return None
     if isinstance(message, ScanMessage) and not _is_sound(message):
         return None

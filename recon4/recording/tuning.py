@@ -56,3 +56,20 @@ class SharedTopicTuning:
 
 
 SHARED_TOPICS = SharedTopicTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ListedTuning:
+    """How much of one kind a message names; the rest is counted."""
+
+    names: int = 20
+    """Topics, files, gaps."""
+    streams: int = 10
+    """Senders of a capture, each with a line."""
+    few: int = 5
+    """Examples within a sentence."""
+    sizes: int = 3
+    """Sizes of the packets of a sender."""
+
+
+LISTED = ListedTuning()

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 
+MAX_UDP_BYTES = 65_507
+"""Of the contents of a datagram of UDP over IPv4."""
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Datagrams:

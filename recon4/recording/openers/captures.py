@@ -12,10 +12,11 @@ from recon4.recording.files_near import COMPANION_SUFFIXES
 from recon4.recording.formats.datagrams import address_text
 from recon4.recording.kinds import capture_files
 from recon4.recording.openers.request import Item, OpenRequest, Recording
-from recon4.recording.packets.capture import WAIT_S, ChooseRig, PacketCapture
+from recon4.recording.packets.capture import ChooseRig, PacketCapture
 from recon4.recording.packets.family import PacketSamples
 from recon4.recording.packets.livox.lvx import read_lvx_head
 from recon4.recording.packets.streams import PacketStream, require_one_capture
+from recon4.recording.packets.tuning import CAPTURES
 from recon4.recording.profiler_rigs import WUERZBURG
 from recon4.recording.rig_choice import Stream, choose_rig, rig_to_complete, with_lidars
 from recon4.recording.scan_capture import ScanCapture, scan_streams
@@ -49,7 +50,9 @@ def _opened(request: OpenRequest, rig: Rig | ChooseRig) -> Recording:
         report=request.report,
         open_file=request.open_file,
     )
-    return Recording(pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=WAIT_S)
+    return Recording(
+        pcap.rig, partial(_read_pcap, pcap), _seconds(pcap.streams), wait_s=CAPTURES.wait_s
+    )
 
 
 def _rig_of_devices(streams: Sequence[Stream], request: OpenRequest) -> Rig:

@@ -29,18 +29,12 @@ from recon4.recording.packets.streams import (
     scan_pcap,
     unread_text,
 )
+from recon4.recording.packets.tuning import CAPTURES
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.samples.datagrams import SampleDecoder
+from recon4.recording.tuning import LISTED
 from recon4.settings import IngestSettings
-
-WAIT_S = 1.0
-"""A sensor that is silent for this time no longer delays the others' frames: datagrams are read in
-the order of arrival, one slot at a time (`in_slots`)."""
-_STREAMS_NAMED = 10
-_FOREIGN_RATIO = 0.2
-"""A stream with fewer packets than this ratio of the largest one belongs to no sensor of the rig,
-unless its port (and address) matches one."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -221,7 +215,7 @@ class PacketCapture:
         most = max((s.packets for s in self.streams if s.kind == "data"), default=0)
         for stream in self.streams:
             known = any(fits(sensor, stream.source, stream.port) for sensor in self.rig.sensors)
-            if stream.refused and not known and stream.packets > _FOREIGN_RATIO * most:
+            if stream.refused and not known and stream.packets > CAPTURES.foreign_ratio * most:
                 self._report.warn(f"not read: {stream.text}")
             expected = {"IMU": self.rig.imu_port, "GNSS": self.rig.gnss_port}.get(stream.kind)
             if expected is not None and stream.port != expected:
@@ -263,7 +257,7 @@ class PacketCapture:
 
 def _found_instead(streams: Sequence[PacketStream], heads: ImportReport) -> str:
     """What capture files without data packets have, and why it is not read."""
-    texts = [stream.text for stream in streams[:_STREAMS_NAMED]]
+    texts = [stream.text for stream in streams[: LISTED.streams]]
     more = len(streams) - len(texts)
     texts += [f"{more} other streams"] * (more > 0)
     return "; ".join(filter(None, [*texts, unread_text(heads)]))
@@ -338,4 +332,4 @@ def _full(
 ) -> list[tuple[PacketStream, ...]]:
     """Those that are no trickle beside the largest of others."""
     most = max((sum(s.packets for s in streams) for streams in all_of), default=0)
-    return [k for k in some if sum(s.packets for s in k) >= _FOREIGN_RATIO * most]
+    return [k for k in some if sum(s.packets for s in k) >= CAPTURES.foreign_ratio * most]

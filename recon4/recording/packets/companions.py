@@ -13,10 +13,9 @@ from pathlib import Path
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.files_near import COMPANION_SUFFIXES, files_near
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, same_start
-
-_MAX_BYTES = 1 << 20
 
 
 def described_in(rig: Rig | None) -> list[Companion]:
@@ -95,7 +94,7 @@ def companions_of(paths: Sequence[Path]) -> list[Companion]:
 
 def _read(path: Path, recordings: Sequence[str]) -> Companion | None:
     try:
-        if not path.is_file() or path.stat().st_size > _MAX_BYTES:
+        if not path.is_file() or path.stat().st_size > LIMITS.companion_bytes:
             return None
         content = path.read_bytes()
     except OSError:  # gone, or of somebody else

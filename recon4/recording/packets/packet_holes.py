@@ -12,18 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-
-_PROBED = 100
-_LONGEST_S = 1.0
-"""A longer pause is a gap in the data, which is said elsewhere [s]."""
-_REVOLUTION_NS = (40_000_000, 450_000_000)
-"""Time between two holes of one field of view: sensors turn 5 to 20 times a second [ns]."""
-_LEAST_PACKETS = 3
-"""Single packets get lost; a field of view leaves out more."""
-_SAME_CDEG, _SAME_PACKETS = 1200, 2
-"""A packet covers up to 10 degrees: the edge of the view lies somewhere inside of it."""
-_CONFIRM = 3
-"""Holes in a row that must be alike."""
+from recon4.recording.packets.tuning import HOLES
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,9 +26,9 @@ class _Hole:
     def is_like(self, before: _Hole) -> bool:
         """Whether it begins where another one did, about a revolution before."""
         turn = abs((self.azimuth_cdeg - before.azimuth_cdeg + 18000) % 36000 - 18000)
-        shortest, longest = _REVOLUTION_NS
-        large = min(self.packets, before.packets) >= _LEAST_PACKETS
-        return large and turn <= _SAME_CDEG and shortest < self.t_ns - before.t_ns < longest
+        shortest, longest = HOLES.revolution_ns
+        large = min(self.packets, before.packets) >= HOLES.least_packets
+        return large and turn <= HOLES.same_cdeg and shortest < self.t_ns - before.t_ns < longest
 
 
 @dataclass(slots=True)
@@ -72,8 +61,8 @@ class PacketHoles:
         self._last = int(t_ns[-1]), int(azimuth_cdeg[-1])
         steps_s = np.diff(t_ns) / 1e9
         if not self._reported:
-            self._first_s.extend(steps_s[:_PROBED].tolist())
-        holes = np.flatnonzero((steps_s > 1.5 * packet_s) & (steps_s < _LONGEST_S))
+            self._first_s.extend(steps_s[: HOLES.probed].tolist())
+        holes = np.flatnonzero((steps_s > 1.5 * packet_s) & (steps_s < HOLES.longest_s))
         if not spins:
             return int(np.rint(steps_s[holes] / packet_s - 1.0).sum())
         return sum(
@@ -91,7 +80,7 @@ class PacketHoles:
 
     def usual_s(self) -> float:
         """Median of the first 100 or more steps [s], once; 0 before and after."""
-        if self._reported or len(self._first_s) < _PROBED:
+        if self._reported or len(self._first_s) < HOLES.probed:
             return 0.0
         self._reported = True
         return float(np.median(self._first_s))
@@ -100,12 +89,12 @@ class PacketHoles:
         if self._outside is not None and hole.is_like(self._outside):
             more = hole.packets - self._outside.packets
             self._outside = _Hole(hole.t_ns, hole.azimuth_cdeg, self._outside.packets)
-            return more if more > _SAME_PACKETS else 0
+            return more if more > HOLES.same_packets else 0
         first = self._open[0] if self._open else hole
-        alike = abs(hole.packets - first.packets) <= _SAME_PACKETS
+        alike = abs(hole.packets - first.packets) <= HOLES.same_packets
         goes_on = not self._open or (alike and hole.is_like(self._open[-1]))
         lost = 0 if goes_on else self.rest()
         self._open.append(hole)
-        if len(self._open) >= _CONFIRM:
+        if len(self._open) >= HOLES.confirm:
             self._outside, self._open = hole, []
         return lost

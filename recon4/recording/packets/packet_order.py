@@ -9,12 +9,8 @@ from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.tuning import PACKET_ORDER
 from recon4.recording.report import ImportReport
-
-_SET_BACK_NS = 1_000_000_000
-"""Packets so far behind the ones before are not late: the clocks were set back together."""
-_STRAGGLERS = 8
-"""Fewer packets in a row are late all the same."""
 
 
 @dataclass(slots=True, eq=False)
@@ -68,12 +64,12 @@ class PacketOrder:
     def _jump(self, t_ns: Times, newest: int) -> int | None:
         """The row from which most packets are far behind, if these are no stragglers."""
         latest = np.maximum.accumulate(np.append(newest, t_ns[:-1]))
-        rows = np.flatnonzero(t_ns < latest - _SET_BACK_NS)
+        rows = np.flatnonzero(t_ns < latest - PACKET_ORDER.set_back_ns)
         if not len(rows) or 2 * len(rows) <= len(t_ns) - rows[0]:
             self._behind = 0
             return None
         self._behind += len(rows)
-        if self._behind < _STRAGGLERS:
+        if self._behind < PACKET_ORDER.stragglers:
             return None
         self._behind = 0
         return int(rows[0])

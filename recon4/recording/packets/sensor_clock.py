@@ -6,25 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.packets.tuning import CLOCKS
 from recon4.recording.report import ImportReport
 from recon4.units import HOUR_NS, HOUR_US, SECOND_NS
-
-_SAME_CLOCK_NS = SECOND_NS // 2
-"""A sensor that is this near to the recorder's clock is synchronized with it."""
-_JUMP_NS = SECOND_NS
-"""Clocks that move against each other by more than this have jumped."""
-_FIRST = 500
-"""Packets of the first batch from which the offset of the clocks is measured."""
-_CONFIRM = 8
-"""Packets that must agree on a jump; fewer count as damaged packets and are dropped."""
-_BLOCK = 64
-"""Packets between two comparisons of the clocks, however the packets arrive."""
-_PAUSE_NS = 60 * SECOND_NS
-_TRACK_NS = 10 * SECOND_NS
-_MAX_RATE = 2e-4
-"""Two free-running quartz clocks differ by less than this."""
-_COUNTER_US = 1 << 32
-"""Where a counter that does not start again at the full hour does so [µs]: after 4294.97 s."""
 
 
 def nearest_hour(t_us: NDArray[np.integer], near_ns: Times | int) -> Times:
@@ -144,7 +128,7 @@ class SensorClock:
         parts = []
         start = 0
         while start < len(t_us):
-            rows = slice(start, start + _BLOCK - self._filled)
+            rows = slice(start, start + CLOCKS.block - self._filled)
             parts.append(self._push_part(t_arrival_ns[rows], t_us[rows]))
             start = rows.stop
         t_ns, kept = (np.concatenate(part) for part in zip(*parts, strict=True))
@@ -166,10 +150,10 @@ class SensorClock:
         stamps = raw + self._turned_us
         if not self._runs_on:
             return stamps
-        for turned_us in (self._turned_us + _COUNTER_US, self._turned_us - _COUNTER_US):
+        for turned_us in (self._turned_us + CLOCKS.counter_us, self._turned_us - CLOCKS.counter_us):
             off_ns = np.abs(nearest_hour(raw + turned_us, expected) - expected)
-            odd = np.abs(nearest_hour(stamps, expected) - expected) > _JUMP_NS
-            stamps = np.where(odd & (off_ns < _JUMP_NS), raw + turned_us, stamps)
+            odd = np.abs(nearest_hour(stamps, expected) - expected) > CLOCKS.jump_ns
+            stamps = np.where(odd & (off_ns < CLOCKS.jump_ns), raw + turned_us, stamps)
         return stamps
 
     def _push_part(
@@ -197,10 +181,10 @@ class SensorClock:
         offset = self._offset_ns if self._offset_ns is not None else self._start(t_arrival_ns, t_us)
         expected = t_arrival_ns + offset
         t_sensor = nearest_hour(self._continued(t_us, expected), expected)
-        return t_sensor + self._shift(t_sensor), np.abs(t_sensor - expected) <= _JUMP_NS
+        return t_sensor + self._shift(t_sensor), np.abs(t_sensor - expected) <= CLOCKS.jump_ns
 
     def _start(self, t_arrival_ns: Times, t_us: NDArray[np.integer]) -> int:
-        t_arrival_ns, t_us = t_arrival_ns[:_FIRST], t_us[:_FIRST]
+        t_arrival_ns, t_us = t_arrival_ns[: CLOCKS.first], t_us[: CLOCKS.first]
         ahead = nearest_hour(t_us, t_arrival_ns) - t_arrival_ns
         around = (ahead - ahead[0] + HOUR_NS // 2) % HOUR_NS - HOUR_NS // 2
         # One that was measured: between two clocks, before and after a jump, lies none.
@@ -213,9 +197,9 @@ class SensorClock:
                 f"{self._name}: the hour is from its GPS; the recorder's clock is "
                 f"{-offset / SECOND_NS:+.3f} s off UTC"
             )
-        elif abs(offset - known) > _SAME_CLOCK_NS:
+        elif abs(offset - known) > CLOCKS.same_clock_ns:
             self._free_running, self._base_ns = True, known
-            behind = usual - offset - around[np.abs(around - usual) < _JUMP_NS]
+            behind = usual - offset - around[np.abs(around - usual) < CLOCKS.jump_ns]
             self._shift_ns = int(np.min(behind)) - self._packet_ns + known
             self._say_free_running(offset)
         self._offset_ns = offset
@@ -238,15 +222,15 @@ class SensorClock:
     ) -> NDArray[np.bool_]:
         """Packets at which one of the clocks seems to have jumped, also by whole hours."""
         going_on = nearest_hour(t_us, self._last[1])
-        by_hours = (going_on != t_sensor) & (np.abs(going_on - self._last[1]) < _PAUSE_NS)
-        return (np.abs(deviation) > _JUMP_NS) | by_hours
+        by_hours = (going_on != t_sensor) & (np.abs(going_on - self._last[1]) < CLOCKS.pause_ns)
+        return (np.abs(deviation) > CLOCKS.jump_ns) | by_hours
 
     def _follow(self, t_arrival_ns: Times, t_sensor: Times, deviation: Times) -> None:
         """Update the offset, and the shift of a free-running sensor, with the clock drift."""
         self._last = (int(t_arrival_ns[-1]), int(t_sensor[-1]))
         self._block.append(np.stack([deviation, t_arrival_ns - t_sensor]))
         self._filled += len(t_sensor)
-        if self._filled < _BLOCK:
+        if self._filled < CLOCKS.block:
             return
         block = np.concatenate(self._block, axis=1)
         self._block, self._filled = [], 0
@@ -257,11 +241,11 @@ class SensorClock:
             return
         self._window.append(int(np.min(block[1])))
         now = int(t_sensor[-1])
-        if now - self._since_ns >= _TRACK_NS:
+        if now - self._since_ns >= CLOCKS.track_ns:
             self._shift_ns = int(self._shift(now))
             usual = min(self._window) - self._host_jump_ns - self._packet_ns + self._base_ns
             error = usual - self._shift_ns
-            self._rate = float(np.clip(error / _TRACK_NS, -_MAX_RATE, _MAX_RATE))
+            self._rate = float(np.clip(error / CLOCKS.track_ns, -CLOCKS.max_rate, CLOCKS.max_rate))
             self._since_ns, self._window = now, []
 
     def _shift(self, t_sensor: Times | int) -> Times:
@@ -292,9 +276,9 @@ class SensorClock:
             self._run = 0
             return True
         off = int(deviation[0])
-        self._run = self._run + 1 if self._run and abs(off - self._run_ns) < _JUMP_NS else 1
+        self._run = self._run + 1 if self._run and abs(off - self._run_ns) < CLOCKS.jump_ns else 1
         self._run_ns = off
-        if self._run < _CONFIRM:
+        if self._run < CLOCKS.confirm:
             return False
         self._jump(arrival, stamp, off)
         return True
@@ -303,7 +287,7 @@ class SensorClock:
         """Adopt the new offset of the clocks; the one that continued evenly counts as correct."""
         assert self._offset_ns is not None
         going_on = int(nearest_hour(stamp, self._last[1])[0])
-        if abs(going_on - self._last[1]) < _JUMP_NS:
+        if abs(going_on - self._last[1]) < CLOCKS.jump_ns:
             jump_ns = (arrival - self._last[0]) - (going_on - self._last[1])
             self._offset_ns = going_on - arrival
             self._host_jump_ns += jump_ns

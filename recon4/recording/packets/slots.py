@@ -11,31 +11,26 @@ from collections.abc import Iterable, Iterator
 import numpy as np
 
 from recon4.recording.formats.datagrams import Datagrams, join_datagrams
-
-SLOT_NS = 100_000_000
-FIRST_SLOT_NS = 1_000_000_000
-"""The first slot is longer, because the clocks of the sensors are compared in it."""
-_SET_BACK_NS = 2_000_000_000
-"""A datagram this far before the end of its slot means that the clock was set back."""
+from recon4.recording.packets.tuning import SLOTS
 
 
 def in_slots(batches: Iterable[Datagrams]) -> Iterator[Datagrams]:
-    """All datagrams in order, in slots of `SLOT_NS` of the recorder's clock."""
+    """All datagrams in order, in slots of `SlotTuning.slot_ns` of the recorder's clock."""
     parts: list[Datagrams] = []
     end_ns: int | None = None
     for batch in batches:
         start = 0
         if end_ns is None and len(batch):
-            end_ns = int(batch.t_ns[0]) + FIRST_SLOT_NS
+            end_ns = int(batch.t_ns[0]) + SLOTS.first_ns
         while end_ns is not None and start < len(batch):
             t_ns = batch.t_ns[start:]
-            beyond = np.flatnonzero((t_ns >= end_ns) | (t_ns < end_ns - _SET_BACK_NS))
+            beyond = np.flatnonzero((t_ns >= end_ns) | (t_ns < end_ns - SLOTS.set_back_ns))
             cut = start + int(beyond[0]) if len(beyond) else len(batch)
             parts.append(batch.take(slice(start, cut)))
             start = cut
             if len(beyond):
                 yield join_datagrams(parts)
                 parts = []
-                end_ns = (int(batch.t_ns[cut]) // SLOT_NS + 1) * SLOT_NS
+                end_ns = (int(batch.t_ns[cut]) // SLOTS.slot_ns + 1) * SLOTS.slot_ns
     if parts:
         yield join_datagrams(parts)

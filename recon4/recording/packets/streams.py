@@ -20,11 +20,14 @@ from recon4.recording.formats.datagrams import (
 )
 from recon4.recording.formats.file_times import FileTimes, require_one_walk
 from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.datagram_files import read_datagrams
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, Recognized
+from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.datagrams import SampleDecoder
+from recon4.recording.tuning import LISTED
 
 KINDS = ("data", "samples", "IMU", "GNSS", "other")
 _CONTENTS = {
@@ -33,16 +36,6 @@ _CONTENTS = {
     "IMU": "IMU samples",
     "GNSS": "GNSS samples",
 }
-_SAMPLES_TRIED = 20
-_SIZES_NAMED = 3
-_TIMED_PACKETS = 1000
-"""Datagrams from which the times of a file are estimated."""
-MAX_STREAMS = 256
-"""Senders and ports with the most datagrams at the head of a file; a LiDAR is among them."""
-_SCANNED_BYTES = 64 << 20
-HEAD_BYTES = 8 << 20
-"""Of the first packets of a sensor, which its family looks at to prepare the decoder: more than a
-second of most LiDARs, in which some send all that packets say of their lasers."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -131,7 +124,7 @@ def scan_pcap(
     head = _head(path, max_packets, open_file, report=report or ImportReport())
     keys = head.datagrams.source.astype(np.int64) << 16 | head.datagrams.port
     _, first, packets = np.unique(keys, return_index=True, return_counts=True)
-    first = first[np.argsort(-packets, kind="stable")[:MAX_STREAMS]]
+    first = first[np.argsort(-packets, kind="stable")[: LIMITS.streams]]
     streams = [
         stream
         for row in sorted(first.tolist())
@@ -152,7 +145,7 @@ def require_one_capture(files: Sequence[Path]) -> None:
     times = []
     for file in files if len(files) > 1 else ():
         with suppress(EmptyRecording):
-            streams = scan_pcap(file, max_packets=_TIMED_PACKETS)
+            streams = scan_pcap(file, max_packets=HEAD.timed)
             starts, ends = ([getattr(s, t) for s in streams] for t in ("t_first_ns", "t_end_ns"))
             times.append(FileTimes(file, min(starts), max(ends)))
     require_one_walk(times)
@@ -236,7 +229,7 @@ def _head(path: Path, max_packets: int, open_file: OpenFile, *, report: ImportRe
         count = min(len(batch), left)
         parts.append(batch.take(slice(count)))
         left -= count
-        if not left or bytes_read > _SCANNED_BYTES:
+        if not left or bytes_read > HEAD.scanned_bytes:
             bytes_read += int(batch.start[count - 1] + batch.length[count - 1]) if count else 0
             read_ratio = min(1.0, bytes_read / path.stat().st_size)
             break
@@ -255,7 +248,7 @@ def _streams(
     datagrams = head.datagrams.take(mine)
     found = recognized(datagrams, companions)
     if found is None:
-        kind = _samples_kind(datagrams.take(slice(_SAMPLES_TRIED)))
+        kind = _samples_kind(datagrams.take(slice(HEAD.samples)))
         refused = _lengths_text(datagrams.length) if kind == "other" else ""
         return [replace(_stream(head, datagrams), kind=kind, refused=refused)]
     return [
@@ -297,8 +290,8 @@ def _samples_kind(datagrams: Datagrams) -> str:
 
 def _lengths_text(length: NDArray[np.int64]) -> str:
     sizes, numbers = np.unique(length, return_counts=True)
-    usual = [f"{size} bytes" for size in sizes[np.argsort(-numbers)][:_SIZES_NAMED].tolist()]
-    more = " and others" * (len(sizes) > _SIZES_NAMED)
+    usual = [f"{size} bytes" for size in sizes[np.argsort(-numbers)][: LISTED.sizes].tolist()]
+    more = " and others" * (len(sizes) > LISTED.sizes)
     return f"of {', '.join(usual)}{more}: not those of a known LiDAR"
 
 
@@ -309,6 +302,6 @@ def _with_utc(stream: PacketStream, offset_ns: int | None) -> PacketStream:
 
 
 def first_datagrams(datagrams: Datagrams) -> Datagrams:
-    """As many as `HEAD_BYTES` hold."""
-    kept = np.cumsum(datagrams.length) <= HEAD_BYTES
+    """As many as `PacketHeadTuning.bytes` hold."""
+    kept = np.cumsum(datagrams.length) <= HEAD.bytes
     return datagrams.take(kept)

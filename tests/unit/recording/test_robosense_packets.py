@@ -16,8 +16,8 @@ from recon4.recording.packets.robosense.encode import (
     encode_spinning,
 )
 from recon4.recording.packets.robosense.family import ROBOSENSE
-from recon4.recording.packets.robosense.imu_packets import IMU_ID, IMU_PACKET
-from recon4.recording.packets.robosense.models import HELIOS_16P_DUAL, MODELS
+from recon4.recording.packets.robosense.imu_packets import IMU_ID
+from recon4.recording.packets.robosense.models import HELIOS_16P_DUAL, IMU_PACKET, MODELS
 from recon4.recording.packets.robosense.packets import packet_s
 from recon4.recording.packets.robosense.solid import MIDDLE, SOLID_MODELS
 from recon4.recording.packets.sensor_clock import SensorClock

@@ -16,13 +16,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.recording.packets.family import Companion, PacketSensor
-
-_SAME_MODEL_RAD = np.deg2rad(2.5)
-"""Elevations of two units of one model differ by less [rad]."""
-_LIMITS_DEG = (90.0, 360.0)
-_MOST_HEAD = 3
-"""Lines up to and with the names of the columns: ``eeff,1,1`` and the number of channels may
-precede them."""
+from recon4.recording.packets.hesai.tuning import HESAI_ANGLES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -39,7 +33,7 @@ class Angles:
         if len(self.elevation_rad) != len(typical.elevation_rad):
             return False
         off = np.abs(self.elevation_rad - typical.elevation_rad)
-        return bool(off.max() < _SAME_MODEL_RAD)
+        return bool(off.max() < HESAI_ANGLES.same_model_rad)
 
 
 class NotAngles(ValueError):
@@ -73,7 +67,7 @@ def _lines(companion: Companion) -> list[str]:
         lines = companion.content.decode("utf-8-sig").splitlines()
     except UnicodeDecodeError:
         return []
-    for number, line in enumerate(lines[:_MOST_HEAD], start=1):
+    for number, line in enumerate(lines[: HESAI_ANGLES.most_head], start=1):
         cells = [cell.strip().lower() for cell in line.split(",")]
         if cells[1:3] == ["elevation", "azimuth"]:
             return lines[number:] or [""]
@@ -88,7 +82,8 @@ def _row(number: int, cells: Sequence[str]) -> tuple[float, float]:
         raise NotAngles(f"row {number}: expected channel,elevation,azimuth, got {cells}") from None
     if channel != number:
         raise NotAngles(f"row {number}: is of channel {channel}")
-    inside = abs(elevation) <= _LIMITS_DEG[0] and abs(azimuth) <= _LIMITS_DEG[1]
+    most_elevation, most_azimuth = HESAI_ANGLES.limits_deg
+    inside = abs(elevation) <= most_elevation and abs(azimuth) <= most_azimuth
     if not inside:
         raise NotAngles(f"row {number}: elevation {elevation} or azimuth {azimuth} is no angle")
     return elevation, azimuth

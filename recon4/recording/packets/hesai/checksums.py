@@ -10,16 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.recording.packets.family import Payloads
-from recon4.recording.packets.hesai.layouts import HesaiLayout
-
-_POLYNOMIAL = 0x04C11DB7
+from recon4.recording.packets.hesai.layouts import CRC_POLYNOMIAL, HesaiLayout
 
 
 def _table() -> NDArray[np.uint32]:
     """What each byte adds to the sum, (256,)."""
     rest = np.arange(256, dtype=np.uint64) << 24
     for _ in range(8):
-        rest = (rest << 1) ^ np.where(rest & 0x80000000, _POLYNOMIAL, 0).astype(np.uint64)
+        rest = (rest << 1) ^ np.where(rest & 0x80000000, CRC_POLYNOMIAL, 0).astype(np.uint64)
     return rest.astype(np.uint32)
 
 

@@ -30,10 +30,10 @@ from recon4.recording.packets.hesai.layouts import (
 )
 from recon4.recording.packets.hesai.mirrors import MirrorTable, mirrors_of, read_mirrors
 from recon4.recording.packets.hesai.models import MODELS, RETURN_MODES, HesaiModel, model_of
+from recon4.recording.packets.hesai.tuning import HESAI_PACKETS
+from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
 
-_PROBED = 200
-_LONGEST = 1500
 _JT16_IMU = START + bytes((1, 8))
 
 _PANDAR_TYPES = {
@@ -149,9 +149,9 @@ def _most_frequent(head: Datagrams) -> Payloads | None:
         return None
     sizes, counts = np.unique(head.length, return_counts=True)
     size = int(sizes[counts.argmax()])
-    if not HEADER <= size <= _LONGEST:
+    if not HEADER <= size <= HESAI_PACKETS.longest:
         return None
-    return head.payloads(np.flatnonzero(head.length == size)[:_PROBED], size)
+    return head.payloads(np.flatnonzero(head.length == size)[: HEAD.packets], size)
 
 
 def _data_packets(payloads: Payloads) -> HesaiPackets | None:

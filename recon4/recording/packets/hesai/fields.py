@@ -9,16 +9,17 @@ from numpy.typing import NDArray
 
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.hesai import checksums, stamps
-from recon4.recording.packets.hesai.layouts import HEADER, PANDAR40P_BLOCK, HesaiLayout
+from recon4.recording.packets.hesai.layouts import (
+    ECHO_AT,
+    HEADER,
+    PANDAR40P_BLOCK,
+    RETURNED_AT,
+    HesaiLayout,
+)
 from recon4.recording.packets.hesai.models import RETURNS
+from recon4.recording.packets.hesai.tuning import HESAI_PACKETS
 from recon4.recording.report import ImportReport
 from recon4.units import TURN_CDEG
-
-_FASTEST_RPM = 3600.0
-_ECHO = 8
-"""Byte of the header that changes with the return mode; behind it the unit of the distance."""
-_RETURNED = 10
-"""Byte of the header with the number of returns."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -117,7 +118,7 @@ def sound_packets(
     checks = (
         ("packets_wrong_azimuth", (fields.azimuth_cdeg <= TURN_CDEG).all(axis=1)),
         ("packets_wrong_stamp", stamps.is_date(fields.date, fields.micros)),
-        ("packets_wrong_speed", fields.speed * speed_rpm <= _FASTEST_RPM),
+        ("packets_wrong_speed", fields.speed * speed_rpm <= HESAI_PACKETS.fastest_rpm),
         ("packets_wrong_crc", checksums.are_right(fields.payloads, fields.layout)),
     )
     for name, passed in checks:
@@ -135,6 +136,6 @@ def _same_header(fields: Fields, header: bytes) -> NDArray[np.bool_]:
         return np.asarray((pairs == np.frombuffer(header[:2], np.uint8)).all(axis=(1, 2)))
     wanted = np.frombuffer(header[:HEADER], np.uint8)
     fixed = np.ones(HEADER, dtype=np.bool_)
-    fixed[[4, 5, _ECHO, _RETURNED]] = False
+    fixed[[4, 5, ECHO_AT, RETURNED_AT]] = False
     fixed[min(layout.blocks_at, layout.tail_at) :] = False
     return np.asarray((payloads[:, :HEADER] == wanted)[:, fixed].all(axis=1))

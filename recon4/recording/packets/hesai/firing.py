@@ -7,6 +7,7 @@ operational state and azimuth flags (Pandar128, OT128). `Fields.firing_key` read
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,13 +18,13 @@ from recon4.recording.packets.hesai.layouts import HesaiLayout
 from recon4.recording.packets.hesai.models import HesaiModel
 from recon4.recording.packets.spinning import variants
 
-MAX_KEYS = 128
-"""Keys are smaller."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FiringMode:
     """A key taken apart."""
+
+    KEYS: ClassVar[int] = 128
+    """Keys are smaller."""
 
     returns: int
     """Returns of a shot."""
@@ -79,18 +80,22 @@ class FiringVariants:
 
     model: HesaiModel
     layout: HesaiLayout
-    first_ns: NDArray[np.int64] = field(default_factory=lambda: np.zeros(MAX_KEYS, np.int64))
-    """First shot after the stamp by key [ns], (MAX_KEYS,)."""
-    variant: NDArray[np.uint8] = field(default_factory=lambda: np.full(MAX_KEYS, 255, np.uint8))
-    """Row of `roles` by key, (MAX_KEYS,); 255 = not met yet."""
-    third: NDArray[np.uint8] = field(default_factory=lambda: np.full(MAX_KEYS, 255, np.uint8))
-    """Row of `roles` that reads the third returns, (MAX_KEYS,); as `variant` = there are none."""
+    first_ns: NDArray[np.int64] = field(default_factory=lambda: np.zeros(FiringMode.KEYS, np.int64))
+    """First shot after the stamp by key [ns], (KEYS,)."""
+    variant: NDArray[np.uint8] = field(
+        default_factory=lambda: np.full(FiringMode.KEYS, 255, np.uint8)
+    )
+    """Row of `roles` by key, (KEYS,); 255 = not met yet."""
+    third: NDArray[np.uint8] = field(
+        default_factory=lambda: np.full(FiringMode.KEYS, 255, np.uint8)
+    )
+    """Row of `roles` that reads the third returns, (KEYS,); as `variant` = there are none."""
     roles: BlockRoles | None = None
     """Of all keys met so far."""
 
     def meet(self, keys: NDArray[np.int64]) -> None:
         """Prepare for the keys of some packets, (N,)."""
-        for key in np.flatnonzero(np.bincount(keys, minlength=MAX_KEYS)).tolist():
+        for key in np.flatnonzero(np.bincount(keys, minlength=FiringMode.KEYS)).tolist():
             if self.variant[key] == 255:
                 self._add(key)
 

@@ -25,6 +25,14 @@ PANDAR40P_BLOCK = b"\xff\xee"
 """Start of each block of a Pandar40P."""
 JT16_SIZE = 80
 JT16_IMU_SIZE = 34
+CRC_POLYNOMIAL = 0x04C11DB7
+"""CRC-32/MPEG-2."""
+ECHO_AT = 8
+"""Byte of the header that changes with the return mode; behind it the unit of the distance."""
+RETURNED_AT = 10
+"""Byte of the header with the number of returns."""
+FIRST_OT128, FIRST_JT128 = 128, 137
+"""Versions of the status of protocol 1.4 from which on the packets are of these."""
 
 
 class Flag(IntFlag):

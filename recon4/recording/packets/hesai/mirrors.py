@@ -18,15 +18,14 @@ from numpy.typing import NDArray
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.hesai.layouts import START
 
-CIRCLE = 360 * 100 * 256
-"""Units of azimuth in a full turn of the drum."""
-NODES = 180
-"""Corrections a channel, one every 2°."""
-
 
 class _TableFile:
     """The binary file."""
 
+    CIRCLE = 360 * 100 * 256
+    """Units of azimuth in a full turn of the drum."""
+    NODES = 180
+    """Corrections a channel, one every 2°."""
     HEADER = 16
     """Bytes in front of the tables."""
     VERSION = (1, 5)
@@ -61,7 +60,8 @@ def read_mirrors(companion: Companion) -> MirrorTable | None:
     ):
         return None
     channels, frames, resolution = content[4], content[6], content[15]
-    sizes = (4 * frames, 4 * frames, 4 * channels, 4 * channels, NODES * channels, NODES * channels)
+    nodes = _TableFile.NODES
+    sizes = (4 * frames, 4 * frames, 4 * channels, 4 * channels, nodes * channels, nodes * channels)
     if channels != _TableFile.CHANNELS or not 0 < frames <= 8 or not resolution:
         return None
     if len(content) != _TableFile.HEADER + sum(sizes) + _TableFile.SIGNATURE:
@@ -71,11 +71,12 @@ def read_mirrors(companion: Companion) -> MirrorTable | None:
     start = np.frombuffer(parts[0], "<u4").astype(np.int64) * resolution
     azimuth, elevation = (np.frombuffer(p, "<i4").astype(np.int64) * resolution for p in parts[2:4])
     corrections = [
-        np.frombuffer(p, np.int8).reshape(channels, NODES).astype(np.int64) * resolution * 256
+        np.frombuffer(p, np.int8).reshape(channels, nodes).astype(np.int64) * resolution * 256
         for p in parts[4:6]
     ]
-    is_sound = (np.diff(start) > 0).all() and start[-1] < CIRCLE
-    is_sound &= np.abs(elevation).max() < CIRCLE // 4 and np.abs(azimuth).max() < CIRCLE
+    circle = _TableFile.CIRCLE
+    is_sound = (np.diff(start) > 0).all() and start[-1] < circle
+    is_sound &= np.abs(elevation).max() < circle // 4 and np.abs(azimuth).max() < circle
     return MirrorTable(start, azimuth, elevation, *corrections) if is_sound else None
 
 

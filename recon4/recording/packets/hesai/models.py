@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.recording.packets.hesai import firing_times, typical_angles
 from recon4.recording.packets.hesai.angles import Angles
-from recon4.recording.packets.hesai.layouts import PANDAR40P_BLOCK, HesaiLayout, read_layout
+from recon4.recording.packets.hesai.layouts import (
+    FIRST_JT128,
+    FIRST_OT128,
+    PANDAR40P_BLOCK,
+    HesaiLayout,
+    read_layout,
+)
 
 RETURN_MODES = {
     0x33: ("first", 1),
@@ -30,11 +36,8 @@ RETURN_MODES = {
     0x3E: ("dual: strongest, second strongest", 2),
 }
 """Return mode byte -> words, returns of a shot: as many blocks that follow each other."""
-RETURNS = np.ones(256, dtype=np.int64)
-RETURNS[list(RETURN_MODES)] = [count for _, count in RETURN_MODES.values()]
+RETURNS = np.array([RETURN_MODES.get(mode, ("", 1))[1] for mode in range(256)])
 """Returns of a shot by return mode byte; 1 = unknown."""
-_FIRST_OT128, _FIRST_JT128 = 128, 137
-"""Versions of the status of protocol 1.4 from which on the packets are of these."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -170,14 +173,14 @@ _PANDAR128 = HesaiModel(
 _OT128 = replace(
     _PANDAR128,
     name="OT128",
-    header=_header((1, 4), (128, 2), 0x07, status=_FIRST_OT128),
+    header=_header((1, 4), (128, 2), 0x07, status=FIRST_OT128),
     first_us=43.346,
     firing_us=firing_times.OT_128,
     angles=typical_angles.OT128,
 )
 _JT128 = HesaiModel(
     name="JT128",
-    header=_header((1, 4), (128, 2), 0x03, status=_FIRST_JT128),
+    header=_header((1, 4), (128, 2), 0x03, status=FIRST_JT128),
     size=844,
     first_us=-1888.0,
     step_us=111.0,
@@ -224,8 +227,8 @@ def model_of(payload: NDArray[np.uint8], layout: HesaiLayout) -> HesaiModel | No
     version = (int(payload[2]), int(payload[3]))
     if version == (1, 4):
         status = int(payload[4])
-        name = "Pandar128" if status < _FIRST_OT128 else "OT128"
-        name = name if status < _FIRST_JT128 else "JT128"
+        name = "Pandar128" if status < FIRST_OT128 else "OT128"
+        name = name if status < FIRST_JT128 else "JT128"
         model: HesaiModel | None = MODELS[name]
     else:
         model = _BY_SHAPE.get((layout.tail, layout.channels, layout.blocks))

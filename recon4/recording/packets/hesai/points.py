@@ -26,9 +26,7 @@ from recon4.recording.packets.spinning import (
     points_of,
 )
 from recon4.recording.report import ImportReport
-
-_AHEAD_CDEG = 9000
-"""From +x, the azimuth 0 of the kernel, counterclockwise to +y, that of Hesai [0.01°]."""
+from recon4.units import TURN_CDEG
 
 
 class SpinningPoints:
@@ -42,7 +40,8 @@ class SpinningPoints:
         """Prepare the tables of channels."""
         model, layout = firing.model, firing.layout
         self._firing, self._sensor = firing, sensor
-        azimuth_cdeg = 100.0 * np.rad2deg(angles.azimuth_rad) - _AHEAD_CDEG
+        # from +x, the azimuth 0 of the kernel, counterclockwise to +y, that of Hesai
+        azimuth_cdeg = 100.0 * np.rad2deg(angles.azimuth_rad) - TURN_CDEG // 4
         self._channels = beams(
             np.broadcast_to(angles.elevation_rad, model.firing_us.shape),
             azimuth_cdeg=azimuth_cdeg,

@@ -6,12 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.limits import LIMITS
 from recon4.units import SECOND_NS, SECOND_US
-
-_FIRST, _LAST = (1, 1, 0, 0, 0), (12, 31, 23, 59, 60)
-"""Least and largest month, day, hour, minute and second."""
-_LATEST_S = 1 << 33
-"""Seconds since 1970 beyond the year 2242 are none."""
 
 
 def is_date(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> NDArray[np.bool_]:
@@ -21,8 +17,9 @@ def is_date(date: NDArray[np.uint8], micros: NDArray[np.uint32]) -> NDArray[np.b
         date: Year, month, day, hour, minute, second; or 0 and seconds in big endian, (N, 6).
         micros: Microseconds, (N,).
     """
-    calendar = ((date[:, 1:] >= _FIRST) & (date[:, 1:] <= _LAST)).all(axis=1)
-    counted = _seconds(date) < _LATEST_S
+    first, last = (1, 1, 0, 0, 0), (12, 31, 23, 59, 60)  # month, day, hour, minute, second
+    calendar = ((date[:, 1:] >= first) & (date[:, 1:] <= last)).all(axis=1)
+    counted = _seconds(date) < LIMITS.latest_ns // SECOND_NS
     dated = np.where(date[:, 0] == 0, counted, calendar)
     return np.asarray(dated & (micros < SECOND_US))
 

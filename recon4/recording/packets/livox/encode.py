@@ -24,10 +24,8 @@ from recon4.recording.packets.livox.models import (
     LivoxModel,
     PointLayout,
 )
+from recon4.recording.packets.livox.tuning import LIVOX_PACKETS
 from recon4.units import STANDARD_GRAVITY_M_S2
-
-_IMU_INTERVAL = 50_000
-"""200 Hz [0.1 µs]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,7 +83,7 @@ def encode_imu(
     samples["gyro"], samples["accel"] = gyro_rad_s, accel_m_s2 / STANDARD_GRAVITY_M_S2
     header = _header(t_ns, sdk, SDK1_IMU_TYPE if sdk == 1 else SDK2_IMU_TYPE, time_type=time_type)
     if sdk == 2:
-        header["interval"], header["points"] = _IMU_INTERVAL, 1
+        header["interval"], header["points"] = LIVOX_PACKETS.imu_interval, 1
     return _joined(header, _bytes(samples))
 
 

@@ -46,12 +46,11 @@ from recon4.recording.packets.livox.sound import (
     stamps_ns,
 )
 from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
 from recon4.units import STANDARD_GRAVITY_M_S2
 
 _MODES = {1: "single", 2: "dual", 3: "triple"}
-_MOST_PROBED = 200
-"""Packets at the head of a stream whose sums are compared."""
 
 
 class LivoxFormat:
@@ -110,7 +109,7 @@ class LivoxFormat:
 
     def _sums_are_right(self, head: Datagrams) -> bool:
         """Whether most packets at the head carry the CRC that the protocol describes."""
-        rows = np.flatnonzero(head.length == self.size)[:_MOST_PROBED]
+        rows = np.flatnonzero(head.length == self.size)[: HEAD.packets]
         payloads = head.payloads(rows, self.size)
         if not header_of(payloads, 2)["crc"].any():
             return False  # files of the maker keep no sums
@@ -206,7 +205,7 @@ def _usual_layout(head: Datagrams) -> PointLayout | None:
     sizes = {layout.size for layout in LAYOUTS}
     found: Counter[PointLayout] = Counter()
     for size in sizes & set(head.length.tolist()):
-        rows = np.flatnonzero(head.length == size)[:_MOST_PROBED]
+        rows = np.flatnonzero(head.length == size)[: HEAD.packets]
         layouts = [layout_of(payload) for payload in head.payloads(rows, size)]
         found.update(layout for layout in layouts if layout is not None)
     return found.most_common(1)[0][0] if found else None

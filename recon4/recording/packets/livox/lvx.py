@@ -20,23 +20,26 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile, EmptyRecording, UnknownFormat
 from recon4.geometry.se3 import SE3
 from recon4.model.trajectory import Times
-from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.formats.datagrams import MAX_UDP_BYTES, Datagrams
 from recon4.recording.formats.pcap import OpenFile, open_plain
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.livox.models import (
     IMU_SAMPLE,
     LAYOUTS,
+    LVX1_TYPE_AT,
     SDK1_HEADER,
     SDK1_IMU_SIZE,
     SDK1_IMU_TYPE,
+    SDK1_PORT,
     SDK2_HEADER,
     SDK2_IMU_TYPE,
+    SDK2_PORT,
 )
 from recon4.recording.packets.livox.sound import stamps_ns
+from recon4.recording.packets.livox.tuning import LVX
 from recon4.recording.report import ImportReport
 
 MAGIC = b"livox_tech"
-SDK1_PORT, SDK2_PORT = 56001, 56301
-"""Ports to which the devices send points, as if they had been captured."""
 _PUBLIC = struct.Struct("<16s4BI")
 _DEVICE1 = struct.Struct("<16s16sBBB6f")
 _DEVICE1_0 = struct.Struct("<16s16sBB6f")
@@ -52,16 +55,6 @@ _SIZES1[SDK1_IMU_TYPE] = SDK1_IMU_SIZE
 _POINT_BYTES = {layout.data_type: layout.record.itemsize for layout in LAYOUTS if layout.sdk == 2}
 _POINT_BYTES[SDK2_IMU_TYPE] = IMU_SAMPLE.itemsize
 """Data type -> bytes of a point, or of a sample, of SDK2."""
-_TYPE1_AT = 10
-"""Where the data type of a package of LVX 1 is."""
-_MOST_FRAME_BYTES = 64 << 20
-"""A frame of 50 ms of one device has 150 kB."""
-_MOST_PACKAGE_BYTES = 65_507
-"""Of a datagram."""
-_SAME_CLOCK_NS = 1_000_000_000
-"""Devices whose stamps agree within this time share a clock."""
-_LONGEST_PAUSE_NS = 60_000_000_000
-"""Stamps that leap farther are those of another clock."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -181,7 +174,7 @@ def _frames(file: IO[bytes], head: LvxHead, name: str, *, report: ImportReport) 
             return
         here, after, _ = _FRAME.unpack_from(raw)
         size = after - here - len(raw)
-        if here != at or not 0 <= size <= _MOST_FRAME_BYTES:
+        if here != at or not 0 <= size <= LIMITS.lvx_frame_bytes:
             report.count("files_cut")
             report.outcome = "lossy"
             report.warn(
@@ -226,7 +219,7 @@ def _packages1(body: bytes, report: ImportReport) -> Iterator[tuple[int, bytes]]
     """Device and packet of each package of LVX 1: the packet follows the number of the device."""
     at, header = 0, 1 + SDK1_HEADER.itemsize
     while at + header <= len(body):
-        size = _SIZES1.get(body[at + _TYPE1_AT], 0)
+        size = _SIZES1.get(body[at + LVX1_TYPE_AT], 0)
         if not size:
             report.count("records_damaged")
             return
@@ -244,7 +237,7 @@ def _packages2(body: bytes, report: ImportReport) -> Iterator[tuple[int, bytes]]
             _PACKAGE2.unpack_from(body, at)
         )
         of_one = _POINT_BYTES.get(data_type, 0)
-        if not of_one or size > _MOST_PACKAGE_BYTES:
+        if not of_one or size > MAX_UDP_BYTES:
             report.count("records_damaged")
             return
         at += _PACKAGE2.size
@@ -278,7 +271,7 @@ class _Arrival:
             stamps = stamps_ns[rows]
             usual = int(np.sort(stamps)[len(stamps) // 2])
             offset = self._offset(one, usual)
-            near = np.abs(stamps - usual) < _SAME_CLOCK_NS
+            near = np.abs(stamps - usual) < LVX.same_clock_ns
             arrived[rows] = np.where(near, stamps, usual) + offset
             latest = max(latest or 0, usual + offset)
         self._last_ns = latest
@@ -288,7 +281,7 @@ class _Arrival:
         if self._last_ns is None:
             self._last_ns = stamp_ns
         offset = self._offset_ns.get(device, 0)
-        if not -_SAME_CLOCK_NS < stamp_ns + offset - self._last_ns < _LONGEST_PAUSE_NS:
+        if not -LVX.same_clock_ns < stamp_ns + offset - self._last_ns < LVX.longest_pause_ns:
             offset = self._last_ns - stamp_ns
         self._offset_ns[device] = offset
         return offset

@@ -49,6 +49,10 @@ IMU_SAMPLE = np.dtype([("gyro", "<f4", 3), ("accel", "<f4", 3)])
 SDK1_IMU_TYPE, SDK2_IMU_TYPE = 6, 0
 SDK1_IMU_SIZE = SDK1_HEADER.itemsize + IMU_SAMPLE.itemsize
 SDK2_IMU_SIZE = SDK2_HEADER.itemsize + IMU_SAMPLE.itemsize
+SDK1_PORT, SDK2_PORT = 56001, 56301
+"""Ports to which the devices send points, as if they had been captured."""
+LVX1_TYPE_AT = 10
+"""Where the data type of a package of LVX 1 is."""
 
 
 @dataclass(frozen=True, slots=True)

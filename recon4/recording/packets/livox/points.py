@@ -13,11 +13,10 @@ from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import LivoxModel, PointLayout, header_of
+from recon4.recording.packets.livox.tuning import LIVOX_PACKETS
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
-_ROUNDING_M = 1e-5
-"""So that a limit of 100 m keeps 100000 mm."""
 _COUNTS = ("points_no_return", "points_near", "points_far", "points_noise")
 
 
@@ -50,7 +49,10 @@ def decode_points(
     """
     layout, settings = source.layout, source.settings
     assert payloads.shape == (len(t_ns), layout.size)
-    limits_m = settings.min_range_m - _ROUNDING_M, settings.max_range_m + _ROUNDING_M
+    limits_m = (
+        settings.min_range_m - LIVOX_PACKETS.rounding_m,
+        settings.max_range_m + LIVOX_PACKETS.rounding_m,
+    )
     found = kernel.decode(
         np.ascontiguousarray(payloads),
         np.ascontiguousarray(t_ns, np.int64),

@@ -9,19 +9,11 @@ from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import MODELS, LivoxModel, PointLayout, header_of
 from recon4.recording.packets.livox.points import LivoxSource, decode_points
 from recon4.recording.packets.livox.sound import stamps_ns
+from recon4.recording.packets.livox.tuning import LIVOX_VIEWS
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 
-_ALIKE = 0.15
-"""Intervals of one model differ by less than this ratio; those of two by more."""
 _EVERYTHING = IngestSettings(min_range_m=0.0, max_range_m=1000.0)
-_WIDE_DEG, _HIGH_DEG, _TELE_DEG = 37.0, 14.0, 9.5
-"""Half of the view: a Horizon sees 40.9° to the sides and 12.6° up, an Avia 35.2° and 38.6°, a
-Tele-15 7.3° and 8.1°."""
-_MID_40_DEG, _HAP_DEG = 21.0, 43.0
-"""A Mid-40 sees 19.2° around its axis, a Mid-70 35.2°; a HAP 60° to the sides."""
-_ENOUGH_POINTS = 20_000
-"""From which the view is known: 0.1 s."""
 
 
 def likely_models(layout: PointLayout, packet_s: float) -> tuple[str, ...]:
@@ -29,7 +21,8 @@ def likely_models(layout: PointLayout, packet_s: float) -> tuple[str, ...]:
     names = [
         model.name
         for model in MODELS.values()
-        if model.sdk == layout.sdk and abs(packet_s / (layout.shots * model.shot_s) - 1.0) < _ALIKE
+        if model.sdk == layout.sdk
+        and abs(packet_s / (layout.shots * model.shot_s) - 1.0) < LIVOX_VIEWS.alike
     ]
     if layout.sdk == 1 and layout.data_type > 1 and "Mid-70" in names:
         names.sort(key=lambda name: name != "Mid-70")  # a Mid-40 has no tags
@@ -65,10 +58,10 @@ def livox_of_points(xyz: NDArray[np.float32], lines: int) -> str:
     if lines == MODELS["Mid-360"].lines:
         return "Mid-360"
     if lines == 1:
-        return "Mid-70" if max(azimuth_deg, elevation_deg) > _MID_40_DEG else "Mid-40"
+        return "Mid-70" if max(azimuth_deg, elevation_deg) > LIVOX_VIEWS.mid_40_deg else "Mid-40"
     if lines != MODELS["Avia"].lines:
         return "generic"
-    if azimuth_deg > _HAP_DEG:
+    if azimuth_deg > LIVOX_VIEWS.hap_deg:
         return "HAP"
     return _of_view(azimuth_deg, elevation_deg, len(xyz))
 
@@ -90,11 +83,14 @@ def _by_view(layout: PointLayout, payloads: Payloads) -> str:
 
 
 def _of_view(azimuth_deg: float, elevation_deg: float, points: int) -> str:
-    if elevation_deg > _HIGH_DEG:
+    if elevation_deg > LIVOX_VIEWS.high_deg:
         return "Avia"
-    if azimuth_deg > _WIDE_DEG:
+    if azimuth_deg > LIVOX_VIEWS.wide_deg:
         return "Horizon"
-    if max(azimuth_deg, elevation_deg) < _TELE_DEG and points > _ENOUGH_POINTS:
+    if (
+        max(azimuth_deg, elevation_deg) < LIVOX_VIEWS.tele_deg
+        and points > LIVOX_VIEWS.enough_points
+    ):
         return "Tele-15"
     return "Avia"
 

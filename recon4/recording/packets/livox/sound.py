@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.livox.models import (
     CRC_FROM,
@@ -20,13 +21,8 @@ from recon4.recording.packets.livox.models import (
     PointLayout,
     header_of,
 )
+from recon4.recording.packets.livox.tuning import LIVOX_PACKETS
 from recon4.recording.report import ImportReport
-
-_LONGEST_INTERVAL = 100_000
-"""A packet is filled within 10 ms [0.1 µs]; usual are 0.2 to 0.5 ms."""
-_LATEST_NS = 1 << 62
-"""No stamp is later: those of a date end in 2116."""
-_YEARS = 2000 - 1970
 
 
 def sound_points(
@@ -66,7 +62,7 @@ def has_header(
         return np.asarray(found & (headers["time_type"] <= SDK1_TIME_TYPES))
     found = (headers["version"] == SDK2_VERSION) & (headers["data_type"] == data_type)
     found &= (headers["length"] == payloads.shape[1]) & (headers["points"] == points)
-    found &= headers["interval"] <= _LONGEST_INTERVAL
+    found &= headers["interval"] <= LIVOX_PACKETS.longest_interval
     return np.asarray(found & (headers["time_type"] <= SDK2_TIME_TYPES))
 
 
@@ -74,7 +70,7 @@ def has_stamp(payloads: Payloads, sdk: int) -> NDArray[np.bool_]:
     """Whether the stamps are times, (N,)."""
     headers = header_of(payloads, sdk)
     raw = np.ascontiguousarray(headers["stamp"])
-    timed = raw.view("<u8")[:, 0] < _LATEST_NS
+    timed = raw.view("<u8")[:, 0] < LIMITS.latest_ns
     if sdk == 2:
         return np.asarray(timed)
     date = raw.view(UTC_STAMP)[:, 0]
@@ -94,11 +90,11 @@ def stamps_ns(payloads: Payloads, sdk: int) -> Times:
     """Time of the first shot of each packet on the clock of the sensor [ns], (N,)."""
     headers = header_of(payloads, sdk)
     raw = np.ascontiguousarray(headers["stamp"])
-    counted: Times = (raw.view("<u8")[:, 0] % _LATEST_NS).astype(np.int64)
+    counted: Times = (raw.view("<u8")[:, 0] % LIMITS.latest_ns).astype(np.int64)
     if sdk == 2 or not (headers["time_type"] == UTC_TIME_TYPE).any():
         return counted
     date = raw.view(UTC_STAMP)[:, 0]
-    months = 12 * (_YEARS + date["year"].astype(np.int64)) + date["month"] - 1
+    months = 12 * (2000 - 1970 + date["year"].astype(np.int64)) + date["month"] - 1
     days = months.astype("M8[M]").astype("M8[D]").astype(np.int64) + date["day"] - 1
     hours = 24 * days + date["hour"]
     dated = 1000 * (3_600_000_000 * hours + date["us"])

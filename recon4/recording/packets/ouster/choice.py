@@ -24,13 +24,9 @@ from recon4.recording.packets.ouster.layouts import (
     numbers,
 )
 from recon4.recording.packets.ouster.metadata import OusterMetadata, read_metadata
+from recon4.recording.packets.ouster.tuning import SHARED_ADDRESS
+from recon4.recording.packets.tuning import HEAD
 
-_SMALLEST_BYTES = 1000
-"""Data packets are larger, other packets are not."""
-_MOST_SENSORS, _FEWEST_RATIO = 8, 10
-"""Sensors behind one address; each sends more than a tenth of the packets."""
-_TRIED = 200
-"""Packets at the head that are compared."""
 NEEDED = (
     "packets of an Ouster do not tell the angles of its beams: put the metadata json of the sensor "
     "beside the recording (the driver and ouster-cli write it; "
@@ -74,7 +70,7 @@ def find_metadata(companions: Sequence[Companion]) -> MetadataFiles:
 
 def sound_head(head: Datagrams, layout: PacketLayout) -> Payloads:
     """The first datagrams that are data packets of a layout, (N, size)."""
-    rows = np.flatnonzero(head.length == layout.size)[:_TRIED]
+    rows = np.flatnonzero(head.length == layout.size)[: HEAD.packets]
     payloads = head.payloads(rows, layout.size)
     return payloads[sound_columns(layout, payloads)] if len(rows) else payloads
 
@@ -82,7 +78,7 @@ def sound_head(head: Datagrams, layout: PacketLayout) -> Payloads:
 def layout_fits(head: Datagrams, layout: PacketLayout) -> bool:
     """Whether most datagrams of the size of a layout are data packets of it; not without any."""
     of_size = int((head.length == layout.size).sum())
-    return of_size > 0 and 2 * len(sound_head(head, layout)) > min(of_size, _TRIED)
+    return of_size > 0 and 2 * len(sound_head(head, layout)) > min(of_size, HEAD.packets)
 
 
 def usual_serial(layout: PacketLayout, payloads: Payloads) -> str:
@@ -210,7 +206,7 @@ def parts_by_sensor(head: Datagrams) -> list[NDArray[np.bool_]]:
 
     They differ by the serial numbers in the headers, or by the size of their packets.
     """
-    data = head.length >= _SMALLEST_BYTES
+    data = head.length >= SHARED_ADDRESS.smallest_bytes
     serial = np.full(len(head), -1, dtype=np.int64)
     rows = np.flatnonzero(data)
     begin = head.payloads(rows, HEADER_BYTES)
@@ -224,8 +220,8 @@ def parts_by_sensor(head: Datagrams) -> list[NDArray[np.bool_]]:
         return_inverse=True,
         return_counts=True,
     )
-    usual = np.flatnonzero(_FEWEST_RATIO * count > data.sum())
-    if not 1 < len(usual) <= _MOST_SENSORS:
+    usual = np.flatnonzero(SHARED_ADDRESS.fewest_ratio * count > data.sum())
+    if not 1 < len(usual) <= SHARED_ADDRESS.sensors:
         return [np.ones(len(head), dtype=np.bool_)]
     parts = [np.zeros(len(head), dtype=np.bool_) for _ in usual]
     for part, key in zip(parts, usual.tolist(), strict=True):

@@ -9,17 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.ouster.facts import COLUMNS_PER_TURN
 from recon4.recording.packets.ouster.layouts import MAX_COLUMNS, TYPE_DATA, PacketLayout
-
-_LATEST_NS = 4_000_000_000_000_000_000
-"""A stamp above is none: the year 2096."""
-_LONGEST_NS = 1_000_000_000
-"""No packet lasts longer."""
-_TURNS = np.array([512, 1024, 2048, 4096])
-"""Columns in a revolution that sensors can be set to."""
-_PAUSE_NS = 150_000_000
-"""Over a longer pause columns are not counted by their times."""
+from recon4.recording.packets.ouster.tuning import OUSTER_COLUMNS
 
 
 @dataclass(frozen=True)
@@ -77,7 +71,12 @@ def wrong_times(columns: Columns) -> NDArray[np.bool_]:
     """Which packets have columns whose times make no sense or go back, (P,)."""
     stamp, since = columns.stamp_ns, columns.since_ns
     latest = np.maximum.accumulate(np.where(columns.valid, since, 0), axis=1)
-    wrong = (stamp < 0) | (stamp > _LATEST_NS) | (since < latest) | (since > _LONGEST_NS)
+    wrong = (
+        (stamp < 0)
+        | (stamp > LIMITS.latest_ns)
+        | (since < latest)
+        | (since > OUSTER_COLUMNS.longest_ns)
+    )
     return np.asarray((columns.valid & wrong).any(axis=1))
 
 
@@ -113,9 +112,9 @@ def columns_in_turn(columns: Columns) -> int:
     order = np.argsort(stamp, kind="stable")
     number, since = np.diff(number[order]), np.diff(stamp[order])
     step_ns = column_step_ns(columns)
-    again = (number < 0) & (since < _PAUSE_NS)
+    again = (number < 0) & (since < OUSTER_COLUMNS.pause_ns)
     if not again.any() or not step_ns > 0:
         return 0
     seen = np.median(since[again] / step_ns - number[again])
-    nearest = int(_TURNS[np.argmin(np.abs(_TURNS - seen))])
+    nearest = int(COLUMNS_PER_TURN[np.argmin(np.abs(COLUMNS_PER_TURN - seen))])
     return nearest if abs(seen - nearest) < 0.05 * nearest else 0

@@ -22,15 +22,12 @@ from recon4.recording.packets.ouster.columns import (
     wrong_type,
 )
 from recon4.recording.packets.ouster.imu_packets import SAMPLE_SIZES, ImuPackets
-from recon4.recording.packets.ouster.layouts import PacketLayout
+from recon4.recording.packets.ouster.layouts import CHECKSUM_BYTES, PacketLayout
 from recon4.recording.packets.ouster.metadata import OusterMetadata
+from recon4.recording.packets.ouster.tuning import OUSTER_COLUMNS
 from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.packets.tuning import HEAD
 
-_USUAL_HZ = 10.0
-"""Revolutions a second of a sensor that says nothing."""
-_CHECKSUM_BYTES = 8
-_JUDGED = 200
-"""First packets that tell whether checksums are sent: older firmware fills their place."""
 _EchoBytes = tuple[tuple[int, int, int, int], ...]
 _WITHOUT_COLUMNS = "packets_without_columns"
 
@@ -56,7 +53,7 @@ def turning_of(metadata: OusterMetadata, head: Datagrams) -> Turning:
     number = columns_in_turn(columns) or metadata.columns_per_turn
     step_s = 1e-9 * column_step_ns(columns)
     if not step_s > 0:
-        hz = metadata.rotation_hz if metadata.rotation_hz > 0 else _USUAL_HZ
+        hz = metadata.rotation_hz if metadata.rotation_hz > 0 else OUSTER_COLUMNS.usual_hz
         step_s = 1.0 / (hz * max(number, 1))
     return Turning(number, step_s)
 
@@ -174,7 +171,7 @@ class OusterPackets:
         """Find out by the first packets whose they are, and whether checksums are sent."""
         if not len(payloads) or not self._layout.profile.has_header:
             return
-        payloads = payloads[:_JUDGED]
+        payloads = payloads[: HEAD.packets]
         wanted = self._sensor.sensor.serial
         sent = serials(self._layout, payloads)
         named = wanted.isdigit() and (sent == int(wanted)).any()
@@ -211,7 +208,7 @@ class OusterPackets:
 
 def checksums(payloads: Payloads) -> NDArray[np.uint64]:
     """CRC-64 of all but the last 8 bytes of each row, where firmware 3.1 and later has it, (N,)."""
-    size = payloads.shape[1] - _CHECKSUM_BYTES
+    size = payloads.shape[1] - CHECKSUM_BYTES
     if payloads.shape[1] % 8 == 0:
         words = np.ascontiguousarray(payloads).view("<u8")[:, :-1]
     else:

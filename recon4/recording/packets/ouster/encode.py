@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
 from recon4.recording.packets.ouster.data_packets import checksums
-from recon4.recording.packets.ouster.imu_packets import LEGACY_IMU
 from recon4.recording.packets.ouster.layouts import (
     ENCODER_TICKS,
     LEGACY,
+    LEGACY_IMU,
     TYPE_DATA,
 )
 from recon4.recording.packets.ouster.metadata import OusterMetadata

@@ -34,11 +34,11 @@ from recon4.recording.packets.ouster.data_packets import OusterPackets, turning_
 from recon4.recording.packets.ouster.imu_packets import is_known_packet
 from recon4.recording.packets.ouster.layouts import USUAL_LAYOUTS
 from recon4.recording.packets.ouster.metadata import is_metadata
+from recon4.recording.packets.tuning import HEAD
 
 _NAME = "Ouster"
 UNKNOWN = _NAME
 """Model of a sensor of which nothing states what it is."""
-_TRIED = 200
 
 
 def packets_of_message(message: Any) -> list[tuple[int, bytes]]:
@@ -150,7 +150,7 @@ def _most_are_known(head: Datagrams, size: int) -> bool:
         head: First datagrams.
         size: Bytes of those that have been found to be data packets; 0 = none were.
     """
-    length = head.length[:_TRIED]
+    length = head.length[: HEAD.packets]
     known = int((length == size).sum())
     for other in np.unique(length[length != size]).tolist():
         rows = np.flatnonzero(length == other)

@@ -14,53 +14,30 @@ from recon4.geometry.se3 import Array
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import PacketSensor, Payloads
 from recon4.recording.packets.ouster.layouts import (
+    AROUND_SAMPLES_BYTES,
     HEADER_BYTES,
+    IMU_SAMPLE,
+    LEGACY_IMU,
+    MAX_SAMPLES,
+    NMEA_BYTES,
     STANDARD_HEADER,
     TYPE_IMU,
     TYPE_ZONES,
+    ZONE_BYTES,
     numbers,
 )
 from recon4.recording.packets.ouster.metadata import OusterMetadata
+from recon4.recording.packets.ouster.tuning import OUSTER_IMU
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.units import STANDARD_GRAVITY_M_S2
-
-LEGACY_IMU = np.dtype(
-    [
-        ("sent_ns", "<u8"),
-        ("accel_ns", "<u8"),
-        ("gyro_ns", "<u8"),
-        ("accel_g", "<f4", 3),
-        ("gyro_deg_s", "<f4", 3),
-    ]
-)
-_SAMPLE = np.dtype(
-    [
-        ("t_ns", "<u8"),
-        ("number", "<u2"),
-        ("status", "<u2"),
-        ("accel_m_s2", "<f4", 3),
-        ("gyro_rad_s", "<f4", 3),
-    ]
-)
-_NMEA_BYTES = 100
-"""Time of the sentence, and the sentence."""
-_AROUND_BYTES = 2 * HEADER_BYTES + _NMEA_BYTES
-_MAX_SAMPLES = 64
-_ZONE_BYTES = 680
-"""A packet of zone monitoring."""
-_MAX_ACCEL_M_S2, _MAX_GYRO_RAD_S = 40 * STANDARD_GRAVITY_M_S2, 80.0
-"""What the chips can measure, and more."""
-_APART_NS = 100_000_000
-"""Three times of a packet are nearer together."""
-_LATEST_NS = 4_000_000_000_000_000_000
-
 
 SAMPLE_SIZES = frozenset(
     {
         LEGACY_IMU.itemsize,
-        *(_AROUND_BYTES + _SAMPLE.itemsize * n for n in range(1, 1 + _MAX_SAMPLES)),
+        *(AROUND_SAMPLES_BYTES + IMU_SAMPLE.itemsize * n for n in range(1, 1 + MAX_SAMPLES)),
     }
 )
 """Bytes of all inertial packets."""
@@ -70,8 +47,8 @@ def imu_samples_in(size: int) -> int:
     """Samples in an inertial packet of a size [bytes]; 0 = it is none."""
     if size == LEGACY_IMU.itemsize:
         return 1
-    samples, rest = divmod(size - _AROUND_BYTES, _SAMPLE.itemsize)
-    return samples if rest == 0 and 1 <= samples <= _MAX_SAMPLES else 0
+    samples, rest = divmod(size - AROUND_SAMPLES_BYTES, IMU_SAMPLE.itemsize)
+    return samples if rest == 0 and 1 <= samples <= MAX_SAMPLES else 0
 
 
 def sound_imu(payloads: Payloads) -> NDArray[np.bool_]:
@@ -88,7 +65,7 @@ def is_known_packet(payloads: Payloads) -> NDArray[np.bool_]:
     """Which payloads of one size are packets of an Ouster other than data, (N,)."""
     if imu_samples_in(payloads.shape[1]):
         return sound_imu(payloads)
-    if payloads.shape[1] == _ZONE_BYTES:
+    if payloads.shape[1] == ZONE_BYTES:
         return _is_type(payloads, TYPE_ZONES)
     return np.zeros(len(payloads), dtype=np.bool_)
 
@@ -197,15 +174,15 @@ def _new(payloads: Payloads) -> _RawSamples:
 
 def _samples(payloads: Payloads) -> NDArray[np.void]:
     """The samples in packets of the new profile, (N, K)."""
-    inner = payloads[:, HEADER_BYTES + _NMEA_BYTES : -HEADER_BYTES]
-    return np.ascontiguousarray(inner).view(_SAMPLE)
+    inner = payloads[:, HEADER_BYTES + NMEA_BYTES : -HEADER_BYTES]
+    return np.ascontiguousarray(inner).view(IMU_SAMPLE)
 
 
 def _sound_legacy(payloads: Payloads) -> NDArray[np.bool_]:
     packets = np.ascontiguousarray(payloads).view(LEGACY_IMU)[:, 0]
     gyro_ns = packets["gyro_ns"].astype(np.int64)
     near = [
-        np.abs(packets[name].astype(np.int64) // 2 - gyro_ns // 2) < _APART_NS
+        np.abs(packets[name].astype(np.int64) // 2 - gyro_ns // 2) < OUSTER_IMU.apart_ns
         for name in ("sent_ns", "accel_ns")
     ]
     with np.errstate(invalid="ignore"):  # bytes that are no numbers
@@ -218,8 +195,9 @@ def _sound_legacy(payloads: Payloads) -> NDArray[np.bool_]:
 def _sound(t_ns: NDArray[np.uint64], accel_m_s2: Array, gyro_rad_s: Array) -> NDArray[np.bool_]:
     """Which samples can have been measured, (...)."""
     with np.errstate(invalid="ignore"):
-        moved = (np.abs(accel_m_s2) < _MAX_ACCEL_M_S2) & (np.abs(gyro_rad_s) < _MAX_GYRO_RAD_S)
-    return np.asarray((t_ns > 0) & (t_ns < _LATEST_NS) & moved.all(axis=-1))
+        moved = np.abs(accel_m_s2) < OUSTER_IMU.max_accel_m_s2
+        moved &= np.abs(gyro_rad_s) < OUSTER_IMU.max_gyro_rad_s
+    return np.asarray((t_ns > 0) & (t_ns < LIMITS.latest_ns) & moved.all(axis=-1))
 
 
 def _is_type(payloads: Payloads, kind: int) -> NDArray[np.bool_]:

@@ -27,8 +27,6 @@ USUAL_COLUMNS = 16
 """In a packet."""
 BEAMS = (32, 64, 128)
 """Of the sensors on sale; an OS1-16 sends 64, of which 48 are silent."""
-MAX_PACKET_BYTES = 65507
-"""Of a UDP datagram."""
 
 STANDARD_HEADER = np.dtype(
     [("type", "<u2"), ("frame", "<u2"), ("init_id", "u1", 3), ("serial", "u1", 5), ("rest", "V20")]
@@ -44,6 +42,35 @@ FUSA_HEADER = np.dtype(
     ]
 )
 """Header of sensors set to functional safety."""
+
+
+LEGACY_IMU = np.dtype(
+    [
+        ("sent_ns", "<u8"),
+        ("accel_ns", "<u8"),
+        ("gyro_ns", "<u8"),
+        ("accel_g", "<f4", 3),
+        ("gyro_deg_s", "<f4", 3),
+    ]
+)
+IMU_SAMPLE = np.dtype(
+    [
+        ("t_ns", "<u8"),
+        ("number", "<u2"),
+        ("status", "<u2"),
+        ("accel_m_s2", "<f4", 3),
+        ("gyro_rad_s", "<f4", 3),
+    ]
+)
+NMEA_BYTES = 100
+"""Time of the sentence, and the sentence."""
+AROUND_SAMPLES_BYTES = 2 * HEADER_BYTES + NMEA_BYTES
+"""Around the samples of an inertial packet."""
+MAX_SAMPLES = 64
+ZONE_BYTES = 680
+"""A packet of zone monitoring."""
+CHECKSUM_BYTES = 8
+"""At the end of a data packet with a header."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,30 +16,30 @@ import numpy as np
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.model.lidars import LIDARS
+from recon4.recording.formats.datagrams import MAX_UDP_BYTES
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import Companion
+from recon4.recording.packets.ouster.facts import (
+    BEAM_ORIGIN_MM,
+    LIDAR_HEIGHT_MM,
+    OLDEST_BEAM_ORIGIN_MM,
+    OS2_HEIGHT_MM,
+)
 from recon4.recording.packets.ouster.layouts import (
     LEGACY,
     MAX_BEAMS,
     MAX_COLUMNS,
-    MAX_PACKET_BYTES,
     PROFILES,
     USUAL_COLUMNS,
     PacketLayout,
 )
 from recon4.untrusted.bounded import parse_json
 
-MAX_METADATA_BYTES = 8 << 20
-"""With zones it has some 50 kB."""
 _ANGLES = "beam_altitude_angles"
 _SECTIONS = (
     "sensor_info", "beam_intrinsics", "lidar_intrinsics", "imu_intrinsics", "lidar_data_format",
     "imu_data_format", "data_format", "config_params",
 )  # fmt: skip
-_BEAM_ORIGIN_MM = {"OS-0-": 27.67, "OS-1-": 15.806, "OS-2-": 13.762}
-"""Start of the product line -> how far from the axis the beams leave, where it is not stated."""
-_OLDEST_BEAM_ORIGIN_MM = 12.163
-_LIDAR_HEIGHT_MM, _OS2_HEIGHT_MM = 36.18, 74.296
-"""Height of the optical center above the base, where it is not stated."""
 _MODE = re.compile(r"(\d{3,4})x(\d{1,2})")
 _PRODUCT = re.compile(r"OS-?(0|1|2|DOME)-(\d+)", re.IGNORECASE)
 
@@ -114,7 +114,7 @@ def _likely_model(elevation_deg: Array) -> str:
 
 def is_metadata(companion: Companion) -> bool:
     """Whether a file names the angles of beams as the metadata of an Ouster does."""
-    return len(companion.content) <= MAX_METADATA_BYTES and _ANGLES.encode() in companion.content
+    return len(companion.content) <= LIMITS.metadata_bytes and _ANGLES.encode() in companion.content
 
 
 def read_metadata(companion: Companion) -> OusterMetadata | None:
@@ -258,7 +258,7 @@ def _layout(values: _Values, beams: int) -> PacketLayout:
     columns = values.integer("columns_per_packet", USUAL_COLUMNS, (1, MAX_COLUMNS))
     fusa = values.text("header_type") == "FUSA" or PROFILES[name].fusa
     layout = PacketLayout(PROFILES[name], beams, columns, fusa=fusa)
-    if layout.size > MAX_PACKET_BYTES:
+    if layout.size > MAX_UDP_BYTES:
         raise CorruptFile(
             f"{values.name}: {columns} columns of {beams} pixels do not fit into a packet"
         )
@@ -286,13 +286,13 @@ def _beam_origin(values: _Values, product: str) -> tuple[Array, bool]:
 
 def usual_beam_origin_m(product: str) -> Array:
     """Where the beams of a product line leave: x and z in the turning frame [m], (2,)."""
-    usual = (mm for start, mm in _BEAM_ORIGIN_MM.items() if product.startswith(start))
-    return np.array([1e-3 * next(usual, _OLDEST_BEAM_ORIGIN_MM), 0.0])
+    usual = (mm for start, mm in BEAM_ORIGIN_MM.items() if product.startswith(start))
+    return np.array([1e-3 * next(usual, OLDEST_BEAM_ORIGIN_MM), 0.0])
 
 
 def usual_mount(product: str) -> Array:
     """``T_sensor_lidar`` of a product line [m], (4, 4)."""
     T_sensor_lidar = np.diag([-1.0, -1.0, 1.0, 1.0])
-    height_mm = _OS2_HEIGHT_MM if product.startswith("OS-2-") else _LIDAR_HEIGHT_MM
+    height_mm = OS2_HEIGHT_MM if product.startswith("OS-2-") else LIDAR_HEIGHT_MM
     T_sensor_lidar[2, 3] = 1e-3 * height_mm
     return T_sensor_lidar

@@ -6,16 +6,13 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.model.lidars import LIDARS, lidar_model
+from recon4.recording.packets.ouster.facts import STAGGER_DEG, STAGGER_OS2_DEG
 from recon4.recording.packets.ouster.layouts import PROFILES, PacketLayout
 from recon4.recording.packets.ouster.metadata import (
     OusterMetadata,
     usual_beam_origin_m,
     usual_mount,
 )
-
-_STAGGER_DEG = {"OS0": (10.9, 3.6, -3.7, -11.0), "OS1": (4.2, 1.4, -1.4, -4.2)}
-"""Azimuth of four beams that follow each other, as in metadata of real sensors."""
-_STAGGER_OS2_DEG = (2.1, 0.7, -0.7, -2.1)
 
 
 def nominal_metadata(
@@ -40,7 +37,7 @@ def nominal_metadata(
         )
     kind, _, beams = model.partition("-")
     product = f"OS-{kind[2:].upper()}-{beams}"
-    stagger_deg = np.array(_STAGGER_DEG.get(kind, _STAGGER_OS2_DEG))
+    stagger_deg = np.array(STAGGER_DEG.get(kind, STAGGER_OS2_DEG))
     lowest, highest = facts.elevation_deg
     return OusterMetadata(
         name=model,

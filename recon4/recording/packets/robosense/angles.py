@@ -10,20 +10,18 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.model.lidars import lidar_model
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.family import Companion, Payloads
 from recon4.recording.packets.robosense.models import (
     ANGLE,
     ANGLES_AT,
     DEVICE_ID,
+    DUAL_MODE,
     MODE_AT,
     SIZE,
     RoboSenseModel,
 )
-
-_DUAL = 0
-_MOST_ROWS = 200
-_TOLERANCE_DEG = 3.0
-"""A table of angles may exceed the elevations of its model by this."""
+from recon4.recording.packets.robosense.tuning import ROBOSENSE_ANGLES
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +67,7 @@ def device_data(payloads: Payloads, lasers: int) -> DeviceData | None:
         signs = 1 - 2 * table["sign"].reshape(2, lasers)[:, :count].astype(np.float64)
         angles = (signs * table["cdeg"].reshape(2, lasers)[:, :count]).T
         if count and np.abs(angles).max() < 9000 and np.ptp(angles[:, 0]) > 0:
-            return DeviceData(angles, int(payload[MODE_AT]) == _DUAL)
+            return DeviceData(angles, int(payload[MODE_AT]) == DUAL_MODE)
     return None
 
 
@@ -110,8 +108,8 @@ def fitting_table(file: Companion, model: RoboSenseModel) -> NDArray[np.float64]
     if table is None or len(table) != model.lasers:
         return None
     low, high = lidar_model(model.name).elevation_deg
-    inside = (table[:, 0] >= 100 * (low - _TOLERANCE_DEG)) & (
-        table[:, 0] <= 100 * (high + _TOLERANCE_DEG)
+    inside = (table[:, 0] >= 100 * (low - ROBOSENSE_ANGLES.tolerance_deg)) & (
+        table[:, 0] <= 100 * (high + ROBOSENSE_ANGLES.tolerance_deg)
     )
     return table if inside.all() else None
 
@@ -123,8 +121,8 @@ def angles_of_csv(file: Companion) -> NDArray[np.float64] | None:
     ``laser,elevation,azimuth`` under a header.
     """
     lines = [line.strip() for line in file.content.decode("utf-8", "replace").splitlines()]
-    rows = [line for line in lines if line][: _MOST_ROWS + 1]
-    if not rows or len(rows) > _MOST_ROWS:
+    rows = [line for line in lines if line][: LIMITS.angle_rows + 1]
+    if not rows or len(rows) > LIMITS.angle_rows:
         return None
     header = rows[0].lower()
     named = "elevation" in header and "azimuth" in header

@@ -28,18 +28,21 @@ from recon4.recording.packets.robosense.angles import (
     is_device,
     laser_angles,
 )
-from recon4.recording.packets.robosense.imu_packets import IMU_SIZE, imu_samples, is_imu
+from recon4.recording.packets.robosense.imu_packets import imu_samples, is_imu
 from recon4.recording.packets.robosense.messages import MESSAGES
 from recon4.recording.packets.robosense.models import (
+    AIRY_UNKNOWN_VARIANT,
     AIRY_VARIANT,
+    BPEARL_V4_TYPE,
     HELIOS_16P_DUAL,
+    IMU_SIZE,
     MODELS,
     SIZE,
     TYPE_AT,
     RoboSenseModel,
 )
 from recon4.recording.packets.robosense.packets import (
-    SINGLE,
+    PacketReturns,
     azimuths_cdeg,
     has_id,
     packet_s,
@@ -56,16 +59,13 @@ from recon4.recording.packets.robosense.solid import (
     solid_stamps,
     sound_solid,
 )
+from recon4.recording.packets.robosense.tuning import ROBOSENSE_ANGLES
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.spinning import spinning_points
 from recon4.recording.report import ImportReport
 from recon4.units import SECOND_NS
 
 NAME = "RoboSense"
-_BPEARL_V4 = (3, 4)
-_AIRY_UNKNOWN = 0
-_LOW_CDEG = -4000
-"""A Helios with lasers below -40° is a 5515."""
 
 
 class SpinningFormat:
@@ -147,7 +147,7 @@ class SpinningFormat:
         """Note whether packets have two returns."""
         of_model = payloads[has_id(payloads, self._model)]
         if len(of_model):
-            self._dual = bool(np.median(variants_of(of_model, self._model)) != SINGLE)
+            self._dual = bool(np.median(variants_of(of_model, self._model)) != PacketReturns.SINGLE)
 
     def _learn(self, payloads: Payloads) -> None:
         """Read device packets: the first one with angles counts."""
@@ -281,7 +281,7 @@ def _recognized_data(head: Datagrams, payloads: Payloads) -> Recognized | None:
         if 2 * int(sound.sum()) <= len(payloads):
             continue
         packets = payloads[sound]
-        dual = bool(np.median(variants_of(packets, model)) != SINGLE)
+        dual = bool(np.median(variants_of(packets, model)) != PacketReturns.SINGLE)
         found = Recognized(
             family=NAME,
             kind="data",
@@ -299,8 +299,8 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
     kinds = packets[:, TYPE_AT : TYPE_AT + 2]
     kind = tuple(np.median(kinds, axis=0).astype(int).tolist())
     if found.model == "Bpearl":
-        return replace(found, model="Bpearl V4") if kind == _BPEARL_V4 else found
-    if found.model == "Airy" and kind[1] not in (AIRY_VARIANT, _AIRY_UNKNOWN):
+        return replace(found, model="Bpearl V4") if kind == BPEARL_V4_TYPE else found
+    if found.model == "Airy" and kind[1] not in (AIRY_VARIANT, AIRY_UNKNOWN_VARIANT):
         reason = f"an Airy of variant {kind[1]} (48 or 192 lines), whose packets are not decoded"
         return replace(found, kind="other", remarks=(reason,))
     if found.model != "Helios 32":
@@ -311,5 +311,5 @@ def _refined(found: Recognized, head: Datagrams, packets: Payloads) -> Recognize
     lasers = 32 if device is None else len(device.angles_cdeg)
     if lasers == 16 or _fits(MODELS["Helios 16P"], usual_s, dual=False):
         return replace(found, model="Helios 16P", packet_s=usual_s)
-    low = device is None or float(device.angles_cdeg[:, 0].min()) < _LOW_CDEG
+    low = device is None or float(device.angles_cdeg[:, 0].min()) < ROBOSENSE_ANGLES.low_cdeg
     return replace(found, model="Helios 5515" if low else "Helios 32")

@@ -8,6 +8,11 @@ from numpy.typing import NDArray
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
+from recon4.recording.packets.robosense.models import (
+    IMU_FULL,
+    IMU_LARGEST_RANGE,
+    IMU_PACKET,
+)
 from recon4.recording.packets.robosense.packets import stamps_of
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
@@ -15,17 +20,6 @@ from recon4.units import STANDARD_GRAVITY_M_S2
 
 IMU_ID = bytes.fromhex("aa555a05")
 """First bytes of a packet."""
-IMU_PACKET = np.dtype(
-    [
-        *[("id", "u1", 4), ("stamp", "u1", 10), ("accel", ">i4", 3), ("gyro", ">i4", 3)],
-        *[("temperature", ">i4"), ("rate", "u1"), ("accel_range", "u1"), ("gyro_range", "u1")],
-        *[("count", ">u4"), ("tail", ">u2")],
-    ]
-)
-"""Ranges: ± 2, 4, 8, 16 g and ± 250, 500, 1000, 2000 °/s, for numbers of 16 bits."""
-IMU_SIZE = IMU_PACKET.itemsize
-_LARGEST_RANGE = 3
-_FULL = 32768.0
 
 
 def is_imu(payloads: Payloads) -> NDArray[np.bool_]:
@@ -35,9 +29,9 @@ def is_imu(payloads: Payloads) -> NDArray[np.bool_]:
     ranges = np.maximum(packets["accel_range"], packets["gyro_range"])
     return np.asarray(
         begins
-        & (ranges <= _LARGEST_RANGE)
-        & (np.abs(packets["accel"].astype(np.int64)) <= _FULL).all(axis=1)
-        & (np.abs(packets["gyro"].astype(np.int64)) <= _FULL).all(axis=1)
+        & (ranges <= IMU_LARGEST_RANGE)
+        & (np.abs(packets["accel"].astype(np.int64)) <= IMU_FULL).all(axis=1)
+        & (np.abs(packets["gyro"].astype(np.int64)) <= IMU_FULL).all(axis=1)
         & stamps_of(packets["stamp"].copy(), ns=False)[1]
     )
 
@@ -62,8 +56,8 @@ def imu_samples(
     report.count("imu_samples", len(packets))
     if not len(packets):
         return None
-    g = 2.0 ** (packets["accel_range"] + 1.0) / _FULL
-    deg_s = 250.0 * 2.0 ** packets["gyro_range"].astype(np.float64) / _FULL
+    g = 2.0 ** (packets["accel_range"] + 1.0) / IMU_FULL
+    deg_s = 250.0 * 2.0 ** packets["gyro_range"].astype(np.float64) / IMU_FULL
     return ImuSamples(
         t_ns=t_ns,
         gyro_rad_s=np.deg2rad(packets["gyro"] * deg_s[:, None]),

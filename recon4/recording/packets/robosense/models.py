@@ -29,6 +29,24 @@ MODE_AT, ANGLES_AT = 300, 468
 ANGLE = np.dtype([("sign", "u1"), ("cdeg", ">u2")])
 TYPE_AT = 31
 """Offset of type and variant in the header: (3, 4) = Bpearl V4; the variant of an Airy."""
+IMU_PACKET = np.dtype(
+    [
+        *[("id", "u1", 4), ("stamp", "u1", 10), ("accel", ">i4", 3), ("gyro", ">i4", 3)],
+        *[("temperature", ">i4"), ("rate", "u1"), ("accel_range", "u1"), ("gyro_range", "u1")],
+        *[("count", ">u4"), ("tail", ">u2")],
+    ]
+)
+"""Ranges: ± 2, 4, 8, 16 g and ± 250, 500, 1000, 2000 °/s, for numbers of 16 bits."""
+IMU_SIZE = IMU_PACKET.itemsize
+IMU_LARGEST_RANGE = 3
+IMU_FULL = 32768.0
+"""Number of the largest angular rate and acceleration of a range."""
+BPEARL_V4_TYPE = (3, 4)
+AIRY_UNKNOWN_VARIANT = 0
+DUAL_MODE = 0
+"""Return mode in a device packet."""
+LATEST_S = 2**32 - 2
+"""Largest number of seconds in a stamp; one more says that there is none."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

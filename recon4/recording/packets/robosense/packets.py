@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from enum import IntEnum
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from recon4.kernels.spinning import BlockRoles
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import Payloads
 from recon4.recording.packets.robosense.angles import LaserAngles
-from recon4.recording.packets.robosense.models import RoboSenseModel
+from recon4.recording.packets.robosense.models import LATEST_S, RoboSenseModel
 from recon4.recording.packets.spinning import SpinningTables, beams, distances, variants
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
@@ -22,10 +24,15 @@ _DATE = np.dtype(
         *[("ms", ">u2"), ("us", ">u2")],
     ]
 )
-_MOST_SECONDS = 2**32 - 2
-SINGLE, DUAL, DUAL_AHEAD = 0, 1, 2
-"""Variants of packets. ``DUAL_AHEAD``: of the blocks A B B of a Ruby Plus, the second return of A
-was in the packet before."""
+
+
+class PacketReturns(IntEnum):
+    """Variants of packets."""
+
+    SINGLE = 0
+    DUAL = 1
+    DUAL_AHEAD = 2
+    """Of the blocks A B B of a Ruby Plus, the second return of A was in the packet before."""
 
 
 def block_bytes(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.uint8]:
@@ -93,7 +100,7 @@ def stamps_of(raw: NDArray[np.uint8], *, ns: bool) -> tuple[Times, NDArray[np.bo
     stamp = raw.view(_STAMP)[:, 0]
     unit_ns = 1 if ns else 1000
     rest_ns = stamp["rest"].astype(np.int64) * unit_ns
-    right = (stamp["high"] == 0) & (stamp["seconds"] <= _MOST_SECONDS) & (rest_ns < SECOND_NS)
+    right = (stamp["high"] == 0) & (stamp["seconds"] <= LATEST_S) & (rest_ns < SECOND_NS)
     t_ns = stamp["seconds"].astype(np.int64) * SECOND_NS + rest_ns
     return np.where(right, t_ns, 0), right
 
@@ -121,10 +128,14 @@ def variants_of(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.uint8]:
     if model.layout.blocks == 3:
         ahead = azimuth[:, 1] == azimuth[:, 2]
         dual = azimuth[:, 0] == azimuth[:, 1]
-        return np.where(dual, DUAL, np.where(ahead, DUAL_AHEAD, SINGLE)).astype(np.uint8)
+        return np.where(
+            dual,
+            PacketReturns.DUAL,
+            np.where(ahead, PacketReturns.DUAL_AHEAD, PacketReturns.SINGLE),
+        ).astype(np.uint8)
     rows = model.rows
     pairs = azimuth[:, :: 2 * rows] == azimuth[:, rows :: 2 * rows]
-    return np.where(pairs.all(axis=1), DUAL, SINGLE).astype(np.uint8)
+    return np.where(pairs.all(axis=1), PacketReturns.DUAL, PacketReturns.SINGLE).astype(np.uint8)
 
 
 def packet_s(model: RoboSenseModel, *, dual: bool) -> float:

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.kernels.spinning import Layout
+from recon4.units import STANDARD_GRAVITY_M_S2
 
 RETURN = np.dtype([("distance", "<u2"), ("intensity", "u1")])
 BLOCK = np.dtype([("flag", "<u2"), ("azimuth_cdeg", "<u2"), ("returns", RETURN, 32)])
@@ -57,6 +58,9 @@ LAYOUT = Layout(
 
 STRONGEST, LAST, DUAL = 0x37, 0x38, 0x39
 RETURN_MODES = {STRONGEST: "strongest", LAST: "last", DUAL: "dual"}
+GYRO_UNIT_RAD_S = np.deg2rad(0.09766)
+ACCEL_UNIT_M_S2 = 0.001221 * STANDARD_GRAVITY_M_S2
+"""Units of the samples of position packets."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)

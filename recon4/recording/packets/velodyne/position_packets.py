@@ -14,19 +14,11 @@ from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.packets.family import PacketSamples
 from recon4.recording.packets.sensor_clock import SensorClock, nearest_hour
-from recon4.recording.packets.velodyne.models import POSITION_SIZE
+from recon4.recording.packets.velodyne.models import ACCEL_UNIT_M_S2, GYRO_UNIT_RAD_S, POSITION_SIZE
+from recon4.recording.packets.velodyne.tuning import POSITIONS
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import height_of_gga
-from recon4.units import DAY_NS, HOUR_US, SECOND_NS, STANDARD_GRAVITY_M_S2
-
-_LONGEST_AGE_NS = 5 * SECOND_NS // 2
-"""A sentence tells the last full second and stays in the packets until the next one comes."""
-
-_JUDGED = 100
-"""Position packets whose majority decides whether GPS drives a clock: single ones are damaged."""
-
-_GYRO_RAD_S = np.deg2rad(0.09766)
-_ACCEL_M_S2 = 0.001221 * STANDARD_GRAVITY_M_S2
+from recon4.units import DAY_NS, HOUR_US, SECOND_NS
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,14 +110,14 @@ def utc_offset_ns(t_arrival_ns: Times, payloads: NDArray[np.uint8]) -> int | Non
         payloads: The packets, (N, 512).
     """
     offsets_ns, others = list[int](), 0
-    for row in np.flatnonzero(_stamps(payloads) < HOUR_US)[:_JUDGED]:
+    for row in np.flatnonzero(_stamps(payloads) < HOUR_US)[: POSITIONS.judged]:
         sentence = nmea_text(payloads[row])
         arrival = int(t_arrival_ns[row])
         fix = parse_fix(sentence, arrival, ImportReport()) if sentence else None
         if fix is None:
             continue
         stamp = int(nearest_hour(_stamps(payloads[row : row + 1]), fix.utc_ns)[0])
-        if 0 <= stamp - fix.utc_ns < _LONGEST_AGE_NS:
+        if 0 <= stamp - fix.utc_ns < POSITIONS.longest_age_ns:
             offsets_ns.append(stamp - arrival)
         else:
             others += 1
@@ -194,8 +186,8 @@ class PositionDecoder:
         )
         return ImuSamples(
             t_ns=t_ns[kept],
-            gyro_rad_s=value[:, :, 0] * _GYRO_RAD_S,
-            accel_m_s2=accel * _ACCEL_M_S2,
+            gyro_rad_s=value[:, :, 0] * GYRO_UNIT_RAD_S,
+            accel_m_s2=accel * ACCEL_UNIT_M_S2,
         )
 
     def _gnss(self, t_ns: Times, payloads: NDArray[np.uint8]) -> GnssSamples | None:

@@ -27,6 +27,7 @@ from recon4.recording.packets.velodyne.laser_calibration import (
 from recon4.recording.packets.velodyne.models import DATA_SIZE, DUAL, POSITION_SIZE
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder
 from recon4.recording.packets.velodyne.sound_packets import as_packets
+from recon4.recording.packets.velodyne.tuning import WIDE_PACKETS
 from recon4.recording.packets.velodyne.wide_models import (
     VLS128,
     VLS128_PRODUCT,
@@ -36,10 +37,6 @@ from recon4.recording.packets.velodyne.wide_models import (
 )
 from recon4.recording.report import ImportReport
 from recon4.units import HOUR_NS
-
-_MOST_CDEG = 1000
-_S3_LEAST_US = 316.8
-"""Packets of an S2 come every 288 µs, of an S3 every 345.6 µs; of two returns in half of it."""
 
 
 def dual_packets(payloads: Payloads, model: WideModel) -> NDArray[np.bool_]:
@@ -171,7 +168,7 @@ class WideFormat:
         if not (self._model.twins_beside and self._dual) or len(payloads) < 2:
             return np.zeros(0, np.float32)
         step = np.diff(self.azimuth_cdeg(payloads)) % 36000
-        joined = (np.diff(t_ns) < 1.5e9 * self.packet_s) & (step <= _MOST_CDEG)
+        joined = (np.diff(t_ns) < 1.5e9 * self.packet_s) & (step <= WIDE_PACKETS.most_cdeg)
         usual = float(np.median(step[joined])) if joined.any() else 0.0
         turn = np.where(joined, step, usual)
         return np.deg2rad(0.01 * np.append(turn, usual)).astype(np.float32)
@@ -192,7 +189,7 @@ def _hdl64(of: PacketSensor, head: Payloads) -> WideModel:
     dual = len(head) > 0 and bool(
         np.median(dual_packets(head, hdl64_model(calibration, s3=True))) > 0.5
     )
-    s3 = step_us * (2 if dual else 1) > _S3_LEAST_US
+    s3 = step_us * (2 if dual else 1) > WIDE_PACKETS.s3_least_us
     kind = "S3" if s3 else "S2"
     of.report.derive(f"{name}: an HDL-64E {kind}, calibration from {calibration.source}")
     return hdl64_model(calibration, s3=s3)

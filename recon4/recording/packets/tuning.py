@@ -1,0 +1,119 @@
+"""Tuning of the packets of LiDARs: what is looked at, clocks, order, losses."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.units import SECOND_NS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PacketHeadTuning:
+    """How much at the beginning of a sensor's packets tells what they are."""
+
+    packets: int = 200
+    """Packets that are compared with the layouts and sums of a family."""
+    bytes: int = 8 << 20
+    """Of the first packets of a sensor, which its family looks at to prepare the decoder: more than
+    a second of most LiDARs, in which some send all that packets say of their lasers."""
+    scanned_bytes: int = 64 << 20
+    """Of a file, in which the senders are looked for."""
+    timed: int = 1000
+    """Datagrams from which the times of a file are estimated."""
+    samples: int = 20
+    """Datagrams of a sender that may be those of an IMU or a GNSS receiver."""
+
+
+HEAD = PacketHeadTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CaptureTuning:
+    """Sensors of one capture file."""
+
+    wait_s: float = 1.0
+    """A sensor that is silent for this time no longer delays the others' frames: datagrams are read
+    in the order of arrival, one slot at a time (`in_slots`)."""
+    foreign_ratio: float = 0.2
+    """A stream with fewer packets than this ratio of the largest one belongs to no sensor of the
+    rig, unless its port (and address) matches one."""
+
+
+CAPTURES = CaptureTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockTuning:
+    """The clock of a sensor against that of the recorder (`sensor_clock.py`)."""
+
+    same_clock_ns: int = SECOND_NS // 2
+    """A sensor that is this near to the recorder's clock is synchronized with it."""
+    jump_ns: int = SECOND_NS
+    """Clocks that move against each other by more than this have jumped."""
+    first: int = 500
+    """Packets of the first batch from which the offset of the clocks is measured."""
+    confirm: int = 8
+    """Packets that must agree on a jump; fewer count as damaged packets and are dropped."""
+    block: int = 64
+    """Packets between two comparisons of the clocks, however the packets arrive."""
+    pause_ns: int = 60 * SECOND_NS
+    """After a longer pause a clock that is off by whole hours has been set, not damaged [ns]."""
+    track_ns: int = 10 * SECOND_NS
+    """The rate of the clocks is measured over this time [ns]."""
+    max_rate: float = 2e-4
+    """Two free-running quartz clocks differ by less than this."""
+    counter_us: int = 1 << 32
+    """Where a counter that does not start again at the full hour does so [µs]: after 4294.97 s."""
+
+
+CLOCKS = ClockTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PacketOrderTuning:
+    """Packets that come late (`packet_order.py`)."""
+
+    set_back_ns: int = 1_000_000_000
+    """Packets so far behind the ones before are not late: the clocks were set back together."""
+    stragglers: int = 8
+    """Fewer packets in a row are late all the same."""
+
+
+PACKET_ORDER = PacketOrderTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PacketHoleTuning:
+    """Packets that never came, and fields of view (`packet_holes.py`)."""
+
+    probed: int = 100
+    """Steps whose median is the usual one."""
+    longest_s: float = 1.0
+    """A longer pause is a gap in the data, which is said elsewhere [s]."""
+    revolution_ns: tuple[int, int] = (40_000_000, 450_000_000)
+    """Time between two holes of one field of view: sensors turn 5 to 20 times a second [ns]."""
+    least_packets: int = 3
+    """Single packets get lost; a field of view leaves out more."""
+    same_cdeg: int = 1200
+    same_packets: int = 2
+    """A packet covers up to 10 degrees: the edge of the view lies somewhere inside of it."""
+    confirm: int = 3
+    """Holes in a row that must be alike."""
+
+
+HOLES = PacketHoleTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SlotTuning:
+    """Datagrams that are decoded at once (`slots.py`)."""
+
+    slot_ns: int = 100_000_000
+    """Of the recorder's clock."""
+    first_ns: int = 1_000_000_000
+    """The first slot is longer, because the clocks of the sensors are compared in it."""
+    set_back_ns: int = 2_000_000_000
+    """A datagram this far before the end of its slot means that the clock was set back."""
+
+
+SLOTS = SlotTuning()
