@@ -160,6 +160,9 @@ _POINTS = {
 _MESSAGES = {
     "messages": _read("messages"),
     "messages_corrupt": _lost("messages", "cannot be decoded, left out", stated=True),
+    "messages_of_no_lidar": _lost(
+        "messages", "(or parts) of none of the LiDARs in their topic, not read", apart=True
+    ),
     "messages_missing": _lost("messages", "missing of those listed", apart=True, stated=True),
     "messages_salvaged": _usual("", "salvaged from a damaged file", noun="messages"),
     "chunks_damaged": _stated("damaged, left out", noun="chunks of a bag"),

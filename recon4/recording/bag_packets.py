@@ -15,12 +15,14 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
+from recon4.recording.formats.shared_topics import SOURCE_MARK
 from recon4.recording.packets.companions import described_in
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import Companion, PacketSensor, Recognized, same_start
 from recon4.recording.packets.lidar_imu import LidarImu
 from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
+from recon4.recording.packets.senders import packets_of
 from recon4.recording.packets.streams import first_datagrams, recognized
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
@@ -173,7 +175,7 @@ class PacketReader:
 
 def packets_in(message: BagMessage, content: Any) -> Datagrams:
     """The packets of a decoded message, with their times of arrival."""
-    packets = PACKET_MESSAGES[message.type].packets(content)
+    packets = packets_of(message.type, content)
     return datagrams_of(
         [t_ns if t_ns > 0 else message.t_ns for t_ns, _ in packets], [data for _, data in packets]
     )
@@ -206,4 +208,10 @@ def _texts(bag: Bag) -> list[Companion]:
 
 
 def _most_alike(name: str, others: list[str]) -> str:
-    return max(others, key=lambda other: same_start(name, other), default="")
+    """The topic with the same source, if several sensors share both, and the same beginning."""
+    source = name.partition(SOURCE_MARK)[2]
+    return max(
+        others,
+        key=lambda other: (other.partition(SOURCE_MARK)[2] == source, same_start(name, other)),
+        default="",
+    )

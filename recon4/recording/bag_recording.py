@@ -170,8 +170,11 @@ class BagRecording:
             self.fix_topic: SampleBatch(fix_row, join_fixes, self._report, kind="gnss", stamps=fix),
             self.odometry_topic: SampleBatch(pose_row, join_poses, self._report),
         }
-        wanted = {*lidars, *samples} - {""}
+        wanted = {*lidars, *samples, *bag.strays} - {""}
         for message in bag.messages(wanted):
+            if message.topic in bag.strays:
+                self._report.count("messages_of_no_lidar")
+                continue
             self._report.count("messages")
             content = bag.decode(message)
             if content is None:

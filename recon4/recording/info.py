@@ -20,10 +20,11 @@ from recon4.recording.bag_recording import lidar_streams
 from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
 from recon4.recording.first_rig import first_rig_text
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
-from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, TRANSFORMS, Bag, BagTopic
+from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_files import cloud_fields
 from recon4.recording.formats.cloud_tables import cloud_table
 from recon4.recording.formats.poses import pose_format, read_tum, tum_hint
+from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.info_head import RecordingHead, judge_samples, kind_of_walk, read_head
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.kinds import (

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence, Set
+from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
-from itertools import islice
+from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -13,8 +13,10 @@ from numpy.typing import NDArray
 from recon4.errors import RecordingError
 from recon4.recording.formats.bags import IMU, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_table
-from recon4.recording.formats.shared_topics import sources_of
+from recon4.recording.formats.shared_topics import Source, sources_of
 from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
+from recon4.recording.packets.messages import PACKET_MESSAGES
+from recon4.recording.packets.senders import OwnPackets, parts_of
 from recon4.recording.point_fields import EXACT_TIME, RING_FIELDS, TIME_FIELDS, find_field
 from recon4.recording.report import ImportReport
 from recon4.recording.topic_contents import Contents, read_contents
@@ -229,8 +231,8 @@ def _points(message: Any) -> NDArray[np.float64]:
     return p[np.isfinite(p).all(axis=1)]
 
 
-def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[str, ...]]:
-    """Topics of points that several LiDARs share, with the sources of their first messages.
+def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[Source, ...]]:
+    """Topics of points or packets that several LiDARs share, with the sources of their heads.
 
     Args:
         bag: An open bag.
@@ -238,14 +240,27 @@ def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[str, ...]]:
     """
     found = {}
     for topic in bag.topics:
-        if not is_cloud(topic):
+        if not (is_cloud(topic) or (topic.type in PACKET_MESSAGES and topic.messages)):
             continue
-        head = islice(bag.messages([topic.name]), SHARED_TOPICS.head)
-        contents = (bag.decode(message, as_sent=True) for message in head)
-        if sources := sources_of(content for content in contents if content is not None):
+        if sources := sources_of(_sources_at_head(bag, topic)):
             found[topic.name] = sources
-            report.derive(f"{topic.name} is of {len(sources)} LiDARs: {', '.join(sources)}")
+            names = ", ".join(map(str, sources))
+            report.derive(f"{topic.name} is of {len(sources)} LiDARs: {names}")
     return found
+
+
+def _sources_at_head(bag: Bag, topic: BagTopic) -> Iterator[Source]:
+    """Of each part of the first messages: of each packet, or of each cloud."""
+    left = 0 if is_cloud(topic) else SHARED_TOPICS.packets
+    for number, message in enumerate(bag.messages([topic.name])):
+        if number >= SHARED_TOPICS.head and left <= 0:
+            return
+        content = bag.decode(message, as_sent=True)
+        parts = {} if content is None else parts_of(topic.type, content)
+        for source, part in parts.items():
+            packets = len(part.packets) if isinstance(part, OwnPackets) else 1
+            left -= packets
+            yield from repeat(source, packets)
 
 
 def is_cloud(topic: BagTopic) -> bool:

@@ -22,12 +22,12 @@ from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.formats.bags import (
     CLOUD,
     LASER_SCAN,
-    TRANSFORMS,
     Bag,
     BagMessage,
     BagTopic,
 )
 from recon4.recording.formats.cloud_tables import cloud_table
+from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.head_angles import Head, HeadAngles
 from recon4.recording.joint_head import JointHead
 from recon4.recording.mount_check import compare_mounts

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from recon4.recording.formats.bags import TRANSFORMS, Bag, BagTopic
+from recon4.recording.formats.bags import Bag, BagTopic
+from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.line_recording import JOINTS
 from recon4.recording.profiler_rigs import profiler_rig
 from recon4.recording.report import ImportReport

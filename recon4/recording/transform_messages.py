@@ -14,8 +14,9 @@ from typing import Any
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import SE3
-from recon4.recording.formats.bags import TEXT, TRANSFORMS, Bag, BagTopic
+from recon4.recording.formats.bags import TEXT, Bag, BagTopic
 from recon4.recording.formats.limits import clean_name
+from recon4.recording.formats.typestore import TRANSFORMS
 from recon4.recording.formats.urdf import fixed_joints
 from recon4.recording.frame_graph import (
     WORLD_FRAMES,

@@ -50,9 +50,14 @@ class SharedTopicTuning:
     """How topics that several LiDARs share are known (`formats/shared_topics.py`)."""
 
     head: int = 12
-    """Messages from which the sensors of a topic are known."""
+    """Messages from which the sensors of a topic are known, at least."""
+    packets: int = 600
+    """Of packets, which may come one a message: this many, too; about half a second of a LiDAR."""
     often: int = 2
-    """Of a sensor among them; a driver that changes its frame once is one sensor."""
+    """Parts of messages of a sensor among them; a driver that changes its frame once is one
+    sensor."""
+    rare: float = 0.05
+    """A smaller ratio of all parts is no sensor: packets with damaged bytes."""
 
 
 SHARED_TOPICS = SharedTopicTuning()

@@ -11,7 +11,6 @@ import heapq
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from functools import cache, partial
 from pathlib import Path
 from typing import Any, Protocol, Self
 
@@ -36,9 +35,11 @@ from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
 from recon4.recording.formats.point_messages import PointMessage, PointReader, point_readers
 from recon4.recording.formats.scratch import scratch_folder
-from recon4.recording.formats.shared_topics import SharedTopics
+from recon4.recording.formats.shared_topics import SharedTopics, Source
+from recon4.recording.formats.typestore import typestore
 from recon4.recording.formats.zstd_file import decompress_file
-from recon4.recording.packets.messages import DATA_MESSAGES, DEFINITIONS, PACKET_MESSAGES
+from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
+from recon4.recording.packets.senders import parts_of
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
 
@@ -47,16 +48,11 @@ IMU = "sensor_msgs/msg/Imu"
 NAVSATFIX = "sensor_msgs/msg/NavSatFix"
 ODOMETRY = "nav_msgs/msg/Odometry"
 LASER_SCAN = "sensor_msgs/msg/LaserScan"
-TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")
-"""Of ROS 2 and late ROS 1, of early ROS 1."""
 TEXT = "std_msgs/msg/String"
 _MEASURED = frozenset({*DATA_MESSAGES, CLOUD, IMU, NAVSATFIX, ODOMETRY, LASER_SCAN})
 """Types whose messages come when something is measured. With simulated time, messages that are sent
 once, such as static transforms, may be recorded at time 0."""
 
-_DEFINITIONS = {
-    **dict.fromkeys(TRANSFORMS, "geometry_msgs/TransformStamped[] transforms\n"),
-}
 STORAGE_SUFFIXES = (".db3", ".mcap")
 
 
@@ -83,6 +79,8 @@ class BagMessage:
     t_ns: int
     """Recording time [ns]."""
     data: bytes
+    content: Any | None = None
+    """Decoded, or the part of one sensor of it, if it had to be to know whose it is."""
 
 
 class StorageFile(Protocol):
@@ -149,7 +147,12 @@ class Bag:
         """Time from the first measured message to the last one [s]."""
         return (self.t_last_ns - self.t_first_ns) / 1e9
 
-    def use_sources(self, sources: Mapping[str, Sequence[str]]) -> None:
+    @property
+    def strays(self) -> frozenset[str]:
+        """Names of what is in shared topics and of none of their sensors."""
+        return self._shared.strays
+
+    def use_sources(self, sources: Mapping[str, Sequence[Source]]) -> None:
         """Read topics that several LiDARs share as one topic for each, ``TOPIC#SOURCE``."""
         self._shared = SharedTopics(sources)
         names = {topic.name: self._shared.names(topic.name) for topic in self.topics}
@@ -174,7 +177,7 @@ class Bag:
         stored = self._shared.stored(topics)
         streams = [self._of_source(source, stored, budget) for source in self._sources]
         merged = heapq.merge(*streams, key=lambda message: message.t_ns)
-        yield from self._shared.routed(merged, topics, partial(self.decode, as_sent=True))
+        yield from self._shared.routed(merged, topics, self._parts)
 
     def decode(self, message: BagMessage, *, as_sent: bool = False) -> Any | None:
         """Decode a message to an object with its fields; None (counted) if it is damaged.
@@ -184,7 +187,7 @@ class Bag:
             as_sent: Without the recipe of its topic.
         """
         try:
-            content = self._decoded(message)
+            content = self._decoded(message) if message.content is None else message.content
             recipe = None if as_sent else self.recipes.get(message.topic)
             if recipe is None:
                 return content
@@ -196,8 +199,14 @@ class Bag:
             self._left_out(f"{message.topic}: messages that cannot be decoded are left out")
         return None
 
+    def _parts(self, message: BagMessage) -> dict[Source, BagMessage]:
+        """What a message has of each sensor."""
+        content = self.decode(message, as_sent=True)
+        parts = {} if content is None else parts_of(message.type, content)
+        return {source: replace(message, content=part) for source, part in parts.items()}
+
     def _decoded(self, message: BagMessage) -> Any:
-        store = _typestore(self.ros1)
+        store = typestore(ros1=self.ros1)
         if message.type in self._points:
             return self._points[message.type].read(message.data, ros1=self.ros1)
         check_message(message.type, message.data, ros1=self.ros1)
@@ -375,17 +384,6 @@ class Bag:
             plain = decompress_partly("zstd", data, most=most, where=topic)
             budget.charge(len(plain), f"{self.paths[0].name}: {topic}")
             yield BagMessage(topic, kind, t_ns, plain)
-
-
-@cache
-def _typestore(ros1: bool) -> Any:
-    from rosbags.typesys import Stores, get_types_from_msg, get_typestore
-
-    store = get_typestore(Stores.ROS1_NOETIC if ros1 else Stores.ROS2_HUMBLE)
-    for name, text in {**DEFINITIONS, **_DEFINITIONS}.items():
-        if name not in store.types:
-            store.register(get_types_from_msg(text, name))
-    return store
 
 
 def _is_sqlite(path: Path) -> bool:

@@ -14,10 +14,12 @@ from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.families import FAMILIES
 from recon4.recording.packets.family import PacketFormat, PacketSamples, PacketSensor, Payloads
+from recon4.recording.packets.one_sender import require_one_sender
 from recon4.recording.packets.packet_holes import PacketHoles
 from recon4.recording.packets.packet_order import PacketOrder
 from recon4.recording.packets.packet_rotation import Rotation
 from recon4.recording.packets.sensor_clock import SensorClock
+from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning
 from recon4.settings.tuning import tuned
 from recon4.units import SECOND_NS
@@ -29,7 +31,8 @@ def open_decoder(
     """The decoder of a sensor, by the family that makes its model.
 
     Raises:
-        ConfigError: If its packets cannot be decoded: which file or model is missing.
+        ConfigError: If its packets cannot be decoded: which file or model is missing, or whether
+            they are of two sensors.
     """
     maker = lidar_model(of.sensor.model).maker
     family = next((family for family in FAMILIES if family.name == maker), None)
@@ -40,6 +43,7 @@ def open_decoder(
             "state its model in the rig file, or play the recording back through the driver and "
             f"record the PointCloud2 that it publishes; decoded: {known}"
         )
+    require_one_sender(family.open(replace(of, report=ImportReport())), of)
     return PacketDecoder(family.open(of), of, utc_offset_ns=utc_offset_ns, alone=alone)
 
 

@@ -217,6 +217,11 @@ class PacketFamily(Protocol):
         ...
 
 
+def no_sender(payloads: Payloads) -> list[str]:
+    """Nothing in the packets says which sensor sent them: the names of the senders, (N,)."""
+    return [""] * len(payloads)
+
+
 @dataclass(frozen=True, slots=True)
 class MessagePackets:
     """A type of message that carries packets."""
@@ -228,3 +233,6 @@ class MessagePackets:
     """The packets of a decoded message: arrival time [ns] (0 = that of the message), bytes."""
     samples: bool = False
     """Whether they are other packets of the LiDAR (IMU, device data), not points."""
+    senders: Callable[[Payloads], list[str]] = no_sender
+    """Which sensor sent each packet, as its own bytes say: its serial number or its model, (N,);
+    empty = they do not. Topics that several sensors share are taken apart by it."""

@@ -117,3 +117,31 @@ class SlotTuning:
 
 
 SLOTS = SlotTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MixedSenderTuning:
+    """When packets are taken for those of two sensors (`one_sender.py`).
+
+    Of 16 real recordings of one sensor none goes back, at least 98.9 % of the steps are even, and
+    packets come 0.99 to 1.01 times as often as they should.
+    """
+
+    fewest: int = 100
+    """Fewer packets show nothing."""
+    back_steps: float = 10.0
+    """Steps back by this many usual steps; packets that the network has swapped go back less."""
+    times_back: int = 2
+    """As often; a clock that is set goes back once, as does one that starts again at the hour."""
+    even_ratio: float = 0.5
+    even_cdeg: float = 30.0
+    """Steps of the azimuth are even within this ratio of the usual one, or this angle [0.01°]."""
+    even: float = 0.7
+    """Part of the steps of one sensor that is even, at least: half of those of two are."""
+    often: float = 1.6
+    """Packets come as many times as often as those of one sensor."""
+    gap: float = 5.0
+    """Longer steps than this many usual ones are gaps."""
+
+
+MIXED_SENDERS = MixedSenderTuning()

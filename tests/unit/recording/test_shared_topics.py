@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.model.rig import parse_rig
-from recon4.recording.formats.shared_topics import sources_of
+from recon4.recording.formats.shared_topics import source_of, sources_of
 from recon4.recording.info import describe
 from recon4.recording.rig_choice import RigToComplete, Stream, rig_to_complete
 from tests.builders import T0_NS, bag_path, room_cloud
@@ -56,9 +56,11 @@ def test_messages_of_one_frame_are_separated_by_the_number_of_their_lidar():
     header = SimpleNamespace(frame_id="livox_frame")
     messages = [SimpleNamespace(header=header, lidar_id=k % 2 + 1) for k in range(6)]
 
-    assert sources_of(messages) == ("livox_frame.1", "livox_frame.2")
-    assert sources_of(messages[:2] + messages[2::2]) == ()
-    assert sources_of([SimpleNamespace()] * 4) == ()
+    sources = [source_of(message) for message in messages]
+
+    assert [str(one) for one in sources_of(sources)] == ["livox_frame.1", "livox_frame.2"]
+    assert sources_of(sources[:2] + sources[2::2]) == ()
+    assert sources_of([source_of(SimpleNamespace())] * 4) == ()
 
 
 def test_a_topic_whose_frame_changes_once_is_of_one_sensor(tmp_path):

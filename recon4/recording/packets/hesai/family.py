@@ -63,13 +63,22 @@ def _packets(message: Any) -> list[tuple[int, bytes]]:
     ]
 
 
+def senders(payloads: Payloads) -> list[str]:
+    """The models that send packets, by their headers."""
+    heads, of = np.unique(payloads[:, :HEADER], axis=0, return_inverse=True)
+    first = [int(np.flatnonzero(of.reshape(-1) == k)[0]) for k in range(len(heads))]
+    found = [_data_packets(payloads[row : row + 1]) for row in first]
+    names = [one.model.name if one is not None else "" for one in found]
+    return [names[k] for k in of.reshape(-1).tolist()]
+
+
 class Hesai:
     """A `recon4.recording.packets.family.PacketFamily`."""
 
     name = "Hesai"
     messages: Mapping[str, MessagePackets] = {
-        "pandar_msgs/msg/PandarScan": MessagePackets(_PANDAR_TYPES, _packets),
-        "hesai_ros_driver/msg/UdpFrame": MessagePackets(_UDP_TYPES, _packets),
+        "pandar_msgs/msg/PandarScan": MessagePackets(_PANDAR_TYPES, _packets, senders=senders),
+        "hesai_ros_driver/msg/UdpFrame": MessagePackets(_UDP_TYPES, _packets, senders=senders),
     }
 
     def recognize(self, head: Datagrams, companions: Sequence[Companion]) -> Recognized | None:

@@ -20,6 +20,7 @@ from recon4.recording.packets.ouster.layouts import (
     HEADER_BYTES,
     STANDARD_HEADER,
     TYPE_DATA,
+    TYPE_IMU,
     PacketLayout,
     numbers,
 )
@@ -201,6 +202,19 @@ def _sender(head: Datagrams, sensor: Sensor | None) -> str:
     return address_text(int(head.source[0])) if len(head) else "a sensor"
 
 
+def header_serials(payloads: Payloads) -> NDArray[np.int64]:
+    """Serial numbers in the headers of data and IMU packets, (N,); -1 = they have none."""
+    serial = np.full(len(payloads), -1, dtype=np.int64)
+    if payloads.shape[1] < HEADER_BYTES:
+        return serial
+    begin = np.ascontiguousarray(payloads[:, :HEADER_BYTES])
+    for header, types in ((STANDARD_HEADER, (TYPE_DATA, TYPE_IMU)), (FUSA_HEADER, (TYPE_DATA,))):
+        record = begin.view(header)[:, 0]
+        known = np.isin(record["type"], types) & (serial < 0)
+        serial[known] = numbers(record["serial"][known])
+    return serial
+
+
 def parts_by_sensor(head: Datagrams) -> list[NDArray[np.bool_]]:
     """Rows of the datagrams of each sensor behind one address, if several send data packets.
 
@@ -209,11 +223,7 @@ def parts_by_sensor(head: Datagrams) -> list[NDArray[np.bool_]]:
     data = head.length >= SHARED_ADDRESS.smallest_bytes
     serial = np.full(len(head), -1, dtype=np.int64)
     rows = np.flatnonzero(data)
-    begin = head.payloads(rows, HEADER_BYTES)
-    for header in (STANDARD_HEADER, FUSA_HEADER):
-        record = np.ascontiguousarray(begin).view(header)[:, 0]
-        known = (record["type"] == TYPE_DATA) & (serial[rows] < 0)
-        serial[rows[known]] = numbers(record["serial"][known])
+    serial[rows] = header_serials(head.payloads(rows, HEADER_BYTES))
     _, of, count = np.unique(
         np.column_stack([serial, head.length])[data],
         axis=0,

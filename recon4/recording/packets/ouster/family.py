@@ -15,6 +15,7 @@ from recon4.recording.packets.family import (
     MessagePackets,
     PacketFormat,
     PacketSensor,
+    Payloads,
     Recognized,
 )
 from recon4.recording.packets.ouster.choice import (
@@ -23,6 +24,7 @@ from recon4.recording.packets.ouster.choice import (
     MetadataFiles,
     choose,
     find_metadata,
+    header_serials,
     layout_fits,
     missing_text,
     parts_by_sensor,
@@ -39,6 +41,7 @@ from recon4.recording.packets.tuning import HEAD
 _NAME = "Ouster"
 UNKNOWN = _NAME
 """Model of a sensor of which nothing states what it is."""
+_SIZES_WITHOUT_HEADER = frozenset(one.size for one in USUAL_LAYOUTS if not one.profile.has_header)
 
 
 def packets_of_message(message: Any) -> list[tuple[int, bytes]]:
@@ -47,8 +50,16 @@ def packets_of_message(message: Any) -> list[tuple[int, bytes]]:
     return [(0, packet[: len(packet) & ~1])]
 
 
+def senders(payloads: Payloads) -> list[str]:
+    """The serial numbers in the headers; of packets without one, their size tells sensors apart."""
+    size = payloads.shape[1]
+    if size in _SIZES_WITHOUT_HEADER:
+        return [f"{size} bytes"] * len(payloads)
+    return [str(number) if number > 0 else "" for number in header_serials(payloads).tolist()]
+
+
 _MESSAGES = {
-    name: MessagePackets({name: "uint8[] buf\n"}, packets_of_message)
+    name: MessagePackets({name: "uint8[] buf\n"}, packets_of_message, senders=senders)
     for name in ("ouster_ros/msg/PacketMsg", "ouster_sensor_msgs/msg/PacketMsg")
 }
 

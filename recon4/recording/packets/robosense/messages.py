@@ -7,8 +7,13 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from recon4.recording.packets.family import MessagePackets
+from recon4.recording.packets.family import MessagePackets, Payloads
+from recon4.recording.packets.robosense.models import MODELS, SIZE, TYPE_AT, RoboSenseModel
+from recon4.recording.packets.robosense.packets import has_flags, has_id
+from recon4.recording.packets.robosense.solid import SOLID_MODELS, SolidModel, sound_solid
+from recon4.recording.report import ImportReport
 from recon4.units import SECOND_NS
 
 
@@ -20,21 +25,45 @@ def _messages() -> dict[str, MessagePackets]:
         scan: f"{header}robosense_msgs/RobosensePacket[] packets\n",
         packet: f"{stamp}uint8 is_difop\nuint8[1500] data\nuint32 size\n",
     }
-    found = {scan: MessagePackets(definitions=nebula, packets=_scan)}
+    found = {scan: MessagePackets(definitions=nebula, packets=_scan, senders=senders)}
     for package in ("rslidar_msg", "rslidar_msgs"):
         name = f"{package}/msg/RslidarPacket"
         text = f"{header}uint8 is_difop\nuint8 is_frame_begin\nuint8[] data\n"
-        found[name] = MessagePackets(definitions={name: text}, packets=_one)
+        found[name] = MessagePackets(definitions={name: text}, packets=_one, senders=senders)
         old, its = f"{package}/msg/rslidarScan", f"{package}/msg/rslidarPacket"
         texts = {
             old: f"{header}{package}/rslidarPacket[] packets\n",
             its: f"{stamp}uint8[1248] data\n",
         }
-        found[old] = MessagePackets(definitions=texts, packets=_scan)
+        found[old] = MessagePackets(definitions=texts, packets=_scan, senders=senders)
         found[its] = MessagePackets(
             definitions={its: texts[its]}, packets=lambda one: [_packet(one)], samples=True
         )
     return found
+
+
+def senders(payloads: Payloads) -> list[str]:
+    """Models with the bytes of data packets, and their type and variant in the header."""
+    names = [""] * len(payloads)
+    models: list[RoboSenseModel | SolidModel] = [*MODELS.values(), *SOLID_MODELS.values()]
+    for model in models:
+        for row in np.flatnonzero(_is_data_of(payloads, model)).tolist():
+            kind, variant = payloads[row, TYPE_AT : TYPE_AT + 2].tolist()
+            names[row] = names[row] or f"{model.name.split()[0]}-{kind}.{variant}"
+    return names
+
+
+def _is_data_of(payloads: Payloads, model: RoboSenseModel | SolidModel) -> NDArray[np.bool_]:
+    if isinstance(model, SolidModel):
+        is_size = payloads.shape[1] == model.size
+        return sound_solid(payloads, ImportReport()) if is_size else _none(payloads)
+    if payloads.shape[1] != SIZE:
+        return _none(payloads)
+    return has_id(payloads, model) & has_flags(payloads, model)
+
+
+def _none(payloads: Payloads) -> NDArray[np.bool_]:
+    return np.zeros(len(payloads), np.bool_)
 
 
 def _scan(message: Any) -> list[tuple[int, bytes]]:

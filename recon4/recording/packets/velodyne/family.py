@@ -21,6 +21,7 @@ from recon4.recording.packets.family import (
     PacketSensor,
     Payloads,
     Recognized,
+    no_sender,
 )
 from recon4.recording.packets.packet_rotation import Rotation
 from recon4.recording.packets.sensor_clock import SensorClock
@@ -42,7 +43,7 @@ from recon4.recording.packets.velodyne.models import (
 )
 from recon4.recording.packets.velodyne.position_packets import PositionDecoder, utc_offset_ns
 from recon4.recording.packets.velodyne.sound_packets import as_packets, sound_packets
-from recon4.recording.packets.velodyne.wide_models import VLS128
+from recon4.recording.packets.velodyne.wide_models import VLS128, VLS128_PRODUCT
 from recon4.recording.packets.velodyne.wide_packets import WideFormat, dual_packets, sound_wide
 from recon4.recording.report import ImportReport
 from recon4.units import SECOND_NS
@@ -66,6 +67,7 @@ class VelodyneFamily:
                     ),
                 },
                 packets=lambda scan: [_packet(packet) for packet in scan.packets],
+                senders=lambda payloads: senders(payloads),
             )
         }
     )
@@ -100,6 +102,18 @@ class VelodyneFamily:
 
 
 VELODYNE = VelodyneFamily()
+
+
+def senders(payloads: Payloads) -> list[str]:
+    """The models that send packets, by their product bytes; an HDL-64E has none."""
+    if payloads.shape[1] != DATA_SIZE:
+        return no_sender(payloads)
+    flags = as_packets(payloads)["blocks"]["flag"]
+    lower = flags == LOWER_BLOCK_FLAG
+    hdl64 = lower.any(axis=1) & (lower | (flags == BLOCK_FLAG)).all(axis=1)
+    known = {**PRODUCTS, VLS128_PRODUCT: VLS128.name}
+    models = [known.get(product, f"{product:#04x}") for product in payloads[:, -1].tolist()]
+    return [HDL64 if is_hdl64 else name for name, is_hdl64 in zip(models, hdl64, strict=True)]
 
 
 def _packet(packet: Any) -> tuple[int, bytes]:

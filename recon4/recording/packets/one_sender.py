@@ -1,0 +1,97 @@
+"""Whether packets that are taken for those of one sensor are of two that nothing tells apart.
+
+Two sensors of one model in one topic, or behind one address, would give one cloud with each thing
+twice. Three things show it, none of which needs a clock that the two share.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.errors import ConfigError
+from recon4.recording.formats.datagrams import Datagrams
+from recon4.recording.packets.family import PacketFormat, PacketSensor, Payloads
+from recon4.recording.packets.tuning import MIXED_SENDERS
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Arrivals:
+    """The first packets of a sensor in the order of their arrival."""
+
+    layout: PacketFormat
+    payloads: Payloads
+    steps_ns: NDArray[np.int64]
+    """From the stamp of each packet to that of the next [ns], (N - 1,)."""
+
+
+def require_one_sender(layout: PacketFormat, of: PacketSensor) -> None:
+    """Check the first packets of a sensor.
+
+    Args:
+        layout: Of the sensor; takes no part in reading.
+        of: The sensor.
+
+    Raises:
+        ConfigError: If they are of two sensors.
+    """
+    head = _head(layout, of.head)
+    if head is None:
+        return
+    why = _goes_back(head) or _turns_to_and_fro(head) or _comes_too_often(head)
+    if why:
+        raise ConfigError(
+            f"{of.sensor.topic or of.sensor.name}: packets of two sensors of one model are mixed, "
+            f"and nothing in them tells the sensors apart ({why}): record each of them in a topic "
+            "of its own, or to a port of its own"
+        )
+
+
+def _head(layout: PacketFormat, datagrams: Datagrams) -> _Arrivals | None:
+    rows = np.flatnonzero(datagrams.length == layout.size)
+    payloads = _without_copies(datagrams.payloads(rows, layout.size))
+    payloads = payloads[layout.sound(payloads)]
+    if len(payloads) < MIXED_SENDERS.fewest:
+        return None
+    return _Arrivals(layout, payloads, np.diff(layout.stamps_ns(payloads)))
+
+
+def _without_copies(payloads: Payloads) -> Payloads:
+    """Packets that were recorded twice, as in bags that were merged, once."""
+    whole = np.ascontiguousarray(payloads).view(f"V{payloads.shape[1]}")[:, 0]
+    first = {one: row for row, one in reversed(list(enumerate(whole.tolist())))}
+    return payloads[sorted(first.values())]
+
+
+def _goes_back(head: _Arrivals) -> str:
+    """Two sensors in turns: each message begins before the one ahead of it ends."""
+    usual_ns = max(1.0, float(np.median(np.abs(head.steps_ns))))
+    back = int((head.steps_ns < -MIXED_SENDERS.back_steps * usual_ns).sum())
+    return f"their times go back {back} times" if back >= MIXED_SENDERS.times_back else ""
+
+
+def _turns_to_and_fro(head: _Arrivals) -> str:
+    """Two sensors packet by packet: from each direction to that of the other."""
+    azimuth_cdeg = head.layout.azimuth_cdeg(head.payloads)
+    if azimuth_cdeg is None:
+        return ""
+    steps_cdeg = np.diff(azimuth_cdeg) % 36000
+    usual_cdeg = float(np.median(steps_cdeg))
+    most_cdeg = max(MIXED_SENDERS.even_ratio * usual_cdeg, MIXED_SENDERS.even_cdeg)
+    even = float(np.mean(np.abs(steps_cdeg - usual_cdeg) <= most_cdeg))
+    return "their directions jump to and fro" if even < MIXED_SENDERS.even else ""
+
+
+def _comes_too_often(head: _Arrivals) -> str:
+    """More packets than one sensor sends, at an interval of no model."""
+    forward = head.steps_ns[head.steps_ns > 0]
+    if 2 * len(forward) < len(head.steps_ns):
+        return ""
+    usual = forward[forward < MIXED_SENDERS.gap * np.median(forward)]
+    mean_s = 1e-9 * float(usual.sum()) / len(head.steps_ns)
+    often = head.layout.packet_s / mean_s if mean_s > 0 else 0.0
+    if not often > MIXED_SENDERS.often or head.layout.likely_models(mean_s):
+        return ""
+    return f"they come {often:.1f} times as often as those of one"
