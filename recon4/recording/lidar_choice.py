@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from recon4.errors import RecordingError
 from recon4.recording.formats.bags import IMU, ODOMETRY, Bag, BagTopic
 from recon4.recording.formats.cloud_tables import cloud_table
-from recon4.recording.formats.shared_topics import Source, sources_of
+from recon4.recording.formats.shared_topics import TopicSource, sources_of
 from recon4.recording.frame_graph import BODY_FRAMES, WORLD_FRAMES, last_name
 from recon4.recording.packets.messages import PACKET_MESSAGES
 from recon4.recording.packets.senders import OwnPackets, parts_of
@@ -231,7 +231,7 @@ def _points(message: Any) -> NDArray[np.float64]:
     return p[np.isfinite(p).all(axis=1)]
 
 
-def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[Source, ...]]:
+def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[TopicSource, ...]]:
     """Topics of points or packets that several LiDARs share, with the sources of their heads.
 
     Args:
@@ -249,7 +249,7 @@ def shared_topics(bag: Bag, report: ImportReport) -> dict[str, tuple[Source, ...
     return found
 
 
-def _sources_at_head(bag: Bag, topic: BagTopic) -> Iterator[Source]:
+def _sources_at_head(bag: Bag, topic: BagTopic) -> Iterator[TopicSource]:
     """Of each part of the first messages: of each packet, or of each cloud."""
     left = 0 if is_cloud(topic) else SHARED_TOPICS.packets
     for number, message in enumerate(bag.messages([topic.name])):

@@ -35,7 +35,7 @@ from recon4.recording.formats.mcap_file import Mcap
 from recon4.recording.formats.message_limits import check_message
 from recon4.recording.formats.point_messages import PointMessage, PointReader, point_readers
 from recon4.recording.formats.scratch import scratch_folder
-from recon4.recording.formats.shared_topics import SharedTopics, Source
+from recon4.recording.formats.shared_topics import SharedTopics, TopicSource
 from recon4.recording.formats.typestore import typestore
 from recon4.recording.formats.zstd_file import decompress_file
 from recon4.recording.packets.messages import DATA_MESSAGES, PACKET_MESSAGES
@@ -152,7 +152,7 @@ class Bag:
         """Names of what is in shared topics and of none of their sensors."""
         return self._shared.strays
 
-    def use_sources(self, sources: Mapping[str, Sequence[Source]]) -> None:
+    def use_sources(self, sources: Mapping[str, Sequence[TopicSource]]) -> None:
         """Read topics that several LiDARs share as one topic for each, ``TOPIC#SOURCE``."""
         self._shared = SharedTopics(sources)
         names = {topic.name: self._shared.names(topic.name) for topic in self.topics}
@@ -199,7 +199,7 @@ class Bag:
             self._left_out(f"{message.topic}: messages that cannot be decoded are left out")
         return None
 
-    def _parts(self, message: BagMessage) -> dict[Source, BagMessage]:
+    def _parts(self, message: BagMessage) -> dict[TopicSource, BagMessage]:
         """What a message has of each sensor."""
         content = self.decode(message, as_sent=True)
         parts = {} if content is None else parts_of(message.type, content)

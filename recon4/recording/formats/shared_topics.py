@@ -19,7 +19,7 @@ _STRAY = "?"
 
 
 @dataclass(frozen=True, slots=True, order=True)
-class Source:
+class TopicSource:
     """Which sensor a part of a message is of."""
 
     frame: str
@@ -50,12 +50,12 @@ def frame_named(content: Any) -> str:
     return str(getattr(getattr(content, "header", None), "frame_id", "")).strip("/")[:80]
 
 
-def source_of(content: Any) -> Source:
+def source_of(content: Any) -> TopicSource:
     """Which sensor a decoded message of points is of, as ``livox_frame.2``."""
-    return Source(frame_named(content), str(getattr(content, "lidar_id", "")))
+    return TopicSource(frame_named(content), str(getattr(content, "lidar_id", "")))
 
 
-def sources_of(parts: Iterable[Source]) -> tuple[Source, ...]:
+def sources_of(parts: Iterable[TopicSource]) -> tuple[TopicSource, ...]:
     """The sensors of the first parts of messages of a topic, if they are several; empty = one.
 
     Parts that do not tell their sender are of those of the same frame that do.
@@ -72,7 +72,7 @@ def sources_of(parts: Iterable[Source]) -> tuple[Source, ...]:
 class SharedTopics:
     """The topics of a bag that several sensors share."""
 
-    sources: Mapping[str, Sequence[Source]]
+    sources: Mapping[str, Sequence[TopicSource]]
     """Topic -> its sources."""
 
     @property
@@ -94,7 +94,7 @@ class SharedTopics:
         self,
         messages: Iterable[Message],
         wanted: Iterable[str],
-        parts: Callable[[Message], Mapping[Source, Message]],
+        parts: Callable[[Message], Mapping[TopicSource, Message]],
     ) -> Iterator[Message]:
         """The messages of some topics, parts of shared ones under the name with their source.
 
@@ -113,7 +113,7 @@ class SharedTopics:
                 if name in names:
                     yield replace(part, topic=name)
 
-    def _owner(self, topic: str, source: Source) -> Source | str:
+    def _owner(self, topic: str, source: TopicSource) -> TopicSource | str:
         """Whose a part is: the only sensor of its frame, if it does not tell its sender."""
         sources = self.sources[topic]
         if source in sources:

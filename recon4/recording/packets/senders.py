@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from recon4.recording.formats.datagrams import datagrams_of
-from recon4.recording.formats.shared_topics import Source, frame_named, source_of
+from recon4.recording.formats.shared_topics import TopicSource, frame_named, source_of
 from recon4.recording.packets.family import MessagePackets
 from recon4.recording.packets.messages import PACKET_MESSAGES
 
@@ -26,16 +26,16 @@ class OwnPackets:
     packets: list[TimedPacket]
 
 
-def parts_of(kind: str, content: Any) -> dict[Source, Any]:
+def parts_of(kind: str, content: Any) -> dict[TopicSource, Any]:
     """What a decoded message of some type has of each sensor."""
     row = PACKET_MESSAGES.get(kind)
     if row is None:
         return {source_of(content): content}
     packets, frame = row.packets(content), frame_named(content)
-    parts: dict[Source, Any] = {}
+    parts: dict[TopicSource, Any] = {}
     for packet, sender in zip(packets, _senders(row, packets), strict=True):
         own = OwnPackets(getattr(content, "header", None), [])
-        parts.setdefault(Source(frame, sender), own).packets.append(packet)
+        parts.setdefault(TopicSource(frame, sender), own).packets.append(packet)
     return parts
 
 
