@@ -32,10 +32,7 @@ from recon4.simulation.walk import Walk
 from recon4.simulation.world import World
 from recon4.simulation.worlds import build_world
 from recon4.store.atomic import atomic_folder
-
-_SECOND_NS = 1_000_000_000
-_RETURN_RATIO = 0.916
-"""Part of the shots that return in the hall; the rest hit panes, pass doors or are too weak."""
+from recon4.units import SECOND_NS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -136,9 +133,7 @@ def _profiler_row(rig: Rig) -> int:
 def _models_of(figure: str) -> BackpackModels:
     """Models with the line rate and the points of a line of L Table 1."""
     row = figure_named(figure)
-    profiler = ProfilerModel(
-        lines_hz=row.line_scans / row.seconds, shots=round(row.points_per_line / _RETURN_RATIO)
-    )
+    profiler = ProfilerModel(lines_hz=row.line_scans / row.seconds, shots=row.shots_per_line)
     return BackpackModels(profiler=profiler)
 
 
@@ -189,7 +184,7 @@ def measured_seconds(
     """What profiler and 2-D laser measure in each second of the walk."""
     lines = scans = 0
     for second in range(int(np.ceil(setup.walk.seconds))):
-        end_ns = min((second + 1) * _SECOND_NS, int(setup.walk.seconds * 1e9))
+        end_ns = min((second + 1) * SECOND_NS, int(setup.walk.seconds * 1e9))
         first, lines = lines, max(lines, setup.profiler.lines_before(end_ns))
         measured = setup.profiler.measure(
             range(first, lines), setup.walk, setup.surroundings, rng=setup.rng(3, 0, second)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from contextlib import ExitStack
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -18,21 +18,29 @@ from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.formats.poses import write_tum
 from recon4.simulation.csv_tables import write_imu
-from recon4.simulation.degradation import Degradation
+from recon4.simulation.degradation import COURSE, Degradation
 from recon4.simulation.imu import simulate_imu
 from recon4.simulation.line_bag import LineBag, open_line_bag
 from recon4.simulation.profiler import SimulatedLines
 from recon4.simulation.truth import true_trajectory
+from recon4.units import SECOND_NS
 
 if TYPE_CHECKING:
     from recon4.simulation.backpack import BackpackSetup
 
-_SECOND_NS = 1_000_000_000
-_ISPACE_HZ = 40
-_ISPACE_M = 0.00025
-"""Largest error of a position by iSpace (L §4.4)."""
-_ISPACE_SD_RAD = 2e-4
-_SILENT_FROM_S = 20.0
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class IspaceModel:
+    """The measuring system of the hall (L §4.4)."""
+
+    rate_hz: int = 40
+    error_m: float = 0.00025
+    """Largest error of a position."""
+    sd_rad: float = 2e-4
+    """Standard deviation of an orientation about each axis."""
+
+
+ISPACE = IspaceModel()
 
 
 class BackpackRecorder:
@@ -63,8 +71,8 @@ class BackpackRecorder:
             self._write_scans(scans)
         self._write_lines(second, lines)
         if self._imu is not None:
-            start_ns = self._setup.epoch_ns + second * _SECOND_NS
-            first, last = np.searchsorted(self._imu.t_ns, [start_ns, start_ns + _SECOND_NS])
+            start_ns = self._setup.epoch_ns + second * SECOND_NS
+            first, last = np.searchsorted(self._imu.t_ns, [start_ns, start_ns + SECOND_NS])
             rows = slice(int(first), int(last))
             self._bag.imu(
                 ImuSamples(
@@ -106,10 +114,10 @@ class BackpackRecorder:
         self._counts["points"] += int(np.isfinite(lines.range_m[kept]).sum())
 
     def _with_pause(self, t_ns: Times, head: Array) -> Array:
-        """Angles with the one of `_SILENT_FROM_S` for as long as the encoder is stuck."""
+        """Angles with that of `COURSE.silent_from_s` for as long as the encoder is stuck."""
         t_s = 1e-9 * t_ns
-        stuck = t_s >= _SILENT_FROM_S
-        stuck &= t_s < _SILENT_FROM_S + self._degradation.values["head-pause"]
+        stuck = t_s >= COURSE.silent_from_s
+        stuck &= t_s < COURSE.silent_from_s + self._degradation.values["head-pause"]
         if stuck.any() and self._stuck_rad is None:
             self._stuck_rad = float(head[np.argmax(stuck)])
         return np.where(stuck, self._stuck_rad or 0.0, head)
@@ -120,7 +128,7 @@ class BackpackRecorder:
         sensor = setup.rig.sensors[row]
         silent_s = values.get("laser2d-silent", 0.0)
         t_s = 1e-9 * scans.t_ns
-        kept = ~((t_s >= _SILENT_FROM_S) & (t_s < _SILENT_FROM_S + silent_s))
+        kept = ~((t_s >= COURSE.silent_from_s) & (t_s < COURSE.silent_from_s + silent_s))
         scans = scans[kept]
         scans = replace(scans, t_ns=scans.t_ns + setup.epoch_ns - round(1e9 * sensor.time_offset_s))
         ahead_ns = round(1e9 * values.get("laser2d-clock", 0.0))
@@ -167,14 +175,14 @@ class BackpackRecorder:
 
 def ispace_trajectory(setup: BackpackSetup) -> Trajectory:
     """``T_map_body`` as iSpace measures it: 40 Hz, within 0.25 mm (L §4.4)."""
-    period_ns = _SECOND_NS // _ISPACE_HZ
-    t_ns = np.arange(int(setup.walk.seconds * _ISPACE_HZ) + 1, dtype=np.int64) * period_ns
+    period_ns = SECOND_NS // ISPACE.rate_hz
+    t_ns = np.arange(int(setup.walk.seconds * ISPACE.rate_hz) + 1, dtype=np.int64) * period_ns
     rng = setup.rng(9)
     T = setup.walk.poses(1e-9 * t_ns)
     direction = rng.standard_normal((len(t_ns), 3))
     direction /= np.linalg.norm(direction, axis=1, keepdims=True)
-    error_m = _ISPACE_M * rng.uniform(0.0, 1.0, (len(t_ns), 1)) * direction
+    error_m = ISPACE.error_m * rng.uniform(0.0, 1.0, (len(t_ns), 1)) * direction
     turn = np.zeros((len(t_ns), 6))
-    turn[:, :3] = _ISPACE_SD_RAD * rng.standard_normal((len(t_ns), 3))
+    turn[:, :3] = ISPACE.sd_rad * rng.standard_normal((len(t_ns), 3))
     R = T.R @ SE3.exp(turn).R
     return Trajectory(setup.epoch_ns + t_ns, SE3(R, T.t + error_m))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,13 @@ from recon4.model.trajectory import Times
 from recon4.recording.packets.messages import PACKET_MESSAGES as READ_MESSAGES
 from recon4.simulation.bag_packets import PACKET_MESSAGES
 
-_NO_FIX, _FIX, _AUGMENTED = -1, 0, 2
+
+class NavSatLevel(IntEnum):
+    """Levels of ``sensor_msgs/NavSatStatus``."""
+
+    NO_FIX = -1
+    FIX = 0
+    GBAS_FIX = 2
 
 
 @contextmanager
@@ -81,9 +88,9 @@ class BagWriter:
         """Append positions on ``/gnss/fix``."""
         types = self._store.types
         status, service = types["sensor_msgs/msg/NavSatStatus"], 1
-        levels = {GnssQuality.INVALID: _NO_FIX, GnssQuality.SINGLE: _FIX}
+        levels = {GnssQuality.INVALID: NavSatLevel.NO_FIX, GnssQuality.SINGLE: NavSatLevel.FIX}
         for k, t in enumerate(samples.t_ns):
-            level = levels.get(GnssQuality(int(samples.quality[k])), _AUGMENTED)
+            level = levels.get(GnssQuality(int(samples.quality[k])), NavSatLevel.GBAS_FIX)
             message = types["sensor_msgs/msg/NavSatFix"](
                 header=self._header(int(t), "gnss"),
                 status=status(status=level, service=service),

@@ -18,10 +18,8 @@ from recon4.simulation.lidar import (
     hit_noise,
     measure_hits,
 )
+from recon4.simulation.person import TORSO_WITH_LOAD_CARRIER
 from recon4.simulation.walk import Walk
-
-WUERZBURG_CARRIER = np.array([0.24, 0.0, 0.3, -1.5, 0.12])
-"""The person with load carrier: x, y, radius, bottom and top of an upright cylinder [m]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -72,7 +70,7 @@ def shoot(
     make_rays(walk.state(shots.t_s), R, t, shot, rays)
     person_m: Array = np.full(count, np.inf)
     if model.carrier:
-        carrier_range(shot, R, t, WUERZBURG_CARRIER, person_m)
+        carrier_range(shot, R, t, TORSO_WITH_LOAD_CARRIER.row(), person_m)
     hits = surroundings.cast(rays, walk, np.tile(shots.t_s, 2))
     blocked = person_m < hits.range_m[:count]
     noise = hit_noise(count, rng)

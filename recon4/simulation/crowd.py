@@ -9,10 +9,8 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.simulation.companions import Companions
-from recon4.simulation.degradation import PEOPLE, VEHICLES
+from recon4.simulation.degradation import KINDS, PEOPLE, VEHICLES
 from recon4.simulation.vehicles import Vehicles
-
-_MOST_PEOPLE, _MOST_VEHICLES = 12, 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,10 +31,11 @@ class Crowd:
         Raises:
             ConfigError: If one is negative or too large.
         """
-        if not 0 <= self.people <= _MOST_PEOPLE:
-            raise ConfigError(f"0 to {_MOST_PEOPLE} people can walk along, got {self.people}")
-        if not 0 <= self.vehicles <= _MOST_VEHICLES:
-            raise ConfigError(f"0 to {_MOST_VEHICLES} vehicles can move, got {self.vehicles}")
+        most_people, most_vehicles = KINDS[PEOPLE].largest, KINDS[VEHICLES].largest
+        if not 0 <= self.people <= most_people:
+            raise ConfigError(f"0 to {most_people:g} people can walk along, got {self.people}")
+        if not 0 <= self.vehicles <= most_vehicles:
+            raise ConfigError(f"0 to {most_vehicles:g} vehicles can move, got {self.vehicles}")
 
     def drawn(self, seed: int) -> tuple[Companions | None, Vehicles | None]:
         """The people and vehicles of a seed; None = there are none."""

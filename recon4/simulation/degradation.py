@@ -23,10 +23,18 @@ from recon4.simulation.lidar import Firings
 from recon4.simulation.patterns import FiringPattern
 from recon4.units import STANDARD_GRAVITY_M_S2
 
-_BURST_PACKETS = 6
-"""Packets are lost in runs of this length on average."""
-_SWITCH = 1.0
-"""Value of a degradation that is there or not."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DegradationCourse:
+    """When and how what is degraded comes and goes."""
+
+    burst_packets: int = 6
+    """Packets are lost in runs of this length on average."""
+    silent_from_s: float = 20.0
+    """The head and the 2-D laser of the backpack are silent from this time of the walk on."""
+
+
+COURSE = DegradationCourse()
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,24 +47,30 @@ class DegradationKind:
     unit: str
     text: str
 
+    @staticmethod
+    def switch(text: str) -> DegradationKind:
+        """One that is there or not."""
+        return DegradationKind(1.0, 1, "", text)
 
+
+_FROM = f"from {COURSE.silent_from_s:g} s on"
 KINDS: Mapping[str, DegradationKind] = {
     "extrinsics": DegradationKind(1.4, 180, "°", "the last LiDAR is rotated against the rig file"),
     "mount-shift": DegradationKind(0.05, 5, "m", "the last LiDAR is not where the rig file says"),
-    "swap-lidars": DegradationKind(_SWITCH, 1, "", "the mounts of two LiDARs are exchanged"),
-    "wrong-model": DegradationKind(_SWITCH, 1, "", "the rig file calls the last LiDAR an HDL-32E"),
+    "swap-lidars": DegradationKind.switch("the mounts of two LiDARs are exchanged"),
+    "wrong-model": DegradationKind.switch("the rig file calls the last LiDAR an HDL-32E"),
     "lidar-clock": DegradationKind(0.02, 100, "s", "the clock of the last LiDAR is ahead"),
     "lidar-drift": DegradationKind(300, 1e5, "ppm", "the clock of the last LiDAR is too fast"),
     "imu-clock": DegradationKind(0.02, 100, "s", "the clock of the IMU is ahead"),
     "imu-drift": DegradationKind(300, 1e5, "ppm", "the clock of the IMU is too fast"),
     "gnss-clock": DegradationKind(0.1, 100, "s", "the clock of the receiver is ahead"),
     "imu-rotation": DegradationKind(1.5, 180, "°", "the IMU is rotated against the rig file"),
-    "imu-axes": DegradationKind(_SWITCH, 1, "", "x and y of the IMU are exchanged, z is turned"),
+    "imu-axes": DegradationKind.switch("x and y of the IMU are exchanged, z is turned"),
     "imu-grade": DegradationKind(5, 1e4, "", "noise and biases of the IMU are larger by this"),
     "imu-scale": DegradationKind(0.03, 10, "", "ratio by which the IMU measures too much"),
-    "imu-unit": DegradationKind(_SWITCH, 1, "", "accelerations are in g in place of m/s²"),
-    "no-imu": DegradationKind(_SWITCH, 1, "", "no IMU was recorded"),
-    "no-gnss": DegradationKind(_SWITCH, 1, "", "no GNSS was recorded"),
+    "imu-unit": DegradationKind.switch("accelerations are in g in place of m/s²"),
+    "no-imu": DegradationKind.switch("no IMU was recorded"),
+    "no-gnss": DegradationKind.switch("no GNSS was recorded"),
     "lever-arm": DegradationKind(0.15, 10, "m", "the antenna is not where the rig file says"),
     "dead-beams": DegradationKind(6, 128, "", "number of lasers that return nothing"),
     "beam-bias": DegradationKind(0.03, 1, "m", "standard deviation of a range bias of each laser"),
@@ -71,15 +85,15 @@ KINDS: Mapping[str, DegradationKind] = {
     "vehicles": DegradationKind(
         3, 6, "", "number of vehicles that move: a car beside, a bus that drives off, a fast car"
     ),
-    "no-head": DegradationKind(_SWITCH, 1, "", "the angles of the profiler's head are missing"),
-    "head-stuck": DegradationKind(_SWITCH, 1, "", "the profiler reports one angle of its head"),
-    "head-pause": DegradationKind(4.0, 1e4, "s", "the head reports one angle from 20 s on"),
-    "lines-cm": DegradationKind(_SWITCH, 1, "", "ranges of the profiler are in centimeters"),
-    "laser2d-cm": DegradationKind(_SWITCH, 1, "", "ranges of the 2-D laser are in centimeters"),
+    "no-head": DegradationKind.switch("the angles of the profiler's head are missing"),
+    "head-stuck": DegradationKind.switch("the profiler reports one angle of its head"),
+    "head-pause": DegradationKind(4.0, 1e4, "s", f"the head reports one angle {_FROM}"),
+    "lines-cm": DegradationKind.switch("ranges of the profiler are in centimeters"),
+    "laser2d-cm": DegradationKind.switch("ranges of the 2-D laser are in centimeters"),
     "laser2d-clock": DegradationKind(0.02, 1e6, "s", "the clock of the 2-D laser is ahead"),
-    "laser2d-silent": DegradationKind(5.0, 1e4, "s", "the 2-D laser is silent from 20 s on"),
-    "laser2d-mirrored": DegradationKind(_SWITCH, 1, "", "the 2-D laser is mounted upside down"),
-    "no-laser2d": DegradationKind(_SWITCH, 1, "", "no 2-D laser was recorded"),
+    "laser2d-silent": DegradationKind(5.0, 1e4, "s", f"the 2-D laser is silent {_FROM}"),
+    "laser2d-mirrored": DegradationKind.switch("the 2-D laser is mounted upside down"),
+    "no-laser2d": DegradationKind.switch("no 2-D laser was recorded"),
 }
 PEOPLE = "people"
 """It changes the rays, see `recon4.simulation.companions`."""
@@ -284,7 +298,7 @@ class Degradation:
         if not ratio:
             return np.ones(count, dtype=bool)
         rng = np.random.default_rng([self.seed, 8, row, second])
-        back = 1.0 / _BURST_PACKETS
+        back = 1.0 / COURSE.burst_packets
         away = back * ratio / (1.0 - ratio)
         lost = np.empty(count, dtype=bool)
         state = bool(rng.random() < ratio)

@@ -19,9 +19,10 @@ from recon4.simulation.lidar import Firings, Lidar
 from recon4.simulation.setup import SimulationSetup, gnss_samples, imu_samples
 from recon4.simulation.truth import true_trajectory
 from recon4.store.frames import FrameWriter
+from recon4.units import SECOND_NS
 
-FRAME_NS = 100_000_000
-_CHUNK_FRAMES = 10
+FRAME_NS = SECOND_NS // 10
+_CHUNK_FRAMES = SECOND_NS // FRAME_NS
 Columns = dict[str, NDArray[Any]]
 
 

@@ -9,21 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
+from recon4.simulation.person import GAIT
 from recon4.simulation.rides import Ride
-from recon4.simulation.walk import BODY_HEIGHT_M, KNOT_S, Walk
+from recon4.simulation.walk import Walk
 from recon4.simulation.world import Waypoint, World
 
-SPEED_M_S = 1.2
-_SLOWEST_M_S, _FASTEST_M_S = 1.0, 1.4
-_LONGEST = 1.12
-"""Largest factor by which a round may be longer than a full one at the usual speed."""
-_STAND_S = 1.5
-_RATE_HZ = 4.0 / KNOT_S
-_PATH_SIGMA_S = 0.2
-_HEADING_SIGMA_S = 0.12
-_FASTEST_TURN_DEG_S = 240.0
-_RIDE_M_S, _RIDE_STEP_S = 0.6, 0.05
-"""Mean speed of an elevator, which starts and stops smoothly, and steps of its course [s]."""
+_RATE_HZ = 4.0 / Walk.KNOT_S
+"""Of the samples from which the splines are made."""
 
 
 @dataclass(slots=True)
@@ -48,8 +40,10 @@ class _Timeline:
         """Be carried straight up or down, with a course of the fifth degree over time."""
         (x, y, z), begin_s = self.place[-1], self.t_s[-1]
         rise = place[2] - z
-        for s in np.linspace(0.0, 1.0, max(2, round(abs(rise) / _RIDE_M_S / _RIDE_STEP_S)))[1:]:
-            self.t_s.append(begin_s + float(s) * abs(rise) / _RIDE_M_S)
+        for s in np.linspace(0.0, 1.0, max(2, round(abs(rise) / GAIT.ride_m_s / GAIT.ride_step_s)))[
+            1:
+        ]:
+            self.t_s.append(begin_s + float(s) * abs(rise) / GAIT.ride_m_s)
             done = float(s**3 * (10.0 - 15.0 * s + 6.0 * s**2))
             self.place.append((x, y, z + done * rise))
         self.rides_s.append((begin_s, self.t_s[-1]))
@@ -69,7 +63,7 @@ def plan_walk(world: World, *, seconds: float, rng: np.random.Generator) -> Walk
     """
     legs, speed_m_s = _fit(world, seconds, rng)
     timeline = _lay_out(legs, speed_m_s)
-    count = 4 * round(seconds / KNOT_S) + 1
+    count = 4 * round(seconds / Walk.KNOT_S) + 1
     t_s = np.arange(count) / _RATE_HZ
     walk = Walk.through(_body(timeline, t_s, rng)[::4])
     return replace(walk, ride=_ride(timeline, t_s)) if timeline.rides_s else walk
@@ -85,7 +79,7 @@ def _ride(line: _Timeline, t_s: Array) -> Ride:
     inside = _riding(line, known_s)
     first_m = np.interp(begins[0], known_s, corners[:, 2])
     height_m = np.interp(t_s, known_s[inside], corners[inside, 2], left=first_m)
-    return Ride(1.0 / _RATE_HZ, _smooth(height_m, _PATH_SIGMA_S), riding)
+    return Ride(1.0 / _RATE_HZ, _smooth(height_m, GAIT.path_sigma_s), riding)
 
 
 def _riding(line: _Timeline, t_s: Array) -> NDArray[np.bool_]:
@@ -95,13 +89,13 @@ def _riding(line: _Timeline, t_s: Array) -> NDArray[np.bool_]:
 
 def _fit(world: World, seconds: float, rng: np.random.Generator) -> tuple[list[Waypoint], float]:
     """Waypoints of all rounds, and the speed that fits them into the duration [m/s]."""
-    full = _duration(world.route(np.random.default_rng(0), world.stops), SPEED_M_S)
-    rounds = max(1, math.ceil(seconds / (_LONGEST * full)))
+    full = _duration(world.route(np.random.default_rng(0), world.stops), GAIT.speed_m_s)
+    rounds = max(1, math.ceil(seconds / (GAIT.longest * full)))
     routes: list[Waypoint] = []
     for _ in range(rounds):
         route = _round(world, seconds / rounds, rng)
         routes += route[1:] if routes else route
-    low, high = _SLOWEST_M_S, _FASTEST_M_S
+    low, high = GAIT.slowest_m_s, GAIT.fastest_m_s
     for _ in range(50):
         middle = 0.5 * (low + high)
         low, high = (middle, high) if _duration(routes, middle) > seconds else (low, middle)
@@ -114,10 +108,10 @@ def _round(world: World, seconds: float, rng: np.random.Generator) -> list[Waypo
     plans = [
         world.route(np.random.default_rng(seed), stops + 1) for stops, seed in enumerate(seeds)
     ]
-    fitting = [plan for plan in plans if _duration(plan, _FASTEST_M_S) <= seconds]
+    fitting = [plan for plan in plans if _duration(plan, GAIT.fastest_m_s) <= seconds]
     if not fitting:
-        return min(plans, key=lambda plan: _duration(plan, SPEED_M_S))
-    return min(fitting, key=lambda plan: abs(_duration(plan, SPEED_M_S) - seconds))
+        return min(plans, key=lambda plan: _duration(plan, GAIT.speed_m_s))
+    return min(fitting, key=lambda plan: abs(_duration(plan, GAIT.speed_m_s) - seconds))
 
 
 def _duration(route: list[Waypoint], speed_m_s: float) -> float:
@@ -133,7 +127,7 @@ def _lay_out(route: list[Waypoint], speed_m_s: float) -> _Timeline:
         if waypoint.ride:
             directions[step] = directions[step + 1]  # a person looks at the door
     line = _Timeline([0.0], [tuple(points[0])], [0.0], [float(directions[0])])
-    line.stay(_STAND_S)
+    line.stay(GAIT.stand_s)
     for k, waypoint in enumerate(route[1:]):
         if waypoint.ride:
             line.ride(tuple(points[k + 1]))
@@ -142,7 +136,7 @@ def _lay_out(route: list[Waypoint], speed_m_s: float) -> _Timeline:
         following = directions[k + 1] if k + 1 < len(directions) else directions[0]
         angle = _wrap(following - line.heading_rad[-1])
         _turn(line, waypoint, angle, at_end=k + 1 == len(directions))
-    line.stay(_STAND_S)
+    line.stay(GAIT.stand_s)
     return line
 
 
@@ -155,7 +149,7 @@ def _turn(line: _Timeline, waypoint: Waypoint, angle_rad: float, *, at_end: bool
     look = np.deg2rad(waypoint.look_deg)
     for angle in [look, _wrap(angle_rad - look)] if look else [angle_rad]:
         # The larger the turn, the faster, as people do: 60 deg/s for small, 240 for 180 degrees.
-        rate = np.deg2rad(np.clip(60.0 + np.rad2deg(abs(angle)), 60.0, _FASTEST_TURN_DEG_S))
+        rate = np.deg2rad(np.clip(60.0 + np.rad2deg(abs(angle)), 60.0, GAIT.fastest_turn_deg_s))
         seconds = abs(angle) / rate
         line.stay(0.15)
         line.turn(angle, line.t_s[-1], seconds)
@@ -166,13 +160,15 @@ def _body(line: _Timeline, t_s: Array, rng: np.random.Generator) -> Array:
     """x, y, z, roll, pitch, yaw of the body, (N,) -> (N, 6)."""
     corners = np.array(line.place)
     place = np.stack([np.interp(t_s, line.t_s, corners[:, k]) for k in range(3)], axis=1)
-    place = _smooth(place, _PATH_SIGMA_S)
-    yaw = _smooth(np.interp(t_s, line.heading_t_s, line.heading_rad), _HEADING_SIGMA_S)
+    place = _smooth(place, GAIT.path_sigma_s)
+    yaw = _smooth(np.interp(t_s, line.heading_t_s, line.heading_rad), GAIT.heading_sigma_s)
     steps = np.gradient(place, t_s, axis=0)
     speed = np.hypot(steps[:, 0], steps[:, 1])
     climb = np.abs(steps[:, 2]) * ~_riding(line, t_s)
     turning = np.abs(np.gradient(yaw, t_s))
-    effort = _smooth(np.clip(np.maximum(speed + climb, 0.3 * turning) / SPEED_M_S, 0, 1.15), 0.3)
+    effort = _smooth(
+        np.clip(np.maximum(speed + climb, 0.3 * turning) / GAIT.speed_m_s, 0, 1.15), 0.3
+    )
     # Step frequency 1.6 to 2.0 Hz; phase in steps.
     phase = np.cumsum((1.4 + 0.5 * effort) * (1 + 0.05 * _wander(rng, t_s, 2.0)) / _RATE_HZ)
     calm = _calm_ends(t_s)
@@ -181,7 +177,7 @@ def _body(line: _Timeline, t_s: Array, rng: np.random.Generator) -> Array:
     ahead = effort * 0.012 * np.sin(step + 0.8)
     bounce = effort * (0.024 * np.cos(step) + 0.002 * np.cos(2 * step + 0.4))
     c, s = np.cos(yaw), np.sin(yaw)
-    sway = [c * ahead - s * side, s * ahead + c * side, BODY_HEIGHT_M + bounce]
+    sway = [c * ahead - s * side, s * ahead + c * side, GAIT.body_height_m + bounce]
     degrees = [
         effort * 2.0 * np.sin(stride + 0.3) + calm * 0.8 * _wander(rng, t_s, 1.0),
         2.0 + effort * 1.5 * np.sin(step + 1.1) + calm * 1.2 * _wander(rng, t_s, 1.0),
@@ -208,7 +204,7 @@ def _wander(rng: np.random.Generator, t_s: Array, sigma_s: float) -> Array:
 def _calm_ends(t_s: Array) -> Array:
     """0 while the person stands at the start and the end, 1 between."""
     rest = np.minimum(t_s, t_s[-1] - t_s)
-    x = np.clip((rest - 0.7 * _STAND_S) / 2.0, 0.0, 1.0)
+    x = np.clip((rest - 0.7 * GAIT.stand_s) / 2.0, 0.0, 1.0)
     return x**3 * (10.0 - 15.0 * x + 6.0 * x**2)
 
 

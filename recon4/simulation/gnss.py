@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -12,14 +13,15 @@ from recon4.model.samples import GnssQuality, GnssSamples
 from recon4.model.trajectory import Times
 from recon4.simulation.walk import Walk
 from recon4.simulation.world import WorldOrigin
-
-GNSS_RATE_HZ = 10
+from recon4.units import SECOND_NS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GnssModel:
     """Errors of an RTK receiver with two antennas and an INS (requirements A1); zeros: perfect."""
 
+    RATE_HZ: ClassVar[int] = 10
+    """Of the samples."""
     sd_enu_m: tuple[float, float, float] = (0.008, 0.008, 0.015)
     """White noise of a fixed solution east, north, up [m]."""
     slow_sd_enu_m: tuple[float, float, float] = (0.015, 0.015, 0.03)
@@ -55,13 +57,13 @@ def simulate_gnss(
     rng: np.random.Generator,
 ) -> GnssSamples:
     """Antenna positions and attitudes at 10 Hz over the whole walk; times since its start."""
-    period_ns = 1_000_000_000 // GNSS_RATE_HZ
-    t_ns = np.arange(int(walk.seconds * GNSS_RATE_HZ) + 1, dtype=np.int64) * period_ns
+    period_ns = SECOND_NS // model.RATE_HZ
+    t_ns = np.arange(int(walk.seconds * model.RATE_HZ) + 1, dtype=np.int64) * period_ns
     T_map_body = walk.poses(1e-9 * t_ns)
     p_map = T_map_body @ np.broadcast_to(rig.p_body_antenna, (len(t_ns), 3))
     quality, sd = _quality(t_ns, model, rng)
     error = sd * rng.standard_normal(p_map.shape)
-    error += np.array(model.slow_sd_enu_m) * _slow(len(t_ns), model.slow_s, rng)
+    error += np.array(model.slow_sd_enu_m) * _slow(len(t_ns), model, rng)
     outlier = rng.random(len(t_ns)) < model.outlier_ratio
     error[outlier] += rng.standard_normal((int(outlier.sum()), 3))
     lat_rad, lon_rad, height_m = geodetic(p_map + error, origin)
@@ -116,11 +118,11 @@ def _quality(t_ns: Times, model: GnssModel, rng: np.random.Generator) -> tuple[A
     return quality, sd
 
 
-def _slow(count: int, correlation_s: float, rng: np.random.Generator) -> Array:
+def _slow(count: int, model: GnssModel, rng: np.random.Generator) -> Array:
     """A first-order Gauss-Markov process of standard deviation 1, (count, 3)."""
     from scipy.signal import lfilter
 
-    keep = np.exp(-1.0 / (GNSS_RATE_HZ * correlation_s))
+    keep = np.exp(-1.0 / (model.RATE_HZ * model.slow_s))
     noise = rng.standard_normal((count, 3))
     noise[1:] *= np.sqrt(1.0 - keep**2)
     return np.asarray(lfilter([1.0], [1.0, -keep], noise, axis=0))

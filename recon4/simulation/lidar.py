@@ -16,19 +16,17 @@ from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor
 from recon4.model.trajectory import Times
-from recon4.simulation.companions import REFLECTIVITY as OF_PEOPLE
 from recon4.simulation.companions import Companions
+from recon4.simulation.materials import MATERIAL
 from recon4.simulation.mirrors import follow
 from recon4.simulation.patterns import Directions, FiringPattern
+from recon4.simulation.person import TORSO
 from recon4.simulation.rides import CarScene, ElevatorCar
-from recon4.simulation.vehicles import REFLECTIVITY as OF_VEHICLES
 from recon4.simulation.vehicles import Vehicles
 from recon4.simulation.walk import Walk
 
 RESOLUTION_M = 0.002
 """Of ranges of profilers and 2-D lasers, and of the LiDAR whose errors `LidarModel` has [m]."""
-CARRIER = np.array([0.24, 0.0, 0.21, -1.5, 0.12])
-"""The person: x, y, radius, bottom and top of an upright cylinder in the body [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -172,7 +170,7 @@ class Lidar:
         make_rays(walk.state(t_s), mount.R, mount.t, shot, rays)
         blocked = np.zeros(count, dtype=np.bool_)
         if self.model.carrier:
-            hits_carrier(shot, mount.R, mount.t, CARRIER, blocked)
+            hits_carrier(shot, mount.R, mount.t, TORSO.row(), blocked)
         hits = surroundings.cast(rays, walk, np.tile(t_s, 2))
         found = measure_hits(
             RaysAndHits(rays, hits, blocked, hit_noise(count, rng)),
@@ -236,7 +234,7 @@ class Surroundings:
     def reflectivity(self) -> NDArray[np.float32]:
         """Of all triangles: mesh, car of an elevator, then one of people and one of vehicles."""
         car = [self.car.reflectivity] if self.car else []
-        moving = np.array([OF_PEOPLE, OF_VEHICLES], np.float32)
+        moving = np.array([MATERIAL.people, MATERIAL.vehicle], np.float32)
         return np.concatenate([self.mesh.reflectivity, *car, moving])
 
     @cached_property

@@ -15,13 +15,21 @@ from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
 from recon4.geometry.tuning import SURFACES
 
-_MOST = 4
-"""A beam is followed over this many mirrors and panes; then nothing returns."""
-_GRAZING = 0.3
-"""With a smaller cosine of the angle of incidence a pane reflects the beam; with a larger one it
-lets it through (Fresnel: at 73° it reflects about a third)."""
-_BEYOND_M = 1e-3
-"""A beam goes on this far from the surface that it left [m]."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MirrorOptics:
+    """How beams are followed over mirrors and panes."""
+
+    most: int = 4
+    """A beam is followed over this many of them; then nothing returns."""
+    grazing: float = 0.3
+    """With a smaller cosine of the angle of incidence a pane reflects the beam; with a larger one
+    it lets it through (Fresnel: at 73° it reflects about a third)."""
+    beyond_m: float = 1e-3
+    """A beam goes on this far from the surface that it left."""
+
+
+OPTICS = MirrorOptics()
 
 
 def follow(
@@ -46,7 +54,7 @@ def follow(
     turn, length_m = np.tile(np.eye(3), (count, 1, 1)), np.zeros(count)
     beams = _Beams(special, rays[special].astype(np.float64), turn, length_m)
     met = Hits(hits.range_m[special], hits.triangle[special], hits.normal[special])
-    for _ in range(_MOST):
+    for _ in range(OPTICS.most):
         beams = _beyond(beams, met, reflectivity)
         met = scene.cast(beams.rays.astype(np.float32))
         out.range_m[beams.row] = met.range_m + beams.length_m
@@ -89,13 +97,13 @@ def _beyond(beams: _Beams, met: Hits, reflectivity: NDArray[np.float32]) -> _Bea
     """The beams after the mirrors and panes that they met."""
     normal, along = met.normal.astype(np.float64), beams.rays[:, 3:]
     cosine = np.einsum("ni,ni->n", normal, along)
-    reflected = (reflectivity[met.triangle] <= SURFACES.mirror) | (np.abs(cosine) < _GRAZING)
+    reflected = (reflectivity[met.triangle] <= SURFACES.mirror) | (np.abs(cosine) < OPTICS.grazing)
     leaving = along - 2.0 * (cosine * reflected)[:, None] * normal
     flip = np.eye(3) - 2.0 * reflected[:, None, None] * normal[:, :, None] * normal[:, None, :]
-    origin = beams.rays[:, :3] + met.range_m[:, None] * along + _BEYOND_M * leaving
+    origin = beams.rays[:, :3] + met.range_m[:, None] * along + OPTICS.beyond_m * leaving
     return _Beams(
         beams.row,
         np.concatenate([origin, leaving], axis=1),
         flip @ beams.turn,
-        beams.length_m + met.range_m + _BEYOND_M,
+        beams.length_m + met.range_m + OPTICS.beyond_m,
     )

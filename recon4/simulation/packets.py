@@ -21,11 +21,19 @@ from recon4.simulation.families.velodyne import VELODYNES
 from recon4.simulation.gnss import geodetic
 from recon4.simulation.lidar import Firings
 from recon4.simulation.setup import SimulationSetup, built_in_imu
+from recon4.units import SECOND_NS
 
-POSITION_PORT = 8308
-_LATENCY_NS = 100_000
-_JITTER_NS = 150_000
-_SECOND_NS = 1_000_000_000
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Delivery:
+    """How long packets take to the recorder after their last shot or sample."""
+
+    latency_ns: int = 100_000
+    jitter_ns: int = 150_000
+    """Data packets take up to this much longer."""
+
+
+DELIVERY = Delivery()
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -58,7 +66,7 @@ def pack(
     t_ns = degradation.stamps(row, start_ns, sensors=len(setup.lidars))
     payloads = family_of(sensor.model).data_packets(lidar, firings, sensor_epoch_ns + t_ns)
     last_ns = firings.t_ns.max(axis=(1, 2))
-    delay = _LATENCY_NS + rng.integers(0, _JITTER_NS, count)
+    delay = DELIVERY.latency_ns + rng.integers(0, DELIVERY.jitter_ns, count)
     return Packets(row, sensor_epoch_ns + last_ns + delay, payloads, sensor.port)
 
 
@@ -72,7 +80,7 @@ def pack_imu(
     stamps = degradation.stamps(row, samples.t_ns - setup.epoch_ns, sensors=len(setup.lidars))
     stamped = replace(samples, t_ns=setup.epoch_ns + stamps)
     payloads = built_in_imu(sensor).packets(stamped)
-    return Packets(row, samples.t_ns + _LATENCY_NS, payloads, port)
+    return Packets(row, samples.t_ns + DELIVERY.latency_ns, payloads, port)
 
 
 def write_packets(file: PcapWriter, parts: list[Packets], setup: SimulationSetup) -> None:
@@ -98,7 +106,7 @@ def write_position_packets(file: PcapWriter, second: int, setup: SimulationSetup
 
     The position is that of a plain receiver, some meters off; RTK is in ``gnss.csv``.
     """
-    t_ns = setup.epoch_ns + second * _SECOND_NS
+    t_ns = setup.epoch_ns + second * SECOND_NS
     here = setup.walk.state([float(second)])[:, :3]
     drift = 1.5 * np.sin(0.01 * second + np.array([0.3, 1.9, 4.0]))
     lat_rad, lon_rad, _ = geodetic(here + drift, setup.world.origin)
@@ -111,7 +119,8 @@ def write_position_packets(file: PcapWriter, second: int, setup: SimulationSetup
     for sensor in setup.rig.sensors:
         if family_of(sensor.model) is not VELODYNES:
             continue
+        (port,) = lidar_model(sensor.model).sample_ports
         stamp_ns = t_ns + 30_000_000 - round(1e9 * sensor.time_offset_s)
         payload = encode_position(stamp_ns // 1000, sentence)
-        arrival = np.array([stamp_ns + _LATENCY_NS], dtype=np.int64)
-        file.write(arrival, payload[None, :], source=sensor.address, port=POSITION_PORT)
+        arrival = np.array([stamp_ns + DELIVERY.latency_ns], dtype=np.int64)
+        file.write(arrival, payload[None, :], source=sensor.address, port=port)

@@ -32,8 +32,8 @@ from recon4.simulation.packets import (
 from recon4.simulation.reflectivity import ReflectivityWriter
 from recon4.simulation.setup import SimulationSetup, gnss_samples
 from recon4.simulation.truth import true_trajectory
+from recon4.units import SECOND_NS
 
-_SECOND_NS = 1_000_000_000
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
 
@@ -85,7 +85,7 @@ class WalkRecorder:
             pack(firings, row, setup, degradation=degradation, rng=setup.rng(4, row, second_index))
             for row, firings in enumerate(firings_by_lidar)
         ]
-        if degradation.recorded(np.array([second_index * _SECOND_NS]))[0]:
+        if degradation.recorded(np.array([second_index * SECOND_NS]))[0]:
             write_position_packets(self._pcap, second_index, setup)
         write_packets(self._pcap, [*packets, *self._imu_packets(second_index)], setup)
         for row, firings in enumerate(firings_by_lidar):
@@ -93,7 +93,7 @@ class WalkRecorder:
         if self._bag is not None:
             for part in packets:
                 self._bag.packets(part.row, part.t_arrival_ns, part.payloads)
-            start_ns = setup.epoch_ns + second_index * _SECOND_NS
+            start_ns = setup.epoch_ns + second_index * SECOND_NS
             if self._imu is not None:
                 self._bag.imu(_during(self._imu, start_ns))
             if self._gnss is not None:
@@ -104,7 +104,7 @@ class WalkRecorder:
         setup = self._setup
         if self._imu is None or setup.imu_row is None:
             return []
-        samples = _during(self._imu, setup.epoch_ns + second_index * _SECOND_NS)
+        samples = _during(self._imu, setup.epoch_ns + second_index * SECOND_NS)
         return [pack_imu(samples, setup.imu_row, setup, degradation=self._degradation)]
 
     def _write_truth(self) -> None:
@@ -158,7 +158,7 @@ def _receive(setup: SimulationSetup, degradation: Degradation) -> GnssSamples | 
 
 def _during(samples: Samples, start_ns: int) -> Samples:
     """Samples of the second that starts then."""
-    first, last = np.searchsorted(samples.t_ns, [start_ns, start_ns + _SECOND_NS])
+    first, last = np.searchsorted(samples.t_ns, [start_ns, start_ns + SECOND_NS])
     columns = [getattr(samples, column.name)[first:last] for column in fields(samples)]
     return type(samples)(*columns)
 

@@ -12,8 +12,6 @@ from typing import Self
 import numpy as np
 from numpy.typing import NDArray
 
-_NO_DATE = (1980, 1, 1, 0, 0, 0)
-
 
 class ReflectivityWriter:
     """Writes an ``.npz`` with an array ``sensor0``, ``sensor1``, … a sensor, without holding it.
@@ -55,7 +53,7 @@ class ReflectivityWriter:
     def _collect(self) -> None:
         with zipfile.ZipFile(self._path, "w") as archive:
             for row, (part, packets) in enumerate(zip(self._parts, self._packets, strict=True)):
-                name = zipfile.ZipInfo(f"sensor{row}.npy", date_time=_NO_DATE)
+                name = zipfile.ZipInfo(f"sensor{row}.npy")  # of no date
                 with archive.open(name, "w", force_zip64=True) as target, part.open("rb") as source:
                     header = {
                         "descr": "|u1",

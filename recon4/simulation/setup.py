@@ -26,8 +26,8 @@ from recon4.simulation.walk import Walk
 from recon4.simulation.world import World
 from recon4.simulation.worlds import build_world
 
-EPOCH_NS = 1_780_308_000_000_000_000
-"""Start of every simulated walk: 2026-06-01T10:00:00Z."""
+EPOCH_NS = int(np.datetime64("2026-06-01T10:00:00", "ns").astype(np.int64))
+"""Start of every simulated walk, UTC [ns]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

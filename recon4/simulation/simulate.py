@@ -25,8 +25,7 @@ from recon4.simulation.lidar import Firings
 from recon4.simulation.recorder import WalkRecorder
 from recon4.simulation.setup import SimulationSetup
 from recon4.store.atomic import atomic_folder
-
-_SECOND_NS = 1_000_000_000
+from recon4.units import SECOND_NS
 
 
 def simulate(
@@ -112,7 +111,7 @@ def _seconds(setup: SimulationSetup) -> Iterator[list[Firings]]:
     """What the sensors measure in each second of the walk."""
     fired = [0] * len(setup.lidars)
     for second in range(int(np.ceil(setup.walk.seconds))):
-        end_ns = min((second + 1) * _SECOND_NS, int(setup.walk.seconds * 1e9))
+        end_ns = min((second + 1) * SECOND_NS, int(setup.walk.seconds * 1e9))
         parts = []
         for row, lidar in enumerate(setup.lidars):
             packets = range(fired[row], lidar.packets_before(end_ns))

@@ -13,22 +13,39 @@ from numpy.typing import NDArray
 
 from recon4.geometry.raycast import Hits
 from recon4.geometry.se3 import Array
-from recon4.simulation.walk import BODY_HEIGHT_M, Walk
+from recon4.simulation.person import GAIT
+from recon4.simulation.walk import Walk
 
-_CLEARANCE_M = 0.25
-_CAR_M, _BUS_M = (4.3, 1.8, 1.5), (12.0, 2.5, 3.0)
-"""Length, width, and height of the top above the ground [m]."""
-_LAG_S, _STEADY_S = 1.0, 2.0
-"""The car beside the carrier follows the heading this much later, and its mean over this time [s]:
-no car sways with the steps of a person."""
-_BESIDE_M, _BUS_SIDE_M, _OVERTAKING_M = (2.2, 3.0), (3.2, 4.5), (2.4, 3.2)
-"""From the carrier to the middle of each kind [m]."""
-_BUS_AHEAD_M, _BUS_STANDS, _BUS_M_S2 = 6.0, 0.4, 1.0
-"""The bus stands so far ahead of the start [m], drives off after this part of the walk, and becomes
-faster by this [m/s²]."""
-_PASSES, _FASTER_M_S = (0.55, 0.75), (3.0, 8.0)
-"""The car that overtakes is beside the carrier after this part of the walk, with this speed."""
-REFLECTIVITY = 0.3
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class VehicleModel:
+    """Sizes of vehicles and how they drive."""
+
+    clearance_m: float = 0.25
+    """Of their underside above the ground."""
+    car_m: tuple[float, float, float] = (4.3, 1.8, 1.5)
+    bus_m: tuple[float, float, float] = (12.0, 2.5, 3.0)
+    """Length, width, and height of the top above the ground."""
+    beside_m: tuple[float, float] = (2.2, 3.0)
+    bus_side_m: tuple[float, float] = (3.2, 4.5)
+    overtaking_m: tuple[float, float] = (2.4, 3.2)
+    """From the carrier to the middle of each kind, from and to."""
+    lag_s: float = 1.0
+    steady_s: float = 2.0
+    """The car beside the carrier follows the heading this much later, and its mean over this time:
+    no car sways with the steps of a person."""
+    bus_ahead_m: float = 6.0
+    bus_stands: float = 0.4
+    bus_m_s2: float = 1.0
+    """The bus stands so far ahead of the start, drives off after this part of the walk, and becomes
+    faster by this."""
+    passes: tuple[float, float] = (0.55, 0.75)
+    faster_m_s: tuple[float, float] = (3.0, 8.0)
+    """The car that overtakes is beside the carrier after this part of the walk, with this speed,
+    from and to."""
+
+
+VEHICLE = VehicleModel()
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,15 +72,17 @@ class Vehicles:
         """Vehicles on both sides, the kinds by turns."""
         found: list[_DrawnVehicle] = []
         for k in range(count):
-            away_m = rng.uniform(*(_BESIDE_M, _BUS_SIDE_M, _OVERTAKING_M)[k % 3])
+            away_m = rng.uniform(
+                *(VEHICLE.beside_m, VEHICLE.bus_side_m, VEHICLE.overtaking_m)[k % 3]
+            )
             side = rng.choice([-1.0, 1.0]) if k == 0 else -np.sign(found[-1].side_m)
             found.append(
                 _DrawnVehicle(
                     k % 3,
                     float(side * away_m),
                     float(rng.uniform(-0.8, 0.8)),
-                    float(rng.uniform(*_PASSES)),
-                    float(rng.uniform(*_FASTER_M_S)),
+                    float(rng.uniform(*VEHICLE.passes)),
+                    float(rng.uniform(*VEHICLE.faster_m_s)),
                 )
             )
         return Vehicles(tuple(found))
@@ -78,7 +97,7 @@ class Vehicles:
 
     def sizes_m(self) -> Array:
         """Length, width and height of each, (M, 3)."""
-        return np.array([_BUS_M if one.kind == 1 else _CAR_M for one in self.boxes])
+        return np.array([VEHICLE.bus_m if one.kind == 1 else VEHICLE.car_m for one in self.boxes])
 
     def hide(
         self, hits: Hits, rays: NDArray[np.float32], *, walk: Walk, t_s: Array, surface: int
@@ -93,7 +112,7 @@ class Vehicles:
             surface: What to put as the triangle of a vehicle.
         """
         out = Hits(hits.range_m.copy(), hits.triangle.copy(), hits.normal.copy())
-        ground_m = walk.state(t_s)[:, 2] - BODY_HEIGHT_M
+        ground_m = walk.state(t_s)[:, 2] - GAIT.body_height_m
         for place, size in zip(self.places(walk, t_s), self.sizes_m(), strict=True):
             entry, normal = _enter(rays, place, size, ground_m=ground_m)
             met = entry < out.range_m
@@ -110,13 +129,13 @@ def _enter(
     cos, sin = np.cos(place[:, 2]), np.sin(place[:, 2])
     origin, along = rays[:, :3].astype(np.float64), rays[:, 3:].astype(np.float64)
     x, y = origin[:, 0] - place[:, 0], origin[:, 1] - place[:, 1]
-    middle_m = ground_m + 0.5 * (_CLEARANCE_M + size[2])
+    middle_m = ground_m + 0.5 * (VEHICLE.clearance_m + size[2])
     start = np.stack([cos * x + sin * y, cos * y - sin * x, origin[:, 2] - middle_m], axis=1)
     way = np.stack(
         [cos * along[:, 0] + sin * along[:, 1], cos * along[:, 1] - sin * along[:, 0], along[:, 2]],
         axis=1,
     )
-    half = 0.5 * np.array([size[0], size[1], size[2] - _CLEARANCE_M])
+    half = 0.5 * np.array([size[0], size[1], size[2] - VEHICLE.clearance_m])
     way = np.where(np.abs(way) < 1e-9, 1e-9, way)
     first, second = (-half - start) / way, (half - start) / way
     near, far = np.minimum(first, second), np.maximum(first, second).min(axis=1)
@@ -133,8 +152,8 @@ def _enter(
 
 def _heading(walk: Walk, t_s: Array) -> Array:
     """Steady heading of the carrier some time before [rad]."""
-    slots = np.linspace(-0.5, 0.5, 9) * _STEADY_S
-    times = np.clip(t_s[:, None] - _LAG_S + slots, 0.0, walk.seconds - 1e-6)
+    slots = np.linspace(-0.5, 0.5, 9) * VEHICLE.steady_s
+    times = np.clip(t_s[:, None] - VEHICLE.lag_s + slots, 0.0, walk.seconds - 1e-6)
     return np.asarray(walk.state(times.ravel())[:, 5].reshape(times.shape).mean(axis=1))
 
 
@@ -151,8 +170,8 @@ def _beside(one: _DrawnVehicle, walk: Walk, t_s: Array) -> Array:
 
 def _bus(one: _DrawnVehicle, walk: Walk, t_s: Array) -> Array:
     begin = np.zeros_like(t_s)
-    gone_s = np.maximum(t_s - _BUS_STANDS * walk.seconds, 0.0)
-    ahead_m = _BUS_AHEAD_M + 0.5 * _BUS_M_S2 * gone_s**2
+    gone_s = np.maximum(t_s - VEHICLE.bus_stands * walk.seconds, 0.0)
+    ahead_m = VEHICLE.bus_ahead_m + 0.5 * VEHICLE.bus_m_s2 * gone_s**2
     return _moved(walk.state(begin), _heading(walk, begin), ahead_m=ahead_m, left_m=one.side_m)
 
 

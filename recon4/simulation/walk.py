@@ -7,6 +7,7 @@ and the IMU's samples integrate back to the poses.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,16 +16,13 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.simulation import evaluate_polynomials
 from recon4.simulation.rides import Ride
 
-BODY_HEIGHT_M = 1.5
-"""Of the body frame (the INS in the backpack) above the floor."""
-
-KNOT_S = 0.02
-"""Between two knots of the splines [s]."""
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Walk:
     """A motion of the body in the map, four times continuously differentiable."""
+
+    KNOT_S: ClassVar[float] = 0.02
+    """Between two knots of the splines [s]."""
 
     seconds: float
     coefficients: Array
@@ -38,9 +36,9 @@ class Walk:
         from scipy.interpolate import make_interp_spline
 
         values = np.asarray(samples, dtype=np.float64)
-        t_s = KNOT_S * np.arange(len(values))
+        t_s = Walk.KNOT_S * np.arange(len(values))
         spline = make_interp_spline(t_s, values, k=5)
-        middles = t_s[:-1] + 0.5 * KNOT_S
+        middles = t_s[:-1] + 0.5 * Walk.KNOT_S
         factorial = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0]
         terms = [spline(middles, nu=order) / factorial[order] for order in range(6)]
         return Walk(float(t_s[-1]), np.ascontiguousarray(np.stack(terms, axis=1)))
@@ -49,7 +47,7 @@ class Walk:
         """x, y, z [m], roll, pitch, yaw [rad] or a derivative of them, (N,) -> (N, 6)."""
         t = np.ascontiguousarray(np.atleast_1d(t_s), dtype=np.float64)
         out = np.empty((len(t), 6))
-        evaluate_polynomials(self.coefficients, KNOT_S, t, derivative, out)
+        evaluate_polynomials(self.coefficients, self.KNOT_S, t, derivative, out)
         return out
 
     def poses(self, t_s: ArrayLike) -> SE3:

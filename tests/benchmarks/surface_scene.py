@@ -21,8 +21,8 @@ import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
+from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World
-from recon4.simulation.worlds.walls import LINOLEUM, PLASTER, STEEL, WOOD
 
 LENGTH_M, WIDTH_M, HEIGHT_M = 10.0, 7.0, 2.8
 DOOR_M = (3.0, 3.95)
@@ -72,7 +72,7 @@ class _Workshop:
         self.rods: list[Rod] = []
 
     def rod(self, start: list[float], end: list[float], diameter_m: float) -> None:
-        self.builder.tube(start, end, 0.5 * diameter_m, reflectivity=STEEL, sides=12)
+        self.builder.tube(start, end, 0.5 * diameter_m, reflectivity=MATERIAL.steel, sides=12)
         self.rods.append(Rod(np.array(start), np.array(end), diameter_m))
 
     def edge(self, kind: str, start: list[float], size_m: float, axes: list[list[float]]) -> None:
@@ -83,7 +83,7 @@ class _Workshop:
 
     def cabinet(self, low: list[float], high: list[float], *, kind: str, rim: bool) -> None:
         """A box standing free: its four upper edges, and the four upright ones if it is no rim."""
-        self.builder.box(low, high, WOOD)
+        self.builder.box(low, high, MATERIAL.wood)
         (x0, y0, _), (x1, y1, z1) = low, high
         for x, inward in ((x0, 1.0), (x1, -1.0)):
             self.edge(kind, [x, y0, z1], y1 - y0, [[0, 1, 0], [inward, 0, 0], [0, 0, -1]])
@@ -105,7 +105,7 @@ def build() -> Exhibition:
     shop.cabinet([8.6, 2.2, 0.0], [9.1, 3.0, 0.9], kind="cabinet", rim=False)
     shop.cabinet([1.0, 5.4, 0.70], [2.4, 6.1, 0.73], kind="table", rim=True)
     shop.cabinet([7.0, 0.6, 0.70], [8.4, 1.3, 0.73], kind="table", rim=True)
-    shop.builder.box([6.6, 5.6, 0.0], [8.6, 5.63, 1.9], WOOD)
+    shop.builder.box([6.6, 5.6, 0.0], [8.6, 5.63, 1.9], MATERIAL.wood)
     _rods(shop)
     world = World(name="exhibition", mesh=shop.builder.mesh(), route=_route, stops=4)
     return Exhibition(world, tuple(shop.edges), tuple(shop.rods))
@@ -114,12 +114,12 @@ def build() -> Exhibition:
 def _shell(shop: _Workshop) -> None:
     """Floor, ceiling, outer walls; corners of the rooms are edges seen from inside."""
     b, x, y, z = shop.builder, LENGTH_M, WIDTH_M, HEIGHT_M
-    b.quad([0, 0, 0], [x, 0, 0], [0, y, 0], reflectivity=LINOLEUM)
-    b.quad([0, 0, z], [x, 0, 0], [0, y, 0], reflectivity=PLASTER)
+    b.quad([0, 0, 0], [x, 0, 0], [0, y, 0], reflectivity=MATERIAL.linoleum)
+    b.quad([0, 0, z], [x, 0, 0], [0, y, 0], reflectivity=MATERIAL.plaster)
     for at in (0.0, y):
-        b.quad([0, at, 0], [x, 0, 0], [0, 0, z], reflectivity=PLASTER)
+        b.quad([0, at, 0], [x, 0, 0], [0, 0, z], reflectivity=MATERIAL.plaster)
     for at in (0.0, x):
-        b.quad([at, 0, 0], [0, y, 0], [0, 0, z], reflectivity=PLASTER)
+        b.quad([at, 0, 0], [0, y, 0], [0, 0, z], reflectivity=MATERIAL.plaster)
     for wx, ix in ((0.0, 1.0), (x, -1.0)):
         for wy, iy in ((0.0, 1.0), (y, -1.0)):
             shop.edge("corner", [wx, wy, 0.2], z - 0.4, [[0, 0, 1], [ix, 0, 0], [0, iy, 0]])
@@ -131,8 +131,8 @@ def _partition(shop: _Workshop) -> None:
     west, east = (0.5 * (LENGTH_M + side * PARTITION_M) for side in (-1.0, 1.0))
     low, high = DOOR_M
     for a, b in ((0.0, low), (high, WIDTH_M)):
-        shop.builder.box([west, a, 0], [east, b, HEIGHT_M], PLASTER)
-    shop.builder.box([west, low, DOOR_TOP_M], [east, high, HEIGHT_M], PLASTER)
+        shop.builder.box([west, a, 0], [east, b, HEIGHT_M], MATERIAL.plaster)
+    shop.builder.box([west, low, DOOR_TOP_M], [east, high, HEIGHT_M], MATERIAL.plaster)
     for x, inward in ((west, 1.0), (east, -1.0)):
         for y, into in ((low, -1.0), (high, 1.0)):
             faces = [[0, 0, 1], [0, into, 0], [inward, 0, 0]]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
-from recon4.simulation.worlds.walls import DARK, LAMP, PAPER, STEEL, WOOD
+from recon4.simulation.materials import MATERIAL
 
 Box = tuple[float, float, float, float]
 
@@ -40,7 +40,7 @@ def furnish(
         board(builder, west + 0.02, 0.5 * (south + north_y), length_m=2.0)
     cupboard_y = near - 0.35 * inward
     cupboard_x = east - 0.6 if north else west + 0.6
-    builder.block([cupboard_x, cupboard_y, 0], [0.9, 0.42, rng.uniform(1.6, 2.1)], WOOD)
+    builder.block([cupboard_x, cupboard_y, 0], [0.9, 0.42, rng.uniform(1.6, 2.1)], MATERIAL.wood)
 
 
 def _piece(
@@ -64,7 +64,7 @@ def _piece(
         [wall_x + 0.3 * side, y, 0],
         [wall_x + 0.3 * side, y, 0.4],
         0.16,
-        reflectivity=WOOD,
+        reflectivity=MATERIAL.wood,
         sides=10,
     )
     builder.ball([wall_x + 0.3 * side, y, 0.85], [0.3, 0.3, 0.45], 0.3)
@@ -75,41 +75,45 @@ def desk(
     builder: MeshBuilder, x: float, y: float, *, side: float, rng: np.random.Generator
 ) -> None:
     """A desk with legs, drawers, a screen and a chair in front of it."""
-    builder.block([x, y, 0.71], [0.8, 1.6, 0.03], WOOD)
+    builder.block([x, y, 0.71], [0.8, 1.6, 0.03], MATERIAL.wood)
     for dx in (-0.36, 0.36):
         for dy in (-0.76, 0.76):
-            builder.block([x + dx, y + dy, 0], [0.04, 0.04, 0.71], STEEL)
-    builder.block([x, y - 0.5, 0.05], [0.6, 0.4, 0.6], WOOD)
+            builder.block([x + dx, y + dy, 0], [0.04, 0.04, 0.71], MATERIAL.steel)
+    builder.block([x, y - 0.5, 0.05], [0.6, 0.4, 0.6], MATERIAL.wood)
     turn = rng.uniform(-0.3, 0.3)
     screen_y = y + rng.uniform(-0.2, 0.3)
-    builder.block([x - 0.15 * side, screen_y, 0.84], [0.04, 0.55, 0.33], DARK, yaw_rad=turn)
-    builder.block([x - 0.15 * side, screen_y, 0.74], [0.15, 0.2, 0.1], DARK, yaw_rad=turn)
     builder.block(
-        [x + 0.15 * side, screen_y - 0.45, 0.74], [0.21, 0.3, rng.uniform(0.02, 0.1)], PAPER
+        [x - 0.15 * side, screen_y, 0.84], [0.04, 0.55, 0.33], MATERIAL.dark, yaw_rad=turn
+    )
+    builder.block([x - 0.15 * side, screen_y, 0.74], [0.15, 0.2, 0.1], MATERIAL.dark, yaw_rad=turn)
+    builder.block(
+        [x + 0.15 * side, screen_y - 0.45, 0.74],
+        [0.21, 0.3, rng.uniform(0.02, 0.1)],
+        MATERIAL.paper,
     )
     chair(builder, x + 0.62 * side, y + rng.uniform(-0.3, 0.3), yaw_rad=rng.uniform(-0.6, 0.6))
 
 
 def chair(builder: MeshBuilder, x: float, y: float, *, yaw_rad: float) -> None:
     """A swivel chair."""
-    builder.tube([x, y, 0.06], [x, y, 0.44], 0.035, reflectivity=STEEL)
-    builder.block([x, y, 0.44], [0.44, 0.44, 0.07], DARK, yaw_rad=yaw_rad)
+    builder.tube([x, y, 0.06], [x, y, 0.44], 0.035, reflectivity=MATERIAL.steel)
+    builder.block([x, y, 0.44], [0.44, 0.44, 0.07], MATERIAL.dark, yaw_rad=yaw_rad)
     back = 0.21
     place = [x + back * np.cos(yaw_rad), y + back * np.sin(yaw_rad), 0.55]
-    builder.block(place, [0.06, 0.42, 0.45], DARK, yaw_rad=yaw_rad)
+    builder.block(place, [0.06, 0.42, 0.45], MATERIAL.dark, yaw_rad=yaw_rad)
     for angle in yaw_rad + np.arange(5) * 0.4 * np.pi:
         foot = [x + 0.28 * np.cos(angle), y + 0.28 * np.sin(angle), 0.05]
-        builder.tube([x, y, 0.09], foot, 0.02, reflectivity=STEEL, sides=4)
+        builder.tube([x, y, 0.09], foot, 0.02, reflectivity=MATERIAL.steel, sides=4)
 
 
 def shelf(
     builder: MeshBuilder, x: float, y: float, *, height_m: float, rng: np.random.Generator
 ) -> None:
     """An open shelf with binders."""
-    builder.block([x, y - 0.49, 0], [0.38, 0.02, height_m], WOOD)
-    builder.block([x, y + 0.49, 0], [0.38, 0.02, height_m], WOOD)
+    builder.block([x, y - 0.49, 0], [0.38, 0.02, height_m], MATERIAL.wood)
+    builder.block([x, y + 0.49, 0], [0.38, 0.02, height_m], MATERIAL.wood)
     for level in np.arange(0.05, height_m, 0.36):
-        builder.block([x, y, level], [0.38, 1.0, 0.02], WOOD)
+        builder.block([x, y, level], [0.38, 1.0, 0.02], MATERIAL.wood)
         if level < height_m - 0.3:
             width = rng.uniform(0.3, 0.9)
             place = y - 0.47 + width / 2
@@ -118,7 +122,7 @@ def shelf(
 
 def radiator(builder: MeshBuilder, x: float, y: float) -> None:
     """A radiator under a window."""
-    builder.block([x, y, 0.15], [1.2, 0.08, 0.55], PAPER)
+    builder.block([x, y, 0.15], [1.2, 0.08, 0.55], MATERIAL.paper)
 
 
 def lamp(
@@ -130,31 +134,35 @@ def lamp(
     size: tuple[float, float] = (1.2, 0.3),
 ) -> None:
     """A lamp on the ceiling: the brightest thing in the intensity image."""
-    builder.block([x, y, ceiling_m - 0.07], [size[0], size[1], 0.06], LAMP)
+    builder.block([x, y, ceiling_m - 0.07], [size[0], size[1], 0.06], MATERIAL.lamp)
 
 
 def board(builder: MeshBuilder, x: float, y: float, *, length_m: float) -> None:
     """A whiteboard on a wall that runs north-south, with a strip of dark writing."""
     builder.block([x, y, 1.0], [0.03, length_m, 1.2], 0.9)
     for k in range(6):
-        builder.block([x, y - 0.7 + 0.25 * k, 1.6], [0.034, 0.12, 0.2], DARK)
+        builder.block([x, y - 0.7 + 0.25 * k, 1.6], [0.034, 0.12, 0.2], MATERIAL.dark)
 
 
 def corridor_things(
     builder: MeshBuilder, length_m: float, width_m: float, *, height_m: float
 ) -> None:
     """Extinguisher, notice boards, exit signs, bins and a cable duct: no two places look alike."""
-    builder.tube([10.1, 0.1, 0.5], [10.1, 0.1, 1.05], 0.08, reflectivity=STEEL, sides=10)
+    builder.tube([10.1, 0.1, 0.5], [10.1, 0.1, 1.05], 0.08, reflectivity=MATERIAL.steel, sides=10)
     builder.block([8.3, width_m - 0.03, 0.9], [1.2, 0.03, 0.9], 0.25)
     builder.block([17.3, 0.03, 1.0], [1.6, 0.03, 0.8], 0.3)
     for k in range(5):
         builder.block(
-            [7.85 + 0.22 * k, width_m - 0.05, 1.1 + 0.1 * (k % 3)], [0.16, 0.004, 0.22], PAPER
+            [7.85 + 0.22 * k, width_m - 0.05, 1.1 + 0.1 * (k % 3)],
+            [0.16, 0.004, 0.22],
+            MATERIAL.paper,
         )
     for x in (5.0, 14.7, 21.9):
         builder.block([x, width_m / 2, height_m - 0.3], [0.03, 0.4, 0.2], 1.6)
-    builder.block([19.9, width_m - 0.19, 0], [0.3, 0.26, 0.7], DARK)
+    builder.block([19.9, width_m - 0.19, 0], [0.3, 0.26, 0.7], MATERIAL.dark)
     builder.box(
-        [0.2, width_m - 0.1, height_m - 0.12], [length_m - 0.2, width_m - 0.02, height_m], STEEL
+        [0.2, width_m - 0.1, height_m - 0.12],
+        [length_m - 0.2, width_m - 0.02, height_m],
+        MATERIAL.steel,
     )
-    builder.block([25.55, 0.35, 0], [0.4, 0.5, 1.0], WOOD)
+    builder.block([25.55, 0.35, 0], [0.4, 0.5, 1.0], MATERIAL.wood)

@@ -17,82 +17,98 @@ From above, columns ``o``, aisles along x between every second row::
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from functools import partial
+
 import numpy as np
 from numpy.typing import ArrayLike
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
+from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World
-from recon4.simulation.worlds.outdoors import CONCRETE, car
-from recon4.simulation.worlds.walls import PAPER, WallShape, wall
+from recon4.simulation.worlds.outdoors import car
+from recon4.simulation.worlds.walls import WallShape, wall
 
-GRID_M = 5.0
-COLUMN_M = 0.4
-HEIGHT_M = 2.6
-_COLUMNS_X = 12
-_ROWS = 6
-"""Of columns; aisles lie between rows 0 and 1, 2 and 3, 4 and 5."""
-_MARGIN_M = 5.0
-_STOPS = 8
-_BESIDE_M = 0.9
-"""From a column to where people cross the bays, beside the cars [m]."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GaragePlan:
+    """Measures of a variant, see the drawing."""
+
+    taken: float = 0.0
+    """Chance that a car is parked in a bay."""
+    columns: int = 12
+    """Along x."""
+    rows: int = 6
+    """Of columns; aisles lie between rows 0 and 1, 2 and 3, 4 and 5."""
+    grid_m: float = 5.0
+    """From column to column."""
+    margin_m: float = 5.0
+    """From the outer columns to the walls."""
+    column_m: float = 0.4
+    """Width of a column."""
+    height_m: float = 2.6
+    beside_m: float = 0.9
+    """From a column to where people cross the bays, beside the cars."""
+    stops: int = 8
 
 
 def build(variant: int = 0) -> World:
     """The garage; the variant draws how many bays are taken, and by what."""
     rng = np.random.default_rng([5005, variant])
-    taken = 0.0 if variant == 0 else float(rng.uniform(0.1, 0.6))
+    plan = GaragePlan() if variant == 0 else GaragePlan(taken=float(rng.uniform(0.1, 0.6)))
     builder = MeshBuilder()
-    size = np.array([GRID_M * (_COLUMNS_X - 1), GRID_M * (_ROWS - 1)]) + 2 * _MARGIN_M
-    for z, value in ((0.0, CONCRETE), (HEIGHT_M, CONCRETE)):
+    size = plan.grid_m * np.array([plan.columns - 1, plan.rows - 1]) + 2 * plan.margin_m
+    for z, value in ((0.0, MATERIAL.concrete), (plan.height_m, MATERIAL.concrete)):
         builder.quad([0, 0, z], [size[0], 0, 0], [0, size[1], 0], reflectivity=value)
-    concrete = WallShape(height_m=HEIGHT_M, reflectivity=CONCRETE)
+    concrete = WallShape(height_m=plan.height_m, reflectivity=MATERIAL.concrete)
     for y in (0.0, float(size[1])):
         wall(builder, (0, y), (float(size[0]), y), shape=concrete)
     for x in (0.0, float(size[0])):
         wall(builder, (x, 0), (x, float(size[1])), shape=concrete)
-    for column in range(_COLUMNS_X):
-        for row in range(_ROWS):
-            x, y = _column(column, row)
-            builder.block([x, y, 0], [COLUMN_M, COLUMN_M, HEIGHT_M], CONCRETE)
-    for x, y, inward in _bays():
-        builder.block([x, y, 0.0], [0.1, 4.4, 0.003], PAPER)
-        if rng.random() < taken:
+    pillar = [plan.column_m, plan.column_m, plan.height_m]
+    for column in range(plan.columns):
+        for row in range(plan.rows):
+            x, y = _column(plan, column, row)
+            builder.block([x, y, 0], pillar, MATERIAL.concrete)
+    for x, y, inward in _bays(plan):
+        builder.block([x, y, 0.0], [0.1, 4.4, 0.003], MATERIAL.paper)
+        if rng.random() < plan.taken:
             yaw = 0.5 * np.pi * inward
-            car(builder, (x + 0.5 * GRID_M, y), yaw_rad=yaw, ground=_floor, rng=rng)
-    return World(name="garage", mesh=builder.mesh(), route=_route, stops=_STOPS)
+            car(builder, (x + 0.5 * plan.grid_m, y), yaw_rad=yaw, ground=_floor, rng=rng)
+    return World(name="garage", mesh=builder.mesh(), route=partial(_route, plan), stops=plan.stops)
 
 
-def _column(column: int, row: int) -> tuple[float, float]:
-    return _MARGIN_M + GRID_M * column, _MARGIN_M + GRID_M * row
+def _column(plan: GaragePlan, column: int, row: int) -> tuple[float, float]:
+    return plan.margin_m + plan.grid_m * column, plan.margin_m + plan.grid_m * row
 
 
 def _floor(x_m: ArrayLike, y_m: ArrayLike) -> Array:
     return 0.0 * (np.asarray(x_m, dtype=np.float64) + np.asarray(y_m, dtype=np.float64))
 
 
-def _bays() -> list[tuple[float, float, float]]:
+def _bays(plan: GaragePlan) -> list[tuple[float, float, float]]:
     """Left edge x, middle y [m] of the bays and 1 or -1: along y in or out of the aisle."""
     found = []
-    for column in range(_COLUMNS_X - 1):
+    for column in range(plan.columns - 1):
         for row, inward in ((1, 1.0), (3, 1.0)):  # between the rows without an aisle
-            x, y = _column(column, row)
-            found.append((x, y + 0.5 * GRID_M, inward))
-        x, y = _column(column, 0)
-        found.append((x, y - 0.5 * _MARGIN_M, -1.0))
-        x, y = _column(column, _ROWS - 1)
-        found.append((x, y + 0.5 * _MARGIN_M, 1.0))
+            x, y = _column(plan, column, row)
+            found.append((x, y + 0.5 * plan.grid_m, inward))
+        x, y = _column(plan, column, 0)
+        found.append((x, y - 0.5 * plan.margin_m, -1.0))
+        x, y = _column(plan, column, plan.rows - 1)
+        found.append((x, y + 0.5 * plan.margin_m, 1.0))
     return found
 
 
-def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
+def _route(plan: GaragePlan, rng: np.random.Generator, stops: int) -> list[Waypoint]:
     """Along one aisle and back along another one, farther the more stops."""
     out, back = sorted(rng.choice(3, size=2, replace=False))
     if stops < 4:  # a short round stays in one aisle
         back = out
-    west = _MARGIN_M + _BESIDE_M
-    east = west + GRID_M * round((_COLUMNS_X - 2) * stops / _STOPS)
-    ys = [_MARGIN_M + GRID_M * (2.0 * aisle + 0.5) for aisle in (out, back)]
+    west = plan.margin_m + plan.beside_m
+    east = west + plan.grid_m * round((plan.columns - 2) * stops / plan.stops)
+    ys = [plan.margin_m + plan.grid_m * (2.0 * aisle + 0.5) for aisle in (out, back)]
     start = Waypoint(west, ys[0])
     corners = [start, Waypoint(east, ys[0], stop=True, look_deg=90.0)]
     if back != out:

@@ -13,31 +13,45 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
+from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World, WorldMarker
 from recon4.simulation.worlds.furniture import corridor_things, furnish, lamp
-from recon4.simulation.worlds.walls import (
-    CEILING,
-    LINOLEUM,
-    PAPER,
-    WallShape,
-    door,
-    wall,
-    window,
-)
+from recon4.simulation.worlds.walls import WallShape, door, wall, window
 
-ROOM_M = 5.2
-ROOMS = 5
-LENGTH_M = ROOM_M * ROOMS
-CORRIDOR_M = 1.6
-NORTH_M, SOUTH_M = 10.7, -8.0
-HEIGHT_M, CORRIDOR_HEIGHT_M = 2.9, 2.55
-_DOOR_AT_M = 1.3
-"""Of a room's door to the corridor, from the room's western wall."""
-_PASSAGE_AT_M = 1.6
-"""Of the doors between rooms, from the corridor."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OfficePlan:
+    """Measures of the office, see the drawing."""
+
+    rooms: int = 5
+    """In each of the two rows."""
+    room_m: float = 5.2
+    """Width of a room, along the corridor."""
+    corridor_m: float = 1.6
+    """Width of the corridor."""
+    north_m: float = 10.7
+    south_m: float = -8.0
+    """y of the outer walls."""
+    height_m: float = 2.9
+    corridor_height_m: float = 2.55
+    """Of rooms and of the corridor, below the ceiling."""
+    door_at_m: float = 1.3
+    """Of a room's door to the corridor, from the room's western wall."""
+    passage_at_m: float = 1.6
+    """Of the doors between rooms, from the corridor."""
+
+    @property
+    def length_m(self) -> float:
+        """From the western to the eastern wall."""
+        return self.room_m * self.rooms
+
+
+OFFICE = OfficePlan()
 
 
 def build() -> World:
@@ -46,63 +60,71 @@ def build() -> World:
     rng = np.random.default_rng(1907)
     _shell(builder)
     for row in (0, 1):
-        for column in range(ROOMS):
+        for column in range(OFFICE.rooms):
             furnish(
                 builder, _room(row, column), north=row == 0, kind=(row + 2 * column) % 4, rng=rng
             )
-    corridor_things(builder, LENGTH_M, CORRIDOR_M, height_m=CORRIDOR_HEIGHT_M)
+    corridor_things(builder, OFFICE.length_m, OFFICE.corridor_m, height_m=OFFICE.corridor_height_m)
     markers = _markers(builder)
-    return World(name="office", mesh=builder.mesh(), route=_route, stops=2 * ROOMS, markers=markers)
+    return World(
+        name="office", mesh=builder.mesh(), route=_route, stops=2 * OFFICE.rooms, markers=markers
+    )
 
 
 def _room(row: int, column: int) -> tuple[float, float, float, float]:
     """West, east, south, north of the inside of a room [m]."""
-    west, east = column * ROOM_M + 0.06, (column + 1) * ROOM_M - 0.06
+    west, east = column * OFFICE.room_m + 0.06, (column + 1) * OFFICE.room_m - 0.06
     if row == 0:
-        return west, east, CORRIDOR_M + 0.12, NORTH_M - 0.15
-    return west, east, SOUTH_M + 0.15, -0.12
+        return west, east, OFFICE.corridor_m + 0.12, OFFICE.north_m - 0.15
+    return west, east, OFFICE.south_m + 0.15, -0.12
 
 
 def _shell(builder: MeshBuilder) -> None:
     """Floor, ceilings and walls."""
+    room_m, corridor_m, length_m = OFFICE.room_m, OFFICE.corridor_m, OFFICE.length_m
+    south_m, north_m = OFFICE.south_m, OFFICE.north_m
     builder.quad(
-        [0, SOUTH_M, 0], [LENGTH_M, 0, 0], [0, NORTH_M - SOUTH_M, 0], reflectivity=LINOLEUM
+        [0, south_m, 0], [length_m, 0, 0], [0, north_m - south_m, 0], reflectivity=MATERIAL.linoleum
     )
     for low, high, z in [
-        (SOUTH_M, 0.0, HEIGHT_M),
-        (0.0, CORRIDOR_M, CORRIDOR_HEIGHT_M),
-        (CORRIDOR_M, NORTH_M, HEIGHT_M),
+        (south_m, 0.0, OFFICE.height_m),
+        (0.0, corridor_m, OFFICE.corridor_height_m),
+        (corridor_m, north_m, OFFICE.height_m),
     ]:
-        builder.quad([0, low, z], [LENGTH_M, 0, 0], [0, high - low, 0], reflectivity=CEILING)
-    doors = [door(column * ROOM_M + _DOOR_AT_M) for column in range(ROOMS)]
-    south_doors = [door((column + 1) * ROOM_M - _DOOR_AT_M) for column in range(ROOMS)]
-    wall(builder, (0, CORRIDOR_M + 0.06), (LENGTH_M, CORRIDOR_M + 0.06), openings=doors)
-    wall(builder, (0, -0.06), (LENGTH_M, -0.06), openings=south_doors)
-    windows = [window(column * ROOM_M + at) for column in range(ROOMS) for at in (1.45, 3.75)]
-    for y in (NORTH_M, SOUTH_M):
-        wall(builder, (0, y), (LENGTH_M, y), shape=WallShape(thickness_m=0.3), openings=windows)
-    for x in (0.0, LENGTH_M):
-        wall(builder, (x, SOUTH_M), (x, 0.0))
-        wall(builder, (x, CORRIDOR_M), (x, NORTH_M))
-        end = window(CORRIDOR_M / 2, 1.0)
-        wall(builder, (x, 0.0), (x, CORRIDOR_M), shape=WallShape(thickness_m=0.3), openings=[end])
-    for column in range(1, ROOMS):
-        x = column * ROOM_M
-        passage = door(_PASSAGE_AT_M)
-        wall(builder, (x, CORRIDOR_M + 0.12), (x, NORTH_M), openings=[passage])
-        south = door(-0.12 - SOUTH_M - _PASSAGE_AT_M)
-        wall(builder, (x, SOUTH_M), (x, -0.12), openings=[south])
-    for x in (ROOM_M * 0.5, ROOM_M * 1.7, ROOM_M * 2.6, ROOM_M * 3.5, ROOM_M * 4.4):
-        lamp(builder, x, CORRIDOR_M / 2, ceiling_m=CORRIDOR_HEIGHT_M, size=(1.2, 0.15))
+        builder.quad(
+            [0, low, z], [length_m, 0, 0], [0, high - low, 0], reflectivity=MATERIAL.ceiling
+        )
+    doors = [door(column * room_m + OFFICE.door_at_m) for column in range(OFFICE.rooms)]
+    south_doors = [door((column + 1) * room_m - OFFICE.door_at_m) for column in range(OFFICE.rooms)]
+    wall(builder, (0, corridor_m + 0.06), (length_m, corridor_m + 0.06), openings=doors)
+    wall(builder, (0, -0.06), (length_m, -0.06), openings=south_doors)
+    windows = [
+        window(column * room_m + at) for column in range(OFFICE.rooms) for at in (1.45, 3.75)
+    ]
+    for y in (north_m, south_m):
+        wall(builder, (0, y), (length_m, y), shape=WallShape(thickness_m=0.3), openings=windows)
+    for x in (0.0, length_m):
+        wall(builder, (x, south_m), (x, 0.0))
+        wall(builder, (x, corridor_m), (x, north_m))
+        end = window(corridor_m / 2, 1.0)
+        wall(builder, (x, 0.0), (x, corridor_m), shape=WallShape(thickness_m=0.3), openings=[end])
+    for column in range(1, OFFICE.rooms):
+        x = column * room_m
+        passage = door(OFFICE.passage_at_m)
+        wall(builder, (x, corridor_m + 0.12), (x, north_m), openings=[passage])
+        south = door(-0.12 - south_m - OFFICE.passage_at_m)
+        wall(builder, (x, south_m), (x, -0.12), openings=[south])
+    for x in (room_m * 0.5, room_m * 1.7, room_m * 2.6, room_m * 3.5, room_m * 4.4):
+        lamp(builder, x, corridor_m / 2, ceiling_m=OFFICE.corridor_height_m, size=(1.2, 0.15))
 
 
 def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
     """Retro-reflective squares on walls of the corridor and rooms."""
-    places = [(4.8, 0.002, 1.4), (13.2, CORRIDOR_M - 0.002, 1.5), (22.9, 0.002, 1.6)]
+    places = [(4.8, 0.002, 1.4), (13.2, OFFICE.corridor_m - 0.002, 1.5), (22.9, 0.002, 1.6)]
     for x, y, z in places:
         builder.box([x - 0.1, y - 0.002, z - 0.1], [x + 0.1, y + 0.002, z + 0.1], 2.2)
     for x in (2.9, 8.1, 13.3, 18.5, 23.7):
-        builder.box([x, -0.002, 1.5], [x + 0.3, 0.002, 1.7], PAPER)
+        builder.box([x, -0.002, 1.5], [x + 0.3, 0.002, 1.7], MATERIAL.paper)
     return tuple(WorldMarker(f"M{k + 1}", *place) for k, place in enumerate(places))
 
 
@@ -112,8 +134,8 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
     One row of rooms outbound, the other inbound; some neighbors by the inner door.
     """
     rows = [0, 1] if rng.random() < 0.5 else [1, 0]
-    visits = [(rows[0], column) for column in range(ROOMS)]
-    visits += [(rows[1], column) for column in reversed(range(ROOMS))]
+    visits = [(rows[0], column) for column in range(OFFICE.rooms)]
+    visits += [(rows[1], column) for column in reversed(range(OFFICE.rooms))]
     # A short round stays near its start, so that it sees rooms and not only the corridor.
     near = [k for k, (_, column) in enumerate(visits) if 2 * column < stops + 1]
     chosen = sorted(rng.choice(near, size=stops, replace=False))
@@ -133,18 +155,20 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
 
 
 def _door_x(row: int, column: int) -> float:
-    return column * ROOM_M + (_DOOR_AT_M if row == 0 else ROOM_M - _DOOR_AT_M)
+    return column * OFFICE.room_m + (
+        OFFICE.door_at_m if row == 0 else OFFICE.room_m - OFFICE.door_at_m
+    )
 
 
 def _in_corridor(x_m: float, rng: np.random.Generator, *, wiggle: float = 0.12) -> Waypoint:
-    return Waypoint(x_m, CORRIDOR_M / 2 + wiggle * rng.uniform(-1, 1))
+    return Waypoint(x_m, OFFICE.corridor_m / 2 + wiggle * rng.uniform(-1, 1))
 
 
 def _enter(row: int, column: int, rng: np.random.Generator) -> list[Waypoint]:
     x = _door_x(row, column)
-    wall_y, inward = (CORRIDOR_M + 0.06, 1.0) if row == 0 else (-0.06, -1.0)
+    wall_y, inward = (OFFICE.corridor_m + 0.06, 1.0) if row == 0 else (-0.06, -1.0)
     stop = bool(rng.random() < 0.3)
-    at_door = Waypoint(x, CORRIDOR_M / 2, stop=stop)
+    at_door = Waypoint(x, OFFICE.corridor_m / 2, stop=stop)
     return [at_door, Waypoint(x, wall_y), Waypoint(x, wall_y + 0.9 * inward)]
 
 
@@ -163,6 +187,6 @@ def _look_around(row: int, column: int, rng: np.random.Generator) -> Waypoint:
 
 def _pass_through(row: int, column: int, side: int, *, rng: np.random.Generator) -> list[Waypoint]:
     """By the inner door into the next room of the row."""
-    x = (column + (1 if side > 0 else 0)) * ROOM_M
-    y = CORRIDOR_M + 0.12 + _PASSAGE_AT_M if row == 0 else -0.12 - _PASSAGE_AT_M
+    x = (column + (1 if side > 0 else 0)) * OFFICE.room_m
+    y = OFFICE.corridor_m + 0.12 + OFFICE.passage_at_m if row == 0 else -0.12 - OFFICE.passage_at_m
     return [Waypoint(x - 0.9 * side, y), Waypoint(x, y), Waypoint(x + 0.9 * side, y)]

@@ -10,39 +10,43 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
+from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World, distance_to_leg
-from recon4.simulation.worlds.walls import (
-    CEILING,
-    DARK,
-    LINOLEUM,
-    PAPER,
-    PLASTER,
-    STEEL,
-    WALL_M,
-    WOOD,
-    Opening,
-    WallShape,
-    wall,
-    window,
-)
+from recon4.simulation.worlds.walls import USUAL_WALL, Opening, WallShape, wall, window
 
-_WIDTHS_M = ((2.4, 3.0), (3.2, 5.5), (6.0, 12.0))
-_WIDTH_CHANCE = (0.3, 0.5, 0.2)
-_DOORS_M, _DOOR_TOPS_M = (0.95, 1.3, 2.0), (2.1, 2.35)
-_ANOTHER_DOOR = 0.3
-"""Chance of a door between rooms that are connected without it."""
-_CORNER_M, _BEFORE_M = 0.85, 0.9
-"""From a door's middle to the corner of the room, and how far before it people turn."""
-_FREE_M = 0.6
-"""Nothing stands nearer to the legs between doors."""
-_THINGS_M2 = (0.0, 0.08, 0.2)
-"""Things on a square meter of a room."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RoomsPlan:
+    """What a variant is drawn from."""
+
+    widths_m: tuple[tuple[float, float], ...] = ((2.4, 3.0), (3.2, 5.5), (6.0, 12.0))
+    """Least and most width of a row or column: closets and corridors, rooms, halls …"""
+    width_chances: tuple[float, ...] = (0.3, 0.5, 0.2)
+    """… and the chance of each."""
+    doors_m: tuple[float, ...] = (0.95, 1.3, 2.0)
+    """Widths of doors."""
+    door_tops_m: tuple[float, float] = (2.1, 2.35)
+    """Least and most height of a door."""
+    another_door: float = 0.3
+    """Chance of a door between rooms that are connected without it."""
+    corner_m: float = 0.85
+    """Least distance from a door's middle to the corner of the room."""
+    before_m: float = 0.9
+    """How far before a door people turn to it."""
+    free_m: float = 0.6
+    """Nothing stands nearer to the legs between doors."""
+    things_m2: tuple[float, ...] = (0.0, 0.08, 0.2)
+    """Things on a square meter of a room."""
+
+
+ROOMS = RoomsPlan()
 
 _Room = tuple[int, int]
 
@@ -102,7 +106,7 @@ class _FloorPlan:
         """Where people in a room turn to a door [m], (2,)."""
         across = 1 - door.along
         middle = self.middle(room)[across]
-        step = np.clip(middle - door.wall_m, -_BEFORE_M, _BEFORE_M)
+        step = np.clip(middle - door.wall_m, -ROOMS.before_m, ROOMS.before_m)
         return door.place(float(step))
 
     def legs(self, room: _Room) -> Iterator[tuple[Array, Array]]:
@@ -137,17 +141,16 @@ def build(variant: int = 0) -> World:
     for room in plan.rooms:
         low, high = plan.corners(room)
         x, y = high - low
-        for z, value in ((0.0, LINOLEUM), (float(plan.height_m[room]), CEILING)):
+        for z, value in ((0.0, MATERIAL.linoleum), (float(plan.height_m[room]), MATERIAL.ceiling)):
             builder.quad(
                 [*low, z], [x, 0, 0], [0, y, 0], reflectivity=value * rng.uniform(0.6, 1.2)
             )
         _fill(builder, plan, room, rng=rng)
     _lay_walls(builder, plan, rng)
 
-    def route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
-        return _round(plan, rng, stops)
-
-    return World(name="rooms", mesh=builder.mesh(), route=route, stops=len(plan.rooms) - 1)
+    return World(
+        name="rooms", mesh=builder.mesh(), route=partial(_round, plan), stops=len(plan.rooms) - 1
+    )
 
 
 def _drawn_plan(rng: np.random.Generator) -> _FloorPlan:
@@ -165,7 +168,7 @@ def _drawn_plan(rng: np.random.Generator) -> _FloorPlan:
     doors = []
     for row in rng.permutation(len(walls)):
         room, other = walls[row]
-        if group[room] == group[other] and rng.random() > _ANOTHER_DOOR:
+        if group[room] == group[other] and rng.random() > ROOMS.another_door:
             continue
         joined = group[other]
         group = {key: group[room] if value == joined else value for key, value in group.items()}
@@ -174,8 +177,8 @@ def _drawn_plan(rng: np.random.Generator) -> _FloorPlan:
 
 
 def _drawn_lines(rng: np.random.Generator, count: int) -> Array:
-    kinds = rng.choice(len(_WIDTHS_M), size=count, p=_WIDTH_CHANCE)
-    widths = [rng.uniform(*_WIDTHS_M[kind]) for kind in kinds]
+    kinds = rng.choice(len(ROOMS.widths_m), size=count, p=ROOMS.width_chances)
+    widths = [rng.uniform(*ROOMS.widths_m[kind]) for kind in kinds]
     return np.concatenate([[0.0], np.cumsum(widths)])
 
 
@@ -184,10 +187,10 @@ def _drawn_door(
 ) -> _DrawnDoor:
     along = 1 if other[0] > room[0] else 0
     low, high = plan.corners(room)
-    width_m = min(float(rng.choice(_DOORS_M)), 0.6 * float(high[along] - low[along]))
-    margin = max(_CORNER_M, width_m / 2.0 + 0.2)
+    width_m = min(float(rng.choice(ROOMS.doors_m)), 0.6 * float(high[along] - low[along]))
+    margin = max(ROOMS.corner_m, width_m / 2.0 + 0.2)
     at_m = float(rng.uniform(low[along] + margin, high[along] - margin))
-    top_m = float(rng.uniform(*_DOOR_TOPS_M))
+    top_m = float(rng.uniform(*ROOMS.door_tops_m))
     return _DrawnDoor(frozenset({room, other}), along, at_m, float(high[1 - along]), width_m, top_m)
 
 
@@ -204,8 +207,8 @@ def _lay_walls(builder: MeshBuilder, plan: _FloorPlan, rng: np.random.Generator)
                 ]
                 shape = WallShape(
                     height_m=float(max(plan.height_m[room] for room in beside)),
-                    thickness_m=WALL_M if len(beside) == 2 else 0.3,
-                    reflectivity=PLASTER * float(rng.uniform(0.6, 1.3)),
+                    thickness_m=USUAL_WALL.thickness_m if len(beside) == 2 else 0.3,
+                    reflectivity=MATERIAL.plaster * float(rng.uniform(0.6, 1.3)),
                 )
                 ends = [(start, at), (end, at)] if along == 0 else [(at, start), (at, end)]
                 holes = _holes(plan, beside, (start, end), rng=rng)
@@ -232,11 +235,11 @@ def _fill(builder: MeshBuilder, plan: _FloorPlan, room: _Room, *, rng: np.random
     """Put things into a room, away from the legs between its doors."""
     low, high = plan.corners(room)
     legs = list(plan.legs(room))
-    wanted = round(float(rng.choice(_THINGS_M2)) * float(np.prod(high - low)))
+    wanted = round(float(rng.choice(ROOMS.things_m2)) * float(np.prod(high - low)))
     for _ in range(10 * wanted):
         place = rng.uniform(low + 0.2, high - 0.2)
         radius_m = float(rng.uniform(0.1, 1.0))
-        if min(distance_to_leg(place, *leg) for leg in legs) > radius_m + _FREE_M:
+        if min(distance_to_leg(place, *leg) for leg in legs) > radius_m + ROOMS.free_m:
             ceiling_m = float(plan.height_m[room])
             _thing(builder, place, radius_m=radius_m, ceiling_m=ceiling_m, rng=rng)
             wanted -= 1
@@ -254,7 +257,7 @@ def _thing(
 ) -> None:
     """A box, a board on a foot, a column or a ball, turned by any angle."""
     x, y = place
-    value = float(rng.choice([DARK, STEEL, WOOD, PAPER]))
+    value = float(rng.choice([MATERIAL.dark, MATERIAL.steel, MATERIAL.wood, MATERIAL.paper]))
     yaw = float(rng.uniform(0.0, np.pi))
     long, wide = 1.6 * radius_m, 1.2 * radius_m * rng.uniform(0.3, 1.0)
     height_m = float(rng.uniform(0.3, min(2.2, ceiling_m - 0.1)))
@@ -262,7 +265,7 @@ def _thing(
     if kind == 0:
         builder.block([x, y, 0], [long, wide, height_m], value, yaw_rad=yaw)
     elif kind == 1:
-        builder.block([x, y, 0], [0.1, 0.1, height_m], STEEL)
+        builder.block([x, y, 0], [0.1, 0.1, height_m], MATERIAL.steel)
         builder.block([x, y, height_m], [long, wide, 0.04], value, yaw_rad=yaw)
     elif kind == 2:
         builder.tube([x, y, 0], [x, y, ceiling_m], min(radius_m, 0.4), reflectivity=value, sides=16)

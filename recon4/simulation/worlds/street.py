@@ -13,36 +13,34 @@ from numpy.typing import ArrayLike
 
 from recon4.geometry.mesh import MeshBuilder
 from recon4.geometry.se3 import Array
+from recon4.simulation.materials import MATERIAL
 from recon4.simulation.world import Waypoint, World, WorldMarker
-from recon4.simulation.worlds.outdoors import (
-    ASPHALT,
-    CONCRETE,
-    car,
-    follow,
-    ground_marker,
-    pole,
-    sign,
-    tree,
-)
-from recon4.simulation.worlds.walls import (
-    PLASTER,
-    STEEL,
-    WOOD,
-    Opening,
-    SlabExtent,
-    WallShape,
-    slab,
-    wall,
-)
+from recon4.simulation.worlds.outdoors import car, follow, ground_marker, pole, sign, tree
+from recon4.simulation.worlds.walls import Opening, SlabExtent, WallShape, slab, wall
 
-LENGTH_M, WIDTH_M = 60.0, 36.0
-KERB_M, FAR_KERB_M, FAR_FACADE_M = 2.5, 9.5, 12.0
-NEAR_WALK_M, FAR_WALK_M = 1.2, 10.9
-_KERB_HEIGHT_M = 0.12
-_STOPS = 10
-_STOREY_M = 3.4
-_BOTTOM_M = -2.5
-"""Houses reach down to here, below the lowest ground."""
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StreetPlan:
+    """Measures of the block; distances ``d`` as at the top."""
+
+    length_m: float = 60.0
+    width_m: float = 36.0
+    """Of the block, along x and y."""
+    kerb_m: float = 2.5
+    far_kerb_m: float = 9.5
+    far_facade_m: float = 12.0
+    """d of both kerbs and of the facades opposite."""
+    near_walk_m: float = 1.2
+    far_walk_m: float = 10.9
+    """d of where people walk on the two sidewalks."""
+    kerb_height_m: float = 0.12
+    storey_m: float = 3.4
+    bottom_m: float = -2.5
+    """Houses reach down to here, below the lowest ground."""
+    stops: int = 10
+
+
+STREET = StreetPlan()
 
 
 def build() -> World:
@@ -50,15 +48,15 @@ def build() -> World:
     builder = MeshBuilder()
     rng = np.random.default_rng(1907)
     _ground(builder)
-    far = FAR_FACADE_M
-    for low, high, near in [(0.0, LENGTH_M, True), (-far, LENGTH_M + far, False)]:
+    far = STREET.far_facade_m
+    for low, high, near in [(0.0, STREET.length_m, True), (-far, STREET.length_m + far, False)]:
         out = 0.0 if near else far
         low_side, high_side = (-1, 1) if near else (1, -1)
         _row(builder, (low, -out), high - low, front=_Front(0, low_side), rng=rng)
-        _row(builder, (low, WIDTH_M + out), high - low, front=_Front(0, high_side), rng=rng)
-        span = WIDTH_M + 2 * out
+        _row(builder, (low, STREET.width_m + out), high - low, front=_Front(0, high_side), rng=rng)
+        span = STREET.width_m + 2 * out
         _row(builder, (-out, -out), span, front=_Front(1, low_side), rng=rng)
-        _row(builder, (LENGTH_M + out, -out), span, front=_Front(1, high_side), rng=rng)
+        _row(builder, (STREET.length_m + out, -out), span, front=_Front(1, high_side), rng=rng)
     for side in range(4):
         _furnish_side(builder, side, rng)
     markers = _markers(builder)
@@ -66,7 +64,7 @@ def build() -> World:
         name="street",
         mesh=builder.mesh(),
         route=_route,
-        stops=_STOPS,
+        stops=STREET.stops,
         markers=markers,
         outdoors=True,
     )
@@ -75,27 +73,33 @@ def build() -> World:
 def height(x_m: ArrayLike, y_m: ArrayLike) -> Array:
     """Height of the ground [m]: a slope, a slow wave, kerbs."""
     x, y = np.asarray(x_m, dtype=np.float64), np.asarray(y_m, dtype=np.float64)
-    out = np.maximum(np.maximum(-x, x - LENGTH_M), np.maximum(-y, y - WIDTH_M))
-    road = (out > KERB_M) & (out < FAR_KERB_M)
-    slope = 0.02 * (x - 30.0) + 0.008 * (y + NEAR_WALK_M) + 0.15 * np.sin(x / 17.0) - 0.147
-    return np.asarray(slope - np.where(road, _KERB_HEIGHT_M, 0.0))
+    out = np.maximum(np.maximum(-x, x - STREET.length_m), np.maximum(-y, y - STREET.width_m))
+    road = (out > STREET.kerb_m) & (out < STREET.far_kerb_m)
+    slope = 0.02 * (x - 30.0) + 0.008 * (y + STREET.near_walk_m) + 0.15 * np.sin(x / 17.0) - 0.147
+    return np.asarray(slope - np.where(road, STREET.kerb_height_m, 0.0))
 
 
 def _ground(builder: MeshBuilder) -> None:
     def lines(size_m: float) -> Array:
-        kerbs = [edge for d in (KERB_M, FAR_KERB_M) for edge in (-d, size_m + d)]
+        kerbs = [edge for d in (STREET.kerb_m, STREET.far_kerb_m) for edge in (-d, size_m + d)]
         steps = np.array([[k - 0.01, k + 0.01] for k in kerbs]).ravel()
         even = np.arange(-16.0, size_m + 16.1, 2.0)
         return np.union1d(steps, even)
 
-    x, y = lines(LENGTH_M), lines(WIDTH_M)
+    x, y = lines(STREET.length_m), lines(STREET.width_m)
     grid_x, grid_y = np.meshgrid(x, y)
     middle_x, middle_y = np.meshgrid((x[1:] + x[:-1]) / 2, (y[1:] + y[:-1]) / 2)
     out = np.maximum(
-        np.maximum(-middle_x, middle_x - LENGTH_M), np.maximum(-middle_y, middle_y - WIDTH_M)
+        np.maximum(-middle_x, middle_x - STREET.length_m),
+        np.maximum(-middle_y, middle_y - STREET.width_m),
     )
-    road = (out > KERB_M) & (out < FAR_KERB_M)
-    builder.terrain(x, y, height(grid_x, grid_y), reflectivity=np.where(road, ASPHALT, CONCRETE))
+    road = (out > STREET.kerb_m) & (out < STREET.far_kerb_m)
+    builder.terrain(
+        x,
+        y,
+        height(grid_x, grid_y),
+        reflectivity=np.where(road, MATERIAL.asphalt, MATERIAL.concrete),
+    )
 
 
 def _row(
@@ -163,8 +167,8 @@ class _Facade:
 
     def storey(self, number: int, openings: list[Opening]) -> None:
         """The wall of a storey; the lowest one reaches into the ground."""
-        low = _BOTTOM_M - self.base_m if number == 0 else number * _STOREY_M
-        shift = number * _STOREY_M - low
+        low = STREET.bottom_m - self.base_m if number == 0 else number * STREET.storey_m
+        shift = number * STREET.storey_m - low
         corners = np.full((2, 2), self.middle_m)
         corners[:, self.front.along] = self.start_m, self.end_m
         wall(
@@ -173,7 +177,7 @@ class _Facade:
             (float(corners[1, 0]), float(corners[1, 1])),
             shape=WallShape(
                 bottom_m=self.base_m + low,
-                height_m=_STOREY_M + shift,
+                height_m=STREET.storey_m + shift,
                 thickness_m=0.3,
                 reflectivity=self.reflectivity,
             ),
@@ -185,12 +189,7 @@ class _Facade:
 
 
 def _house(
-    builder: MeshBuilder,
-    corner: Array,
-    width_m: float,
-    *,
-    front: _Front,
-    rng: np.random.Generator,
+    builder: MeshBuilder, corner: Array, width_m: float, *, front: _Front, rng: np.random.Generator
 ) -> None:
     """A door, windows with recesses, a cornice, a downpipe and perhaps a balcony."""
     along = front.along
@@ -199,7 +198,7 @@ def _house(
     center = np.full(2, middle)
     center[along] = 0.5 * (start + end)
     base = float(height(*center))
-    value = PLASTER * rng.uniform(0.5, 1.3)
+    value = MATERIAL.plaster * rng.uniform(0.5, 1.3)
     facade = _Facade(builder, front, start, end, middle, base, value)
     storeys = int(rng.integers(2, 5))
     step = rng.uniform(2.0, 2.9)
@@ -209,29 +208,31 @@ def _house(
     windows = [Opening(float(p), wide, 1.0, 1.0 + tall, glazed=True) for p in places]
     for number in range(storeys):
         facade.storey(number, windows if number else windows[:door] + windows[door + 1 :])
-    top = storeys * _STOREY_M
+    top = storeys * STREET.storey_m
     facade.slab((start, end), (-0.02, 0.3), level=(top - 0.25, top), value=value)
     at = start + float(places[door])
-    facade.slab((at - 0.5, at + 0.5), (-0.02, 0.02), level=(0.0, 2.2), value=WOOD)
-    facade.slab((start + 0.15, start + 0.25), (0.01, 0.11), level=(-0.3, top - 0.25), value=STEEL)
+    facade.slab((at - 0.5, at + 0.5), (-0.02, 0.02), level=(0.0, 2.2), value=MATERIAL.wood)
+    facade.slab(
+        (start + 0.15, start + 0.25), (0.01, 0.11), level=(-0.3, top - 0.25), value=MATERIAL.steel
+    )
     if rng.random() < 0.4:
-        balcony = (at - 1.0, at + 1.0)
-        facade.slab(balcony, (0.0, 1.0), level=(_STOREY_M, _STOREY_M + 0.15), value=CONCRETE)
-        facade.slab(balcony, (0.95, 1.0), level=(_STOREY_M + 0.15, _STOREY_M + 1.1), value=STEEL)
+        balcony, floor = (at - 1.0, at + 1.0), STREET.storey_m
+        facade.slab(balcony, (0.0, 1.0), level=(floor, floor + 0.15), value=MATERIAL.concrete)
+        facade.slab(balcony, (0.95, 1.0), level=(floor + 0.15, floor + 1.1), value=MATERIAL.steel)
 
 
 def _place(side: int, along_m: float, d_m: float) -> tuple[float, float]:
     """A point ``along_m`` counter-clockwise on a side of the block, ``d_m`` outside of it."""
     return (
         (along_m, -d_m),
-        (LENGTH_M + d_m, along_m),
-        (LENGTH_M - along_m, WIDTH_M + d_m),
-        (-d_m, WIDTH_M - along_m),
+        (STREET.length_m + d_m, along_m),
+        (STREET.length_m - along_m, STREET.width_m + d_m),
+        (-d_m, STREET.width_m - along_m),
     )[side]
 
 
 def _length(side: int) -> float:
-    return LENGTH_M if side % 2 == 0 else WIDTH_M
+    return STREET.length_m if side % 2 == 0 else STREET.width_m
 
 
 def _furnish_side(builder: MeshBuilder, side: int, rng: np.random.Generator) -> None:
@@ -240,7 +241,7 @@ def _furnish_side(builder: MeshBuilder, side: int, rng: np.random.Generator) -> 
     yaw = 0.5 * np.pi * side
     outward = np.array(_place(side, 0.0, 1.0)) - np.array(_place(side, 0.0, 0.0))
     forward = np.array(_place(side, 1.0, 0.0)) - np.array(_place(side, 0.0, 0.0))
-    for d, turn in ((KERB_M + 1.15, 0.0), (FAR_KERB_M - 1.15, np.pi)):
+    for d, turn in ((STREET.kerb_m + 1.15, 0.0), (STREET.far_kerb_m - 1.15, np.pi)):
         for along in np.arange(3.0, length - 2.0, 6.0):
             if rng.random() < 0.65 and abs(along - length / 2) > 5.0:
                 x, y = _place(side, along, d)
@@ -248,12 +249,12 @@ def _furnish_side(builder: MeshBuilder, side: int, rng: np.random.Generator) -> 
                 car(builder, (x, y), yaw_rad=angle, ground=height, rng=rng)
     for along in np.arange(7.0, length, 12.0):
         if abs(along - length / 2) > 3.0:
-            x, y = _place(side, along, KERB_M - 0.35)
+            x, y = _place(side, along, STREET.kerb_m - 0.35)
             tree(builder, x, y, ground=height, rng=rng)
-        x, y = _place(side, along + 4.0, FAR_KERB_M + 0.4)
+        x, y = _place(side, along + 4.0, STREET.far_kerb_m + 0.4)
         pole(builder, x, y, ground=height, arm=-1.6 * outward)
     for along in (4.5, length - 4.5):
-        x, y = _place(side, along, FAR_KERB_M + 0.45)
+        x, y = _place(side, along, STREET.far_kerb_m + 0.45)
         sign(builder, x, y, ground=height, along=outward if along < 10 else forward)
 
 
@@ -269,8 +270,8 @@ def _markers(builder: MeshBuilder) -> tuple[WorldMarker, ...]:
 
 def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
     """A route along the block and back, or around it with all stops."""
-    start = Waypoint(*_place(0, 0.5 * LENGTH_M, NEAR_WALK_M))
-    if stops < _STOPS:
+    start = Waypoint(*_place(0, 0.5 * STREET.length_m, STREET.near_walk_m))
+    if stops < STREET.stops:
         out = [start, *_along(9.0 * stops)]
         corners = [*out, *out[-2::-1]]
     else:
@@ -282,20 +283,21 @@ def _route(rng: np.random.Generator, stops: int) -> list[Waypoint]:
 def _along(reach_m: float) -> list[Waypoint]:
     """Corners up to the point of the block where the person turns back."""
     way: list[Waypoint] = []
-    begin = 0.5 * LENGTH_M
+    begin = 0.5 * STREET.length_m
     for side in range(4):
-        end = min(begin + reach_m, _length(side) + NEAR_WALK_M)
-        way.append(Waypoint(*_place(side, end, NEAR_WALK_M)))
+        end = min(begin + reach_m, _length(side) + STREET.near_walk_m)
+        way.append(Waypoint(*_place(side, end, STREET.near_walk_m)))
         reach_m -= end - begin
         if reach_m < 2.0:
             break
-        begin = -NEAR_WALK_M
+        begin = -STREET.near_walk_m
     return [*way[:-1], replace(way[-1], stop=True, look_deg=90.0)]
 
 
 def _around(rng: np.random.Generator) -> list[Waypoint]:
     """Corners of a round; on some sides by the sidewalk opposite."""
-    lanes = [NEAR_WALK_M, *rng.choice([NEAR_WALK_M, FAR_WALK_M], 3, p=[0.7, 0.3]), NEAR_WALK_M]
+    near, far = STREET.near_walk_m, STREET.far_walk_m
+    lanes = [near, *rng.choice([near, far], 3, p=[0.7, 0.3]), near]
     way: list[Waypoint] = []
     for side in range(4):
         way.append(Waypoint(*_place(side, _length(side) + lanes[side], lanes[side])))

@@ -8,13 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.mesh import MeshBuilder
-
-WALL_M = 0.12
-DOOR_M = 0.95
-DOOR_TOP_M = 2.1
-PLASTER, CEILING, LINOLEUM, WOOD, DARK, STEEL, LAMP, PANE, PAPER = (
-    0.55, 0.65, 0.3, 0.4, 0.12, 0.35, 0.95, 0.015, 0.8,
-)  # fmt: skip
+from recon4.simulation.materials import MATERIAL
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,16 +30,27 @@ class WallShape:
 
     bottom_m: float = 0.0
     height_m: float = 2.9
-    thickness_m: float = WALL_M
-    reflectivity: float = PLASTER
+    thickness_m: float = 0.12
+    reflectivity: float = MATERIAL.plaster
 
 
 USUAL_WALL = WallShape()
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DoorSize:
+    """Size of a doorway, which begins at the floor."""
+
+    width_m: float = 0.95
+    top_m: float = 2.1
+
+
+USUAL_DOOR = DoorSize()
+
+
 def door(at_m: float) -> Opening:
     """An open doorway."""
-    return Opening(at_m, DOOR_M, 0.0, DOOR_TOP_M)
+    return Opening(at_m, USUAL_DOOR.width_m, 0.0, USUAL_DOOR.top_m)
 
 
 def window(at_m: float, width_m: float = 1.6) -> Opening:
@@ -124,8 +129,8 @@ def slab(builder: MeshBuilder, extent: SlabExtent, *, along: int, reflectivity: 
 def _glaze(bricks: _Bricks, left: float, right: float, *, hole: Opening) -> None:
     """Pane and frame with a mullion."""
     full, frame, middle = (hole.bottom_m, hole.top_m), 0.06, 0.5 * (left + right)
-    bricks.lay((left, right), full, 0.01, value=PANE)
+    bricks.lay((left, right), full, 0.01, value=MATERIAL.pane)
     for a, b in [(left, left + frame), (right - frame, right), (middle - 0.03, middle + 0.03)]:
-        bricks.lay((a, b), full, 0.07, value=PAPER)
-    bricks.lay((left, right), (hole.bottom_m, hole.bottom_m + frame), 0.07, value=PAPER)
-    bricks.lay((left, right), (hole.top_m - frame, hole.top_m), 0.07, value=PAPER)
+        bricks.lay((a, b), full, 0.07, value=MATERIAL.paper)
+    bricks.lay((left, right), (hole.bottom_m, hole.bottom_m + frame), 0.07, value=MATERIAL.paper)
+    bricks.lay((left, right), (hole.top_m - frame, hole.top_m), 0.07, value=MATERIAL.paper)

@@ -9,21 +9,21 @@ from recon4.geometry.raycast import Scene
 from recon4.model.rig import load_rig
 from recon4.simulation.families.families import pattern_of
 from recon4.simulation.lidar import Lidar, LidarModel, Surroundings
-from recon4.simulation.walk import KNOT_S, Walk
+from recon4.simulation.walk import Walk
 
 SENSOR = load_rig("single-vlp16").sensors[0]
 
 
 def still(seconds=2.0, height_m=1.5):
     """A body that does not move at (0, 0, height)."""
-    samples = np.zeros((round(seconds / KNOT_S) + 1, 6))
+    samples = np.zeros((round(seconds / Walk.KNOT_S) + 1, 6))
     samples[:, 2] = height_m
     return Walk.through(samples)
 
 
 def straight(speed_m_s, seconds=2.0):
     """A body that moves along x at constant speed."""
-    t_s = np.arange(round(seconds / KNOT_S) + 1) * KNOT_S
+    t_s = np.arange(round(seconds / Walk.KNOT_S) + 1) * Walk.KNOT_S
     samples = np.zeros((len(t_s), 6))
     samples[:, 0] = speed_m_s * t_s
     return Walk.through(samples)

@@ -6,7 +6,8 @@ import pytest
 from recon4.geometry.raycast import Scene
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.lidar import Surroundings
-from recon4.simulation.walk import BODY_HEIGHT_M, Walk
+from recon4.simulation.person import GAIT
+from recon4.simulation.walk import Walk
 from recon4.simulation.world import World
 from recon4.simulation.worlds import build_world
 
@@ -31,7 +32,7 @@ def down(building: World, walk: Walk, t_s: np.ndarray) -> np.ndarray:
 def test_the_floor_rises_with_the_person(building: World, walk: Walk) -> None:
     t_s = np.arange(0.0, walk.seconds, 0.1)
 
-    assert down(building, walk, t_s) == pytest.approx(BODY_HEIGHT_M, abs=0.12)
+    assert down(building, walk, t_s) == pytest.approx(GAIT.body_height_m, abs=0.12)
     assert np.ptp(walk.state(t_s)[:, 2]) > 3.3
 
 

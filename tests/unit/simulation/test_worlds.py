@@ -6,7 +6,7 @@ from recon4.geometry.mesh import MeshBuilder, write_ply
 from recon4.geometry.raycast import Scene, distance_to_mesh
 from recon4.simulation.gait import plan_walk
 from recon4.simulation.lidar import Surroundings
-from recon4.simulation.walk import BODY_HEIGHT_M
+from recon4.simulation.person import GAIT
 from recon4.simulation.worlds import PROCEDURAL, WORLDS, build_world
 
 ROUND_S = {
@@ -63,7 +63,7 @@ def test_the_person_walks_into_nothing(name, seed, worlds):
     world = worlds[name]
     seconds = ROUND_S[name.partition(":")[0]]
     walk = plan_walk(world, seconds=float(seconds), rng=np.random.default_rng(seed))
-    foot = walk.state(np.arange(0.0, walk.seconds, 0.1))[:, :3] - [0.0, 0.0, BODY_HEIGHT_M]
+    foot = walk.state(np.arange(0.0, walk.seconds, 0.1))[:, :3] - [0.0, 0.0, GAIT.body_height_m]
     scene = Scene(world.mesh)
 
     clearance = [
@@ -84,8 +84,8 @@ def test_the_person_walks_on_the_floor(name, worlds):
 
     hits = around.cast(np.hstack([body, down]).astype(np.float32), walk, t_s)
 
-    assert np.all(np.abs(hits.range_m - BODY_HEIGHT_M) < 0.3)
-    assert abs(np.median(hits.range_m) - BODY_HEIGHT_M) < 0.12
+    assert np.all(np.abs(hits.range_m - GAIT.body_height_m) < 0.3)
+    assert abs(np.median(hits.range_m) - GAIT.body_height_m) < 0.12
 
 
 @pytest.mark.parametrize("name", ["office", "street", "field"])
