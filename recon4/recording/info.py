@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.errors import ConfigError, RecordingError
+from recon4.errors import ConfigError, EmptyRecording, RecordingError
 from recon4.model.lidars import lidar_model
 from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
@@ -123,8 +123,8 @@ def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
         packets = BagPackets(bag, companions_of(request.paths))
         try:
             streams = lidar_streams(packets, None, request.settings, report=request.report)
-        except RigToComplete:  # said when the recording is opened
-            streams = []
+        except (RigToComplete, EmptyRecording):
+            streams = []  # what is missing is said when the recording is opened, once
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
         whole = info.bytes <= WHOLE_BYTES
@@ -147,7 +147,7 @@ def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
             sensors=sensors,
             samples=tuple(_topic_line(t, bag.seconds, describing) for t in other if t.messages),
             gaps=gaps,
-            missing=lines.missing if lines else () if streams else ("LiDAR data",),
+            missing=lines.missing if lines else (),
         )
 
 

@@ -14,6 +14,7 @@ from tests.e2e.test_pages import fits
 from tests.project_builder import build_project
 from tests.served import served
 from tests.service.running import SLOW, open_gate, recording_with_gate
+from tests.unit.recording.test_mandeye import write_walk
 
 pytestmark = pytest.mark.e2e
 
@@ -125,6 +126,21 @@ def test_a_folder_is_uploaded_with_its_names(server, page, tmp_path):
     folder = Path(page.get_by_label("Or a recording on the server").input_value())
     assert sorted(p.name for p in (folder / "clouds").iterdir())[-1] == "000011.bin"
     assert (folder / "clouds" / "000011.bin").stat().st_size == 176
+
+
+@looks("desktop light")
+def test_a_walk_of_a_mandeye_device_is_uploaded_as_one_recording(server, page, tmp_path):
+    write_walk(tmp_path / "Walk 7", seconds=1.0)
+    sent = sorted(file.name for file in (tmp_path / "Walk 7").iterdir())
+    page.goto(server.url)
+
+    chooser(page, folder=True).set_input_files(tmp_path / "Walk 7")
+
+    expect(page.locator("recording-look")).to_contain_text("2 LiDARs and no rig")
+    expect(page.locator("recording-look")).to_contain_text("Mid-360")
+    folder = Path(page.get_by_label("Or a recording on the server").input_value())
+    assert sorted(file.name for file in folder.iterdir()) == sent
+    assert {Path(name).suffix for name in sent} == {".csv", ".json", ".laz", ".sn"}
 
 
 def test_what_takes_space_is_listed_and_a_recording_deleted_and_restored(
