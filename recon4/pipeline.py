@@ -31,8 +31,8 @@ from recon4.store.project import (
     is_project,
     read_artifacts,
 )
-from recon4.store.recipes import retired_settings, settings_to_repeat
 from recon4.store.stage import Stage, StageRunner
+from recon4.store.stage_settings import retired_settings, settings_to_repeat
 from recon4.workflows.choice import (
     check_planar,
     has_map,

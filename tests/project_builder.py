@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.mapping.notes import MapNotes
+from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
 from recon4.model.figures import FrameFigures, LevelFigures, MapFigures

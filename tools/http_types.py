@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from recon4_app.description import description
 from recon4_app.main import create_app
+from recon4_app.openapi import description
 from recon4_app.settings import ServerSettings
 
 TYPES = Path(__file__).parents[1] / "web/shared/http_types.d.ts"

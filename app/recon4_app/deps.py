@@ -17,7 +17,7 @@ from recon4_app.network.streams import Streams
 from recon4_app.projects.store import ProjectStore
 from recon4_app.projects.thumbnail import Thumbnails
 from recon4_app.projects.trash import Trash
-from recon4_app.review.checks import ApprovalChecks
+from recon4_app.review.hash_checks import ApprovalChecks
 from recon4_app.review.store import Reviews
 from recon4_app.rigs.calibrations import Calibrations
 from recon4_app.rigs.store import RigStore

@@ -35,7 +35,6 @@ from recon4_app.access.routes_check import check_declared
 from recon4_app.access.startup_notice import startup_notice
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.deps import Server, ServerParts
-from recon4_app.description import description
 from recon4_app.jobs import choices
 from recon4_app.jobs import routes as job_routes
 from recon4_app.jobs.store import JobStore
@@ -64,16 +63,17 @@ from recon4_app.network.listen import (
     uvicorn_config,
 )
 from recon4_app.network.streams import StreamLimits, Streams
+from recon4_app.openapi import description
 from recon4_app.pages import WEB, page_response
 from recon4_app.projects import routes as project_routes
 from recon4_app.projects.import_folders import ImportFolders
 from recon4_app.projects.store import ProjectStore
 from recon4_app.projects.thumbnail import Thumbnails
 from recon4_app.projects.trash import Trash
-from recon4_app.review import acknowledging
+from recon4_app.review import acknowledgment_routes
 from recon4_app.review import routes as review_routes
-from recon4_app.review.checks import ApprovalChecks
-from recon4_app.review.records import record_all
+from recon4_app.review.hash_checks import ApprovalChecks
+from recon4_app.review.newest_approvals import record_all
 from recon4_app.review.store import Reviews
 from recon4_app.rigs import routes as rig_routes
 from recon4_app.rigs.calibrations import Calibrations
@@ -156,7 +156,7 @@ def _routes() -> list[BaseRoute]:
     more = (choices, server_routes, metrics_routes, reference_routes, align_routes, docs_pages)
     for part in more:
         router.include_router(part.router)
-    router.include_router(acknowledging.router)
+    router.include_router(acknowledgment_routes.router)
     for part in (page, proxy):
         router.include_router(part.router, dependencies=REQUIRES_LOOK)
     for part in (review_routes, slice_routes, rig_routes, storage_routes):

@@ -78,7 +78,7 @@ def _mesh(path: Path, unit: str, tiles: TileSet | None) -> TriangleMesh:
     """
     from recon4.evaluation.reference_mesh import TriangleMesh, read_mesh
     from recon4.recording.tables.column_names import UNITS_M
-    from recon4.slices.placement import check_extent
+    from recon4.slices.reference_placement import check_extent
 
     chosen = next((known for known in UNITS_M if known == unit), None)
     if unit and chosen is None:

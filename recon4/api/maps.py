@@ -12,7 +12,7 @@ from recon4.errors import StoreError
 if TYPE_CHECKING:
     from recon4.mapping.tiles import Surface, TileSet
     from recon4.review.stamp import Stamp
-    from recon4.slices.frames import MapFrame
+    from recon4.slices.map_crs import MapFrame
 
 PLANAR = "map_2d"
 """Stage that only recordings of a 2-D laser alone have."""
@@ -66,7 +66,7 @@ def open_map(project: Path, *, draft: bool = False) -> OpenedMap:
     """
     from recon4.mapping.tiles import TileSet
     from recon4.review.approved import approval_of
-    from recon4.slices.frames import frame_of
+    from recon4.slices.map_crs import frame_of
     from recon4.store.project import read_artifacts
 
     artifacts = read_artifacts(project)

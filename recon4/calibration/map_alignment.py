@@ -16,7 +16,7 @@ from recon4.calibration.walk import RecordedWalk
 from recon4.calibration.window import Window, place
 from recon4.geometry.se3 import SE3, Array, mean_rotation
 from recon4.model.rig import Rig
-from recon4.registration.scans import make_scan, register_scans
+from recon4.registration.scan_registration import make_scan, register_scans
 from recon4.settings.reads import CalibrationReads
 
 

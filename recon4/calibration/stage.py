@@ -21,9 +21,9 @@ from recon4.calibration.calibrate import calibrated_parameters as parameters_of
 from recon4.calibration.joint import JointEstimate
 from recon4.calibration.judgment import judge, scatter_of, split_beams
 from recon4.calibration.mount_search import exchanged_mount
-from recon4.calibration.note import calibration_note
 from recon4.calibration.parameters import Parameters
 from recon4.calibration.result import CalibrationResult
+from recon4.calibration.rig_file_note import calibration_note
 from recon4.calibration.slices import lidar_slices
 from recon4.calibration.start import Start, find_start
 from recon4.calibration.tuning_methods import CALIBRATION_STAGE

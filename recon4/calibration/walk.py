@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.calibration.selection import choose_windows
 from recon4.calibration.tuning_joint import WINDOWS
 from recon4.calibration.window import Window, cut_window
+from recon4.calibration.window_selection import choose_windows
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory

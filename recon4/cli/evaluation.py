@@ -148,9 +148,9 @@ def _marker_table(
     import numpy as np
 
     from recon4.evaluation.markers import read_markers
+    from recon4.slices.control_limits import parse_limits
     from recon4.slices.control_points import ControlPoint
-    from recon4.slices.limits import parse_limits
-    from recon4.slices.measured import MeasuredPosition
+    from recon4.slices.measured_points import MeasuredPosition
     from recon4.slices.residuals import ControlContext, residuals
 
     points = [

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from recon4.live.newest import Newest
+    from recon4.live.newest_messages import Newest
     from recon4.model.rig import Rig
 
 live = typer.Typer()

@@ -98,7 +98,7 @@ def info(
     from dataclasses import asdict
 
     from recon4.recording.info import describe
-    from recon4.recording.recipes.given import recipe_given
+    from recon4.recording.recipes.given_rig import recipe_given
 
     found = describe(recording, fields=recipe_given(fields))
     if rig_out:
@@ -144,7 +144,7 @@ def process(  # noqa: PLR0913 - an argument for each option
     from recon4.pipeline import process as run
     from recon4.recording.kinds import located_elsewhere
     from recon4.recording.nearby_samples import unread_samples
-    from recon4.recording.recipes.given import rig_given
+    from recon4.recording.recipes.given_rig import rig_given
 
     with watcher() as progress:
         sources = Sources(tuple(recordings), rig_given(recordings, rig, fields), imu, gnss)

@@ -16,7 +16,7 @@ from recon4.errors import ConfigError
 
 if TYPE_CHECKING:
     from recon4.mapping.tiles import TileSet
-    from recon4.slices.frames import MapFrame
+    from recon4.slices.map_crs import MapFrame
     from recon4.slices.reference import Reference
 
 ReferenceOption = Annotated[
@@ -59,8 +59,8 @@ def open_reference(
     if path is None:
         yield None
         return
-    from recon4.slices.imports import MapPlace, ReadAs, import_reference
     from recon4.slices.reference import load_reference
+    from recon4.slices.reference_import import MapPlace, ReadAs, import_reference
 
     columns, unit, asked = reading
     if asked not in ("auto", "map", "crs"):

@@ -73,7 +73,7 @@ def double_walls(project: ProjectArgument) -> None:
     from recon4.cli.terminal import watcher
     from recon4.mapping.tiles import TileSet
     from recon4.slices.doubles import find_double_walls
-    from recon4.slices.frames import frame_of
+    from recon4.slices.map_crs import frame_of
     from recon4.store.project import read_artifacts
 
     artifacts = read_artifacts(project)

@@ -178,9 +178,9 @@ def describe_tried(out: Path) -> list[str]:
     Raises:
         StoreError: If the table is damaged.
     """
-    from recon4.report.tried import tried_lines
+    from recon4.report.tried_hypotheses import tried_lines
     from recon4.store.project import read_artifacts
-    from recon4.store.tried import read_tried
+    from recon4.store.tried_hypotheses import read_tried
 
     odometry = read_artifacts(out).get("odometry")
     tried = read_tried(odometry) if odometry else ()

@@ -14,7 +14,7 @@ from recon4.evaluation.sharpness import thin
 from recon4.evaluation.slices import RelativeError, Slice, relative_error, spread_slices
 from recon4.evaluation.tuning import SENSOR_FLOOR
 from recon4.geometry.se3 import SE3, Array
-from recon4.mapping.place import place
+from recon4.mapping.undistort import place
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory

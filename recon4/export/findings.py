@@ -12,7 +12,7 @@ import numpy as np
 from recon4.errors import ConfigError, StoreError
 from recon4.export.cells import safe_cell
 from recon4.export.tuning import FINDING_EXPORT
-from recon4.findings.notes import SaidFinding, findings_in
+from recon4.findings.summary_notes import SaidFinding, findings_in
 from recon4.geometry.se3 import Array
 from recon4.georeference.crs import CrsTransform, to_geodetic
 from recon4.georeference.crs_file import read_crs

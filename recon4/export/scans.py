@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.mapping.place import place
+from recon4.mapping.undistort import place
 from recon4.model.multiframe import Multiframe
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track

@@ -19,7 +19,7 @@ from recon4.georeference.gnss import GeoreferenceResult, georeference
 from recon4.georeference.level import NOT_LEVELED, Leveling, level
 from recon4.georeference.tuning import LEVEL_STAGE, GnssTuning
 from recon4.mapping.mirrors import Sight, find_mirrors
-from recon4.mapping.place import place_with_origins
+from recon4.mapping.undistort import place_with_origins
 from recon4.model.corrections import apply_corrections
 from recon4.model.figures import AntennaFigures, LevelFigures, MirrorFigures
 from recon4.model.plain import to_plain

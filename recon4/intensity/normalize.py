@@ -17,7 +17,7 @@ from recon4.intensity.tuning import SAMPLING, IntensityTuning
 from recon4.kernels.intensity import accumulate, bins_of
 from recon4.kernels.voxels import face_sensor
 from recon4.mapping.normals import local_normals
-from recon4.mapping.place import place_with_origins
+from recon4.mapping.undistort import place_with_origins
 from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Fix, Notes, Pose, Sender, Status
 from recon4.live.scan_findings import scan_remarks, unobserved_text
 from recon4.live.session import loopback_address

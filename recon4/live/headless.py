@@ -10,7 +10,7 @@ from functools import partial
 
 from recon4.errors import ConfigError
 from recon4.live.ipc.line_client import linked, started
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4.live.project_files import discard
 from recon4.live.session import CaptureSession
 from recon4.live.tuning import HEADLESS

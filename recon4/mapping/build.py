@@ -17,14 +17,14 @@ import numpy as np
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
-from recon4.mapping.notes import MapCrs, MapNotes
-from recon4.mapping.place import place_with_origins
+from recon4.mapping.map_notes import MapCrs, MapNotes
 from recon4.mapping.records import Records, Tile, split_into_tiles
-from recon4.mapping.scratch import Scratch
 from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
+from recon4.mapping.tile_memory import Scratch
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import BUCKETS, MAP_BUILD, TILE_SURFACES
+from recon4.mapping.undistort import place_with_origins
 from recon4.model.events import MapBuilt
 from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable

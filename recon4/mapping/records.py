@@ -19,7 +19,7 @@ from recon4.kernels.voxels import (
     voxel_keys,
 )
 from recon4.mapping.grid import Grid
-from recon4.mapping.place import Placed
+from recon4.mapping.undistort import Placed
 from recon4.model.multiframe import Multiframe
 
 RECORD = np.dtype(

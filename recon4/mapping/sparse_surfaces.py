@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from recon4.kernels.surface_cells import number_cells
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, Views
-from recon4.mapping.scratch import Scratch
 from recon4.mapping.surface_fit import TUNING, FittedSurfaces, Noise, fit_rows
+from recon4.mapping.tile_memory import Scratch
 from recon4.mapping.tuning import SPARSE_SURFACES
 
 

@@ -36,7 +36,7 @@ from recon4.kernels.surface_records import (
 )
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import Records, Views
-from recon4.mapping.scratch import ScratchArray
+from recon4.mapping.tile_memory import ScratchArray
 from recon4.mapping.tuning import NORMALS
 
 

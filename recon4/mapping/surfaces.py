@@ -12,8 +12,8 @@ from recon4.kernels import surface_cells
 from recon4.kernels.surface_records import SURFACE
 from recon4.mapping.grid import Grid
 from recon4.mapping.records import RECORD, Records, Views, joined
-from recon4.mapping.scratch import Scratch
 from recon4.mapping.surface_fit import FittedSurfaces, Noise, fit_rows
+from recon4.mapping.tile_memory import Scratch
 from recon4.mapping.tuning import TILE_SURFACES
 
 

@@ -20,10 +20,10 @@ from recon4.mapping.grid import Grid
 from recon4.mapping.intensity import normalized_intensity
 from recon4.mapping.normals import Normals, local_normals
 from recon4.mapping.records import Records, Tile, Views, is_own, to_sensor_m
-from recon4.mapping.scratch import Scratch
 from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
+from recon4.mapping.tile_memory import Scratch
 from recon4.mapping.tuning import TILES
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.mapping.columns import column_header, column_shape, row_offset
-from recon4.mapping.notes import MapNotes
+from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS, Columns
 from recon4.mapping.tiles import FORMAT
 from recon4.store.atomic import raise_if_full, write_json

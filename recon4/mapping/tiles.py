@@ -25,7 +25,7 @@ from recon4.mapping.columns import (
     map_rows,
     row_offset,
 )
-from recon4.mapping.notes import MapCrs, MapNotes, read_map_list
+from recon4.mapping.map_notes import MapCrs, MapNotes, read_map_list
 from recon4.mapping.tile import Columns, spatial_order
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.earlier_names import TILE_FIELDS

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Rows
 from recon4.pose_graph.bounds import RelativeBounds, relative_bounds
-from recon4.pose_graph.density import DensityImage, make_density_image
+from recon4.pose_graph.density_images import DensityImage, make_density_image
 from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.pose_graph.tuning_places import PLACES
 from recon4.registration.submap import NodeRangeImages

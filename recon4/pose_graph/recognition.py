@@ -1,8 +1,8 @@
 """Place recognition: loop closures beyond the search radius of revisits.
 
 Every few meters the walls around the body are drawn from above (`places`). A place is compared
-with all earlier ones by its descriptor; the most similar are laid onto each other (`density`). The
-poses that fit best are registered like any pair and must pass further tests:
+with all earlier ones by its descriptor; the most similar are laid onto each other
+(`density_images`). The poses that fit best are registered like any pair and must pass more tests:
 
 - the points of one visit do not lie where the other one saw through (free space);
 - several places in a row agree on the same correction;
@@ -23,11 +23,16 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import SE3, so3_exp
 from recon4.model.pose_graph import Edge, EdgeKind, Judge, Judgment, PoseGraph, Reason, Verdict
-from recon4.pose_graph.density import Overlay, overlays, yaws_within
-from recon4.pose_graph.follow import ChainFollower, loop_pairs, register_recognized, taken_pairs
-from recon4.pose_graph.groups import RecognizedChain, judge_chains
+from recon4.pose_graph.density_images import Overlay, overlays, yaws_within
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.places import Places, make_places
+from recon4.pose_graph.recognized_chains import (
+    ChainFollower,
+    loop_pairs,
+    register_recognized,
+    taken_pairs,
+)
+from recon4.pose_graph.recognized_groups import RecognizedChain, judge_chains
 from recon4.pose_graph.tuning import RecognitionTuning
 from recon4.pose_graph.tuning_places import DENSITY, RECOGNITION
 from recon4.progress import Progress

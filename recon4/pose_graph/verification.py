@@ -22,8 +22,8 @@ from recon4.model.pose_graph import (
     Relations,
     Verdict,
 )
+from recon4.pose_graph.alternative_paths import PathIndex, reject_worst_first
 from recon4.pose_graph.checks import check_relations
-from recon4.pose_graph.paths import PathIndex, reject_worst_first
 from recon4.pose_graph.relations import squared_residuals
 from recon4.pose_graph.robust import optimize_gnc, outlier_limit
 from recon4.pose_graph.solve import Solution, optimize

@@ -22,7 +22,7 @@ from recon4.profiler.samples import TimedPoints, joined, line_points
 from recon4.profiler.tuning import LineTuning
 from recon4.profiler.tuning_solve import PUBLISHED_REFINE
 from recon4.progress import Progress
-from recon4.registration.scans import thinned
+from recon4.registration.scan_registration import thinned
 from recon4.semi_rigid.knots import IntervalEquations, apply_knots, solve_knots
 from recon4.store.frames import FrameStore
 

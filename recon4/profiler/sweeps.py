@@ -13,7 +13,7 @@ from recon4.model.trajectory import Times, Trajectory
 from recon4.profiler.samples import line_points
 from recon4.profiler.tuning import LineTuning
 from recon4.progress import Progress
-from recon4.registration.scans import thinned
+from recon4.registration.scan_registration import thinned
 from recon4.store.frames import FrameStore
 
 

@@ -14,7 +14,7 @@ from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times, Trajectory
 from recon4.recording.formats.bags import Bag, BagMessage
 from recon4.recording.report import ImportReport
-from recon4.recording.samples.measured import declared_absent
+from recon4.recording.samples.measured_channels import declared_absent
 from recon4.recording.stamps import StampClock
 
 _BATCH = 500

@@ -11,7 +11,7 @@ from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.assembly.range_limits import drop_invalid
-from recon4.recording.assembly.rotation import rotation_rate
+from recon4.recording.assembly.rotation_rate import rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_compare import (
     GNSS_CLOCK,

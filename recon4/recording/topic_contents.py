@@ -12,7 +12,7 @@ from recon4.model.samples import ImuSamples
 from recon4.recording.bag_messages import imu_row, pose_row, stamp_ns
 from recon4.recording.formats.bags import Bag, BagTopic
 from recon4.recording.packets.messages import DATA_MESSAGES
-from recon4.recording.samples.measured import imu_channels
+from recon4.recording.samples.measured_channels import imu_channels
 from recon4.recording.samples.units import FASTEST_RAD_S
 from recon4.recording.transform_messages import frame_of
 

@@ -18,7 +18,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3, Array
 from recon4.registration.overlap import RangeImage, make_range_image, seen_through
 from recon4.registration.result import Registration
-from recon4.registration.scans import Scan, lay_onto, make_scan
+from recon4.registration.scan_registration import Scan, lay_onto, make_scan
 from recon4.registration.tuning import SCANS, ScanTuning
 from recon4.registration.tuning_motion import BRIDGE
 

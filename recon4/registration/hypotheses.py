@@ -21,9 +21,9 @@ from recon4.model.tried_hypotheses import Because, TriedHypothesis
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.choose import Trial, Trials, choose
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
+from recon4.registration.hypothesis_table import row_of
 from recon4.registration.imu_choice import choose_imu, start_and_fastest_turn
 from recon4.registration.moving import find_moving, hide_moving
-from recon4.registration.table import row_of
 from recon4.registration.tuning_motion import HYPOTHESES
 from recon4.registration.walk import TrackedWalk, WalkInputs, positions_m, track_walk
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from enum import Enum, auto
 
 from recon4.geometry.se3 import Array
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.odometry_figures import ImuChoice
 from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import Because

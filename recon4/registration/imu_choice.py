@@ -20,11 +20,11 @@ from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import Because, TrialVerdict, TriedHypothesis
 from recon4.registration.choose import Trial, Trials, choose
 from recon4.registration.hypothesis import Hypothesis, ImuAssumption, Proof
+from recon4.registration.hypothesis_table import row_of
 from recon4.registration.motion import ImuMotion
 from recon4.registration.odometry import Odometry
 from recon4.registration.score import Score
 from recon4.registration.step import OdometryStep
-from recon4.registration.table import row_of
 from recon4.settings.reads import OdometryReads
 
 

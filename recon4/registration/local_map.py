@@ -8,10 +8,10 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.imu import place_points
+from recon4.registration.frame_view import FrameView
 from recon4.registration.plane_map import PlaneMap
 from recon4.registration.point_map import PointMap
 from recon4.registration.tuning import OdometryTuning
-from recon4.registration.view import FrameView
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 

@@ -13,11 +13,11 @@ from recon4.geometry.se3 import Array
 from recon4.model.multiframe import Multiframe
 from recon4.model.samples import ImuSamples
 from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.frame_view import FrameView
 from recon4.registration.lost import LostLimits
 from recon4.registration.motion import MotionState, Prediction, Rest
 from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
-from recon4.registration.view import FrameView
 
 
 class MotionStrategy(Protocol):

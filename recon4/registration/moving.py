@@ -23,7 +23,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.free_space import NO_SURFACE, find_moving_points, nearest_ranges
 from recon4.kernels.imu import place_points
 from recon4.model.frames import RecordedFrames
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import MovingFigures

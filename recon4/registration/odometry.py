@@ -10,6 +10,7 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.bridge import bridge_cov
 from recon4.registration.frame_fit import FrameFit
+from recon4.registration.frame_view import FrameView
 from recon4.registration.imu_strategy import ImuStrategy
 from recon4.registration.local_map import LocalMap
 from recon4.registration.motion import MotionState, Prediction
@@ -21,7 +22,6 @@ from recon4.registration.step import OdometryStep, make_step
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.tuning_motion import GAPS
-from recon4.registration.view import FrameView
 from recon4.settings.reads import OdometryReads
 from recon4.settings.tuning import tuned
 

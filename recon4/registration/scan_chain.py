@@ -12,7 +12,7 @@ from recon4.model.rig import Rig
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.result import StopReason
-from recon4.registration.scans import make_scan, search_scans
+from recon4.registration.scan_registration import make_scan, search_scans
 from recon4.registration.tuning import SCANS, ScanTuning
 from recon4.registration.tuning_matching import SCAN_CHAIN
 from recon4.registration.tuning_motion import BRIDGE

@@ -10,6 +10,7 @@ from recon4.model.samples import ImuSamples
 from recon4.registration.aiding import GnssAiding
 from recon4.registration.fix_start import start_at_fixes
 from recon4.registration.frame_fit import FrameFit, FrameFitter
+from recon4.registration.frame_view import FrameView
 from recon4.registration.lost import FreshChain, LostLimits
 from recon4.registration.motion import FreeMotion, MotionState, Prediction, Rest
 from recon4.registration.motion_strategy import is_numeric
@@ -18,7 +19,6 @@ from recon4.registration.step import OdometryStep
 from recon4.registration.tracking import Seen, TrackingState
 from recon4.registration.tuning import PLANES, OdometryTuning, registration_tuning
 from recon4.registration.tuning_motion import SCAN_MOTION
-from recon4.registration.view import FrameView
 from recon4.registration.weak_motion import unknown_motion_cov
 from recon4.registration.zero_velocity import is_stationary, zero_velocity_update
 from recon4.settings.reads import OdometryReads

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from recon4.geometry.se3 import SE3
-from recon4.model.hidden import MOVING_POINTS, HiddenPoints
+from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
 from recon4.model.odometry_figures import OdometryFigures
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.registration.felt_motion import carried, felt_motion, is_carried
 from recon4.registration.hypotheses import Choice, choose_walk
-from recon4.registration.pulled import less_sure
+from recon4.registration.pulled_motion import less_sure
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.unseen_rides import HeightContradiction, UnseenRide, unseen_rides
@@ -21,7 +21,7 @@ from recon4.registration.walk import EarlierWalks, TrackedWalk, WalkInputs
 from recon4.registration.weak_turns import weak_turns
 from recon4.settings.tuning import tuned
 from recon4.store.arrays import load_arrays, load_record, save_record, save_trajectory
-from recon4.store.tried import read_tried, write_tried
+from recon4.store.tried_hypotheses import read_tried, write_tried
 
 
 def run_odometry(recording: WalkInputs, out: Path) -> OdometryFigures:

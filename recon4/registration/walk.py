@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.events import PosesAdded, TrackingLost, positions_of
 from recon4.model.frames import RecordedFrames
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.odometry_figures import MovingFigures
 from recon4.model.trajectory import Trajectory
 from recon4.progress import Progress, track
@@ -19,7 +19,7 @@ from recon4.registration.aiding import GnssAiding
 from recon4.registration.hypothesis import Hypothesis
 from recon4.registration.imu_estimate import ImuEstimate
 from recon4.registration.line_odometry import LineOdometry
-from recon4.registration.make import make_odometry
+from recon4.registration.make_odometry import make_odometry
 from recon4.registration.motion import MotionState
 from recon4.registration.moving import StandingFrames, find_moving
 from recon4.registration.odometry import Odometry

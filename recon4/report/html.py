@@ -28,10 +28,10 @@ from recon4.report.findings import LEVELS, shown_findings
 from recon4.report.maps import map_chunks, rasterize
 from recon4.report.rig import origin_rows, rig_outcome, rig_rows
 from recon4.report.rows import imported_rows, placed_rows
-from recon4.report.tried import COLUMNS, tried_rows
+from recon4.report.tried_hypotheses import COLUMNS, tried_rows
 from recon4.settings import Settings, preset
 from recon4.store.atomic import write_text
-from recon4.store.tried import read_tried
+from recon4.store.tried_hypotheses import read_tried
 
 
 def write_report(path: Path, assessed: Assessment) -> None:

@@ -12,7 +12,7 @@ from recon4.report.facts import ReportFacts, StageTiming
 from recon4.report.tuning import PROJECT_FACTS
 from recon4.store.json_files import read_object
 from recon4.store.project import ProjectDescription, read_artifacts
-from recon4.store.recipes import settings_in
+from recon4.store.stage_settings import settings_in
 
 
 class _Stage(msgspec.Struct):

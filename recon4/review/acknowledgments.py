@@ -11,7 +11,7 @@ from dataclasses import asdict, dataclass
 from html import escape
 from pathlib import Path
 
-from recon4.findings.notes import SaidFinding, findings_in
+from recon4.findings.summary_notes import SaidFinding, findings_in
 from recon4.report.approval import add_to_block, is_draft
 from recon4.review.decisions import DecisionKind, SeenFinding
 from recon4.review.journal import JournalRow, read_rows

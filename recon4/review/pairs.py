@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array, align_points
-from recon4.mapping.place import place
+from recon4.mapping.undistort import place
 from recon4.model.pose_graph import Edge, EdgeKind, Judgment, PoseGraph
 from recon4.pose_graph.pairs import Pair as TriedPair
 from recon4.pose_graph.pairs import PairRegistrar, too_little_overlap

@@ -13,7 +13,7 @@ from recon4.geometry.se3 import SE3, Array
 from recon4.kernels.paths import path_medians
 from recon4.model.plain import finite_or_none
 from recon4.model.pose_graph import Edge, EdgeKind, PoseGraph, Reason
-from recon4.pose_graph.paths import PathIndex
+from recon4.pose_graph.alternative_paths import PathIndex
 from recon4.pose_graph.tuning import VerificationTuning
 from recon4.review.apply import is_measured
 from recon4.review.influence import influence_m

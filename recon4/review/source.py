@@ -17,7 +17,7 @@ from recon4.slam2d.tuning import Slam2dTuning
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.project import read_artifacts
-from recon4.store.recipes import check_recipes, settings_in
+from recon4.store.stage_settings import check_recipes, settings_in
 
 if TYPE_CHECKING:  # other kinds of recordings; each is imported where it is read
     from recon4.profiler.sweeps import SweepNodes

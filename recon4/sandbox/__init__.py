@@ -8,7 +8,7 @@ The parent starts the child with ``allowed_environment``. `Confinement` reports 
 computer provides; ``recon4 doctor`` prints them.
 """
 
-from recon4.sandbox.available import available_barriers
+from recon4.sandbox.available_barriers import available_barriers
 from recon4.sandbox.confine import confine, refuse_new_sockets
 from recon4.sandbox.environment import (
     ONE_THREAD,

@@ -10,8 +10,8 @@ from recon4.errors import ConfigError
 from recon4.evaluation.reference_mesh import SurfacePoints, fit_planes
 from recon4.geometry.se3 import SE3, Array, align_points
 from recon4.mapping.tiles import TileSet
-from recon4.slices.fit import fit_of, sample_reference, sample_tiles
 from recon4.slices.reference import Reference
+from recon4.slices.reference_fit import fit_of, sample_reference, sample_tiles
 from recon4.slices.tuning import ALIGNMENT
 
 

@@ -14,11 +14,11 @@ from recon4.evaluation.slices import DistanceTally, SliceError, merge_slices
 from recon4.evaluation.tuning import RELATIVE_ERROR
 from recon4.mapping.tiles import TileSet
 from recon4.model.plain import finite_or_none
-from recon4.slices.fit import ReferenceFit, fit_of
 from recon4.slices.points import points_in
 from recon4.slices.reference import Method, Reference
+from recon4.slices.reference_fit import ReferenceFit, fit_of
 from recon4.slices.residual_table import UNKNOWN
-from recon4.slices.signed import SignedFigures, SignedTally, merged
+from recon4.slices.signed_distances import SignedFigures, SignedTally, merged
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning import SIGNED
 from recon4.slices.tuning_files import SLICE_PLANES

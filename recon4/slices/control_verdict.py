@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import Role
-from recon4.slices.limits import ControlLimits
 from recon4.slices.tuning import CONTROL_VERDICT
 from recon4.slices.tuning_files import CONTROL_LIMITS
 

@@ -20,7 +20,7 @@ from recon4.mapping.tile import DEVIATION, progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.scratch import scratch_folder
-from recon4.slices.frames import MapFrame, jacobian
+from recon4.slices.map_crs import MapFrame, jacobian
 from recon4.slices.points import SliceWindow, TilePart, points_in
 from recon4.slices.slice_image import SliceImage
 from recon4.slices.slice_plane import SlicePlane

@@ -200,7 +200,7 @@ def points_between(tiles: TileSet | None, low: Array, high: Array) -> tuple[Arra
 
 
 def load_reference(folder: Path, *, method: Method = "plane") -> Reference:
-    """Load a reference written by `recon4.slices.imports.import_reference`.
+    """Load a reference written by `recon4.slices.reference_import.import_reference`.
 
     Raises:
         StoreError: If it is missing or damaged.

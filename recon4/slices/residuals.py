@@ -14,6 +14,7 @@ from typing import Literal
 import numpy as np
 
 from recon4.geometry.se3 import Array
+from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import ControlPoint, Role
 from recon4.slices.control_verdict import (
     ControlVerdict,
@@ -23,8 +24,7 @@ from recon4.slices.control_verdict import (
 )
 from recon4.slices.error_ellipses import ErrorEllipse, error_ellipse
 from recon4.slices.height_hints import beside_map, common_height
-from recon4.slices.limits import ControlLimits
-from recon4.slices.measured import MeasuredPosition
+from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.tuning import RESIDUALS
 
 ROLES: tuple[Role, Role] = ("check", "control")

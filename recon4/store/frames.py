@@ -25,7 +25,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.model.beams import beam_change
-from recon4.model.hidden import MOVING_POINTS, HiddenPoints
+from recon4.model.hidden_points import MOVING_POINTS, HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig, format_rig, load_rig
 from recon4.model.samples import GnssSamples, ImuSamples

@@ -18,7 +18,7 @@ import numpy as np
 from recon4.geometry.se3 import SE3
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
 from recon4.registration.scan_chain import body_points
-from recon4.registration.scans import make_scan
+from recon4.registration.scan_registration import make_scan
 from recon4.registration.tuning import ScanTuning
 from tests.benchmarks.loaders import nclt, nclt_truth, one_sensor
 from tests.benchmarks.real_sequences import DATA

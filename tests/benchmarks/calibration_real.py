@@ -25,7 +25,7 @@ from recon4.errors import CalibrationError
 from recon4.geometry.se3 import SE3, Array, proper, so3_log
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.registration.result import Registration
-from recon4.registration.scans import Scan, make_scan, register_scans
+from recon4.registration.scan_registration import Scan, make_scan, register_scans
 from recon4.registration.tuning import ScanTuning
 
 ROOT = Path(__file__).parents[2]

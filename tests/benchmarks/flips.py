@@ -22,7 +22,7 @@ from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
 from recon4.store.hashing import files_below
 from recon4.store.seal import changing
-from recon4_app.access.reserve import RESERVE_FILE
+from recon4_app.access.disk_reserve import RESERVE_FILE
 from tests.project_builder import approve_project, build_project
 
 

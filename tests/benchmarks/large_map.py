@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.mapping.notes import MapNotes
+from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS, progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.progress import Silent

@@ -25,7 +25,7 @@ from recon4.model.rig import Rig
 from recon4.model.trajectory import Trajectory
 from recon4.recording.formats.cloud_files import read_cloud
 from recon4.registration.odometry import Odometry
-from recon4.registration.scans import make_scan, search_scans
+from recon4.registration.scan_registration import make_scan, search_scans
 from recon4.registration.tuning import ScanTuning
 from recon4.settings import Settings
 from tests.benchmarks.loaders import FRAME_NS, muehlburg, nclt, nclt_truth, one_sensor

@@ -13,7 +13,7 @@ from recon4.recording.ingest import ingest
 from recon4.recording.sources import Sources
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import StopReason
-from recon4.registration.scans import make_scan, register_scans, search_scans
+from recon4.registration.scan_registration import make_scan, register_scans, search_scans
 from recon4.registration.tuning import ScanTuning
 from recon4.settings import Settings
 from recon4.store.frames import FrameStore

@@ -28,8 +28,8 @@ from recon4.recording.formats.reference_clouds import read_points
 from recon4.recording.info import describe
 from recon4.recording.samples.csv_files import IMU_HEADER, read_gnss_csv, read_imu_csv
 from recon4.slices.control_points import read_control
-from recon4.slices.imports import import_reference
 from recon4.slices.reference import read_facts
+from recon4.slices.reference_import import import_reference
 from recon4.store.arrays import load_trajectory
 from recon4.store.frames import INDEX, FrameStore
 from tests.security.fuzz import seeds_clouds as clouds

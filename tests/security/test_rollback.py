@@ -14,7 +14,7 @@ from recon4.review.approval_state import ApprovalKind, latest_state
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows
 from recon4_app.projects.trash import Trash
-from recon4_app.review.records import record_all, record_signed
+from recon4_app.review.newest_approvals import record_all, record_signed
 from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread
 

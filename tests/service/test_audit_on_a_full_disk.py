@@ -7,7 +7,7 @@ from contextlib import contextmanager
 import httpx
 import pytest
 
-from recon4_app.access.reserve import RESERVE_FILE
+from recon4_app.access.disk_reserve import RESERVE_FILE
 from recon4_app.access.tuning import RESERVE
 from tests.service.running import ROOT
 from tests.service.secure import PASSWORD, secure_server

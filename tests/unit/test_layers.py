@@ -47,7 +47,7 @@ MAY_IMPORT = {
     | {f"recon4.recording.{name}" for name in ("ingest", "kinds", "report", "sources")}
     | {f"recon4.recording.{name}" for name in ("scan_capture", "scan_replay")}
     | {"recon4.recording.formats.datagrams", "recon4.recording.formats.pcap"}
-    | {f"recon4.recording.samples.{name}" for name in ("clean", "measured")}
+    | {f"recon4.recording.samples.{name}" for name in ("clean", "measured_channels")}
     | {"recon4.recording.packets.sensor_clock", "recon4.recording.packets.velodyne.models"}
     | {"recon4.slam2d", "recon4.pose_graph.tuning", "recon4.profiler.tuning"}
     | {f"recon4.findings.{name}" for name in ("finding", "kinds", "verdict", "wording")},
@@ -55,7 +55,7 @@ MAY_IMPORT = {
     | {"recon4.live", "recon4.workflows.stages", "recon4.workflows.planar_stages"},
     "recon4/registration": MODEL | {"recon4.kernels", "recon4.registration"},
     "recon4/registration/stage.py": MODEL
-    | {"recon4.registration", "recon4.store.arrays", "recon4.store.tried"},
+    | {"recon4.registration", "recon4.store.arrays", "recon4.store.tried_hypotheses"},
     "recon4/pose_graph": STAGE | {"recon4.registration", "recon4.pose_graph"},
     "recon4/slam2d": STAGE
     | {"recon4.slam2d"}
@@ -65,7 +65,7 @@ MAY_IMPORT = {
     | {"recon4.recording.laser2d", "recon4.recording.laser_mount", "recon4.recording.report"},
     "recon4/calibration": STAGE
     | {"recon4.calibration", "recon4.registration", "recon4.semi_rigid.knots"}
-    | {"recon4.mapping.place", "recon4.georeference.antenna_calibration"},
+    | {"recon4.mapping.undistort", "recon4.georeference.antenna_calibration"},
     "recon4/semi_rigid": STAGE | {"recon4.registration", "recon4.pose_graph", "recon4.semi_rigid"},
     "recon4/profiler": STAGE
     | {f"recon4.{room}" for room in ("registration", "pose_graph", "slam2d", "semi_rigid")}
@@ -83,7 +83,7 @@ MAY_IMPORT = {
         "recon4.slam2d",
     }
     | {"recon4.report.approval"}
-    | {f"recon4.findings.{name}" for name in ("notes", "review_problems", "wording")},
+    | {f"recon4.findings.{name}" for name in ("summary_notes", "review_problems", "wording")},
     "recon4/intensity": STAGE | {"recon4.mapping", "recon4.intensity"},
     "recon4/mapping": STAGE | {"recon4.mapping"},
     "recon4/export": STAGE
@@ -92,7 +92,12 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
     | {"recon4.recording.formats.poses"},
     "recon4/export/findings.py": STAGE
-    | {"recon4.export", "recon4.findings.notes", "recon4.georeference", "recon4.review.state"},
+    | {
+        "recon4.export",
+        "recon4.findings.summary_notes",
+        "recon4.georeference",
+        "recon4.review.state",
+    },
     "recon4/export/three_dtk.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.pose_graph", "recon4.profiler"},
     "recon4/evaluation": STAGE

@@ -17,7 +17,7 @@ from recon4.findings.wording import whole_text
 from recon4.geometry.se2 import from_se3
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.model.unused import unused_parts
+from recon4.model.unused_data import unused_parts
 from recon4.pipeline import calibrate_recording, process, track_lines
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum

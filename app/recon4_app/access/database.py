@@ -17,7 +17,7 @@ from alembic.util import CommandError
 from recon4.errors import StoreError
 from recon4.store.atomic import is_full
 from recon4.store.sqlite_files import connect_to_read
-from recon4_app.access.reserve import Reserve
+from recon4_app.access.disk_reserve import Reserve
 from recon4_app.databases import migrate, open_engine
 from recon4_app.errors import NoRoom
 

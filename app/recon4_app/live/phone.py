@@ -11,7 +11,7 @@ from fastapi import WebSocket
 
 from recon4 import __version__
 from recon4.live.findings import findings, rates
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4_app.live.capture import Capture, State
 from recon4_app.live.current_capture import CurrentCapture
 from recon4_app.live.health import lidars

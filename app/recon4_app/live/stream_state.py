@@ -9,9 +9,9 @@ from bisect import bisect_left
 from collections import deque
 from dataclasses import dataclass, field
 
-from recon4.live.newest import Newest
+from recon4.live.findings_so_far import WalkSoFar
+from recon4.live.newest_messages import Newest
 from recon4.live.protocol import Done, Mark, Message, Path, Points, Pose, Status, kind_of
-from recon4.live.so_far import WalkSoFar
 from recon4_app.live.phone_message import (
     LocatedMark,
     MarksPart,

@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from recon4.findings.notes import SaidFinding
+from recon4.findings.summary_notes import SaidFinding
 from recon4.model.usability import MapVerdict
 from recon4.review.approval_state import ApprovalState
 from recon4_app.names import Note

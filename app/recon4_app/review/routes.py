@@ -12,7 +12,7 @@ from fastapi.responses import HTMLResponse
 from starlette.concurrency import run_in_threadpool
 from starlette.requests import Request
 
-from recon4.findings.notes import findings_in, notes_in
+from recon4.findings.summary_notes import findings_in, notes_in
 from recon4.model.plain import finite_or_none
 from recon4.model.usability import verdict_in
 from recon4.review.approval import NotApprovable, make_read_only, reason_needed, signed_figures
@@ -58,7 +58,7 @@ from recon4_app.review.model import (
     Step,
     SupersededEffect,
 )
-from recon4_app.review.records import record_signed
+from recon4_app.review.newest_approvals import record_signed
 from recon4_app.review.store import terms_of
 from recon4_app.review.tuning import SIGNING
 

@@ -13,9 +13,9 @@ from recon4.evaluation.reference_mesh import SurfacePoints
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
 from recon4.slices.align import align_by_icp, align_by_pairs, align_level_pairs, floor_offset
-from recon4.slices.fit import fit_of, sample_reference, sample_tiles
-from recon4.slices.imports import set_alignment, undo_alignment
 from recon4.slices.reference import Reference, ReferenceFacts
+from recon4.slices.reference_fit import fit_of, sample_reference, sample_tiles
+from recon4.slices.reference_import import set_alignment, undo_alignment
 from recon4_app.slices.model import AlignPoints, AlignRequest
 from recon4_app.slices.slice_work import reference_of, tiles_of
 from recon4_app.slices.tuning import ALIGN_VIEW

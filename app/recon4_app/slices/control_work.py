@@ -10,11 +10,11 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
+from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import ControlPoint, ControlPreview, read_control
 from recon4.slices.error_ellipses import place_covariance
-from recon4.slices.frames import MapFrame
-from recon4.slices.limits import ControlLimits
-from recon4.slices.measured import MeasuredPosition, orthonormal
+from recon4.slices.map_crs import MapFrame
+from recon4.slices.measured_points import MeasuredPosition, orthonormal
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, ControlReport, residuals
 from recon4.slices.sheet import source_text

@@ -13,8 +13,8 @@ from recon4.recording.tables.coordinates import MAX_COLUMNS, ColumnChoice
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
-from recon4.slices.limits import ControlLimits
-from recon4.slices.measured import orthonormal
+from recon4.slices.control_limits import ControlLimits
+from recon4.slices.measured_points import orthonormal
 from recon4.slices.reference import ReferenceFacts
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import CONTROL_LIMITS, SLICE_PLANES

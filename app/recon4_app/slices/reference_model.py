@@ -8,7 +8,7 @@ from pydantic import BaseModel, Field
 
 from recon4.recording.tables.column_names import Meaning, Unit
 from recon4.recording.tables.coordinates import MAX_COLUMNS, ColumnChoice, TablePreview
-from recon4.slices.imports import ReadAs
+from recon4.slices.reference_import import ReadAs
 from recon4_app.names import Name
 from recon4_app.slices.model import Strict
 

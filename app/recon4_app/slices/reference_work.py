@@ -6,9 +6,9 @@ from pathlib import Path
 
 from recon4.recording.formats.reference_clouds import is_text
 from recon4.recording.tables.clouds import preview_cloud
-from recon4.slices.imports import MapPlace, import_reference
 from recon4.slices.meshes import is_mesh
 from recon4.slices.reference import ReferenceFacts
+from recon4.slices.reference_import import MapPlace, import_reference
 from recon4_app.slices.reference_model import AddReference, ReferenceFile, ReferencePreview
 from recon4_app.slices.slice_work import Artifacts, map_frame, tiles_of
 

@@ -20,7 +20,7 @@ from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground, Span, table
 from recon4.slices.compare import Comparison, compare, to_csv, usual_planes
 from recon4.slices.doubles import find_double_walls
-from recon4.slices.frames import MapFrame, frame_of
+from recon4.slices.map_crs import MapFrame, frame_of
 from recon4.slices.pick import measured_directions, nearest_surface, pick
 from recon4.slices.points import SliceWindow, extent
 from recon4.slices.reference import (

@@ -28,7 +28,7 @@ from recon4_app.compute_pool.model import FileAccess, Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
 from recon4_app.errors import Conflict, NotFound
 from recon4_app.projects.store import PROJECT_ID, ProjectStore
-from recon4_app.review.checks import ApprovalChecks
+from recon4_app.review.hash_checks import ApprovalChecks
 from recon4_app.settings import ServerSettings
 from recon4_app.slices import slice_work
 from recon4_app.slices.exports import Exports

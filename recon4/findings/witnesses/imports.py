@@ -12,7 +12,7 @@ from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import finding
 from recon4.model.import_notes import GYRO_UNIT_ASSUMED, ImportNotes, import_notes
 from recon4.model.odometry_figures import OdometryFigures
-from recon4.model.unused import unused_parts
+from recon4.model.unused_data import unused_parts
 
 
 class Import:

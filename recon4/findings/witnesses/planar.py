@@ -17,7 +17,7 @@ from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
-from recon4.model.unused import unused_parts
+from recon4.model.unused_data import unused_parts
 from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
 from recon4.slam2d.steps import Steps2d
 

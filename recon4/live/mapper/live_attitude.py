@@ -11,7 +11,7 @@ from recon4.live.mapper.tuning import LIVE_ATTITUDE
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.recording.samples.measured import feels_gravity
+from recon4.recording.samples.measured_channels import feels_gravity
 from recon4.registration.motion import imu_in_body, level_rotation
 
 IMU_WRONG = "is it mounted as in the rig file (upside down?)"

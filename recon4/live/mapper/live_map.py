@@ -18,7 +18,7 @@ from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.motion_watch import MotionWatch
 from recon4.live.mapper.place_index import PlaceIndex
 from recon4.live.mapper.recovery import Recovery
-from recon4.live.mapper.shown import RecentCounts, ShownPath
+from recon4.live.mapper.shown_path import RecentCounts, ShownPath
 from recon4.live.mapper.tracker import Tracker
 from recon4.live.mapper.tuning import LIVE_MAP
 from recon4.live.preview.cloud import PreviewCloud

@@ -26,9 +26,9 @@ from recon4.live.ipc.line_client import linked
 from recon4.live.ipc.line_server import LineServer
 from recon4.live.mapper.follower import Follower, LidarFollower, ScanFollower
 from recon4.live.mapper.gnss_watch import GnssWatch
+from recon4.live.mapper.import_notes import NotesWatch
 from recon4.live.mapper.latency import Latency
 from recon4.live.mapper.live_map import LiveMap
-from recon4.live.mapper.notes import NotesWatch
 from recon4.live.mapper.scan_map import ScanMap
 from recon4.live.mapper.tail_file import TailFile, WriteProgress
 from recon4.live.mapper.warm_up import warm_up

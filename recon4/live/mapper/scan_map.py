@@ -16,7 +16,7 @@ from recon4.live.mapper.live_attitude import LiveAttitude
 from recon4.live.mapper.loops import LoopGate
 from recon4.live.mapper.scan_places import ScanPlaces
 from recon4.live.mapper.scan_tracker import ScanStep, ScanTracker
-from recon4.live.mapper.shown import RecentCounts, ShownPath
+from recon4.live.mapper.shown_path import RecentCounts, ShownPath
 from recon4.live.mapper.swept_lines import SweptLines
 from recon4.live.mapper.tuning import SCAN_MAP
 from recon4.live.preview.cloud import PreviewCloud

@@ -14,7 +14,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.recording.samples.clean import join
-from recon4.recording.samples.measured import feels_gravity, imu_channels
+from recon4.recording.samples.measured_channels import feels_gravity, imu_channels
 from recon4.registration.hypothesis import ImuAssumption
 from recon4.registration.imu_choice import AS_RECORDED, choose_imu, without_imu
 from recon4.registration.odometry import Odometry

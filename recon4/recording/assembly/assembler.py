@@ -13,7 +13,7 @@ from recon4.model.lidars import lidar_model
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
-from recon4.recording.assembly.rotation import nominal, rotation_rate
+from recon4.recording.assembly.rotation_rate import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.clock_names import clocks_text
 from recon4.recording.report import ImportReport

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor
 from recon4.recording.assembly.shots import Shots
-from recon4.recording.extent import extent_text
+from recon4.recording.cloud_extent import extent_text
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 

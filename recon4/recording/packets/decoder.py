@@ -17,7 +17,7 @@ from recon4.recording.packets.family import PacketFormat, PacketSamples, PacketS
 from recon4.recording.packets.one_sender import require_one_sender
 from recon4.recording.packets.packet_holes import PacketHoles
 from recon4.recording.packets.packet_order import PacketOrder
-from recon4.recording.packets.packet_rotation import Rotation
+from recon4.recording.packets.rotation_rate import Rotation
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning

@@ -13,7 +13,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
-from recon4.recording.samples.measured import imu_channels, with_forces, without_unmeasured
+from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
 from recon4.recording.samples.units import GyroUnit, in_m_s2, in_rad_s
 from recon4.recording.stamps import strays
 

@@ -19,7 +19,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import save_graph
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
-from recon4.slices.imports import write_tiles
+from recon4.slices.reference_import import write_tiles
 from recon4.store.arrays import save_trajectory
 from recon4.store.frames import FrameWriter
 from recon4.store.ledger import FinishedStage, Ledger

@@ -3,7 +3,7 @@
 import pytest
 
 from recon4.live.findings import findings, rates
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4.live.protocol import DiskState, FileState, RecentFrames
 from recon4.model.import_counts import count_text, wording
 from recon4.model.rig import load_rig, parse_rig

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from recon4.live.mapper.notes import NotesWatch
-from recon4.live.newest import Newest
+from recon4.live.mapper.import_notes import NotesWatch
+from recon4.live.newest_messages import Newest
 from recon4.live.session import CaptureSession
 from recon4.model.rig import format_rig, load_rig, rig_presets
 from recon4.recording.packets.sensor_clock import SensorClock

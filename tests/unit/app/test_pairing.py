@@ -5,7 +5,7 @@ import threading
 
 import pytest
 
-from recon4_app.access.pairing.grants import Pairings, roles_for
+from recon4_app.access.pairing.pairings import Pairings, roles_for
 from recon4_app.access.people import Person, Role
 from recon4_app.access.tuning import PAIRING
 from recon4_app.errors import NotFound, Refused, TooMany

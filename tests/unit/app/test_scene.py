@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.mapping.notes import MapNotes
+from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
 from recon4.model.pose_graph import Edge, Judge, Judgment, Measure, Reason, Verdict, known_judgment

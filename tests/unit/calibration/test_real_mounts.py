@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.registration.scans import make_scan
+from recon4.registration.scan_registration import make_scan
 from tests.benchmarks.calibration_real import SETTINGS, by_gicp, cloud, mount
 
 

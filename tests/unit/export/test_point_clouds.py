@@ -17,7 +17,7 @@ from recon4.export.points import OutputCrs
 from recon4.intensity.normalize import learn_intensity
 from recon4.intensity.tuning import IntensityTuning
 from recon4.mapping.build import MapInputs, build_map
-from recon4.mapping.notes import MapCrs
+from recon4.mapping.map_notes import MapCrs
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import adjusted_gps_s
 from recon4.model.trajectory import Trajectory

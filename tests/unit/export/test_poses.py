@@ -6,7 +6,7 @@ import pytest
 from recon4.cli.main import main
 from recon4.errors import StoreError
 from recon4.export.map_files import export_poses
-from recon4.mapping.place import place
+from recon4.mapping.undistort import place
 from recon4.pose_graph.files import load_graph
 from recon4.recording.formats.three_dtk import read_pose, read_scan
 from recon4.store.frames import FrameStore

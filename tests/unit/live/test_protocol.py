@@ -9,7 +9,7 @@ import pytest
 from recon4.live import protocol
 from recon4.live.ipc.line_client import LineClient
 from recon4.live.ipc.messages import gaps_message, plan_message, points_message
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4.live.preview.cloud import PreviewCloud
 from recon4.live.preview.coverage import Coverage
 from tests import live_messages

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from recon4.mapping.scratch import Scratch
 from recon4.mapping.tile import as_half
+from recon4.mapping.tile_memory import Scratch
 
 
 def test_halves_are_those_of_numpy():

@@ -14,11 +14,11 @@ from recon4.export.laz import export_laz
 from recon4.mapping import build as map_build
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.grid import Grid
-from recon4.mapping.notes import MapCrs
-from recon4.mapping.place import place
+from recon4.mapping.map_notes import MapCrs
 from recon4.mapping.tile import FIELDS, SURFACE_FIELDS
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import MAP_BUILD
+from recon4.mapping.undistort import place
 from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings, preset

@@ -7,7 +7,7 @@ import pytest
 from scipy.optimize import least_squares
 
 from recon4.geometry.se3 import SE3, align_points, so3_exp
-from recon4.mapping.place import place
+from recon4.mapping.undistort import place
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory

@@ -18,9 +18,9 @@ from recon4.model.pose_graph import (
     known_history,
 )
 from recon4.pose_graph.bounds import relative_bounds
-from recon4.pose_graph.density import make_density_image, overlays, yaws_within
-from recon4.pose_graph.groups import RecognizedChain, judge_chains
+from recon4.pose_graph.density_images import make_density_image, overlays, yaws_within
 from recon4.pose_graph.places import Places
+from recon4.pose_graph.recognized_groups import RecognizedChain, judge_chains
 from recon4.pose_graph.tuning import RecognitionTuning
 
 SETTINGS = RecognitionTuning()

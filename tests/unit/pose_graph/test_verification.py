@@ -16,7 +16,7 @@ from recon4.model.pose_graph import (
     known_judgment,
     relations_of,
 )
-from recon4.pose_graph.paths import PathIndex
+from recon4.pose_graph.alternative_paths import PathIndex
 from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.verification import confirmed_again, verify
 from recon4.settings import VerificationSettings

@@ -11,7 +11,7 @@ from recon4.model.beams import BeamCorrections
 from recon4.model.rig import load_rig
 from recon4.recording.assembly.assembler import Assembler, moved
 from recon4.recording.assembly.range_limits import drop_invalid
-from recon4.recording.assembly.rotation import nominal, rotation_rate
+from recon4.recording.assembly.rotation_rate import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings

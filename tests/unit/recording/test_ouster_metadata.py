@@ -7,11 +7,11 @@ import pytest
 
 from recon4.errors import ConfigError, CorruptFile
 from recon4.recording.packets.family import Companion
-from recon4.recording.packets.ouster.choice import choose, find_metadata
 from recon4.recording.packets.ouster.data_packets import ring_of_beams
 from recon4.recording.packets.ouster.encode import encode_packets, metadata_json
 from recon4.recording.packets.ouster.family import OUSTER
 from recon4.recording.packets.ouster.metadata import read_metadata
+from recon4.recording.packets.ouster.metadata_choice import choose, find_metadata
 from recon4.recording.packets.ouster.models import nominal_metadata
 from tests.unit.recording.ouster_packets import companion, datagrams_of
 from tests.unit.recording.packet_builders import sensor

@@ -9,7 +9,7 @@ from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.motion import Bridges
 from recon4.geometry.se3 import SE3
 from recon4.registration.bridge import RecentScans, SeenScan, sure_pose
-from recon4.registration.scans import lay_onto, make_scan
+from recon4.registration.scan_registration import lay_onto, make_scan
 from recon4.registration.tuning import ScanTuning
 from tests.said import texts
 

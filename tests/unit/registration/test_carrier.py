@@ -8,8 +8,8 @@ import pytest
 from recon4.geometry.se3 import SE3, Array
 from recon4.registration.carrier import CarrierPrior
 from recon4.registration.scan_chain import ScanChain
-from recon4.registration.scans import Scan, make_scan, register_scans, search_scans
-from tests.unit.registration.test_scans import SCANS, apart, room, scan
+from recon4.registration.scan_registration import Scan, make_scan, register_scans, search_scans
+from tests.unit.registration.test_scan_registration import SCANS, apart, room, scan
 
 TENTH_NS = 100_000_000
 

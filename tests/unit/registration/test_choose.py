@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from recon4.evaluation.ate import pair_poses
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.odometry_figures import ImuChoice, MovingFigures
 from recon4.model.samples import ImuSamples
 from recon4.model.tried_hypotheses import Because, TrialVerdict

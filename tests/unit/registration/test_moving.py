@@ -11,7 +11,7 @@ from recon4.findings.witnesses.motion import moving_finding
 from recon4.findings.wording import text_of
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.frames import RecordedFrames
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import MovingFigures, MovingOutcome, OdometryFigures
 from recon4.model.rig import Rig, Sensor, load_rig

@@ -9,7 +9,7 @@ from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
 from recon4.registration.line_odometry import LineOdometry, averaged
-from recon4.registration.make import make_odometry
+from recon4.registration.make_odometry import make_odometry
 from recon4.registration.odometry import Odometry
 from recon4.registration.result import Registration, StopReason
 from recon4.registration.smoother import dense_trajectory, smooth

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import numpy as np
 
-from recon4.mapping.notes import MapNotes
+from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet

@@ -9,8 +9,8 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3
 from recon4.slices.align import align_by_icp, align_by_pairs, align_level_pairs, floor_offset
 from recon4.slices.compare import compare, to_csv, usual_planes
-from recon4.slices.imports import import_reference, set_alignment, undo_alignment
 from recon4.slices.reference import load_reference, read_facts
+from recon4.slices.reference_import import import_reference, set_alignment, undo_alignment
 from recon4.slices.slice_plane import SlicePlane
 from recon4.store.atomic import write_json
 from tests.unit.slices.room_map import wall, write_map

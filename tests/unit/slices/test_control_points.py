@@ -8,9 +8,9 @@ import pytest
 from recon4.errors import CorruptFile
 from recon4.recording.tables.coordinates import ColumnChoice
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
+from recon4.slices.control_limits import ControlLimits
 from recon4.slices.control_points import ControlPoint, read_control
-from recon4.slices.limits import ControlLimits
-from recon4.slices.measured import MeasuredPosition
+from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, residuals
 

@@ -8,7 +8,7 @@ from recon4.mapping.deviation import PoseCovariances
 from recon4.settings import MapSettings
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.error_ellipses import error_ellipse, place_covariance
-from recon4.slices.measured import MeasuredPosition
+from recon4.slices.measured_points import MeasuredPosition
 from recon4.slices.residual_table import residual_csv
 from recon4.slices.residuals import ControlContext, residuals
 from tests.room_walks import room_walk

@@ -20,7 +20,7 @@ from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.recording.formats.scratch import sweep_scratch
 from recon4.slices import export
 from recon4.slices.export import SliceSelection, write_csv, write_dxf, write_geotiff, write_laz
-from recon4.slices.frames import MapFrame, frame_of
+from recon4.slices.map_crs import MapFrame, frame_of
 from recon4.slices.pick import nearest_surface, pick
 from recon4.slices.points import SliceWindow, points_in
 from recon4.slices.sheet import SheetText, approval_text, grid_step_m, lay_out, write_sheet
@@ -127,7 +127,7 @@ from recon4.export import laz
 from recon4.mapping.tiles import TileSet
 from recon4.slices import export
 from recon4.slices.slice_plane import SlicePlane
-from recon4.slices.frames import MapFrame
+from recon4.slices.map_crs import MapFrame
 
 def killed(*_, **__):
     os.kill(os.getpid(), signal.SIGKILL)

@@ -8,7 +8,7 @@ from scipy.special import gammaincc
 
 from recon4.slices.acceptance import AcceptanceText, render_acceptance
 from recon4.slices.control_points import ControlPoint
-from recon4.slices.measured import MeasuredPosition, orthonormal
+from recon4.slices.measured_points import MeasuredPosition, orthonormal
 from recon4.slices.pick import measured_directions, nearest_surface
 from recon4.slices.residual_table import residual_csv, residual_text
 from recon4.slices.residuals import ControlContext, residuals

@@ -11,10 +11,10 @@ from recon4.errors import ConfigError, CorruptFile, RecordingError
 from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3
 from recon4.recording.formats.reference_clouds import read_points
-from recon4.slices.imports import import_reference, set_alignment
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference, mesh_lines
+from recon4.slices.reference_import import import_reference, set_alignment
 from recon4.slices.slice_plane import SlicePlane
 
 P = np.random.default_rng(4).uniform(-3.0, 3.0, (500, 3)).round(3)

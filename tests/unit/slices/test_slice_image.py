@@ -6,9 +6,9 @@ from PIL import Image
 
 from recon4.errors import ConfigError
 from recon4.slices.colors import Span, paint, table
-from recon4.slices.imports import import_reference
 from recon4.slices.points import SliceWindow
 from recon4.slices.reference import load_reference
+from recon4.slices.reference_import import import_reference
 from recon4.slices.slice_image import RasterGrid, draw, png
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import SLICE_COLORS

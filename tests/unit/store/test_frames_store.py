@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from recon4.errors import NoSpace, StoreError
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.multiframe import COLUMNS, Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.samples import ImuSamples
@@ -244,7 +244,7 @@ import numpy as np
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 from recon4.errors import NoSpace
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import load_rig
 from recon4.store.frames import FrameWriter

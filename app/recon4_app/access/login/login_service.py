@@ -18,7 +18,7 @@ from recon4_app.access.login import passwords
 from recon4_app.access.login.accounts import Account, Accounts, lookup_key
 from recon4_app.access.login.login_backoff import LoginBackoff, TokenBuckets, network
 from recon4_app.access.login.sessions import Sessions, hash_of, new_token
-from recon4_app.access.pairing.grants import Pairings
+from recon4_app.access.pairing.pairings import Pairings
 from recon4_app.access.people import Role
 from recon4_app.access.restoring import ACCESS_FILE
 from recon4_app.access.tuning import LOGINS

@@ -12,7 +12,7 @@ from recon4_app.access.audit import address, audit
 from recon4_app.access.login.login_service import Access, LoginOrigin, LoginResult
 from recon4_app.access.login.sessions import BROWSER_KNOWN_S, LIVES, PHONE_LIFE, Session, form_token
 from recon4_app.access.middleware.session import CookieNames, cookie, cookie_names
-from recon4_app.access.pairing.grants import PairingGrant
+from recon4_app.access.pairing.pairings import PairingGrant
 from recon4_app.access.people import (
     LOCAL,
     MAY,

@@ -13,7 +13,7 @@ from pydantic import Field
 
 from recon4_app.access.audit import address, audit
 from recon4_app.access.login.routes import Me, Text, Wire, enter_paired
-from recon4_app.access.pairing.grants import PairingGrant, roles_for
+from recon4_app.access.pairing.pairings import PairingGrant, roles_for
 from recon4_app.access.people import (
     Permission,
     Person,

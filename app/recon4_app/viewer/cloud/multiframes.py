@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import OutOfRange
 from recon4.geometry.se3 import SE3, Array
-from recon4.mapping.place import place
+from recon4.mapping.undistort import place
 from recon4.model.trajectory import Times, Trajectory
 from recon4.store.frames import FrameStore
 from recon4_app.viewer.client.view import ColorBy

@@ -12,7 +12,6 @@ from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.datagrams import Datagrams
 from recon4.recording.packets.family import PacketSamples, PacketSensor, Payloads
-from recon4.recording.packets.ouster.choice import serials, sound_head, usual_serial
 from recon4.recording.packets.ouster.columns import (
     column_step_ns,
     columns_in_turn,
@@ -24,6 +23,7 @@ from recon4.recording.packets.ouster.columns import (
 from recon4.recording.packets.ouster.imu_packets import SAMPLE_SIZES, ImuPackets
 from recon4.recording.packets.ouster.layouts import CHECKSUM_BYTES, PacketLayout
 from recon4.recording.packets.ouster.metadata import OusterMetadata
+from recon4.recording.packets.ouster.metadata_choice import serials, sound_head, usual_serial
 from recon4.recording.packets.ouster.tuning import OUSTER_COLUMNS
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.tuning import HEAD

@@ -18,7 +18,12 @@ from recon4.recording.packets.family import (
     Payloads,
     Recognized,
 )
-from recon4.recording.packets.ouster.choice import (
+from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
+from recon4.recording.packets.ouster.data_packets import OusterPackets, turning_of
+from recon4.recording.packets.ouster.imu_packets import is_known_packet
+from recon4.recording.packets.ouster.layouts import USUAL_LAYOUTS
+from recon4.recording.packets.ouster.metadata import is_metadata
+from recon4.recording.packets.ouster.metadata_choice import (
     NEEDED,
     ChosenMetadata,
     MetadataFiles,
@@ -31,11 +36,6 @@ from recon4.recording.packets.ouster.choice import (
     sound_head,
     usual_serial,
 )
-from recon4.recording.packets.ouster.columns import column_step_ns, columns_of
-from recon4.recording.packets.ouster.data_packets import OusterPackets, turning_of
-from recon4.recording.packets.ouster.imu_packets import is_known_packet
-from recon4.recording.packets.ouster.layouts import USUAL_LAYOUTS
-from recon4.recording.packets.ouster.metadata import is_metadata
 from recon4.recording.packets.tuning import HEAD
 
 _NAME = "Ouster"

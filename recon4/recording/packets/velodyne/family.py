@@ -23,7 +23,7 @@ from recon4.recording.packets.family import (
     Recognized,
     no_sender,
 )
-from recon4.recording.packets.packet_rotation import Rotation
+from recon4.recording.packets.rotation_rate import Rotation
 from recon4.recording.packets.sensor_clock import SensorClock
 from recon4.recording.packets.velodyne.data_packets import PacketSource, decode_packets
 from recon4.recording.packets.velodyne.laser_calibration import calibration_of_file

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from recon4.live.findings import findings
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4.live.recorder import capture_file
 from recon4.live.recorder.capture_file import CaptureFile, Datagram
 from recon4.live.replay import ReplayDatagram, replay, shifted_in_time

@@ -7,7 +7,7 @@ import sys
 from dataclasses import replace
 
 from recon4.live.findings import findings
-from recon4.live.newest import Newest
+from recon4.live.newest_messages import Newest
 from recon4.model.rig import load_rig
 from tests.unit.live.recorder.recorder_process import decode, numbers, recording, send
 

@@ -9,10 +9,10 @@ from recon4.errors import ConfigError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.recording.formats.cloud_crs import StatedCrs, stated_crs
 from recon4.recording.tables.coordinates import ColumnChoice
-from recon4.slices.frames import LOCAL, MapFrame
-from recon4.slices.imports import MapPlace, ReadAs, import_reference
-from recon4.slices.placement import check_extent, place_file
+from recon4.slices.map_crs import LOCAL, MapFrame
 from recon4.slices.reference import load_reference
+from recon4.slices.reference_import import MapPlace, ReadAs, import_reference
+from recon4.slices.reference_placement import check_extent, place_file
 
 US_FOOT_M = 1200.0 / 3937.0
 ORIGIN = CrsTransform(GeodeticOrigin(np.deg2rad(49.5), np.deg2rad(14.3), 400.0), "EPSG:32633")

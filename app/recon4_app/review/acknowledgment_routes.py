@@ -9,7 +9,7 @@ from typing import Annotated
 from fastapi import APIRouter
 from pydantic import BaseModel, ConfigDict, Field
 
-from recon4.findings.notes import findings_in
+from recon4.findings.summary_notes import findings_in
 from recon4.review.acknowledgments import Acknowledgment, acknowledgments, seen_finding
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append, read_rows

@@ -2,7 +2,7 @@
 
 import pytest
 
-from recon4.live.so_far import WalkSoFar
+from recon4.live.findings_so_far import WalkSoFar
 from recon4.live.tuning import STRETCHES
 from recon4_app.live.stream_state import StreamState
 from tests.live_messages import pose

@@ -22,10 +22,10 @@ from recon4.recording.formats.cloud_crs import StatedCrs
 from recon4.recording.formats.reference_clouds import open_cloud
 from recon4.recording.tables.column_names import UNITS_M
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, NEAR_M, ColumnChoice
-from recon4.slices.frames import LOCAL, MapFrame
+from recon4.slices.map_crs import LOCAL, MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
-from recon4.slices.placement import FilePlacement, FrameAsked, check_extent, place_file
 from recon4.slices.reference import EarlierAlignment, ReferenceFacts, read_facts
+from recon4.slices.reference_placement import FilePlacement, FrameAsked, check_extent, place_file
 from recon4.slices.tuning_files import REFERENCE_IMPORT
 from recon4.store.atomic import atomic_folder, write_json
 from recon4.untrusted.names import visible

@@ -9,7 +9,12 @@ from recon4.geometry.se3 import SE3
 from recon4.kernels.scans import accumulate_symmetric, neighbor_normals
 from recon4.registration.result import StopReason
 from recon4.registration.scan_chain import ScanChain
-from recon4.registration.scans import make_scan, overlay_plans, register_scans, search_scans
+from recon4.registration.scan_registration import (
+    make_scan,
+    overlay_plans,
+    register_scans,
+    search_scans,
+)
 from recon4.registration.tuning import ScanTuning
 
 SCANS = ScanTuning(voxel_m=0.2)

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from recon4.model.hidden import HiddenPoints
+from recon4.model.hidden_points import HiddenPoints
 from recon4.model.multiframe import Multiframe
 
 

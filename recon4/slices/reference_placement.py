@@ -20,7 +20,7 @@ from recon4.recording.formats.cloud_crs import (
     vertical_part,
 )
 from recon4.recording.tables.column_names import UNIT_NAMES, UNITS_M, Unit
-from recon4.slices.frames import MapFrame
+from recon4.slices.map_crs import MapFrame
 from recon4.slices.tuning import PLACEMENT
 
 FrameAsked = Literal["auto", "map", "crs"]

@@ -5,7 +5,7 @@ import pytest
 
 from recon4.errors import ConfigError, OutOfRange
 from recon4.geometry.se3 import SE3
-from recon4.mapping.place import place, place_with_origins
+from recon4.mapping.undistort import place, place_with_origins
 from recon4.model.multiframe import Multiframe
 from recon4.model.rig import load_rig
 from recon4.model.trajectory import Trajectory
