@@ -41,6 +41,7 @@ class TrialVerdict(StrEnum):
     CLEARLY_BETTER = "clearly better"
     NO_WORSE = "no worse"
     LOSES_MORE = "loses more multiframes"
+    SEES_TOO_LITTLE = "loses most multiframes"
     LARGER_RESIDUALS = "larger residuals"
     CONTRADICTS_FIXES = "contradicts the fixes"
     NOT_CLEARLY_BETTER = "not clearly better"

@@ -28,6 +28,8 @@ class ScoreTuning:
     """The gyroscope explains the turns that the LiDARs see without it if this ratio of them is
     left. A clock 20 ms off leaves 0.07, a rotated LiDAR 0.12, a clock 300 ms off 0.7, swapped axes
     2."""
+    witness: float = 0.5
+    """Who loses a larger ratio of the multiframes sees too little to accuse an IMU."""
     settled_m: float = 0.1
     """A trajectory is settled if what was left out last moved no position by more than this."""
     never_m: float = 1.0
@@ -77,6 +79,8 @@ class Score:
         least_m = max((1.0 - TUNING.clearly) * of_rival_m, TUNING.clearly_m)
         if self.lost > rival.lost:
             return TrialVerdict.LOSES_MORE
+        if self.lost > TUNING.witness * self.multiframes:
+            return TrialVerdict.SEES_TOO_LITTLE
         if not gain_m > (least_m if self.lost == rival.lost else 0.0):
             return TrialVerdict.NOT_CLEARLY_BETTER
         if self.unexplained is not None and self.unexplained < TUNING.explained:

@@ -127,6 +127,11 @@ def test_what_knows_less_must_fit_clearly_better(tried, verdict):
     assert tried.clearly_better(score(0, 0.02)) is verdict
 
 
+def test_lidars_that_lose_most_multiframes_are_no_witnesses_against_an_imu():
+    assert score(4, 0.004).clearly_better(score(6, 0.02)) is TrialVerdict.CLEARLY_BETTER
+    assert score(5, 0.004).clearly_better(score(6, 0.02)) is TrialVerdict.SEES_TOO_LITTLE
+
+
 def test_fewer_points_must_agree_with_the_fixes_that_showed_them():
     wrong, right = (score(0, 0.02, contradicted=ratio) for ratio in (0.2, 0.05))
 
