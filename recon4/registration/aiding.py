@@ -91,6 +91,16 @@ class GnssAiding:
         z = (T.t + T.R @ self.p_body_antenna - self.p_enu[inside]) / self.sd_m[inside]
         return float(np.mean((z**2).sum(axis=1) > AIDING.outlier_sd**2))
 
+    def agrees(self, T_enu_body: SE3, t_ns: int) -> bool:
+        """Whether the antenna is at a time where the fixes say; False without them."""
+        found = self._around(t_ns)
+        if found is None:
+            return False
+        row, s = found
+        p_antenna = (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
+        z = (T_enu_body @ self.p_body_antenna - p_antenna) / self.sd_m[row]
+        return float(np.linalg.norm(z)) < AIDING.outlier_sd
+
     def _around(self, t_ns: int) -> tuple[int, float] | None:
         right = int(np.searchsorted(self.t_ns, t_ns))
         if right == 0 or right == len(self.t_ns):

@@ -13,7 +13,7 @@ from recon4.registration.degeneracy import observable_directions, of_rigid_pose
 from recon4.registration.motion import Prediction, Rest, middle_of
 from recon4.registration.plane_map import Match, PlaneMap
 from recon4.registration.point_map import WeakDirections
-from recon4.registration.segments import Segments
+from recon4.registration.segments import NO_SEGMENTS, Segments
 from recon4.registration.state import END, END_POSE, END_VELOCITY, POSES, START, STATE, VECTOR
 from recon4.registration.tuning import OdometryTuning
 from recon4.registration.tuning_matching import FRAME_FIT
@@ -135,6 +135,21 @@ class FrameFitter:
         if self.with_imu:
             _add_speed_of_person(information, g, prediction)
         return information, g
+
+    def by_fixes(self, tried: FrameFit, prediction: Prediction, rest: Rest) -> FrameFit | None:
+        """The motion by prediction and fixes alone, where the local map says too little of it.
+
+        None if it does not lead to where the fixes are.
+
+        Args:
+            tried: The fit to the local map, for its figures.
+            prediction: Of the motion.
+            rest: Whether the body stands at its end.
+        """
+        fit = self.fit(PlaneMap(), NO_SEGMENTS, prediction, rest=rest)
+        if self.aiding is None or not self.aiding.agrees(fit.T_dense[-1], prediction.end.t_ns):
+            return None
+        return replace(fit, match=tried.match)
 
     def as_expected(self, tried: FrameFit, prediction: Prediction) -> FrameFit:
         """The motion through the expected pose, where the local map says too little of it.

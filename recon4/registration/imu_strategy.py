@@ -41,6 +41,8 @@ class ImuStrategy:
         )
         self._before_hole: MotionState | None = None
         """During a gap in the samples: the last state before it, with the IMU biases."""
+        self._fixes: GnssAiding | None = None
+        """The aiding, if the odometry began in its frame."""
         self._begun: tuple[Multiframe, MotionState] | None = None
         """The first frame until the second one comes, and the state at its start."""
         self.longest_map = tuned(OdometryTuning, settings.odometry).history
@@ -93,7 +95,7 @@ class ImuStrategy:
         if state is None:
             state = self._imu.initial(view.start_ns)
             if self._aiding is not None:
-                state = start_at_fixes(state, self._aiding, self._settings.odometry)[0]
+                state, self._fixes = start_at_fixes(state, self._aiding, self._settings.odometry)
             self._begun = view.frame, state
         if state.t_ns < view.start_ns:  # frames are missing in between
             state = self._move(state, view.start_ns).end
@@ -123,6 +125,11 @@ class ImuStrategy:
         fits = fit.converged and max(fit.match.mean_m, offset_m) < IMU_MOTION.as_predicted_m
         sure = fits and not limits.is_usual_known
         return not is_numeric(fit) or limits.is_lost(fit.match, sure=sure)
+
+    def by_fixes(self, view: FrameView, prediction: Prediction) -> Prediction | None:
+        """See `MotionStrategy.by_fixes`: they pull what the IMU predicts."""
+        known = self._fixes is not None and self._fixes.covers(view.start_ns, view.end_ns)
+        return prediction if known else None
 
     def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
         """See `MotionStrategy.refined`: the filter knows it already."""

@@ -59,6 +59,9 @@ class MotionStrategy(Protocol):
     def is_lost(self, fit: FrameFit, prediction: Prediction, limits: LostLimits) -> bool:
         """Whether a frame lies neither on the local map nor where it was expected."""
 
+    def by_fixes(self, view: FrameView, prediction: Prediction) -> Prediction | None:
+        """The motion over a frame of which the map says too little; None = no fixes say it."""
+
     def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
         """A fit with what the motion itself says of it."""
 

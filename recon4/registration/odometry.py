@@ -114,6 +114,8 @@ class Odometry:
             tried = self._fit(view, self._motion.predict(self._state, view, self._tracking))
             if tried.seen is Seen.MISSES and not gap:
                 tried = self._across_gap(view) or tried
+        if tried.seen is Seen.MISSES:
+            tried = self._by_fixes(view, tried)
         if tried.seen is not Seen.FITS:
             return tried
         if not tried.first:
@@ -131,6 +133,19 @@ class Odometry:
         if tried.seen is Seen.MISSES:  # so much is new that the local map says little
             fit = self._motion.fitter.as_expected(fit, prediction)
         return replace(tried, fit=fit, seen=Seen.CROSSES_GAP)
+
+    def _by_fixes(self, view: FrameView, tried: _Try) -> _Try:
+        """A frame of which the map says too little where fixes place it, if they do.
+
+        It is not lost, so its points become part of the map: a few returns a frame, as of an open
+        field, make planes only together.
+        """
+        prediction = self._motion.by_fixes(view, tried.prediction)
+        if prediction is None:
+            return tried
+        rest = self._motion.rest(prediction.end, weak=self._is_weak)
+        fit = self._motion.fitter.by_fixes(tried.fit, prediction, rest)
+        return tried if fit is None else _Try(prediction, fit, Seen.PLACED)
 
     def _fit(self, view: FrameView, prediction: Prediction) -> _Try:
         """Fit a frame to the local map."""

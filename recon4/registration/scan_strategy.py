@@ -116,6 +116,12 @@ class ScanStrategy:
         missing = prediction.expected is None or not is_numeric(fit)
         return missing or limits.is_lost(fit.match, sure=self._chain.is_sure)
 
+    def by_fixes(self, view: FrameView, prediction: Prediction) -> Prediction | None:
+        """See `MotionStrategy.by_fixes`."""
+        if self._fixes is None or not self._fixes.covers(view.start_ns, view.end_ns):
+            return None
+        return replace(prediction, expected=self._fixes.pose(view.frame.t_mid_ns))
+
     def refined(self, fit: FrameFit, prediction: Prediction) -> FrameFit:
         """See `MotionStrategy.refined`: two scans that agree are those of a body at rest."""
         if not is_stationary(self._chain.located):

@@ -35,6 +35,10 @@ class Segments:
         return len(self.a_s)
 
 
+NO_SEGMENTS = Segments(np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
+"""Those of a frame without points."""
+
+
 def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentTuning = SEGMENTS) -> Segments:
     """Draw the collar line segments of all enabled sensors (requirements A3.1, 1-3).
 
@@ -43,7 +47,7 @@ def sample_segments(frame: Multiframe, rig: Rig, settings: SegmentTuning = SEGME
     parts = [_of_sensor(frame, row, rig, settings=settings) for row in range(len(rig.sensors))]
     kept = [part for part in parts if part is not None]
     if not kept:
-        return Segments(np.empty((0, 3)), np.empty((0, 3)), np.empty(0), np.empty(0), np.empty(0))
+        return NO_SEGMENTS
     a, b, a_s, b_s, range_m = (np.concatenate(column) for column in zip(*kept, strict=True))
     return Segments(a, b, a_s, b_s, range_m)
 

@@ -19,6 +19,8 @@ class Mode(Enum):
     """It does not; the predicted pose is kept."""
     BRIDGED = auto()
     """Only a registration to the scans before a gap says where it is."""
+    PLACED = auto()
+    """Only fixes say where it is."""
     RESTARTED = auto()
     """The local map was given up; the next multiframe begins another one."""
 
@@ -30,6 +32,8 @@ class Seen(Enum):
     MISSES = auto()
     CROSSES_GAP = auto()
     """A scan after a gap surely lies on those before it."""
+    PLACED = auto()
+    """A scan of which the map says too little, and fixes enough."""
     GAP = auto()
     """The motion since the last multiframe is not known."""
     LOST_FOR_LONG = auto()
@@ -42,17 +46,25 @@ NEXT: Mapping[tuple[Mode, Seen], Mode] = {
     (Mode.TRACKING, Seen.FITS): Mode.TRACKING,
     (Mode.TRACKING, Seen.MISSES): Mode.LOST,
     (Mode.TRACKING, Seen.CROSSES_GAP): Mode.BRIDGED,
+    (Mode.TRACKING, Seen.PLACED): Mode.PLACED,
     (Mode.TRACKING, Seen.GAP): Mode.RESTARTED,
     (Mode.LOST, Seen.FITS): Mode.TRACKING,
     (Mode.LOST, Seen.MISSES): Mode.LOST,
     (Mode.LOST, Seen.CROSSES_GAP): Mode.BRIDGED,
+    (Mode.LOST, Seen.PLACED): Mode.PLACED,
     (Mode.LOST, Seen.GAP): Mode.RESTARTED,
     (Mode.LOST, Seen.LOST_FOR_LONG): Mode.RESTARTED,
     (Mode.LOST, Seen.SURE_AGAIN): Mode.RESTARTED,
     (Mode.BRIDGED, Seen.FITS): Mode.TRACKING,
     (Mode.BRIDGED, Seen.MISSES): Mode.LOST,
     (Mode.BRIDGED, Seen.CROSSES_GAP): Mode.BRIDGED,
+    (Mode.BRIDGED, Seen.PLACED): Mode.PLACED,
     (Mode.BRIDGED, Seen.GAP): Mode.RESTARTED,
+    (Mode.PLACED, Seen.FITS): Mode.TRACKING,
+    (Mode.PLACED, Seen.MISSES): Mode.LOST,
+    (Mode.PLACED, Seen.CROSSES_GAP): Mode.BRIDGED,
+    (Mode.PLACED, Seen.PLACED): Mode.PLACED,
+    (Mode.PLACED, Seen.GAP): Mode.RESTARTED,
     (Mode.RESTARTED, Seen.FITS): Mode.TRACKING,
     (Mode.RESTARTED, Seen.CROSSES_GAP): Mode.BRIDGED,
     (Mode.RESTARTED, Seen.GAP): Mode.RESTARTED,
@@ -85,7 +97,7 @@ class TrackingState:
         """
         self.mode = NEXT[self.mode, seen]
         match self.mode:
-            case Mode.TRACKING | Mode.BRIDGED:
+            case Mode.TRACKING | Mode.BRIDGED | Mode.PLACED:
                 self.lost_frames = 0
                 self._tracked_frames += 1
             case Mode.LOST:

@@ -285,7 +285,7 @@ def _audit(context: StageContext[AuditReads], **artifacts: Path) -> AuditFigures
 FRAMES = Stage("frames", 32, ImportReads, _frames, FrameFigures)
 ODOMETRY = Stage(
     "odometry",
-    42,
+    43,
     OdometryReads,
     _odometry,
     OdometryFigures,

@@ -10,7 +10,7 @@ from recon4.settings import Settings
 from tests.room_walks import FRAME_NS, T0_NS
 from tests.scanned_room import LOW_M, strolling, walk
 
-FRAMES, BARE, RETURNS = 40, range(4, 40), 60
+FRAMES, BARE, RETURNS = 28, range(4, 28), 60
 
 
 def ground_only(frame, rig, rng):

@@ -57,6 +57,15 @@ def test_nothing_is_known_outside_the_fixes() -> None:
     assert not g.any()
 
 
+def test_a_body_agrees_with_fixes_within_three_deviations_of_their_antenna() -> None:
+    agrees = [
+        standing().agrees(SE3.from_rpy(roll, 0.0, 0.0, t=[x, 0.0, 0.0]), t_ns)
+        for roll, x, t_ns in [(0, 0.29, 550_000_000), (0, 0.31, 0), (0.4, 0, 0), (0, 0, 9**10)]
+    ]
+
+    assert agrees == [True, False, False, False]
+
+
 def walking(*, missing: slice = slice(0, 0)) -> GnssAiding:
     """A body that goes 1 m/s along x and turns 90°/s, with an antenna 1 m before it."""
     rows = np.delete(np.arange(31), missing)

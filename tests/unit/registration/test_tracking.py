@@ -49,6 +49,13 @@ def test_a_map_that_is_lost_soon_after_a_reset_is_of_another_piece():
     assert after(*lost, *lost).piece == 1
 
 
+def test_fixes_end_a_loss_and_keep_the_map():
+    placed = after(Seen.FITS, Seen.MISSES, Seen.PLACED)
+
+    assert (placed.mode, placed.piece, placed.lost_frames) == (Mode.PLACED, 0, 0)
+    assert after(Seen.FITS, Seen.PLACED, Seen.FITS).mode is Mode.TRACKING
+
+
 def test_without_an_imu_sure_scans_begin_another_piece():
     assert after(Seen.FITS, Seen.MISSES, Seen.SURE_AGAIN).piece == 1
 
