@@ -16,16 +16,15 @@ from recon4.recording.formats.bags import Bag, BagMessage
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured_channels import declared_absent
 from recon4.recording.stamps import StampClock
+from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning_topics import BAG_IMU
 
-_BATCH = 500
-"""Number of IMU samples delivered at a time."""
-_STAMPS_PROBED = 9
 _FIX_QUALITY = {
     **{-2: GnssQuality.SINGLE, 0: GnssQuality.SINGLE},
     **{1: GnssQuality.DIFFERENTIAL, 2: GnssQuality.RTK_FIXED},
 }
 """Of each ``NavSatStatus``; -2 is a driver that does not tell."""
-_NOTHING = (np.nan,) * 3
+_NOTHING = (np.nan, np.nan, np.nan)
 
 
 # -- samples
@@ -69,7 +68,7 @@ class SampleBatch:
             return
         self._t_ns.append(t_ns)
         self._rows.append(self._row(content))
-        if len(self._rows) >= _BATCH:
+        if len(self._rows) >= BAG_IMU.batch:
             yield from self.flush()
 
     def flush(self) -> Iterator[Any]:
@@ -86,7 +85,7 @@ def stamp_clock(bag: Bag, topic: str) -> StampClock:
 
 def first_stamps(bag: Bag, topic: str) -> list[tuple[int, int]]:
     """Stamps and times of recording of the first messages of a topic [ns]."""
-    messages = islice(bag.messages([topic]), _STAMPS_PROBED)
+    messages = islice(bag.messages([topic]), PROBE.stamps)
     found = ((message, bag.decode(message)) for message in messages)
     return [(stamp_ns(m.header.stamp), at.t_ns) for at, m in found if m is not None]
 

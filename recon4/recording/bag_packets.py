@@ -16,6 +16,7 @@ from recon4.recording.clock_compare import LIDAR
 from recon4.recording.formats.bags import Bag, BagMessage, BagTopic
 from recon4.recording.formats.datagrams import Datagrams, datagrams_of, join_datagrams
 from recon4.recording.formats.shared_topics import SOURCE_MARK
+from recon4.recording.limits import LIMITS
 from recon4.recording.packets.companions import described_in
 from recon4.recording.packets.decoder import PacketDecoder, open_decoder
 from recon4.recording.packets.families import FAMILIES
@@ -26,13 +27,10 @@ from recon4.recording.packets.senders import packets_of
 from recon4.recording.packets.streams import first_datagrams, recognized
 from recon4.recording.packets.tuning import HEAD
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning_heads import PROBE
 from recon4.settings import IngestSettings
 
 _STRING = "std_msgs/msg/String"
-_PROBED_PACKETS = 4500
-"""Packets at the beginning of a topic from which its sensor is known: more than a second, as some
-send their angles once a second."""
-_MOST_TEXT = 1 << 20
 
 
 class BagPackets:
@@ -191,7 +189,7 @@ def head_of(bag: Bag, topic: str) -> Datagrams:
             parts.append(packets_in(message, content))
             count += len(parts[-1])
             size += len(parts[-1].buffer)
-        if count >= _PROBED_PACKETS or size >= HEAD.bytes:
+        if count >= PROBE.packets or size >= HEAD.bytes:
             break
     return first_datagrams(join_datagrams(parts))
 
@@ -202,7 +200,7 @@ def _texts(bag: Bag) -> list[Companion]:
     for topic in texts:
         for message in islice(bag.messages([topic.name]), 1):
             content = bag.decode(message)
-            if content is not None and len(content.data) <= _MOST_TEXT:
+            if content is not None and len(content.data) <= LIMITS.text_message_bytes:
                 found.append(Companion(topic.name, content.data.encode()))
     return found
 

@@ -66,6 +66,8 @@ from recon4.recording.topic_choice import (
     named_imu,
     require_topic,
 )
+from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning_topics import LIDAR_CHOICE
 from recon4.settings import IngestSettings
 
 Item = Shots | ImuSamples | GnssSamples | Trajectory
@@ -81,13 +83,6 @@ class TopicReader(Protocol):
     def flush(self) -> Iterator[Item]:
         """The rest; call once, at the end."""
         ...
-
-
-_COPIES_WITHIN = 4
-"""Messages of a topic among which a copy of a cloud is looked for."""
-_PERIOD_NS = 100_000_000
-_PROBED_MESSAGES = 50
-"""Messages of a topic that are decoded to detect its content."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,7 +306,7 @@ def _beside_packets(
 
 def _model(bag: Bag, topic: BagTopic) -> str:
     """Detect the sensor of a topic from its first readable messages."""
-    for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
+    for message in islice(bag.messages([topic.name]), PROBE.messages):
         content = bag.decode(message)
         if content is None:
             continue
@@ -333,7 +328,7 @@ def _period_ns(head: Sequence[tuple[int, int]]) -> int:
     for period in np.median(steps, axis=0) if len(steps) else ():
         if 1e6 < period < 250e6:
             return round(float(period))
-    return _PERIOD_NS
+    return LIDAR_CHOICE.assumed_period_ns
 
 
 # -- LiDARs
@@ -354,7 +349,7 @@ class _Clouds:
         self._decoder, self._period_ns, self._report = decoder, period_ns, report
         self._stamps = stamps
         self._offset_ns = round(offset_s * 1e9)
-        self._recent: deque[tuple[int, Any]] = deque(maxlen=_COPIES_WITHIN)
+        self._recent: deque[tuple[int, Any]] = deque(maxlen=LIDAR_CHOICE.copies_within)
         self._order: StampOrder[tuple[BagMessage, Any]] = StampOrder()
 
     def push(self, message: BagMessage, cloud: Any) -> Iterator[Shots]:

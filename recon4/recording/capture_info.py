@@ -11,14 +11,10 @@ from recon4.recording.kinds import capture_files
 from recon4.recording.packets.family import Companion
 from recon4.recording.packets.streams import PacketStream, require_one_capture, scan_pcap
 from recon4.recording.scan_capture import ScanStreams, scan_streams
+from recon4.recording.tuning import LISTED
+from recon4.recording.tuning_heads import PROBE
 
-WHOLE_BYTES = 64 << 20
-"""Files up to this size are read completely."""
 SCAN_CAPTURE = "capture of scans (pcap)"
-_HEAD_PACKETS = 4000
-_WHOLE_PACKETS = 100_000
-"""Above this number of datagrams the counts of a small capture file are estimates too."""
-_UNREAD_LISTED = 10
 
 
 def describe_capture(
@@ -31,7 +27,7 @@ def describe_capture(
     """
     files = capture_files(path)
     require_one_capture(files)
-    most = _WHOLE_PACKETS if info.bytes <= WHOLE_BYTES else _HEAD_PACKETS
+    most = PROBE.whole_packets if info.bytes <= PROBE.whole_bytes else PROBE.head_packets
     scans = [scan_pcap(file, max_packets=most, companions=companions) for file in files]
     streams = [stream for scan in scans for stream in scan]
     names = {"samples": "other packets of a LiDAR", "IMU": "IMU samples", "GNSS": "GNSS samples"}
@@ -55,7 +51,7 @@ def _others(streams: Sequence[PacketStream], scanners: ScanStreams) -> list[Pack
     """The largest streams that are not read."""
     scans = {*scanners.scans, *scanners.heads}
     others = [s for s in streams if s.refused and (s.source, s.port) not in scans]
-    return sorted(others, key=lambda s: -s.packets)[:_UNREAD_LISTED]
+    return sorted(others, key=lambda s: -s.packets)[: LISTED.streams]
 
 
 def _total(stream: PacketStream) -> int:

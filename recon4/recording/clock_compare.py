@@ -11,23 +11,16 @@ import numpy as np
 from recon4.model.count_words import FREE_CLOCK
 from recon4.recording.clock_names import described, known_offset_s
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning_times import CLOCK_COMPARE
 
 LIDAR, IMU_CLOCK, GNSS_CLOCK, JOINT = "LiDAR", "IMU", "GNSS", "joint"
-_OTHER_S = 1.0
-"""Clocks that differ by less may be messages that travel for longer [s]."""
-_STEADY_S = 0.5
-"""Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
-_TRAVEL_S = 0.1
-"""Messages of sensors on one clock lag behind by amounts that differ by less [s]."""
-_JOINT_S = 0.25
-"""Messages of a joint and of its sensor travel for times that differ by less [s]."""
-_LEAST = 3
 
 
 def clock_offset_s(what: str, report: ImportReport) -> float:
     """How far the stamps of IMU or GNSS are ahead of the LiDARs' [s]; NaN = not known."""
     lags_s = [np.array(report.lags_ns.get(name, ())) * 1e-9 for name in (LIDAR, what)]
-    if any(len(lag) < _LEAST or _spread(lag) > _STEADY_S for lag in lags_s):
+    least, steady_s = CLOCK_COMPARE.least, CLOCK_COMPARE.steady_s
+    if any(len(lag) < least or _spread(lag) > steady_s for lag in lags_s):
         return float("nan")
     return float(np.median(lags_s[0]) - np.median(lags_s[1]))
 
@@ -42,7 +35,7 @@ def is_same_clock(what: str, rig_offset_s: float, report: ImportReport) -> bool:
     """
     measured_s = clock_offset_s(what, report)
     ahead_s = measured_s + rig_offset_s
-    if not abs(ahead_s) > _OTHER_S:
+    if not abs(ahead_s) > CLOCK_COMPARE.other_s:
         return True
     exact_s = known_offset_s(measured_s)
     about = "" if exact_s != measured_s else "about "
@@ -68,7 +61,7 @@ def warn_of_free_clocks(report: ImportReport, *, imu_file: bool) -> None:
     if not free or (not imu_file and IMU_CLOCK not in report.lags_ns):
         return
     offset_s = float("nan") if imu_file else clock_offset_s(IMU_CLOCK, report)
-    if abs(offset_s) < _TRAVEL_S:
+    if abs(offset_s) < CLOCK_COMPARE.travel_s:
         return
     apart = (
         "nothing says whether the IMU is on that clock"
@@ -89,7 +82,7 @@ def warn_of_other_joint_clock(joint: str, report: ImportReport) -> None:
         report: Has the lags, and receives the warning.
     """
     ahead_s = clock_offset_s(JOINT, report)
-    if abs(ahead_s) > _JOINT_S:
+    if abs(ahead_s) > CLOCK_COMPARE.joint_s:
         report.doubt(
             f"the times of the joint are ahead of the sensor's by {described(ahead_s)}, by when "
             f"both were recorded: points may be placed by the pose of another time; {joint}"

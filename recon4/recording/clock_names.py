@@ -4,20 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from recon4.recording.tuning_times import CLOCK_NAMES
 from recon4.units import HOUR_S
 
 _KNOWN_S = {18.0: "GPS time against UTC", 37.0: "TAI against UTC", 19.0: "TAI against GPS time"}
 """Since 2017."""
-_WITHIN_S = 0.4
-_DATES_S = 1e8
 
 
 def known_offset_s(offset_s: float) -> float:
     """The exact offset that a measured one is; without a known one, the measured [s]."""
     sign = 1.0 if offset_s > 0 else -1.0
-    if abs(offset_s) < _DATES_S:
+    if abs(offset_s) < CLOCK_NAMES.dates_s:
         for known in (*_KNOWN_S, round(abs(offset_s) / HOUR_S) * HOUR_S):
-            if known and abs(abs(offset_s) - known) < _WITHIN_S:
+            if known and abs(abs(offset_s) - known) < CLOCK_NAMES.within_s:
                 return sign * known
     return offset_s
 
@@ -27,9 +26,9 @@ def offset_name(offset_s: float) -> str:
     exact = abs(known_offset_s(offset_s))
     if exact in _KNOWN_S:
         return _KNOWN_S[exact]
-    if exact and exact < _DATES_S and exact % HOUR_S == 0.0:
+    if exact and exact < CLOCK_NAMES.dates_s and exact % HOUR_S == 0.0:
         return "whole hours, as of a time zone"
-    return "one of them counts from power-on" if abs(offset_s) > _DATES_S else ""
+    return "one of them counts from power-on" if abs(offset_s) > CLOCK_NAMES.dates_s else ""
 
 
 def described(offset_s: float) -> str:

@@ -5,19 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import Array
-
-_MIDDLE = (5.0, 95.0)
-"""Percentiles of the coordinates: single damaged points do not count."""
-_OUTSIDE = 3.0
-"""An origin that is farther from the middle of the points than this multiple of their extent is
-that of a coordinate system, not of a sensor."""
-_MILLIMETERS_M = 1000.0
-"""No LiDAR of a backpack measures half of its points farther away [m]."""
+from recon4.recording.tuning_topics import CLOUDS
 
 
 def extent_text(xyz: Array) -> str:
     """Extent of points, (N, 3) with N > 0, what it looks like, and the remedy."""
-    low, high = np.percentile(xyz, _MIDDLE, axis=0)
+    low, high = np.percentile(xyz, CLOUDS.middle, axis=0)
     extent = ", ".join(
         f"{axis} {a:.0f} … {b:.0f}" for axis, a, b in zip("xyz", low, high, strict=True)
     )
@@ -27,12 +20,12 @@ def extent_text(xyz: Array) -> str:
 def _looks_like(xyz: Array, low: Array, high: Array) -> str:
     middle, size = np.linalg.norm((low + high) / 2.0), float(np.max(high - low))
     usual = float(np.median(np.linalg.norm(xyz, axis=1)))
-    if middle > _OUTSIDE * size:
+    if middle > CLOUDS.outside * size:
         return (
             "coordinates of a map or of the earth, not a scan with the sensor at the origin. A "
             "finished map is no recording; give it as a reference"
         )
-    if usual > _MILLIMETERS_M:
+    if usual > CLOUDS.millimeters_m:
         return (
             f"half of them are farther than {usual:.0f} m. If they are in millimeters, give "
             "ingest.points_unit_m=0.001; a map whose origin is no sensor is no recording"

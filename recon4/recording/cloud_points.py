@@ -28,14 +28,9 @@ from recon4.recording.point_fields import (
 )
 from recon4.recording.point_times import PointClock
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning_times import POINT_CLOCK
+from recon4.recording.tuning_topics import CLOUDS
 from recon4.settings import IngestSettings
-
-_BANDS = 64
-_MANY_POINTS = 100
-"""Fewer points may have one intensity or ring."""
-_ONE_BEAM_RAD = np.deg2rad(5.0)
-"""A tilted beam spreads over less elevation."""
-
 
 _DEFAULTS = IngestSettings()
 
@@ -136,7 +131,7 @@ class CloudDecoder:
             self._report.derive(f"{self._name}: no intensity field, 0 is stored")
             return np.zeros(count, np.uint16)
         values = table[key]
-        if count >= _MANY_POINTS and _is_constant(values):
+        if count >= POINT_CLOCK.many_points and _is_constant(values):
             text = f"{key} is {values[0]:g} in all points of a cloud: it was not measured"
             self._report.derive(f"{self._name}: {text}")
         elif values.dtype.kind == "f":
@@ -256,7 +251,8 @@ def rings_by_elevation(
     """
     beams, how = _beams(model, elevation), "ring from elevation"
     if beams is None:
-        beams, how = np.deg2rad(np.linspace(-25.0, 15.0, _BANDS)), f"{_BANDS} bands of elevation"
+        beams = np.deg2rad(np.linspace(-25.0, 15.0, CLOUDS.bands))
+        how = f"{CLOUDS.bands} bands of elevation"
         how += " instead"
     middles = (beams[1:] + beams[:-1]) / 2.0
     return np.searchsorted(middles, elevation).astype(np.uint8), how
@@ -286,9 +282,9 @@ def _is_constant(values: NDArray[Any]) -> bool:
 
 def _is_flat(rings: NDArray[Any], elevation: NDArray[np.floating]) -> bool:
     """Whether all points have one ring, but not the elevation of one beam."""
-    if len(rings) < _MANY_POINTS or not _is_constant(rings):
+    if len(rings) < POINT_CLOCK.many_points or not _is_constant(rings):
         return False
-    return bool(np.ptp(np.percentile(elevation, [5, 95])) > _ONE_BEAM_RAD)
+    return bool(np.ptp(np.percentile(elevation, [5, 95])) > CLOUDS.one_beam_rad)
 
 
 def _upwards(rings: NDArray[np.uint8], elevation: NDArray[np.floating]) -> NDArray[np.uint8]:

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from recon4.recording.formats.bags import CLOUD, LASER_SCAN, BagTopic
 from recon4.recording.formats.point_messages import POINT_MESSAGES
 from recon4.recording.packets.messages import DATA_MESSAGES
+from recon4.recording.tuning import LISTED
 
 _BY_REPLAY = "play the bag back through the driver and record the PointCloud2 that it publishes"
 _REMEDIES = (
@@ -17,7 +18,6 @@ _REMEDIES = (
 )
 """Beginnings of names of types, and what gives a topic that is read."""
 _NOT_LIDARS = ("imu", "info", "status", "diagnos", "string", "metadata", "laserscan")
-_NAMES_LISTED = 20
 
 
 def driver_topics(topics: Sequence[BagTopic]) -> list[tuple[BagTopic, str]]:
@@ -43,8 +43,8 @@ def unread_text(topics: Sequence[BagTopic]) -> str:
 
 def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
     """Why a bag has no LiDAR data that is read: what there is, what is read, what to do."""
-    listed = ", ".join(f"{t.name} ({t.type})" for t in topics[:_NAMES_LISTED])
-    listed += " …" * (len(topics) > _NAMES_LISTED)
+    listed = ", ".join(f"{t.name} ({t.type})" for t in topics[: LISTED.names])
+    listed += " …" * (len(topics) > LISTED.names)
     types = [*sorted(POINT_MESSAGES), *sorted(DATA_MESSAGES)]
     kinds = ", ".join(short_type(kind) for kind in (CLOUD, *types, LASER_SCAN))
     why = unread_text(topics) or f"read are {kinds}"
@@ -54,7 +54,7 @@ def no_lidar_text(name: str, topics: Sequence[BagTopic]) -> str:
             "page: All settings; command: --set ingest.lidar_topic=TOPIC)"
         )
     unknown = [topic for topic in topics if topic.columns and not topic.is_points]
-    why += "".join(f"; {needed_text(t.name, t.columns)}" for t in unknown[:_NAMES_LISTED])
+    why += "".join(f"; {needed_text(t.name, t.columns)}" for t in unknown[: LISTED.names])
     return f"{name}: no LiDAR data; topics: {listed or 'none'}; {why}"
 
 
@@ -65,7 +65,7 @@ def needed_text(name: str, columns: Sequence[str]) -> str:
         name: Topic or file.
         columns: Their names.
     """
-    names = ", ".join(column[:40] for column in columns[:_NAMES_LISTED])
+    names = ", ".join(column[:40] for column in columns[: LISTED.names])
     return (
         f"{name} has lists of {names}: it is read as points of a LiDAR if they are named x, y, z, "
         "and a time, ring or intensity, or if a rig file says which columns they are: fields = "

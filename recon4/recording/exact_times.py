@@ -8,17 +8,7 @@ from numpy.typing import NDArray
 from recon4.model.trajectory import Times
 from recon4.recording.clock_names import described
 from recon4.recording.report import ImportReport
-
-_SAME_CLOCK_NS = 500_000_000
-"""Points this near to their stamp are on its clock."""
-_JUMP_NS = 1_000_000_000
-"""A stamp farther from where the points' clock says is wrong, or that clock has jumped."""
-_CONFIRM = 3
-"""Clouds that must agree on a jump."""
-_FAR_NS = 1_000_000_000
-"""Points farther from the others of their cloud are damaged."""
-_MANY_POINTS = 100
-"""Fewer points may have one time."""
+from recon4.recording.tuning_times import POINT_CLOCK
 
 
 class ExactClock:
@@ -51,10 +41,10 @@ class ExactClock:
             period_ns: Time from cloud to cloud.
         """
         middle = int(np.sort(values)[len(values) // 2])
-        sound = np.abs(values - middle) <= _FAR_NS
+        sound = np.abs(values - middle) <= POINT_CLOCK.far_ns
         self._report.count("points_wrong_time", len(values) - int(np.count_nonzero(sound)))
         first = int(values[sound].min())
-        if len(values) >= _MANY_POINTS and first == int(values[sound].max()):
+        if len(values) >= POINT_CLOCK.many_points and first == int(values[sound].max()):
             self._report.count("clouds_wrong_times")
             self._report.details.setdefault(
                 "clouds_wrong_times",
@@ -67,17 +57,17 @@ class ExactClock:
         """Clock of the stamps minus that of the points [ns]."""
         ahead = t_ns - first_ns
         if self._offset_ns is None:
-            self._offset_ns = 0 if abs(ahead) < _SAME_CLOCK_NS else ahead
+            self._offset_ns = 0 if abs(ahead) < POINT_CLOCK.same_clock_ns else ahead
             if self._offset_ns:
                 self._report.derive(
                     f"{self._name}: the points' clock is not the stamps' clock, it is ahead by "
                     f"{described(-ahead * 1e-9)}; first stamp = first point"
                 )
-        if abs(ahead - self._offset_ns) <= _JUMP_NS:
+        if abs(ahead - self._offset_ns) <= POINT_CLOCK.jump_ns:
             self._others = []
             return self._offset_ns
-        self._others = [*self._others, ahead][-_CONFIRM:]
-        if len(self._others) == _CONFIRM and np.ptp(self._others) < _JUMP_NS:
+        self._others = [*self._others, ahead][-POINT_CLOCK.confirm :]
+        if len(self._others) == POINT_CLOCK.confirm and np.ptp(self._others) < POINT_CLOCK.jump_ns:
             jump_s = (self._offset_ns - ahead) * 1e-9
             self._report.count("clock_jumps")
             self._report.warn(

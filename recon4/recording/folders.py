@@ -28,14 +28,12 @@ from recon4.recording.formats.cloud_files import (
 )
 from recon4.recording.formats.point_messages import POINTS
 from recon4.recording.formats.three_dtk import POSE_SUFFIX, SCAN_SUFFIX, read_pose
-from recon4.recording.frame_times import ASSUMED_NS, frame_times
+from recon4.recording.frame_times import frame_times
 from recon4.recording.recipes.apply import as_points
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning import LISTED
+from recon4.recording.tuning_times import FRAME_TIMES
 from recon4.settings import IngestSettings
-
-_SHOWN_NAMES = 4
-_SHORTEST_NS, _LONGEST_NS = 20_000_000, 250_000_000
-"""Plausible intervals of frames [s]; outside them each frame counts as one revolution."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,9 +84,9 @@ def list_frames(path: Path) -> FrameFiles:
         raise UnknownFormat(f"{path.name}: frames of one kind expected, got {', '.join(kinds)}")
     times = frame_times(path, found)
     steps = np.diff(times.t_ns)
-    period = int(np.median(steps)) if len(steps) else ASSUMED_NS
-    if not _SHORTEST_NS <= period <= _LONGEST_NS:
-        period = ASSUMED_NS
+    period = int(np.median(steps)) if len(steps) else FRAME_TIMES.assumed_ns
+    if not FRAME_TIMES.shortest_ns <= period <= FRAME_TIMES.longest_ns:
+        period = FRAME_TIMES.assumed_ns
     return FrameFiles(tuple(found), times.t_ns, period, times.source, times.remark)
 
 
@@ -98,8 +96,8 @@ def time_warnings(frames: FrameFiles) -> tuple[str, ...]:
     if frames.times_from or len(frames.files) < 2:
         return remarks
     text = (
-        f"the frames have no times: {1e9 / ASSUMED_NS:g} Hz from 0 is assumed, and the map is wrong"
-        " if that is; put a times.txt with one time a line [s] beside the files"
+        f"the frames have no times: {1e9 / FRAME_TIMES.assumed_ns:g} Hz from 0 is assumed, and the "
+        "map is wrong if that is; put a times.txt with one time a line [s] beside the files"
     )
     return (*remarks, text)
 
@@ -111,7 +109,7 @@ def _several_sensors(frames: FrameFiles) -> str:
     }
     if len(starts) < 2:
         return ""
-    some = ", ".join(repr(name) for name in sorted(starts)[:_SHOWN_NAMES])
+    some = ", ".join(repr(name) for name in sorted(starts)[: LISTED.few])
     return (
         f"the names of the files begin in {len(starts)} ways ({some}), as of several sensors or "
         "clouds: they are read as what one sensor measured, one after the other; give a folder for "

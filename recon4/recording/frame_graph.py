@@ -9,13 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.geometry.se3 import SE3
+from recon4.recording.tuning_mounts import SAME_MOUNT
 
-SAME_RAD, SAME_M = np.deg2rad(0.1), 1e-3
-"""Two statements of one transform that differ by less are the same: programs round."""
 WORLD_FRAMES = frozenset({"map", "odom", "world", "earth", "utm", "enu", "camera_init"})
 """Frames of places, not of parts of a robot (REP 105 and usual ones)."""
-_VERTICAL = 1.0 - 1e-6
-"""Sine of a pitch that counts as 90°."""
 BODY_FRAMES = ("base_link", "base_footprint", "base_stabilized", "base")
 """Frames of a robot with x forward and z up (REP 105, REP 120), the best first."""
 
@@ -177,7 +174,7 @@ class FrameGraph:
 def is_same(T_a: SE3, T_b: SE3) -> bool:
     """Whether two statements of one transform agree."""
     angle_rad, distance_m = difference(T_a, T_b)
-    return angle_rad <= SAME_RAD and distance_m <= SAME_M
+    return angle_rad <= SAME_MOUNT.rad and distance_m <= SAME_MOUNT.m
 
 
 def difference(T_a: SE3, T_b: SE3) -> tuple[float, float]:
@@ -195,7 +192,7 @@ def mount_text(T: SE3) -> str:
     """A mount as people write it: position and angles."""
     x, y, z = (_rounded(value, 3) for value in T.t)
     angles = T.rpy()
-    if abs(T.R[2, 0]) > _VERTICAL:  # roll and yaw turn about one axis there
+    if abs(T.R[2, 0]) > SAME_MOUNT.vertical:  # roll and yaw turn about one axis there
         angles = np.array([np.arctan2(-T.R[1, 2], T.R[1, 1]), angles[1], 0.0])
     roll, pitch, yaw = (_rounded(value, 1) for value in np.rad2deg(angles))
     return f"xyz {x} {y} {z} m, roll {roll} pitch {pitch} yaw {yaw}°"

@@ -23,15 +23,14 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile
 from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import MAX_RATIO, DamagedLines
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from recon4.recording.stamps import strays
+from recon4.recording.tuning_times import FRAME_TIMES
 from recon4.units import SECOND_NS, SECOND_US
 from recon4.untrusted.bounded import lines_limited
 
 TIME_FILES = ("times.txt", "timestamps.txt")
-ASSUMED_NS = 100_000_000
-"""Interval of frames without times [ns]."""
-_MAX_BYTES = 64 << 20
 _DATE = re.compile(
     r"(\d{4})-(\d\d)-(\d\d)[-_T ](\d\d)[-:](\d\d)[-:](\d\d)(?:[-.](\d{1,9}))?(?:Z|\+00:00)?$"
 )
@@ -86,7 +85,7 @@ def frame_times(folder: Path, files: Sequence[Path]) -> FrameTimes:
             repaired = f"{len(damaged)} of {len(times)} times are damaged, the first is {where}"
             remarks.append(f"{repaired}: times between those of their neighbors are used")
         return FrameTimes(_filled(times, sound), beside.name, "; ".join(remarks))
-    assumed = np.arange(len(files), dtype=np.int64) * ASSUMED_NS
+    assumed = np.arange(len(files), dtype=np.int64) * FRAME_TIMES.assumed_ns
     return FrameTimes(assumed, "", "; ".join(remarks))
 
 
@@ -99,7 +98,7 @@ def read_times(path: Path) -> Times:
     damage = DamagedLines(ImportReport(), "")
     found: list[int] = []
     unreadable = 0
-    lines = lines_limited(path, max_bytes=_MAX_BYTES, on_damaged=damage.add)
+    lines = lines_limited(path, max_bytes=LIMITS.time_file_bytes, on_damaged=damage.add)
     for number, line in enumerate(lines, 1):
         text = line.strip()
         if damage.number > unreadable:
@@ -134,7 +133,7 @@ def _filled(t_ns: Times, sound: NDArray[np.bool_]) -> Times:
         return t_ns
     rows, known = np.flatnonzero(sound), t_ns[sound]
     filled = known[0] + np.interp(np.arange(len(t_ns)), rows, known - known[0]).astype(np.int64)
-    step = int(np.median(np.diff(known))) if len(known) > 1 else ASSUMED_NS
+    step = int(np.median(np.diff(known))) if len(known) > 1 else FRAME_TIMES.assumed_ns
     ahead = np.minimum(np.arange(len(t_ns)) - rows[0], 0)
     behind = np.maximum(np.arange(len(t_ns)) - rows[-1], 0)
     return np.where(sound, t_ns, filled + step * (ahead + behind)).astype(np.int64)

@@ -12,14 +12,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.report import ImportReport
-
-_STUCK_RAD = float(np.deg2rad(0.05))
-_STUCK_NS = 3_000_000_000
-"""A head that stands for longer is reported; a reversal takes some tenths of a second."""
-_WAIT_NS = 2_000_000_000
-"""A line waits this long for the next angle [ns]."""
-_BEYOND_NS = 100_000_000
-"""Angles are extrapolated over at most this time [ns]."""
+from recon4.recording.tuning_mounts import JOINTS
 
 
 class Head(Protocol):
@@ -95,7 +88,7 @@ class HeadAngles:
 
     def overdue(self, end_ns: int, now_ns: int) -> bool:
         """Whether a line that ended at ``end_ns`` has waited long enough."""
-        return now_ns - end_ns > _WAIT_NS
+        return now_ns - end_ns > JOINTS.wait_ns
 
     def at(self, t_ns: Times) -> Array | None:
         """Angles at increasing times [rad], (N,); None = there is none near enough."""
@@ -108,7 +101,7 @@ class HeadAngles:
         known = np.array(self._t_ns, np.int64)
         last = min(max(int(np.searchsorted(known, t_ns[-1])), 1), len(known) - 1)
         outside = max(known[0] - t_ns[0], t_ns[-1] - known[-1])
-        if outside > _BEYOND_NS:
+        if outside > JOINTS.beyond_ns:
             return None
         angle, at_ns = np.array(self._angle_rad), (known - known[0]).astype(np.float64)
         wanted = (t_ns - known[0]).astype(np.float64)
@@ -149,14 +142,14 @@ class HeadAngles:
     def _watch(self, t_ns: int, angle_rad: float) -> None:
         if self._stands_since is None:
             self._stands_since = (t_ns, angle_rad)
-        elif abs(angle_rad - self._stands_since[1]) > _STUCK_RAD:
+        elif abs(angle_rad - self._stands_since[1]) > JOINTS.stuck_rad:
             self._close_standing(t_ns)
             self._stands_since = (t_ns, angle_rad)
 
     def _close_standing(self, t_ns: int) -> None:
         assert self._stands_since is not None
         since_ns, angle_rad = self._stands_since
-        if t_ns - since_ns > _STUCK_NS:
+        if t_ns - since_ns > JOINTS.stuck_ns:
             self._stood_ns += t_ns - since_ns
             self._report.count("head_stands")
             self._report.warn(

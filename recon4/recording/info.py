@@ -17,7 +17,7 @@ from recon4.model.trajectory import Times
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.bag_packets import BagPackets
 from recon4.recording.bag_recording import lidar_streams
-from recon4.recording.capture_info import SCAN_CAPTURE, WHOLE_BYTES, describe_capture
+from recon4.recording.capture_info import SCAN_CAPTURE, describe_capture
 from recon4.recording.first_rig import first_rig_text
 from recon4.recording.folders import folder_gaps, frames_label, list_frames, time_warnings
 from recon4.recording.formats.bags import IMU, NAVSATFIX, ODOMETRY, Bag, BagTopic
@@ -53,12 +53,10 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import RigToComplete
 from recon4.recording.samples.csv_files import read_gnss_csv, read_imu_csv
 from recon4.recording.tuning import IngestTuning
+from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning_lasers import LASERS
 from recon4.settings import IngestSettings
 from recon4.settings.tuning import tuned
-
-_PROBED_MESSAGES = 50
-_LASER_GAP_S = 1.0
-"""Scans of a 2-D laser come irregularly; shorter times between them are no gap [s]."""
 
 
 def describe(
@@ -127,7 +125,7 @@ def _describe_bag(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
             streams = []  # what is missing is said when the recording is opened, once
         topics = {topic.name: topic for topic in bag.topics}
         sensors = tuple(_bag_sensor(bag, topics[stream.topic], stream.model) for stream in streams)
-        whole = info.bytes <= WHOLE_BYTES
+        whole = info.bytes <= PROBE.whole_bytes
         gaps = _bag_gaps(bag, [s.topic for s in streams]) if whole else ()
         lines = line_topics(bag)
         if lines is not None:
@@ -170,7 +168,7 @@ def _bag_sensor(bag: Bag, topic: BagTopic, model: str) -> SensorInfo:
 
 
 def _message_fields(bag: Bag, topic: BagTopic) -> tuple[str, ...]:
-    for message in islice(bag.messages([topic.name]), _PROBED_MESSAGES):
+    for message in islice(bag.messages([topic.name]), PROBE.messages):
         cloud = bag.decode(message)
         if cloud is not None:
             try:
@@ -232,7 +230,7 @@ def _describe_laser2d(info: RecordingInfo, path: Path, settings: IngestSettings)
         t_last_ns=last,
         sensors=(sensor,),
         samples=("poses by the robot's odometry",) if scans.odometry is not None else (),
-        gaps=tuple(g for g in _gaps(path.name, scans.t_ns) if g.seconds > _LASER_GAP_S),
+        gaps=tuple(g for g in _gaps(path.name, scans.t_ns) if g.seconds > LASERS.gap_s),
         derived=tuple(report.derived),
         missing=() if scans.odometry is not None else ("odometry",),
         lost=tuple(report.lost()),
@@ -338,7 +336,7 @@ def _with_head(info: RecordingInfo, request: OpenRequest) -> RecordingInfo:
     try:
         recording = open_recording(request)
         rig = recording.rig
-        whole = info.bytes <= WHOLE_BYTES
+        whole = info.bytes <= PROBE.whole_bytes
         head = read_head(recording, settings, whole=whole, report=report)
         if whole and not head.points:
             report.warn(report.why_no_points())

@@ -23,11 +23,9 @@ from recon4.recording.openers.request import Recording
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.clean import clean_gnss, clean_imu, gather, join
 from recon4.recording.tuning import IngestTuning
+from recon4.recording.tuning_heads import PROBE
 from recon4.settings import IngestSettings
 from recon4.settings.tuning import tuned
-
-_HEAD_ITEMS = 40
-_HEAD_NS = 1_000_000_000
 
 
 @dataclass(slots=True)
@@ -84,13 +82,13 @@ def read_head(
             shots.setdefault(item.sensor, []).append(item)
             start_ns = int(item.t_ns[0]) if start_ns is None else start_ns
             everyone = len(shots) == len(recording.rig.sensors)
-            beyond = everyone and int(item.t_ns[-1]) - start_ns > _HEAD_NS
-        beyond |= isinstance(item, Multiframe) or number >= _HEAD_ITEMS
+            beyond = everyone and int(item.t_ns[-1]) - start_ns > PROBE.head_ns
+        beyond |= isinstance(item, Multiframe) or number >= PROBE.head_items
         if beyond and not whole:
             break
     for row, parts in shots.items():
         t_ns, xyz = (np.concatenate([getattr(p, name) for p in parts]) for name in ("t_ns", "xyz"))
-        first = t_ns <= t_ns[0] + _HEAD_NS  # a pause may follow the first of them
+        first = t_ns <= t_ns[0] + PROBE.head_ns  # a pause may follow the first of them
         head.rotation_hz[row] = rotation_rate(t_ns[first], xyz[first])
     return head
 

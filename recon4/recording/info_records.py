@@ -8,9 +8,7 @@ import numpy as np
 
 from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.formats.file_times import utc
-
-_EARLIEST_NS = 300_000_000 * 1_000_000_000
-"""Times before 1979 do not count from 1970."""
+from recon4.recording.tuning_times import FRAME_TIMES
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -72,7 +70,7 @@ class RecordingInfo:
         """The contents as text."""
         about = "about " if self.estimated else ""
         lines = [f"{self.path}: {self.kind}, {self.bytes / 1e6:.1f} MB"]
-        absolute = self.t_first_ns > _EARLIEST_NS
+        absolute = self.t_first_ns > FRAME_TIMES.earliest_ns
         if absolute or self.t_last_ns > self.t_first_ns:
             start = f"{utc(self.t_first_ns)} UTC" if absolute else "no absolute times"
             lines.append(f"time      {start}, {about}{self.seconds:.2f} s")

@@ -27,6 +27,7 @@ from recon4.recording.clock_names import described, known_offset_s, offset_name
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.formats.poses import write_tum
 from recon4.recording.kinds import RecordingKind, recognize
+from recon4.recording.limits import LIMITS
 from recon4.recording.open import open_recording
 from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.report import ImportReport
@@ -44,8 +45,6 @@ Span = tuple[int, int]
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 Watch = Callable[[Multiframe | ImuSamples | GnssSamples | LaserScans], None]
 """Receives contents of a recording as they come in."""
-
-_GAPS_LISTED = 1000
 
 
 @dataclass(slots=True)
@@ -363,7 +362,7 @@ def _summary(
         "t_first_ns": written.t_first_ns,
         "t_last_ns": written.t_last_ns,
         "counts": dict(sorted(report.counts.items())),
-        "gaps": [asdict(gap) for gap in gaps[:_GAPS_LISTED]],
+        "gaps": [asdict(gap) for gap in gaps[: LIMITS.gaps]],
         "derived": report.derived,
         "warnings": report.warnings,
     }

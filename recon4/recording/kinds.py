@@ -22,6 +22,7 @@ from recon4.recording.formats.columns import column_names
 from recon4.recording.formats.pcap import is_pcap
 from recon4.recording.formats.poses import pose_format
 from recon4.recording.laser_tables import LASER_COLUMNS
+from recon4.recording.limits import LIMITS
 from recon4.recording.line_tables import LINE_COLUMNS, is_line_table, table_in
 from recon4.recording.mandeye.folder import is_points_file
 from recon4.recording.packets.companions import companion_paths, is_companion
@@ -68,10 +69,6 @@ _KIND_OF_SUFFIX = {
 }
 """In folders, where not every file is opened."""
 
-_DEPTH = 3
-"""Levels of subfolders in which recordings are searched."""
-_MOST_FOLDERS = 50
-"""Subfolders that are looked at in a folder, and candidates that are named."""
 _OTHERS = {
     b"\xff\xd8\xff": "a JPEG image",
     b"\x89PNG": "a PNG image",
@@ -102,7 +99,7 @@ class FolderContents:
     def folders(self) -> tuple[Path, ...]:
         """Subfolders that are recordings; they are looked through when somebody asks."""
         found: list[Path] = []
-        _collect_folders(self.folder, found, depth=_DEPTH)
+        _collect_folders(self.folder, found, depth=LIMITS.folder_depth)
         return tuple(found)
 
     @property
@@ -127,7 +124,7 @@ class FolderContents:
             and kind is not RecordingKind.MANDEYE
             and (kind is not RecordingKind.FRAMES or len(names) == 1)
         ]
-        return (*files[:_MOST_FOLDERS], *self.folders)
+        return (*files[: LIMITS.folders], *self.folders)
 
     def passed_over(self) -> list[str]:
         """Sentences on what is not read because the folder itself is a recording."""
@@ -281,8 +278,8 @@ def _collect_folders(folder: Path, found: list[Path], *, depth: int) -> None:
     """Append the subfolders that are recordings; nothing is searched inside of these."""
     inside = [child for child in folder.iterdir() if not child.name.startswith(".")]
     below = sorted(child for child in inside if child.is_dir() and not child.is_symlink())
-    for child in below[:_MOST_FOLDERS]:
-        if len(found) >= _MOST_FOLDERS:
+    for child in below[: LIMITS.folders]:
+        if len(found) >= LIMITS.folders:
             return
         try:
             kinds, _ = _kinds_in(child)

@@ -29,16 +29,10 @@ from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import is_scan_capture, read_scan_captures
 from recon4.recording.scan_messages import ScanCollector
 from recon4.recording.topic_choice import LASER_KIND, ODOMETRY_KIND, Named, choose_topic
+from recon4.recording.tuning_lasers import LASERS
 from recon4.settings import IngestSettings
 
 Rows = NDArray[np.intp]
-
-_SHORTEST_REACH_M = 3.5
-"""Reach of the weakest laser [m]: a shorter range is a measurement, however often it is there."""
-_REPEATED = 20
-"""The largest range stands for "no return" if at least this many beams have it."""
-_MOUNTING_SD = 1e-3
-"""Spread of the pose of the laser on the robot [m, rad] that is only rounding."""
 
 
 def is_laser2d(path: Path, kind: RecordingKind | None = None, *, rig: Rig | None = None) -> bool:
@@ -167,7 +161,7 @@ def _without_largest(log: CarmenScans, report: ImportReport) -> tuple[float, Ran
     if log.range_max_m.all():
         at_largest = ranges >= np.repeat(log.range_max_m, np.diff(log.start))
         largest = float(log.range_max_m.max())
-    elif largest >= _SHORTEST_REACH_M and int(at_largest.sum()) >= _REPEATED:
+    elif largest >= LASERS.shortest_reach_m and int(at_largest.sum()) >= LASERS.repeated:
         report.derive(f"ranges of {0.99 * largest:.2f} m and more, the largest: no return")
     else:
         return largest, ranges
@@ -188,7 +182,7 @@ def _odometry(log: CarmenScans, report: ImportReport) -> Array | None:
         return log.robot + np.array([0.0, 0.0, np.pi])
     mounted = between(log.robot, log.laser)
     mounted[:, 2] = np.unwrap(mounted[:, 2])
-    if float(np.std(mounted, axis=0).max()) < _MOUNTING_SD:
+    if float(np.std(mounted, axis=0).max()) < LASERS.mounting_sd:
         return log.laser
     report.derive("the poses of the laser are corrected ones: the raw odometry is used instead")
     return log.robot

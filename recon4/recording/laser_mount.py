@@ -16,14 +16,11 @@ from recon4.recording.frame_graph import last_name, mount_text
 from recon4.recording.mounts import Mounts, read_mounts, stated_text
 from recon4.recording.report import ImportReport
 from recon4.recording.transform_messages import frame_name
+from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning_lasers import LASERS
 
-_TILTED_RAD = np.deg2rad(5.0)
-"""A laser that leans less measures distances that are right to 0.4 %."""
-_DIFFERENT_RAD = np.deg2rad(5.0)
-"""Rig file and bag contradict each other if the axes of the laser differ by more."""
 _OPTICAL = ("_optical", "_optical_frame")
 """Ends of frames whose z axis looks ahead (REP 103)."""
-_PROBED_MESSAGES = 50
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -133,7 +130,7 @@ def mounted_scans(
     if mount.is_upside_down:
         report.derive(f"the laser is upside down, its scans are turned round; {mount.source}")
         scans = turned_round(scans)
-    if mount.tilt_rad > _TILTED_RAD:
+    if mount.tilt_rad > LASERS.tilted_rad:
         longer = 1.0 / max(np.cos(mount.tilt_rad), 1e-3) - 1.0
         report.doubt(
             f"the laser is tilted by {np.rad2deg(mount.tilt_rad):.0f}°: distances in the map are "
@@ -147,7 +144,7 @@ def _compare(by_rig: LaserMount, by_bag: LaserMount, report: ImportReport) -> No
     """Compare the vertical; which frame is the body of a rig file is not known."""
     up_rig, up_bag = by_rig.T_body_laser.R[2], by_bag.T_body_laser.R[2]
     angle_rad = float(np.arccos(np.clip(up_rig @ up_bag, -1.0, 1.0)))
-    if angle_rad > _DIFFERENT_RAD:
+    if angle_rad > LASERS.different_rad:
         report.doubt(
             f"rig file and bag contradict each other about the laser: the vertical in its axes "
             f"differs by {np.rad2deg(angle_rad):.0f}°; {by_rig.source}; {by_bag.source}; the rig "
@@ -158,7 +155,7 @@ def _compare(by_rig: LaserMount, by_bag: LaserMount, report: ImportReport) -> No
 def _doubt_joints(mounts: Mounts, frame: str, report: ImportReport) -> None:
     """Say which joints tilt the laser during the recording: a flat map assumes that none does."""
     for joint in mounts.graph.joints_above(frame):
-        if joint.tilt_rad > _TILTED_RAD:
+        if joint.tilt_rad > LASERS.tilted_rad:
             report.doubt(
                 f"the laser hangs on a joint that moves: {joint.parent} -> {joint.child} tilts by "
                 f"up to {np.rad2deg(joint.tilt_rad):.0f}° ({joint.source}), but a flat map takes "
@@ -180,7 +177,7 @@ def _body_of(mounts: Mounts, frame: str) -> str:
 
 def _child_frame(bag: Bag, topic: str) -> str:
     """The frame whose poses an odometry gives."""
-    for message in islice(bag.messages([topic]), _PROBED_MESSAGES):
+    for message in islice(bag.messages([topic]), PROBE.messages):
         content = bag.decode(message)
         if content is not None:
             return frame_name(content.child_frame_id)

@@ -14,26 +14,13 @@ from recon4.errors import EmptyRecording, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans, joined_scans
 from recon4.recording.formats.columns import TIME, Columns, column_names, read_columns
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from recon4.recording.sweeps import sweeps
+from recon4.recording.tuning_lasers import SCAN_BEAMS
 
 LASER_COLUMNS = (TIME, "beam_deg", "range_m")
 _LASER_OPTIONAL = ("scan", "x_m", "y_m", "yaw_deg")
-_LONGEST_M, _SHORTEST_M = 1e4, 1e-3
-_SCANS_AT_ONCE = 250
-_GRID_SCANS = 50
-"""Scans from which the usual angles of the beams are found."""
-_MAX_BEAMS = 100_000
-_OFF_GRID = 0.3
-"""Part of the angle between two beams by which one may be off its place …"""
-_SHIFTED = 0.05
-"""… and by which those of a scan may be off on average: lasers that interlace their scans shift all
-beams by a quarter of the angle between them."""
-_FINER = 8
-"""Beams at irregular angles are placed on a grid of this part of the angle between them."""
-_NEAREST = 0.51
-"""The nearest place is never farther than half of a step."""
-_USUAL_REACH_M = 30.0
 
 
 def is_laser_table(path: Path) -> bool:
@@ -44,7 +31,8 @@ def is_laser_table(path: Path) -> bool:
 def returns_of(range_m: Array) -> NDArray[np.bool_]:
     """Which ranges [m] are returns."""
     with np.errstate(invalid="ignore"):
-        return np.asarray((range_m >= _SHORTEST_M) & (range_m <= _LONGEST_M), dtype=np.bool_)
+        shortest_m, longest_m = SCAN_BEAMS.shortest_m, SCAN_BEAMS.longest_m
+        return np.asarray((range_m >= shortest_m) & (range_m <= longest_m), dtype=np.bool_)
 
 
 def read_laser_table(path: Path, report: ImportReport) -> LaserScans:
@@ -76,11 +64,11 @@ def laser_batches(path: Path, report: ImportReport, *, offset_ns: int = 0) -> It
     """
     blocks = read_columns(path, LASER_COLUMNS, _LASER_OPTIONAL, report=report)
     scans = sweeps(blocks, "beam_deg", number="scan", where=path.name)
-    head = list(islice(scans, _GRID_SCANS))
+    head = list(islice(scans, SCAN_BEAMS.grid_scans))
     collector = _ScanRows(_BeamGrid.usual(head, path.name), report)
     for scan in chain(head, scans):
         collector.push(scan, offset_ns)
-        if len(collector) >= _SCANS_AT_ONCE:
+        if len(collector) >= SCAN_BEAMS.scans_at_once:
             yield collector.take()
     if len(collector):
         yield collector.take()
@@ -95,7 +83,7 @@ class _BeamGrid:
     beams: int
     step_ns: float
     """Time between two beams [ns]."""
-    off_grid: float = _OFF_GRID
+    off_grid: float = SCAN_BEAMS.off_grid
     """Part of the step by which a beam may be off its place."""
 
     @staticmethod
@@ -117,8 +105,8 @@ class _BeamGrid:
         finite = angles[np.isfinite(angles)]
         low, high = float(finite.min()), float(finite.max())
         beams = round((high - low) / abs(step)) + 1
-        if beams > _MAX_BEAMS:
-            raise UnknownFormat(f"{where}: expected at most {_MAX_BEAMS} beams, got {beams}")
+        if beams > LIMITS.beams:
+            raise UnknownFormat(f"{where}: expected at most {LIMITS.beams} beams, got {beams}")
         per_beam = times[used] / np.maximum(np.rint(steps[used] / step), 1.0)
         return _BeamGrid(low if step > 0 else high, step, beams, float(np.median(per_beam)))
 
@@ -128,7 +116,7 @@ class _BeamGrid:
         known = place[np.isfinite(place)]
         off = known - np.rint(known)
         forward = len(known) > 0 and known[-1] >= known[0]
-        if forward and on_grid.sum() == len(off) and abs(float(off.mean())) <= _SHIFTED:
+        if forward and on_grid.sum() == len(off) and abs(float(off.mean())) <= SCAN_BEAMS.shifted:
             return self
         return self._own(scan)
 
@@ -148,12 +136,12 @@ class _BeamGrid:
             return self
         step = float(np.median(moves[moves != 0.0]))
         number = np.concatenate([[0.0], np.cumsum(np.rint(moves / step))])
-        if not 0 < np.ptp(number) * _FINER < _MAX_BEAMS:
+        if not 0 < np.ptp(number) * SCAN_BEAMS.finer < LIMITS.beams:
             return self
         fitted, first = np.polyfit(number, angle, 1)
-        off_grid = _OFF_GRID
-        if np.abs(first + fitted * number - angle).max() > abs(fitted) / _FINER:
-            fitted, first, off_grid = step / _FINER, float(angle[0]), _NEAREST
+        off_grid = SCAN_BEAMS.off_grid
+        if np.abs(first + fitted * number - angle).max() > abs(fitted) / SCAN_BEAMS.finer:
+            fitted, first, off_grid = step / SCAN_BEAMS.finer, float(angle[0]), SCAN_BEAMS.nearest
             number = np.rint((angle - first) / fitted)
         number, lowest = number - number.min(), number.min()
         steps = np.diff(number)
@@ -218,7 +206,7 @@ class _ScanRows:
             angle_min_rad=np.deg2rad([grid.first_deg for grid in grids]),
             angle_step_rad=np.deg2rad([grid.step_deg for grid in grids]),
             time_step_s=np.array([max(grid.step_ns * 1e-9, 0.0) for grid in grids]),
-            range_max_m=max(_USUAL_REACH_M, float(np.nanmax(ranges, initial=0.0))),
+            range_max_m=max(SCAN_BEAMS.usual_reach_m, float(np.nanmax(ranges, initial=0.0))),
             odometry=poses if np.isfinite(poses).all() else None,
         )
         self._t_ns, self._ranges, self._odometry, self._grids = [], [], [], []

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass
 from itertools import repeat
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,22 +22,20 @@ from recon4.recording.report import ImportReport
 from recon4.recording.topic_contents import Contents, read_contents
 from recon4.recording.transform_messages import frame_name, has_frames, read_frames
 from recon4.recording.tuning import SHARED_TOPICS
+from recon4.recording.tuning_topics import LIDAR_CHOICE
 
-_WIDEST_CAMERA_RAD = np.deg2rad(65.0)
-"""Half of the widest view of a depth camera."""
 _COLORS = ("rgb", "rgba", "bgr", "r", "red")
 _INTENSITIES = ("intensity", "reflectivity", "signal", "i")
 _TIMES = (EXACT_TIME, *TIME_FIELDS)
-_FEWER = 0.9
-_SAME_STAMPS = 0.5
-_SAME_STEP_M, _SAME_STEPS = 2e-3, 0.99
-"""Steps from point to point of a copied cloud are the same, also when it was turned [m]."""
 _ROBOT_FRAMES = {*BODY_FRAMES, "body", "base", "vehicle"}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CloudTopic:
     """A topic of clouds, and why it is none of a LiDAR as measured."""
+
+    FULL_DETAIL: ClassVar[int] = 2
+    """`detail` of clouds with times and rings."""
 
     topic: BagTopic
     frame: str
@@ -167,8 +165,9 @@ def _is_in_frame_of_poses(
 
 def _has_less(one: CloudTopic, other: CloudTopic) -> bool:
     """Whether a cloud is made of another one: the same stamps, and less detail or fewer points."""
-    same = len(one.stamps & other.stamps) >= _SAME_STAMPS * min(len(one.stamps), len(other.stamps))
-    less = (one.detail, one.points) < (other.detail, _FEWER * other.points)
+    fewer = min(len(one.stamps), len(other.stamps))
+    same = len(one.stamps & other.stamps) >= LIDAR_CHOICE.same_stamps * fewer
+    less = (one.detail, one.points) < (other.detail, LIDAR_CHOICE.fewer * other.points)
     return same and less and one.detail <= other.detail
 
 
@@ -180,7 +179,8 @@ def _has_same_points(one: CloudTopic, other: CloudTopic) -> bool:
     for t_ns in one.stamps & other.stamps:
         a, b = one.clouds[t_ns], other.clouds[t_ns]
         if len(a) == len(b) > 1 and (one.frame == other.frame or not np.array_equal(a, b)):
-            return bool(np.mean(np.abs(_steps_m(a) - _steps_m(b)) < _SAME_STEP_M) >= _SAME_STEPS)
+            same = np.abs(_steps_m(a) - _steps_m(b)) < LIDAR_CHOICE.same_step_m
+            return bool(np.mean(same) >= LIDAR_CHOICE.same_steps)
     return False
 
 
@@ -215,7 +215,7 @@ def _is_narrow(found: Contents) -> bool:
         rays = p / np.linalg.norm(p, axis=1, keepdims=True)
         middle = rays.mean(axis=0)
         cosine = rays @ middle / max(float(np.linalg.norm(middle)), 1e-9)
-        return bool(np.percentile(cosine, 5) > np.cos(_WIDEST_CAMERA_RAD))
+        return bool(np.percentile(cosine, 5) > np.cos(LIDAR_CHOICE.widest_camera_rad))
     return False
 
 

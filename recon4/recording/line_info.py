@@ -18,14 +18,12 @@ from recon4.recording.formats.columns import (
 )
 from recon4.recording.info_records import RecordingInfo, SensorInfo
 from recon4.recording.laser2d import read_laser2d
+from recon4.recording.limits import LIMITS
 from recon4.recording.line_tables import LINE_COLUMNS, LineTables
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.recording.sweeps import sweeps
-
-_MOST_ROWS = 2_000_000
-"""Of a longer table only the head is read."""
-_GAP_NS = 100_000_000
+from recon4.recording.tuning_lasers import LINES
 
 
 @dataclass(slots=True)
@@ -45,7 +43,7 @@ class _Seen:
     def add(self, line: Columns, name: str) -> None:
         """Count a line."""
         t_ns = line[TIME]
-        if self.lines and int(t_ns[0]) - self.t_last_ns > _GAP_NS:
+        if self.lines and int(t_ns[0]) - self.t_last_ns > LINES.gap_ns:
             seconds = 1e-9 * (int(t_ns[0]) - self.t_last_ns)
             self.gaps += (TimeGap(name, self.t_last_ns, seconds),)
         self.t_first_ns = self.t_first_ns if self.lines else int(t_ns[0])
@@ -70,7 +68,7 @@ def describe_line_tables(info: RecordingInfo, path: Path) -> RecordingInfo:
     has_head = "head_deg" in column_names(tables.lines)
     report = ImportReport()
     seen = _read_lines(tables.lines, report)
-    rows = max(seen.rows, estimate_rows(tables.lines) if seen.rows >= _MOST_ROWS else 0)
+    rows = max(seen.rows, estimate_rows(tables.lines) if seen.rows >= LIMITS.line_rows else 0)
     part = seen.rows / rows
     seconds = 1e-9 * (seen.t_last_ns - seen.t_first_ns)
     sensors: tuple[SensorInfo, ...] = (_profiler(tables.lines.name, seen, part),)
@@ -103,7 +101,7 @@ def _read_lines(path: Path, report: ImportReport) -> _Seen:
     blocks = read_columns(path, LINE_COLUMNS, ("head_deg", "line"), report=report)
     for line in sweeps(blocks, "shot_deg", number="line", where=path.name):
         seen.add(line, path.name)
-        if seen.rows >= _MOST_ROWS:
+        if seen.rows >= LIMITS.line_rows:
             break
     return seen
 

@@ -40,13 +40,12 @@ from recon4.recording.stamp_order import StampOrder
 from recon4.recording.stamps import StampClock
 from recon4.recording.topic_choice import choose_imu, imu_batches, named_imu
 from recon4.recording.transform_messages import has_frames
+from recon4.recording.tuning import LISTED
+from recon4.recording.tuning_lasers import LINES
 from recon4.settings import IngestSettings
 
 JOINTS = "sensor_msgs/msg/JointState"
 LineItem = Shots | LineScans | LaserScans | ImuSamples
-_LINES_AT_ONCE = 64
-_NAMES_LISTED = 20
-_MISSING_RATIO = 0.02
 
 
 class LineRecording:
@@ -80,7 +79,7 @@ class LineRecording:
         self._row, self._laser_row = row, rig.row_of("laser2d")
         self._lines = _topic_of(rig.sensors[row].topic, rig.sensors[row].name, self.topics)
         if not self._lines:
-            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[:_NAMES_LISTED])
+            names = ", ".join(f"{t.name} ({t.type})" for t in self.topics[: LISTED.names])
             raise EmptyRecording(
                 f"{paths[0].name}: no line scans of {rig.sensors[row].name}; topics: {names}"
             )
@@ -296,7 +295,7 @@ class LineAssembly:
         self._starts_ns.append(self._last_ns)
         self._waiting.append(shots)
         self._turn(int(shots.t_ns[-1]))
-        if len(self._done) >= _LINES_AT_ONCE:
+        if len(self._done) >= LINES.lines_at_once:
             yield from self.deliver()
 
     def flush(self) -> Iterator[LineItem]:
@@ -321,7 +320,7 @@ class LineAssembly:
         missing = max(0, missing)
         self._report.count("lines_missing", missing)
         ratio = missing / (missing + len(self._starts_ns))
-        if ratio > _MISSING_RATIO:
+        if ratio > LINES.missing_ratio:
             self._report.warn(
                 f"{self._sensor.name}: {ratio:.0%} of the line scans are missing, {missing} of "
                 f"{missing + len(self._starts_ns)}"

@@ -19,11 +19,11 @@ from recon4.recording.range_units import LaserUnit
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import read_imu_csv
 from recon4.recording.sweeps import sweeps
+from recon4.recording.tuning_heads import PROBE
 
 LINE_COLUMNS = (TIME, "shot_deg", "range_m")
 _LINE_OPTIONAL = ("head_deg", "intensity", "line")
 _SUFFIXES = (".npz", ".csv")
-_HEAD_STEP_NS = 5_000_000
 
 
 def is_line_table(path: Path) -> bool:
@@ -150,6 +150,6 @@ def _push_head(head: HeadAngles, line: Columns, offset_ns: int) -> None:
     angle, t_ns = line["head_deg"], line[TIME]
     rows = np.zeros(1, np.intp)
     if np.ptp(angle) > 0.0:
-        rows = np.unique((t_ns - t_ns[0]) // _HEAD_STEP_NS, return_index=True)[1]
+        rows = np.unique((t_ns - t_ns[0]) // PROBE.head_step_ns, return_index=True)[1]
     for row in rows:
         head.push(int(t_ns[row]) + offset_ns, float(np.deg2rad(angle[row])))

@@ -20,11 +20,7 @@ from recon4.recording.mounts import (
 )
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, assign_topics, choose_rig
-
-_STATED = (np.deg2rad(1.0), 0.02)
-"""Angle [rad] and distance [m] by which a rig file and a bag may differ."""
-_CALIBRATED = (np.deg2rad(3.0), 0.10)
-"""The same for a rig that was calibrated: a bag has the drawing, and real parts differ from it."""
+from recon4.recording.tuning_mounts import SAME_MOUNT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -82,7 +78,7 @@ def compare_mounts(
         mounts: Of the bag.
         report: Receives a warning a sensor.
     """
-    limit = _CALIBRATED if rig.calibration else _STATED
+    limit = SAME_MOUNT.calibrated if rig.calibration else SAME_MOUNT.stated
     parts = list(_parts(rig, samples, mounts))
     for k, part in enumerate(parts):
         first = next((one for one in parts[:k] if _apart(mounts, one, part)), None)

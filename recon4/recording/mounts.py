@@ -24,11 +24,9 @@ from recon4.recording.moving_mounts import MovingMount, moving_mount
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream, single_rig
 from recon4.recording.transform_messages import frame_of, has_frames, read_frames
-
-_PROBED_MESSAGES = 50
-_NAMES_LISTED = 5
-_FARTHEST_M = 20.0
-"""Sensors of one rig are not farther apart [m]."""
+from recon4.recording.tuning import LISTED
+from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning_mounts import SAME_MOUNT
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -80,7 +78,7 @@ def read_mounts(bag: Bag, topics: Sequence[str], report: ImportReport) -> Mounts
 
 
 def _frame_of(bag: Bag, topic: str) -> str:
-    for message in islice(bag.messages([topic]), _PROBED_MESSAGES):
+    for message in islice(bag.messages([topic]), PROBE.messages):
         content = bag.decode(message)
         if content is not None:
             return frame_of(content)
@@ -106,7 +104,7 @@ def _without_prefixes(
             of = "one of" if len(names) > 1 else "also that of another sensor:"
             report.derive(
                 f"{topic}: which frame of the transforms its frame {frame} is, is not certain: "
-                f"{of} {', '.join(names[:_NAMES_LISTED])}"
+                f"{of} {', '.join(names[: LISTED.few])}"
             )
     return named
 
@@ -260,7 +258,7 @@ def stated_text(mounts: Mounts, a: str, b: str, *, what: str) -> str:
 
 
 def _is_far(T_a_b: SE3) -> bool:
-    return float(np.linalg.norm(T_a_b.t)) > _FARTHEST_M
+    return float(np.linalg.norm(T_a_b.t)) > SAME_MOUNT.farthest_m
 
 
 def _of_one(stream: Stream, mounts: Mounts, report: ImportReport) -> tuple[Rig, SE3]:

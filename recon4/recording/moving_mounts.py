@@ -22,22 +22,11 @@ from recon4.recording.bag_messages import stamp_ns
 from recon4.recording.clock_compare import JOINT
 from recon4.recording.formats.bags import Bag
 from recon4.recording.frame_graph import FrameGraph, MovingJoint
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from recon4.recording.stamps import strays
 from recon4.recording.transform_messages import frame_name, numbers_of, transform_fault
-
-_MOST_POSES = 2_000_000
-"""Of one joint: five hours at 100 a second."""
-_LONGEST_NS = 250_000_000
-"""Between two poses of a joint that moved, farther apart, its pose is not known [ns]."""
-_BEYOND_NS = 100_000_000
-"""The first and the last motion continue for this time [ns]."""
-_STANDS = (np.deg2rad(0.1), 1e-3)
-"""A joint that moved by less between two poses stood still [rad], [m]."""
-_TRAVEL_M = 1.0
-"""No joint of a sensor shifts it farther: what does is a pose in the world [m]."""
-_OFF_AXIS = 0.1
-"""A joint turns about one axis: turns about others are a smaller part of it than this."""
+from recon4.recording.tuning_mounts import JOINTS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,15 +46,17 @@ class MovingMount:
         """Whether the pose is known at each time, (N,)."""
         poses = self.T_base_sensor
         left = np.clip(np.searchsorted(poses.t_ns, t_ns, side="right") - 1, 0, len(poses) - 2)
-        inside = (t_ns >= poses.t_ns[0] - _BEYOND_NS) & (t_ns <= poses.t_ns[-1] + _BEYOND_NS)
+        beyond_ns = JOINTS.beyond_ns
+        inside = (t_ns >= poses.t_ns[0] - beyond_ns) & (t_ns <= poses.t_ns[-1] + beyond_ns)
         return np.asarray(inside & self._sure_steps()[left])
 
     def _sure_steps(self) -> NDArray[np.bool_]:
         """Whether the pose between two poses is known, (K - 1,)."""
         poses, T = self.T_base_sensor, self.T_base_sensor.T_a_b
-        moved = np.linalg.norm(np.diff(T.t, axis=0), axis=1) > _STANDS[1]
-        turned = np.abs(np.diff(self.angle_rad)) > _STANDS[0]
-        return np.asarray(np.diff(poses.t_ns) <= _LONGEST_NS) | ~(moved | turned)
+        stands_rad, stands_m = JOINTS.stands
+        moved = np.linalg.norm(np.diff(T.t, axis=0), axis=1) > stands_m
+        turned = np.abs(np.diff(self.angle_rad)) > stands_rad
+        return np.asarray(np.diff(poses.t_ns) <= JOINTS.longest_ns) | ~(moved | turned)
 
     def place(self, shots: Shots) -> tuple[Shots, int]:
         """The points in the frame of the base, and the number of those whose pose is unknown."""
@@ -140,7 +131,7 @@ def _read_poses(
             child = _wanted(one, wanted)
             if child is None:
                 continue
-            if len(times[child]) >= _MOST_POSES:
+            if len(times[child]) >= LIMITS.joint_poses:
                 report.count("joint_poses_beyond_limit")
                 continue
             t_ns = stamp_ns(one.header.stamp)
@@ -176,10 +167,10 @@ def _why_no_joint(poses: Trajectory) -> str:
     if len(poses) < 2:
         return "its transforms have no times"
     travel_m = float(np.ptp(poses.T_a_b.t, axis=0).max())
-    if travel_m > _TRAVEL_M:
+    if travel_m > JOINTS.travel_m:
         return f"it moves by {travel_m:.1f} m, as a body in the world"
     off = _off_axis(poses.T_a_b)
-    if off > _OFF_AXIS:
+    if off > JOINTS.off_axis:
         return f"{off:.0%} of its turns are about other axes than its main one"
     return ""
 

@@ -8,10 +8,8 @@ from pathlib import Path
 
 from recon4.errors import RecordingError
 from recon4.recording.kinds import RecordingKind, recognize
+from recon4.recording.limits import LIMITS
 from recon4.recording.sources import Sources
-
-_MOST_FILES = 50
-"""CSV files that are looked at; a folder with more is no folder of a recording."""
 
 
 def unread_samples(sources: Sources) -> list[str]:
@@ -48,7 +46,7 @@ def _nearby(recordings: Sequence[Path], kind: RecordingKind) -> Path | None:
     folders = {path if path.is_dir() else path.parent for path in recordings}
     for folder in sorted(folders):
         try:
-            for file in islice(sorted(folder.glob("*.csv")), _MOST_FILES):
+            for file in islice(sorted(folder.glob("*.csv")), LIMITS.sample_files):
                 if _is_of(file, kind):
                     return file
         except OSError:

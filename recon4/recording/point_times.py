@@ -14,33 +14,10 @@ from recon4.model.trajectory import Times
 from recon4.recording.clock_names import described
 from recon4.recording.point_fields import NS_TIME
 from recon4.recording.report import ImportReport
+from recon4.recording.tuning_times import POINT_TIMES
 from recon4.units import HOUR_NS
 
 Values = NDArray[Any]
-
-_UNITS_NS = (1.0, 1e3, 1e6, 1e9)
-_DATES = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
-"""From this value on a time is a date; nanoseconds of one unit."""
-_FLOAT_UNITS = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
-"""Largest span -> unit of a fractional time [ns]."""
-_TURN_S = (0.01, 0.6)
-"""Duration of a revolution, from and to [s]; determines the unit of integer times."""
-_PART_NS = 1e8
-"""A cloud that is part of a revolution may be timed from the start of the revolution [ns]."""
-_COUNTER = 1 << 32
-_SHORTEST_CYCLE_NS = 60_000_000_000
-_BULK = 6.0
-"""Times within this multiple of the distance of 60 % of them from the middle one are the bulk: all
-of an even revolution, without up to two fifths that are damaged."""
-_LARGEST_NS = 2.0**62
-_MOST_DAMAGED = 0.2
-"""With a larger ratio of damaged times the field is not used."""
-_REVOLUTIONS = 2.0
-"""Times farther from the others are damaged."""
-_PART_RATIO = (0.2, 1.5)
-"""Duration of a cloud that is part of a revolution, from and to, in those from cloud to cloud."""
-_STEPS = 50.0
-"""A revolution is resolved in at least this many steps, or the times are too coarse."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -147,7 +124,7 @@ class PointClock:
         if not is_known:
             unit = self._detected_unit(numbers, t_ns, period_ns, full_turn=full_turn)
         # No LiDAR turns in a few milliseconds: nearly equal times are those of deskewed clouds.
-        if full_turn and numbers.span * unit < 1e9 * _TURN_S[0]:
+        if full_turn and numbers.span * unit < 1e9 * POINT_TIMES.turn_s[0]:
             raise _UnusableTimes(
                 f"the points of a revolution are within {numbers.span * unit * 1e-6:.3g} ms"
             )
@@ -170,16 +147,17 @@ class PointClock:
     def _placed(
         self, numbers: _Numbers, unit: float, t_ns: int, *, revolution_ns: float
     ) -> PointTimes:
-        near = numbers.finite & (np.abs(numbers.around) * unit <= _REVOLUTIONS * revolution_ns)
+        near_ns = POINT_TIMES.revolutions * revolution_ns
+        near = numbers.finite & (np.abs(numbers.around) * unit <= near_ns)
         damaged = len(near) - int(near.sum())
-        if abs(numbers.middle) * unit > _LARGEST_NS:
+        if abs(numbers.middle) * unit > POINT_TIMES.largest_ns:
             raise _UnusableTimes(f"{numbers.middle:g} is no time in any unit")
-        if damaged > _MOST_DAMAGED * len(near):
+        if damaged > POINT_TIMES.most_damaged * len(near):
             raise _UnusableTimes(
                 f"{damaged} of {len(near)} points of a cloud are more than two revolutions from "
                 "the others"
             )
-        if numbers.resolution * unit > revolution_ns / _STEPS:
+        if numbers.resolution * unit > revolution_ns / POINT_TIMES.steps:
             raise _UnusableTimes(
                 f"steps of {numbers.resolution * unit * 1e-6:.3g} ms are too coarse"
             )
@@ -209,7 +187,7 @@ class PointClock:
             cycles_ns: After which the times may begin again; without any 0 they are never relative.
             revolution_ns: Largest offset of a relative time.
         """
-        near_ns = _REVOLUTIONS * revolution_ns
+        near_ns = POINT_TIMES.revolutions * revolution_ns
         if self._points_lead and _is_date(middle_ns):
             self._report.derive(f"{self._name}: times are those of the points")
             return middle_ns
@@ -245,17 +223,18 @@ def _numbers(values: Values) -> _Numbers:
     """
     finite = np.isfinite(values)
     missing = len(values) - int(finite.sum())
-    if missing > _MOST_DAMAGED * len(values):
+    if missing > POINT_TIMES.most_damaged * len(values):
         raise _UnusableTimes(f"{missing} of {len(values)} points of a cloud have no number")
     rows = np.flatnonzero(finite)
     half = len(rows) // 2
     middle = values[rows[np.argpartition(values[rows], half)[half]]]
     around, wraps, is_fraction = *_around(values, middle, finite), values.dtype.kind == "f"
     size = np.abs(around[finite])
-    bulk = around[finite][size <= _BULK * np.percentile(size, 60.0)]
+    bulk = around[finite][size <= POINT_TIMES.bulk * np.percentile(size, 60.0)]
     is_counter = values.dtype.kind == "u" and values.dtype.itemsize == 4
     middle = float(middle) if is_fraction else int(middle.astype(np.int64))
-    wraps |= is_counter and not 0 <= middle + bulk.min() <= middle + bulk.max() < _COUNTER
+    counter = POINT_TIMES.counter
+    wraps |= is_counter and not 0 <= middle + bulk.min() <= middle + bulk.max() < counter
     return _Numbers(
         middle=middle,
         around=around,
@@ -265,7 +244,7 @@ def _numbers(values: Values) -> _Numbers:
         wide=values.dtype.itemsize >= 8,
         resolution=float(np.spacing(abs(values.dtype.type(middle)))) if is_fraction else 1.0,
         wraps=bool(wraps),
-        cycle=_COUNTER if is_counter else 0,
+        cycle=counter if is_counter else 0,
     )
 
 
@@ -281,7 +260,7 @@ def _around(values: Values, middle: Any, finite: NDArray[np.bool_]) -> tuple[NDA
     else:
         around = np.where(finite, values, middle).astype(np.float64) - float(middle)
     largest, least = float(values[finite].max()), float(values[finite].min())
-    for unit in _UNITS_NS:
+    for unit in POINT_TIMES.units_ns:
         hour = HOUR_NS / unit
         if 0.999 * hour < largest < hour and 0.0 <= least < 0.001 * hour:
             turns = np.sign(around) * (np.abs(around) > hour / 2)
@@ -293,14 +272,14 @@ def _cycles_ns(numbers: _Numbers, unit: float) -> Cycles:
     """After which the times may begin again; 0 = they may be relative to the stamp."""
     counter_ns = int(numbers.cycle * unit)
     # A cycle of a few seconds would fit any stamp.
-    longer = (counter_ns,) if counter_ns > _SHORTEST_CYCLE_NS else ()
+    longer = (counter_ns,) if counter_ns > POINT_TIMES.shortest_cycle_ns else ()
     return (*(() if numbers.wraps else (0,)), *longer, HOUR_NS)
 
 
 def _unit_of_clock(numbers: _Numbers, t_ns: int, period_ns: int) -> float:
     """The unit in which the values are times of the stamp's own clock; 0 = none."""
-    near_ns = _REVOLUTIONS * max(period_ns, _PART_NS)
-    for unit in _UNITS_NS:
+    near_ns = POINT_TIMES.revolutions * max(period_ns, POINT_TIMES.part_ns)
+    for unit in POINT_TIMES.units_ns:
         fits = abs(numbers.middle * unit - t_ns) <= near_ns < t_ns
         if fits and numbers.span * unit <= near_ns:
             return unit
@@ -308,7 +287,7 @@ def _unit_of_clock(numbers: _Numbers, t_ns: int, period_ns: int) -> float:
 
 
 def _unit_of_dates(numbers: _Numbers) -> float:
-    unit = next((unit for least, unit in _DATES if numbers.middle >= least), 0.0)
+    unit = next((unit for least, unit in POINT_TIMES.dates if numbers.middle >= least), 0.0)
     return unit if numbers.wide or unit == 1.0 else 0.0
 
 
@@ -316,8 +295,9 @@ def _unit_of_turn(numbers: _Numbers) -> float:
     """The unit in which the times of a whole revolution take as long as one; 0 = none."""
     if numbers.is_fraction:
         return _unit_of_few(numbers)
-    seconds = ((unit, numbers.span * unit * 1e-9) for unit in _UNITS_NS[:3])
-    return next((unit for unit, s in seconds if _TURN_S[0] <= s <= _TURN_S[1]), 0.0)
+    seconds = ((unit, numbers.span * unit * 1e-9) for unit in POINT_TIMES.units_ns[:3])
+    shortest_s, longest_s = POINT_TIMES.turn_s
+    return next((unit for unit, s in seconds if shortest_s <= s <= longest_s), 0.0)
 
 
 def _unit_of_part(numbers: _Numbers, period_ns: int) -> float:
@@ -325,9 +305,9 @@ def _unit_of_part(numbers: _Numbers, period_ns: int) -> float:
 
     They may be relative to the stamp or to the start of the revolution.
     """
-    least_ns = _PART_RATIO[0] * period_ns
-    most_ns = _PART_RATIO[1] * max(period_ns, _PART_NS)
-    units = _UNITS_NS if numbers.is_fraction else _UNITS_NS[:3]
+    least_ns = POINT_TIMES.part_ratio[0] * period_ns
+    most_ns = POINT_TIMES.part_ratio[1] * max(period_ns, POINT_TIMES.part_ns)
+    units = POINT_TIMES.units_ns if numbers.is_fraction else POINT_TIMES.units_ns[:3]
     for extent in (abs(numbers.middle) + numbers.span / 2.0, numbers.span):
         for unit in units:
             if least_ns <= extent * unit <= most_ns:
@@ -339,16 +319,16 @@ def _unit_of_few(numbers: _Numbers) -> float:
     """The usual unit of times of which nothing else is known; 0 = none."""
     if not numbers.is_fraction:
         return 1.0
-    return next((unit for most, unit in _FLOAT_UNITS if numbers.span <= most), 0.0)
+    return next((unit for most, unit in POINT_TIMES.float_units if numbers.span <= most), 0.0)
 
 
 def _revolution_ns(numbers: _Numbers, unit: float, period_ns: int, *, full_turn: bool) -> float:
-    least_ns = 0.0 if full_turn else _PART_NS
+    least_ns = 0.0 if full_turn else POINT_TIMES.part_ns
     return max(float(period_ns), numbers.span * unit, least_ns)
 
 
 def _is_date(t_ns: int) -> bool:
-    return t_ns >= _DATES[0][0]
+    return t_ns >= POINT_TIMES.dates[0][0]
 
 
 def _scaled(numbers: NDArray[Any], unit: float) -> Times:

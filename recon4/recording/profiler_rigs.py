@@ -18,11 +18,10 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.topic_choice import choose_imu, named_imu
 from recon4.recording.transform_messages import has_frames
+from recon4.recording.tuning_lasers import LASERS
 from recon4.settings import IngestSettings
 
 WUERZBURG = "wuerzburg"
-_TILTED_RAD = np.deg2rad(5.0)
-"""A laser whose plane turns by less stays a 2-D laser."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -90,7 +89,7 @@ def tilting_lasers(bag: Bag, mounts: Mounts, topics: list[str]) -> Iterator[Tilt
     for topic in topics:
         frame = mounts.frame_of(topic)
         joints = mounts.graph.joints_above(frame)
-        if any(joint.tilt_rad > _TILTED_RAD for joint in joints):
+        if any(joint.tilt_rad > LASERS.tilted_rad for joint in joints):
             mount = moving_mount(bag, mounts.graph, frame, report=ImportReport())
             if mount is not None:
                 yield TiltingLaser(topic, mount, joints[0].source)
@@ -129,7 +128,7 @@ def _rig(
 def _is_level(mounts: Mounts, topic: str, base: str) -> bool:
     """Whether a laser is mounted level on what carries the joint."""
     T_base_laser = _known(mounts.graph, base, mounts.frame_of(topic))
-    return T_base_laser is not None and abs(T_base_laser.R[2, 2]) > np.cos(_TILTED_RAD)
+    return T_base_laser is not None and abs(T_base_laser.R[2, 2]) > np.cos(LASERS.tilted_rad)
 
 
 def _known(graph: FrameGraph, a: str, b: str) -> SE3 | None:

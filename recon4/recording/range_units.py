@@ -10,15 +10,7 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile, EmptyRecording
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.report import ImportReport
-
-_FAR_M = 60.0
-"""Median range of no 2-D laser [m]: longer ones are not in meters."""
-_LARGEST_CM, _MEDIAN_CM = 10_000.0, 1500.0
-"""Larger ranges, or half of the ranges larger, are millimeters: 100 m and 15 m as centimeters."""
-_FAR_LINE_M = 150.0
-"""Median range of the first lines of no profiler on a walking person: it sees the ground [m]."""
-_NEAR_CM = 800.0
-"""The nearest surfaces are a step away; farther than this, they are millimeters."""
+from recon4.recording.tuning_lasers import RANGE_UNITS
 
 
 def in_meters(scans: LaserScans, report: ImportReport) -> LaserScans:
@@ -66,18 +58,19 @@ def line_factor(range_m: NDArray[np.floating], name: str, report: ImportReport) 
         name: Of the sensor.
         report: Receives a warning if they are not in meters.
     """
-    if not len(range_m) or float(np.median(range_m)) <= _FAR_LINE_M:
+    if not len(range_m) or float(np.median(range_m)) <= RANGE_UNITS.far_line_m:
         return 1.0
-    is_mm = float(np.percentile(range_m, 1.0)) > _NEAR_CM
+    is_mm = float(np.percentile(range_m, 1.0)) > RANGE_UNITS.near_cm
     return _reported_unit_m(float(np.median(range_m)), is_mm, prefix=f"{name}: ", report=report)
 
 
 def _laser_factor(seen: NDArray[np.floating], range_max_m: float, report: ImportReport) -> float:
     median = float(np.median(seen))
-    if median <= _FAR_M:
+    if median <= RANGE_UNITS.far_m:
         return 1.0
-    is_mm = max(float(seen.max()), range_max_m) > _LARGEST_CM or median > _MEDIAN_CM
-    if median * (1e-3 if is_mm else 1e-2) > _FAR_M:
+    largest = max(float(seen.max()), range_max_m)
+    is_mm = largest > RANGE_UNITS.largest_cm or median > RANGE_UNITS.median_cm
+    if median * (1e-3 if is_mm else 1e-2) > RANGE_UNITS.far_m:
         raise CorruptFile(f"expected ranges in meters, got a median range of {median:.3g}")
     return _reported_unit_m(median, is_mm, prefix="", report=report)
 

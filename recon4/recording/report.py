@@ -6,12 +6,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from recon4.model.import_counts import Loss, count_text, losses, repairs, replaced
-
-MAX_TEXTS = 200
-"""Number of different remarks kept; further ones are counted."""
-MAX_TEXT_CHARACTERS = 1000
-MAX_LAGS = 4000
-"""Messages from which the clocks of sensors are compared."""
+from recon4.recording.limits import LIMITS
 
 
 @dataclass(slots=True)
@@ -47,7 +42,7 @@ class ImportReport:
     def note_lag(self, what: str, lag_ns: int) -> None:
         """Remember how long after its stamp a message was recorded [ns]."""
         lags = self.lags_ns.setdefault(what, [])
-        if len(lags) < MAX_LAGS:
+        if len(lags) < LIMITS.lags:
             lags.append(lag_ns)
 
     def derive(self, text: str) -> None:
@@ -92,7 +87,7 @@ class ImportReport:
     def _remember(self, texts: list[str], text: str) -> None:
         if text in texts:
             return
-        if len(texts) < MAX_TEXTS:
-            texts.append(text[:MAX_TEXT_CHARACTERS])
+        if len(texts) < LIMITS.texts:
+            texts.append(text[: LIMITS.text_characters])
         else:
             self.count("remarks_more")

@@ -34,13 +34,8 @@ from recon4.recording.scan_datagrams import (
     is_scan_datagram,
 )
 from recon4.recording.scan_messages import ScanCollector, line_of_scan
-
-_PROBED, _PROBED_BATCHES = 20_000, 16
-"""Datagrams and batches at the head of a file from which its streams are known."""
-_JUMP_NS = 500_000_000
-"""A step of a sensor's clock that differs by this from that of the recorder is a jump [ns]."""
-_OTHER_CLOCK_NS = 1_000_000_000
-"""A sensor whose times differ by more from those of the recorder has another clock [ns]."""
+from recon4.recording.tuning_heads import PROBE
+from recon4.recording.tuning_lasers import SCAN_DATAGRAMS
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +66,8 @@ def scan_streams(files: Sequence[Path]) -> ScanStreams:
     scans: Counter[tuple[str, int]] = Counter()
     heads: Counter[tuple[str, int]] = Counter()
     for file in files:
-        left = _PROBED
-        for batch in islice(read_datagrams(file, ImportReport()), _PROBED_BATCHES):
+        left = PROBE.scan_datagrams
+        for batch in islice(read_datagrams(file, ImportReport()), PROBE.scan_batches):
             rows = np.arange(min(len(batch), left))
             if np.any(batch.length[rows] == DATA_SIZE):
                 return ScanStreams(scans, heads, has_lidar=True)
@@ -216,8 +211,8 @@ class _StampedMessages:
             step_ns = t_ns + self._shift_ns - self._last[0]
             expected_ns = arrival_ns - self._last[1]
             off_ns = step_ns - expected_ns
-            recorder_jumped = 0 < step_ns < _JUMP_NS
-            if abs(off_ns) > _JUMP_NS and not recorder_jumped:
+            recorder_jumped = 0 < step_ns < SCAN_DATAGRAMS.jump_ns
+            if abs(off_ns) > SCAN_DATAGRAMS.jump_ns and not recorder_jumped:
                 self._shift_ns -= off_ns
                 self._report.count("clock_jumps")
                 self._report.warn(
@@ -227,7 +222,7 @@ class _StampedMessages:
         t_ns += self._shift_ns
         self._last = t_ns, arrival_ns
         self._report.note_lag(LIDAR, arrival_ns - t_ns)
-        if abs(t_ns - arrival_ns) > _OTHER_CLOCK_NS:
+        if abs(t_ns - arrival_ns) > SCAN_DATAGRAMS.other_clock_ns:
             self._report.ahead_ns[self._sensor.name] = t_ns - arrival_ns
         else:
             self._report.ahead_ns.pop(self._sensor.name, None)

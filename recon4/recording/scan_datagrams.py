@@ -23,10 +23,7 @@ from numpy.typing import NDArray
 
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.limits import LIMITS
-
-MAX_DATAGRAM_BYTES = 65_000
-"""Largest datagram that is stored with its headers in a capture file."""
-_RESERVED_BYTES = 400
+from recon4.recording.tuning_lasers import SCAN_DATAGRAMS
 
 
 class ScanMessage(msgspec.Struct, frozen=True, kw_only=True):
@@ -143,7 +140,8 @@ def encode_scan(
     intensities = np.asarray(scan.intensities, np.float32)
     if len(intensities):
         more = b', "intensities": [' + _numbers(np.nan_to_num(intensities)) + b"]"
-        text += more if len(text) + len(more) < MAX_DATAGRAM_BYTES - _RESERVED_BYTES else b""
+        room = SCAN_DATAGRAMS.bytes - SCAN_DATAGRAMS.reserved_bytes
+        text += more if len(text) + len(more) < room else b""
     return text + b"}"
 
 

@@ -13,23 +13,11 @@ from recon4.errors import CorruptFile
 from recon4.model.laser_scans import LaserScans
 from recon4.recording.assembly.shots import Shots
 from recon4.recording.formats.bags import BagMessage
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from recon4.recording.stamp_order import StampOrder
 from recon4.recording.stamps import StampClock
-
-_SCANS_AT_ONCE = 250
-_MAX_BEAMS = 100_000
-_MAX_LINE_S = 10.0
-"""A line or scan of longer duration has wrong times."""
-_OTHER_UNIT = 5.0
-"""Half of the ranges beyond this multiple of the longest range: they are no meters."""
-_LONGEST_M = 1e4
-_NARROWEST_RAD = 1e-3
-"""No laser sees less: a step between beams that gives less is none."""
-_ANGLE_MAX_STEPS = 1.5
-"""Some drivers state the end of the last beam's place as the last angle, not its middle."""
-_MAX_ANGLE_RAD = 100.0
-"""Angles of more than some turns are wrong [rad]; degrees are rejected with them."""
+from recon4.recording.tuning_lasers import SCAN_BEAMS
 
 
 def line_of_scan(scan: Any, row: int, t_ns: int, *, report: ImportReport, across: int = 2) -> Shots:
@@ -153,7 +141,7 @@ class ScanCollector:
         )
         self._report.count("scans_without_returns", int(not seen.any()))
         self._report.count("scans")
-        if len(self._scans) >= _SCANS_AT_ONCE:
+        if len(self._scans) >= SCAN_BEAMS.scans_at_once:
             yield from self.deliver()
 
     def _reason(self, t_ns: int, ranges: NDArray[np.float32]) -> str:
@@ -197,25 +185,25 @@ def usual_angles(scan: Any) -> tuple[float, float]:
 def _checked(scan: Any, report: ImportReport) -> tuple[NDArray[np.float32], float, float]:
     """Ranges, angle between two shots [rad] and time between them [s]; 0 = not known."""
     ranges = np.asarray(scan.ranges, np.float32)
-    if not 0 < len(ranges) <= _MAX_BEAMS:
-        raise CorruptFile(f"a scan: expected 1 to {_MAX_BEAMS} ranges, got {len(ranges)}")
+    if not 0 < len(ranges) <= LIMITS.beams:
+        raise CorruptFile(f"a scan: expected 1 to {LIMITS.beams} ranges, got {len(ranges)}")
     first, step = float(scan.angle_min), float(scan.angle_increment)
-    wide = abs(step) * (len(ranges) - 1) >= _NARROWEST_RAD or len(ranges) == 1
+    wide = abs(step) * (len(ranges) - 1) >= SCAN_BEAMS.narrowest_rad or len(ranges) == 1
     if not np.all(np.isfinite([first, step])) or step == 0.0 or not wide:
         raise CorruptFile(
             f"a scan: expected a first angle and a step between beams, got {first} and {step} rad"
         )
     widest = max(abs(first), abs(step) * len(ranges))
-    if widest > _MAX_ANGLE_RAD:
+    if widest > SCAN_BEAMS.max_angle_rad:
         raise CorruptFile(
-            f"a scan: expected angles within {_MAX_ANGLE_RAD:g} rad, got {widest:.3g} rad"
+            f"a scan: expected angles within {SCAN_BEAMS.max_angle_rad:g} rad, got {widest:.3g} rad"
         )
     # Messages of datagrams have no last angle.
     last = float(getattr(scan, "angle_max", np.nan))
-    if abs(last - first - step * (len(ranges) - 1)) > _ANGLE_MAX_STEPS * abs(step):
+    if abs(last - first - step * (len(ranges) - 1)) > SCAN_BEAMS.angle_max_steps * abs(step):
         report.count("scans_of_another_last_angle")
     step_s = float(scan.time_increment)
-    if not 0.0 <= step_s * len(ranges) <= _MAX_LINE_S:
+    if not 0.0 <= step_s * len(ranges) <= SCAN_BEAMS.max_line_s:
         report.count("scans_of_wrong_beam_times")
         step_s = 0.0
     return ranges, step, step_s
@@ -224,9 +212,10 @@ def _checked(scan: Any, report: ImportReport) -> tuple[NDArray[np.float32], floa
 def _returns(scan: Any, ranges: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Shots that returned: within the sensor's limits (REP 117)."""
     low = max(float(scan.range_min), 1e-3) if np.isfinite(scan.range_min) else 1e-3
-    high = float(scan.range_max) if scan.range_max > low else _LONGEST_M
+    longest_m = SCAN_BEAMS.longest_m
+    high = float(scan.range_max) if scan.range_max > low else longest_m
     measured = ranges[np.isfinite(ranges) & (ranges > low)]
-    if len(measured) and np.median(measured) > _OTHER_UNIT * high:
-        high = _LONGEST_M  # the ranges are of another unit than their limit: see `range_units`
+    if len(measured) and np.median(measured) > SCAN_BEAMS.other_unit * high:
+        high = longest_m  # the ranges are of another unit than their limit: see `range_units`
     with np.errstate(invalid="ignore"):
-        return np.asarray((ranges >= low) & (ranges <= min(high, _LONGEST_M)), dtype=np.bool_)
+        return np.asarray((ranges >= low) & (ranges <= min(high, longest_m)), dtype=np.bool_)

@@ -5,12 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Generic, TypeVar
 
-Item = TypeVar("Item")
+from recon4.recording.tuning_times import STAMPS
 
-_AHEAD = 6
-"""Messages that are held back: one that is recorded after this many later ones is too late."""
-_CONFIRM = 3
-"""This many messages with earlier stamps, and no later one among them, are a clock set back."""
+Item = TypeVar("Item")
 
 
 @dataclass(slots=True)
@@ -32,7 +29,7 @@ class StampOrder(Generic[Item]):
     def push(self, stamp_ns: int, item: Item) -> list[tuple[int, Item]]:
         """Add a message in the order of recording; returns those whose order is certain."""
         self._held.append((stamp_ns, item))
-        return self._next(ended=False) if len(self._held) > _AHEAD else []
+        return self._next(ended=False) if len(self._held) > STAMPS.ahead else []
 
     def flush(self) -> list[tuple[int, Item]]:
         """The remaining messages."""
@@ -61,4 +58,4 @@ class StampOrder(Generic[Item]):
 
 def _is_late(stamps: list[int], before_ns: int, *, ended: bool) -> bool:
     """Whether stamps go on after an earlier one, or end so soon that no clock was set."""
-    return max(stamps) >= before_ns or (ended and len(stamps) < _CONFIRM)
+    return max(stamps) >= before_ns or (ended and len(stamps) < STAMPS.set_back)

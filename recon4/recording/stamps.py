@@ -8,12 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.model.trajectory import Times
-
-_OTHER_NS = 10_000_000_000
-"""A stamp that is farther from its place among the others is wrong [ns]."""
-_CONFIRM = 3
-_STRAYS_RATIO = 0.05
-"""Stamps in a row that must agree on another clock: fewer are wrong ones."""
+from recon4.recording.tuning_times import STAMPS
 
 
 class StampClock:
@@ -39,10 +34,10 @@ class StampClock:
         if stamp_ns <= 0:
             return False
         offset_ns = stamp_ns - recorded_ns
-        if self.offset_ns is not None and abs(offset_ns - self.offset_ns) > _OTHER_NS:
-            again = self._run and abs(offset_ns - self._run_ns) <= _OTHER_NS
+        if self.offset_ns is not None and abs(offset_ns - self.offset_ns) > STAMPS.other_ns:
+            again = self._run and abs(offset_ns - self._run_ns) <= STAMPS.other_ns
             self._run, self._run_ns = (self._run + 1 if again else 1), offset_ns
-            if self._run < _CONFIRM:
+            if self._run < STAMPS.confirm:
                 return False
             self.was_set = True
         self.offset_ns, self._run = offset_ns, 0
@@ -61,10 +56,10 @@ def strays(t_ns: Times) -> NDArray[np.bool_]:
     Args:
         t_ns: Times in order of arrival [ns], (N,).
     """
-    if len(t_ns) < _CONFIRM:
+    if len(t_ns) < STAMPS.confirm:
         return np.zeros(len(t_ns), np.bool_)
     t = t_ns.astype(np.float64)  # differences of damaged times may not fit into 64 bits
     around = np.lib.stride_tricks.sliding_window_view(np.pad(t, 2, mode="reflect"), 5)
     step_ns = np.median(np.abs(np.diff(t)))
-    far = np.abs(t - np.median(around, axis=1)) > max(_OTHER_NS, 5.0 * step_ns)
-    return np.asarray(far & (np.count_nonzero(far) <= _STRAYS_RATIO * len(t_ns)))
+    far = np.abs(t - np.median(around, axis=1)) > max(STAMPS.other_ns, 5.0 * step_ns)
+    return np.asarray(far & (np.count_nonzero(far) <= STAMPS.strays_ratio * len(t_ns)))

@@ -12,11 +12,8 @@ from numpy.typing import NDArray
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.columns import TIME, Columns
-
-_APART_NS = 100_000_000
-"""A pause within a sweep is the end of it [ns]."""
-_MAX_ROWS = 100_000
-"""As in messages: no sensor has more shots in a sweep."""
+from recon4.recording.limits import LIMITS
+from recon4.recording.tuning_lasers import LINES
 
 
 def sweeps(blocks: Iterator[Columns], angle: str, *, number: str, where: str) -> Iterator[Columns]:
@@ -48,10 +45,10 @@ def sweeps(blocks: Iterator[Columns], angle: str, *, number: str, where: str) ->
 
 def _check_length(sweep: Columns, number: str, where: str) -> None:
     count = len(sweep[TIME])
-    if count > _MAX_ROWS:
+    if count > LIMITS.beams:
         how = f"the column {number} changes" if number else "the angle turns back"
         raise CorruptFile(
-            f"{where}: expected sweeps of at most {_MAX_ROWS} shots, where {how}; got {count}"
+            f"{where}: expected sweeps of at most {LIMITS.beams} shots, where {how}; got {count}"
         )
 
 
@@ -60,7 +57,7 @@ def _starts(rows: Columns, angle: str, number: str) -> NDArray[np.intp]:
     if number and np.isfinite(rows[number]).any():
         new = rows[number][1:] != rows[number][:-1]
         return np.concatenate([[0], np.flatnonzero(new) + 1]).astype(np.intp)
-    paused = np.diff(rows[TIME]) > _APART_NS
+    paused = np.diff(rows[TIME]) > LINES.apart_ns
     way = _ways(rows[angle])
     # Where one of the two changes, a sweep may end.
     turns = np.flatnonzero(way[1:] != way[:-1]) + 1

@@ -34,10 +34,10 @@ from recon4.recording.topic_contents import (
     view_deg,
 )
 from recon4.recording.transform_messages import has_frames, read_frames
+from recon4.recording.tuning_topics import LIDAR_CHOICE
 from recon4.settings import IngestSettings
 
 _NO_FORCES, _NO_TURNS = "no accelerometer", "no gyroscope"
-_WIDE_DEG = 180.0
 
 
 def _nothing(found: Contents) -> float:
@@ -45,7 +45,7 @@ def _nothing(found: Contents) -> float:
 
 
 def _is_wide(found: Contents) -> float:
-    return float(view_deg(found) >= _WIDE_DEG)
+    return float(view_deg(found) >= LIDAR_CHOICE.wide_deg)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -13,20 +13,10 @@ from recon4.recording.bag_messages import imu_row, pose_row, stamp_ns
 from recon4.recording.formats.bags import Bag, BagTopic
 from recon4.recording.packets.messages import DATA_MESSAGES
 from recon4.recording.samples.measured_channels import imu_channels
-from recon4.recording.samples.units import FASTEST_RAD_S
+from recon4.recording.samples.tuning import IMU_UNITS
 from recon4.recording.transform_messages import frame_of
+from recon4.recording.tuning_topics import TOPIC_CONTENTS
 
-_PROBED_MESSAGES = 200
-_PROBED_CLOUDS = 5
-"""Clouds and scans of packets are large."""
-_PROBED_NS = 60_000_000_000
-"""From the first of their messages on; a topic that begins later does not cover the bag."""
-_COVERED = 0.8
-_SLOW_HZ = 50.0
-"""A slower IMU does not follow the steps of a walker."""
-_GRAVITY = ((7.0, 13.0), (0.8, 1.25))
-"""Median lengths of accelerations in m/s² and in g."""
-_WIDE_DEG = 90.0
 _DERIVED_WORDS = ("filtered", "fused", "odometry", "estimate")
 """In names of topics: positions that a program has worked out of those of a receiver."""
 
@@ -81,14 +71,16 @@ def read_contents(
         as_sent: Points without their recipes.
     """
     large = {*DATA_MESSAGES, *(topic.type for topic in topics if topic.is_points or topic.columns)}
-    most = dict.fromkeys(large, _PROBED_CLOUDS)
+    most = dict.fromkeys(large, TOPIC_CONTENTS.probed_clouds)
     waiting = {
-        t.name: min(t.messages, most.get(t.type, _PROBED_MESSAGES)) for t in topics if t.messages
+        t.name: min(t.messages, most.get(t.type, TOPIC_CONTENTS.probed_messages))
+        for t in topics
+        if t.messages
     }
     found: dict[str, list[tuple[int, Any]]] = {t.name: [] for t in topics}
     end_ns: int | None = None
     for message in bag.messages(list(waiting)):
-        end_ns = message.t_ns + _PROBED_NS if end_ns is None else end_ns
+        end_ns = message.t_ns + TOPIC_CONTENTS.probed_ns if end_ns is None else end_ns
         if message.t_ns > end_ns:
             break
         if waiting[message.topic] <= 0:
@@ -124,15 +116,16 @@ def imu_faults(found: Contents) -> list[Fault]:
     out = []
     if channels.no_gyroscope:
         out.append(Fault(4.0, "no gyroscope"))
-    elif float(np.nanpercentile(_lengths(channels.imu.gyro_rad_s), 90)) > FASTEST_RAD_S:
+    elif float(np.nanpercentile(_lengths(channels.imu.gyro_rad_s), 90)) > IMU_UNITS.fastest_rad_s:
         out.append(Fault(1.0, "angular rates that are not in rad/s"))
     if channels.no_accelerometer:
         out.append(Fault(2.0, "no accelerometer"))
     else:
         usual = float(np.nanmedian(_lengths(channels.imu.accel_m_s2)))
-        if not any(low < usual < high for low, high in _GRAVITY):
+        units = (IMU_UNITS.gravity_m_s2, IMU_UNITS.gravity_g)
+        if not any(low < usual < high for low, high in units):
             out.append(Fault(2.0, f"accelerations of {usual:.2g}, expected about 9.8 m/s²"))
-    if found.rate_hz < _SLOW_HZ:
+    if found.rate_hz < TOPIC_CONTENTS.slow_hz:
         out.append(Fault(1.0, f"{found.rate_hz:.0f} samples a second"))
     return out
 
@@ -170,7 +163,7 @@ def laser_faults(found: Contents) -> list[Fault]:
     out = []
     if not np.any(np.isfinite(ranges) & (ranges > 0.0)):
         out.append(Fault(4.0, "no returns"))
-    if view_deg(found) < _WIDE_DEG:
+    if view_deg(found) < TOPIC_CONTENTS.wide_deg:
         out.append(Fault(1.0, f"a view of {view_deg(found):.0f}°"))
     return out
 
@@ -185,7 +178,7 @@ def common_faults(found: Contents) -> list[Fault]:
     """What speaks against a topic of any kind."""
     if not found.messages:
         return [Fault(8.0, "no message in its first minute that can be read")]
-    if found.covered < _COVERED:
+    if found.covered < TOPIC_CONTENTS.covered:
         return [Fault(2.0, f"only {found.covered:.0%} of the recording")]
     return []
 

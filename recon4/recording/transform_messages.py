@@ -26,19 +26,9 @@ from recon4.recording.frame_graph import (
     is_same,
     last_name,
 )
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
-
-MAX_TRANSFORMS = 10_000
-"""Pairs of frames; the largest robots have some hundred."""
-MAX_MESSAGES = 20_000
-"""Messages of one kind that are read: some minutes of the transforms of a robot that moves."""
-MAX_READ = 100_000
-"""Transforms of one topic that are read, however they are spread over messages."""
-MAX_DESCRIPTIONS = 20
-_LONGEST_M = 100.0
-"""A part of a robot is not farther from another one [m]."""
-_UNIT = 0.01
-"""A quaternion whose squared length differs from 1 by more is refused, as by tf2."""
+from recon4.recording.tuning_mounts import TRANSFORM_LIMITS
 
 _Numbers = tuple[float, ...]
 """x, y, z [m] and quaternion x, y, z, w."""
@@ -68,16 +58,18 @@ def read_frames(bag: Bag, frames: Sequence[str], report: ImportReport) -> FrameG
     moving = [name for name in names if name not in static]
     stated = _Statements(report)
     for name in static:
-        stated.add_static(name, _messages(bag, name, most=MAX_MESSAGES, report=report))
+        stated.add_static(name, _messages(bag, name, most=LIMITS.transform_messages, report=report))
     for topic in filter(_is_description, bag.topics):
         stated.add_description(
-            topic.name, _messages(bag, topic.name, most=MAX_DESCRIPTIONS, report=report)
+            topic.name, _messages(bag, topic.name, most=LIMITS.descriptions, report=report)
         )
     graph = stated.graph()
     if _is_complete(graph, frames) or not moving:
         return graph
     for name in moving:
-        stated.add_constant(name, _messages(bag, name, most=MAX_MESSAGES, report=report))
+        stated.add_constant(
+            name, _messages(bag, name, most=LIMITS.transform_messages, report=report)
+        )
     return stated.graph()
 
 
@@ -172,7 +164,7 @@ class _Statements:
             turn = SE3.from_rpy(*joint.rpy_rad, t=joint.xyz_m)
             numbers = (*joint.xyz_m, *turn.quat_xyzw().tolist())
             pair = self._pair(name, (joint.parent, joint.child), numbers)
-            if pair is not None and len(self._stated) < MAX_TRANSFORMS:
+            if pair is not None and len(self._stated) < LIMITS.frame_pairs:
                 self._keep(pair, _Statement(numbers), name)
 
     def _keep(self, pair: _Pair, one: _Statement, source: str) -> None:
@@ -185,8 +177,8 @@ class _Statements:
         found: dict[_Pair, _Statement] = {}
         every = (one for content in messages for one in content.transforms)
         for number, one in enumerate(every):
-            if number >= MAX_READ:
-                self._report.derive(f"{name}: its first {MAX_READ} transforms are read")
+            if number >= LIMITS.transforms:
+                self._report.derive(f"{name}: its first {LIMITS.transforms} transforms are read")
                 break
             numbers = numbers_of(one.transform)
             pair = self._pair(name, (one.header.frame_id, one.child_frame_id), numbers)
@@ -194,11 +186,13 @@ class _Statements:
                 continue
             if pair in found:
                 _repeat(found[pair], numbers, last=last)
-            elif len(found) + len(self._stated) < MAX_TRANSFORMS:
+            elif len(found) + len(self._stated) < LIMITS.frame_pairs:
                 found[pair] = _Statement(numbers)
             else:
                 self._report.count("transforms_beyond_limit")
-                self._report.derive(f"{name}: expected at most {MAX_TRANSFORMS} pairs of frames")
+                self._report.derive(
+                    f"{name}: expected at most {LIMITS.frame_pairs} pairs of frames"
+                )
         return found
 
     def _pair(self, name: str, pair: _Pair, numbers: _Numbers) -> _Pair | None:
@@ -226,11 +220,12 @@ def transform_fault(pair: tuple[str, str], numbers: tuple[float, ...]) -> str:
         return "expected two frames"
     if not all(map(isfinite, numbers)):
         return "expected numbers"
-    if abs(sum(value * value for value in numbers[3:]) - 1.0) > _UNIT:
+    if abs(sum(value * value for value in numbers[3:]) - 1.0) > TRANSFORM_LIMITS.unit:
         return f"expected a quaternion of length 1, got {[*numbers[3:]]}"
     # Poses on the earth are no fault, but no mount either.
-    if max(map(abs, numbers[:3])) > _LONGEST_M and last_name(pair[0]) not in WORLD_FRAMES:
-        return f"expected at most {_LONGEST_M:g} m, got {[*numbers[:3]]}"
+    longest_m = TRANSFORM_LIMITS.longest_m
+    if max(map(abs, numbers[:3])) > longest_m and last_name(pair[0]) not in WORLD_FRAMES:
+        return f"expected at most {longest_m:g} m, got {[*numbers[:3]]}"
     return ""
 
 

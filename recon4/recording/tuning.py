@@ -40,6 +40,8 @@ class RecipeTuning:
     direction for all of its rings."""
     fewest_points: int = 20
     """A list with fewer is none of a LiDAR."""
+    latest_ns: int = 1 << 61
+    """No clock shows more before 2043; a sum of three is below the largest number of 64 bits."""
 
 
 RECIPES = RecipeTuning()
@@ -73,6 +75,8 @@ class ListedTuning:
     """Senders of a capture, each with a line."""
     few: int = 5
     """Examples within a sentence."""
+    characters: int = 300
+    """Of a line of a file."""
     sizes: int = 3
     """Sizes of the packets of a sender."""
 

@@ -21,7 +21,8 @@ from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.cloud_crs import StatedCrs
 from recon4.recording.formats.reference_clouds import open_cloud
 from recon4.recording.tables.column_names import UNITS_M
-from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, NEAR_M, ColumnChoice
+from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
+from recon4.recording.tables.tuning import PLACES
 from recon4.slices.map_crs import LOCAL, MapFrame
 from recon4.slices.meshes import is_mesh, load_mesh
 from recon4.slices.reference import EarlierAlignment, ReferenceFacts, read_facts
@@ -210,7 +211,7 @@ def _frame_of(points: Array, stated: StatedCrs, read_as: ReadAs, *, place: MapPl
         return read_as.frame
     size = UNITS_M[read_as.choice.unit or "m"]
     middle = np.median(points[:, :2], axis=0) * (size if stated.unit_m is None else stated.unit_m)
-    return "crs" if np.all(np.abs(middle - there) < NEAR_M) else "auto"
+    return "crs" if np.all(np.abs(middle - there) < PLACES.near_m) else "auto"
 
 
 def _deal_out(chunks: Iterable[Array], place: Path) -> dict[tuple[int, int, int], Path]:

@@ -9,7 +9,8 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from recon4.mapping.tiles import Surface
 from recon4.recording.tables.column_names import Meaning, Unit
-from recon4.recording.tables.coordinates import MAX_COLUMNS, ColumnChoice
+from recon4.recording.tables.coordinates import ColumnChoice
+from recon4.recording.tables.tuning import SHOWN_TABLE
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
 from recon4.slices.colors import ColorBy, Ground
@@ -222,7 +223,7 @@ class ControlFile(Strict):
 
     name: Name = Field(default="points.csv", max_length=200)
     base64: str = Field(max_length=900_000)
-    columns: tuple[Meaning, ...] = Field(default=(), max_length=MAX_COLUMNS)
+    columns: tuple[Meaning, ...] = Field(default=(), max_length=SHOWN_TABLE.columns)
     """Meaning of each column, from the left; empty = as the table says."""
     unit: Unit | None = None
 

@@ -7,7 +7,8 @@ from typing import Literal
 from pydantic import BaseModel, Field
 
 from recon4.recording.tables.column_names import Meaning, Unit
-from recon4.recording.tables.coordinates import MAX_COLUMNS, ColumnChoice, TablePreview
+from recon4.recording.tables.coordinates import ColumnChoice, TablePreview
+from recon4.recording.tables.tuning import SHOWN_TABLE
 from recon4.slices.reference_import import ReadAs
 from recon4_app.names import Name
 from recon4_app.slices.model import Strict
@@ -19,7 +20,7 @@ class ReferenceFile(Strict):
     path: str = Field(min_length=1, max_length=4096)
     frame: Literal["auto", "map", "crs"] = "auto"
     """Frame of its coordinates: as the file says, the map frame, or the CRS of the map."""
-    columns: tuple[Meaning, ...] = Field(default=(), max_length=MAX_COLUMNS)
+    columns: tuple[Meaning, ...] = Field(default=(), max_length=SHOWN_TABLE.columns)
     """Meaning of each column of a text, from the left; empty = as the table says."""
     unit: Unit | None = None
     """Unit of its coordinates; None = as the file says, else meters."""

@@ -15,22 +15,13 @@ from recon4.model.rig import Rig, Sensor
 from recon4.recording.assembly.range_limits import blind_range_m, drop_invalid
 from recon4.recording.assembly.rotation_rate import nominal, rotation_rate
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.assembly.tuning import ASSEMBLY
 from recon4.recording.clock_names import clocks_text
 from recon4.recording.report import ImportReport
 from recon4.recording.tuning import IngestTuning
+from recon4.recording.tuning_heads import PROBE
 from recon4.settings import IngestSettings
 from recon4.settings.tuning import tuned
-
-_HEAD_NS = 1_000_000_000
-"""Data of every sensor inspected before the first cut [ns]."""
-_SLACK_NS = 20_000_000
-"""Margin after which a sensor has passed a time, because messages of one sensor may overlap."""
-_CLOCKS_NS = 10_000_000_000
-_KEPT_RATIO = 0.2
-"""A first or last revolution below this ratio of the usual number of points is left out."""
-_FALLBACK_HZ = 10.0
-LONGEST_WAIT_S = 10.0
-"""Readers may deliver several seconds of one sensor at a time."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +71,7 @@ class Assembler:
         *,
         settings: IngestSettings,
         report: ImportReport,
-        wait_s: float = LONGEST_WAIT_S,
+        wait_s: float = ASSEMBLY.wait_s,
         on_cut: Callable[[Multiframe], None] = lambda frame: None,
     ) -> None:
         """Prepare.
@@ -174,7 +165,7 @@ class Assembler:
         self._report.count("clock_jumps_back")
         self._note_gap(stream, -back_ns)
         others = [o.shift_ns - stream.shift_ns for o in self._streams if o is not stream]
-        together = [shift for shift in others if abs(shift - back_ns) < _HEAD_NS]
+        together = [shift for shift in others if abs(shift - back_ns) < PROBE.head_ns]
         return together[0] if together else back_ns
 
     def _note_gap(self, stream: _Stream, length_ns: int) -> None:
@@ -199,20 +190,20 @@ class Assembler:
 
     def _head_complete(self) -> bool:
         ends = [s.last_ns - s.first_ns for s in self._streams if s.last_ns and s.first_ns]
-        everyone = len(ends) == self._expected and min(ends, default=0) >= _HEAD_NS
-        return everyone or max(ends, default=0) >= _HEAD_NS + self._wait_ns
+        everyone = len(ends) == self._expected and min(ends, default=0) >= PROBE.head_ns
+        return everyone or max(ends, default=0) >= PROBE.head_ns + self._wait_ns
 
     def _begin(self) -> None:
         seen = [stream for stream in self._streams if stream.waiting]
         starts = [stream.first_ns for stream in seen if stream.first_ns is not None]
-        if max(starts) - min(starts) > _CLOCKS_NS:
+        if max(starts) - min(starts) > ASSEMBLY.clocks_ns:
             raise ConfigError(clocks_text([(s.name, s.first_ns or 0) for s in seen]))
         for stream in seen:
             if not stream.spins:
                 continue
             t_ns = np.concatenate([shots.t_ns for shots in stream.waiting])
             xyz = np.concatenate([shots.xyz for shots in stream.waiting])
-            head = t_ns <= t_ns[0] + _HEAD_NS
+            head = t_ns <= t_ns[0] + PROBE.head_ns
             self.rotation_hz[stream.name] = rotation_rate(t_ns[head], xyz[head])
         self._start_ns = min(starts)
         self.duration_ns = round(1e9 / self._rate_hz())
@@ -221,8 +212,10 @@ class Assembler:
         measured = [rate for rate in self.rotation_hz.values() if np.isfinite(rate)]
         requested = self._settings.rate_hz
         if not requested and not measured:
-            self._report.derive(f"no rotation found, cut into frames at {_FALLBACK_HZ:g} Hz")
-            return _FALLBACK_HZ
+            self._report.derive(
+                f"no rotation found, cut into frames at {ASSEMBLY.fallback_hz:g} Hz"
+            )
+            return ASSEMBLY.fallback_hz
         slowest = nominal(min(measured)) if measured else requested
         if not requested:
             self._report.derive(f"frames at {slowest:.6g} Hz: one revolution of the slowest LiDAR")
@@ -257,7 +250,7 @@ class Assembler:
     def _passed(self, end_ns: int) -> bool:
         """Whether no sensor can still deliver points before ``end_ns``, or one is overdue."""
         reached = [s.last_ns for s in self._streams if s.last_ns is not None]
-        everyone = len(reached) == self._expected and min(reached) >= end_ns + _SLACK_NS
+        everyone = len(reached) == self._expected and min(reached) >= end_ns + ASSEMBLY.slack_ns
         return everyone or max(reached) >= end_ns + self._wait_ns
 
     def _skip_empty(self) -> None:
@@ -286,7 +279,7 @@ class Assembler:
 
     def _release(self, before: Multiframe, frame: Multiframe) -> list[Multiframe]:
         """Return the frame held back, unless it is an incomplete one at the start."""
-        if before.frame_id == 0 and len(before) < _KEPT_RATIO * len(frame):
+        if before.frame_id == 0 and len(before) < ASSEMBLY.kept_ratio * len(frame):
             self._report.count("frames_incomplete_dropped")
             self._report.count("points_of_incomplete_frames", len(before))
             self._held = _renumbered(frame, 0)
@@ -299,7 +292,7 @@ class Assembler:
         return [before]
 
     def _too_small(self, frame: Multiframe) -> bool:
-        if len(frame) >= _KEPT_RATIO * self._usual:
+        if len(frame) >= ASSEMBLY.kept_ratio * self._usual:
             return False
         self._report.count("frames_incomplete_dropped")
         self._report.count("points_of_incomplete_frames", len(frame))

@@ -7,12 +7,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
-
-_SLOWEST_HZ, _FASTEST_HZ = 2.0, 30.0
-_POINTS = 3000
-_CLEAR = 0.6
-"""Length of the mean phasor above which the azimuth follows a rotation."""
-_SNAP = 0.005
+from recon4.recording.assembly.tuning import ROTATION
 
 
 def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
@@ -27,22 +22,22 @@ def rotation_rate(t_ns: Times, xyz: NDArray[np.float32]) -> float:
     """
     if len(t_ns) < 50:
         return float("nan")
-    rows = np.linspace(0, len(t_ns) - 1, min(_POINTS, len(t_ns))).astype(np.intp)
+    rows = np.linspace(0, len(t_ns) - 1, min(ROTATION.points, len(t_ns))).astype(np.intp)
     t_s = (t_ns[rows] - t_ns[0]) * 1e-9
     span_s = float(np.ptp(t_s))
     if span_s < 0.03:
         return float("nan")
     azimuth = np.arctan2(xyz[rows, 1], xyz[rows, 0]).astype(np.float64)
     step = min(0.1, 0.2 / span_s)
-    rates = np.arange(_SLOWEST_HZ, _FASTEST_HZ, step)
+    rates = np.arange(ROTATION.slowest_hz, ROTATION.fastest_hz, step)
     best, clear = max((_strongest(azimuth * sign, t_s, rates) for sign in (1.0, -1.0)), key=_clear)
-    return best if clear > _CLEAR else float("nan")
+    return best if clear > ROTATION.clear else float("nan")
 
 
 def nominal(rate_hz: float) -> float:
     """Round to the configured whole number of revolutions per second if it is within 0.5 %."""
     whole = max(1.0, float(round(rate_hz)))
-    return whole if abs(rate_hz / whole - 1.0) < _SNAP else rate_hz
+    return whole if abs(rate_hz / whole - 1.0) < ROTATION.snap else rate_hz
 
 
 def _clear(found: tuple[float, float]) -> float:

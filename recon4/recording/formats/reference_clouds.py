@@ -27,11 +27,10 @@ from recon4.recording.formats.las_records import (
     refuse_many,
     refuse_promise,
 )
+from recon4.recording.limits import LIMITS
 from recon4.recording.tables.clouds import TEXT_SUFFIXES, TextCloud
 from recon4.recording.tables.coordinates import AS_THE_TABLE_SAYS, ColumnChoice
 from recon4.untrusted.bounded import open_regular
-
-MAX_BYTES = 20 << 30
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -114,8 +113,10 @@ def _head(path: Path) -> bytes:
     with open_regular(path, failure=RecordingError) as file:
         size = os.fstat(file.fileno()).st_size
         head = file.read(64 * 1024)
-    if size > MAX_BYTES:
-        raise RecordingError(f"{path.name} has {size >> 30} GiB, at most {MAX_BYTES >> 30}")
+    if size > LIMITS.cloud_file_bytes:
+        raise RecordingError(
+            f"{path.name} has {size >> 30} GiB, at most {LIMITS.cloud_file_bytes >> 30}"
+        )
     return head
 
 

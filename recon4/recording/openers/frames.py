@@ -14,11 +14,8 @@ from recon4.recording.folders import folder_gaps, list_frames, read_frames, read
 from recon4.recording.openers.request import OpenRequest, Recording
 from recon4.recording.recipes.file_points import require_fields
 from recon4.recording.rig_choice import Stream, choose_rig
-from recon4.recording.tuning import IngestTuning
+from recon4.recording.tuning import LISTED, IngestTuning
 from recon4.settings.tuning import tuned
-
-_NAMED_GAPS = 20
-"""More gaps are not named one by one."""
 
 
 def open_frames(request: OpenRequest) -> Recording:
@@ -37,7 +34,7 @@ def open_frames(request: OpenRequest) -> Recording:
     _require_one_lidar(rig, paths[0])
     sensor = rig.sensors[0]
     gaps = folder_gaps(frames, sensor.name, tuned(IngestTuning, settings).gap_s)
-    for gap in gaps[:_NAMED_GAPS]:
+    for gap in gaps[: LISTED.names]:
         report.warn(f"{gap.sensor}: {gap.seconds:.3f} s from one frame to the next")
     read = partial(read_frames, frames, sensor, settings=settings, report=report)
     return Recording(rig, read, len(frames.files) * frames.period_ns / 1e9, tuple(gaps))

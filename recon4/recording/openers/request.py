@@ -13,8 +13,9 @@ from recon4.model.point_recipes import PointRecipe
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.recording.assembly.assembler import LONGEST_WAIT_S, TimeGap
+from recon4.recording.assembly.assembler import TimeGap
 from recon4.recording.assembly.shots import Shots
+from recon4.recording.assembly.tuning import ASSEMBLY
 from recon4.recording.formats.pcap import OpenFile, open_plain
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
@@ -50,7 +51,7 @@ class Recording:
     """Approximate duration [s]; 0 = unknown."""
     gaps: tuple[TimeGap, ...] = ()
     """Gaps known before reading."""
-    wait_s: float = LONGEST_WAIT_S
+    wait_s: float = ASSEMBLY.wait_s
     """Largest lead of one sensor's shots over another's [s], see `Assembler`."""
     kind: str = ""
     """What it is, for people; empty = the kind of its files."""

@@ -29,7 +29,7 @@ from recon4.recording.packets.streams import (
     scan_pcap,
     unread_text,
 )
-from recon4.recording.packets.tuning import CAPTURES
+from recon4.recording.packets.tuning import CAPTURE_STREAMS
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.samples.datagrams import SampleDecoder
@@ -215,7 +215,11 @@ class PacketCapture:
         most = max((s.packets for s in self.streams if s.kind == "data"), default=0)
         for stream in self.streams:
             known = any(fits(sensor, stream.source, stream.port) for sensor in self.rig.sensors)
-            if stream.refused and not known and stream.packets > CAPTURES.foreign_ratio * most:
+            if (
+                stream.refused
+                and not known
+                and stream.packets > CAPTURE_STREAMS.foreign_ratio * most
+            ):
                 self._report.warn(f"not read: {stream.text}")
             expected = {"IMU": self.rig.imu_port, "GNSS": self.rig.gnss_port}.get(stream.kind)
             if expected is not None and stream.port != expected:
@@ -332,4 +336,4 @@ def _full(
 ) -> list[tuple[PacketStream, ...]]:
     """Those that are no trickle beside the largest of others."""
     most = max((sum(s.packets for s in streams) for streams in all_of), default=0)
-    return [k for k in some if sum(s.packets for s in k) >= CAPTURES.foreign_ratio * most]
+    return [k for k in some if sum(s.packets for s in k) >= CAPTURE_STREAMS.foreign_ratio * most]

@@ -39,7 +39,7 @@ class CaptureTuning:
     rig, unless its port (and address) matches one."""
 
 
-CAPTURES = CaptureTuning()
+CAPTURE_STREAMS = CaptureTuning()
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +57,7 @@ class ClockTuning:
     block: int = 64
     """Packets between two comparisons of the clocks, however the packets arrive."""
     pause_ns: int = 60 * SECOND_NS
-    """After a longer pause a clock that is off by whole hours has been set, not damaged [ns]."""
+    """A packet that comes within this time, but is off by whole hours, shows a jump [ns]."""
     track_ns: int = 10 * SECOND_NS
     """The rate of the clocks is measured over this time [ns]."""
     max_rate: float = 2e-4

@@ -14,11 +14,10 @@ from recon4.geometry.se3 import Array
 from recon4.model.point_recipes import PointRecipe, Term
 from recon4.recording.formats.point_messages import WHOLE
 from recon4.recording.point_fields import NS_TIME
+from recon4.recording.tuning import RECIPES
 
 Column = NDArray[Any]
 Columns = Mapping[str, Column]
-_LATEST_NS = 1 << 61
-"""No clock shows more before 2043; a sum of three is below the largest number of 64 bits."""
 
 
 def as_points(recipe: PointRecipe, lists: Mapping[str, Columns]) -> dict[str, Column]:
@@ -114,9 +113,9 @@ def _sum_ns(parts: Sequence[Column], terms: Sequence[Term]) -> Column:
     wrong = np.zeros(len(parts[0]), np.bool_)
     for part, term in zip(parts, terms, strict=True):
         with np.errstate(invalid="ignore", over="ignore"):
-            wrong |= ~(np.abs(part.astype(np.float64)) * term.unit < _LATEST_NS)
+            wrong |= ~(np.abs(part.astype(np.float64)) * term.unit < RECIPES.latest_ns)
         total += _whole_ns(np.where(wrong, 0, part), term.unit)
-    total[wrong] = -_LATEST_NS
+    total[wrong] = -RECIPES.latest_ns
     return total
 
 

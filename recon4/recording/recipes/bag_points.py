@@ -21,9 +21,6 @@ from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
 from recon4.recording.topic_contents import read_contents
 
-_FULL_DETAIL = 2
-"""Of clouds with times and rings (`CloudTopic.detail`)."""
-
 
 @dataclass(frozen=True, slots=True)
 class UnknownPoints:
@@ -153,7 +150,7 @@ def overlooked_columns(bag: Bag, clouds: Iterable[CloudTopic]) -> list[str]:
         bag: An open bag.
         clouds: Those that are read.
     """
-    lacking = [one.topic for one in clouds if one.detail < _FULL_DETAIL and one.has_places]
+    lacking = [one.topic for one in clouds if one.detail < one.FULL_DETAIL and one.has_places]
     texts = []
     for name, sample in bag_samples(bag, [t for t in lacking if t.name not in bag.recipes]).items():
         proposal = with_doubts(propose(name, sample.largest, sample.period_s), sample)

@@ -14,8 +14,7 @@ from recon4.recording.recipes.propose import overlooked, propose
 from recon4.recording.recipes.refuse import require_known, with_doubts
 from recon4.recording.report import ImportReport
 from recon4.recording.rig_choice import Stream
-
-_PROBED_FILES = 3
+from recon4.recording.tuning_heads import PROBE
 
 
 def require_fields(
@@ -57,7 +56,7 @@ def require_fields(
 def _first(files: Sequence[Path]) -> list[Table]:
     """The first clouds that can be read."""
     found = []
-    for file in files[:_PROBED_FILES]:
+    for file in files[: PROBE.files]:
         try:
             found.append(read_cloud(file))
         except RecordingError:

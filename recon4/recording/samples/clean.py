@@ -14,16 +14,12 @@ from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.measured_channels import imu_channels, with_forces, without_unmeasured
+from recon4.recording.samples.tuning import REPEATED
 from recon4.recording.samples.units import GyroUnit, in_m_s2, in_rad_s
 from recon4.recording.stamps import strays
 
 Samples = TypeVar("Samples", ImuSamples, GnssSamples)
 
-_LEAST_REPEATED, _MOVING_RAD_S = 10, 0.1
-"""Noise changes each sample of a sensor that works. A few equal ones are those of a slower sensor;
-at rest they do no harm."""
-_LEAST_STUCK = 50
-"""The same of accelerations alone, which some drivers repeat for a faster gyroscope."""
 _BY_FLOOR = "the map is leveled by its floor"
 _FORCES_ALONE = (
     f". Its accelerations alone are not used either: without the turns of the body they do not "
@@ -192,7 +188,7 @@ def _carried_on(imu: ImuSamples, jumps_ns: Sequence[int], report: ImportReport) 
 def _without_repeated(imu: ImuSamples, report: ImportReport) -> ImuSamples:
     """Drop what a driver that hangs repeats with new time stamps: a gap is honest."""
     values = np.concatenate([imu.gyro_rad_s, np.nan_to_num(imu.accel_m_s2)], axis=1)
-    runs = _repeated_in_motion(values, imu, least=_LEAST_REPEATED)
+    runs = _repeated_in_motion(values, imu, least=REPEATED.least_repeated)
     if not runs:
         return imu
     repeated = np.concatenate(runs)
@@ -209,7 +205,7 @@ def _without_repeated(imu: ImuSamples, report: ImportReport) -> ImuSamples:
 
 def _without_stuck_forces(imu: ImuSamples) -> ImuSamples:
     """Accelerations that stay the same while the gyroscope measures a motion become NaN."""
-    runs = _repeated_in_motion(imu.accel_m_s2, imu, least=_LEAST_STUCK)
+    runs = _repeated_in_motion(imu.accel_m_s2, imu, least=REPEATED.least_stuck)
     accel = imu.accel_m_s2.copy()
     for run in runs:
         accel[run] = np.nan
@@ -219,7 +215,7 @@ def _without_stuck_forces(imu: ImuSamples) -> ImuSamples:
 def _repeated_in_motion(values: Array, imu: ImuSamples, *, least: int) -> list[NDArray[np.intp]]:
     """Rows that equal the one before while the body turns, in runs of at least a length."""
     same = np.all(values[1:] == values[:-1], axis=1)
-    moving = np.linalg.norm(imu.gyro_rad_s[1:], axis=1) > _MOVING_RAD_S
+    moving = np.linalg.norm(imu.gyro_rad_s[1:], axis=1) > REPEATED.moving_rad_s
     rows = np.flatnonzero(same & moving) + 1
     runs = np.split(rows, np.flatnonzero(np.diff(rows) > 1) + 1)
     return [run for run in runs if len(run) >= least]

@@ -16,8 +16,10 @@ from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssQuality, GnssSamples, ImuSamples
 from recon4.model.trajectory import Times
 from recon4.recording.formats.damaged_lines import DamagedLines
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
+from recon4.recording.tuning import LISTED
 from recon4.untrusted.bounded import lines_limited, parse_float
 
 IMU_HEADER = ("t_ns", "gx_rad_s", "gy_rad_s", "gz_rad_s", "ax_m_s2", "ay_m_s2", "az_m_s2")
@@ -27,11 +29,6 @@ GNSS_HEADER = (
 )
 _OPTIONAL = {*IMU_HEADER[4:], *GNSS_HEADER[3:], *STATED_COLUMNS}
 _SEPARATORS = ";\t,"
-MAX_BYTES = 1 << 30
-"""About ten million samples: an IMU of 400 Hz for seven hours."""
-_MAX_LINE_BYTES = 16 * 1024
-_SHOWN = 300
-"""Characters of a header that is shown in an error."""
 
 
 def read_imu_csv(path: Path, report: ImportReport | None = None) -> ImuSamples:
@@ -99,12 +96,12 @@ def csv_separator(header: str) -> str:
 
 
 def _lines(
-    path: Path, damaged: DamagedLines | None = None, *, max_bytes: int = MAX_BYTES
+    path: Path, damaged: DamagedLines | None = None, *, max_bytes: int = LIMITS.sample_file_bytes
 ) -> Iterator[str]:
     return lines_limited(
         path,
         max_bytes=max_bytes,
-        max_line_bytes=_MAX_LINE_BYTES,
+        max_line_bytes=LIMITS.line_bytes,
         on_damaged=damaged.add if damaged else None,
     )
 
@@ -145,7 +142,7 @@ def _checked_header(line: str, known: tuple[str, ...], name: str) -> list[str]:
     if missing:
         raise UnknownFormat(
             f"{name}: missing columns {', '.join(missing)}; expected header: {','.join(known)}; "
-            f"got {line.strip()[:_SHOWN]}"
+            f"got {line.strip()[: LISTED.characters]}"
         )
     twice = sorted({column for column in known if header.count(column) > 1})
     if twice:

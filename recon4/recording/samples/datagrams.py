@@ -23,12 +23,9 @@ from recon4.recording.packets.velodyne.position_packets import is_on_earth, pars
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import GNSS_HEADER, IMU_HEADER
 from recon4.recording.samples.heights import STATED_COLUMNS, height_above_ellipsoid
+from recon4.recording.samples.tuning import NMEA
 from recon4.recording.stamps import StampClock
-from recon4.units import SECOND_NS
 
-_UTC_WITHIN_NS = 5 * SECOND_NS // 2
-"""Largest difference between an NMEA time and its arrival at which the time is used."""
-_GST_LASTS_NS = 3 * SECOND_NS
 _GNSS_KEYS = (*GNSS_HEADER, *STATED_COLUMNS)
 
 
@@ -149,10 +146,10 @@ class SampleDecoder:
         if fix is None:
             return
         t_ns = fix.utc_ns
-        if abs(t_ns - arrival_ns) > _UTC_WITHIN_NS:
+        if abs(t_ns - arrival_ns) > NMEA.utc_within_ns:
             t_ns = arrival_ns
             self.report.derive("NMEA: timed by arrival, its UTC is not the points' clock")
-        fresh = arrival_ns - self._sd[0] < _GST_LASTS_NS
+        fresh = arrival_ns - self._sd[0] < NMEA.gst_lasts_ns
         sd = self._sd[1] if fresh else [math.nan] * 3
         place = [fix.lat_deg, fix.lon_deg, fix.height_m]
         values = [*place, *sd, float(fix.quality), *([math.nan] * 3)]

@@ -10,12 +10,10 @@ from recon4.geometry.se3 import Array
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
 from recon4.model.samples import GEOID_SEPARATION_M, GnssSamples
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.tuning import HEIGHTS
 
 STATED_COLUMNS = ("ellipsoidal_height_m", "orthometric_height_m", "geoid_separation_m")
 """Columns that say what heights are above; ``height_m`` does not."""
-_SPREAD_M = 2.0
-_NEAR_NS = 600_000_000
-_LEAST = 5
 
 
 def height_above_ellipsoid(columns: Mapping[str, Array], report: ImportReport) -> Array:
@@ -67,13 +65,13 @@ def compare_heights(given: GnssSamples, found: GnssSamples, report: ImportReport
     pair = np.stack([after - 1, np.minimum(after, len(given) - 1)])
     gap_ns = np.abs(given.t_ns[pair] - found.t_ns)
     nearest = pair[np.argmin(gap_ns, axis=0), np.arange(len(found))]
-    apart_m = (given.height_m[nearest] - found.height_m)[gap_ns.min(axis=0) < _NEAR_NS]
-    if len(apart_m) < _LEAST:
+    apart_m = (given.height_m[nearest] - found.height_m)[gap_ns.min(axis=0) < HEIGHTS.near_ns]
+    if len(apart_m) < HEIGHTS.least:
         return
     usual_m = float(np.median(apart_m))
     spread_m = float(np.median(np.abs(apart_m - usual_m)))
     low_m, high_m = GEOID_SEPARATION_M
-    if low_m < abs(usual_m) < high_m and spread_m < _SPREAD_M:
+    if low_m < abs(usual_m) < high_m and spread_m < HEIGHTS.spread_m:
         report.warn(
             f"heights of the GNSS file lie {abs(usual_m):.1f} m (± {spread_m:.1f} m) "
             f"{'above' if usual_m > 0 else 'below'} those in the recording, as a geoid does: one "

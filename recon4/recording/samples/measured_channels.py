@@ -15,18 +15,9 @@ from numpy.typing import NDArray
 from recon4.geometry.se3 import Array
 from recon4.model.samples import GnssSamples, ImuSamples
 from recon4.recording.report import ImportReport
+from recon4.recording.samples.tuning import MEASURED
 
 Rows = NDArray[np.bool_]
-
-_LEAST_SAMPLES = 50
-"""Noise changes each sample of a sensor that works. Fewer equal ones may be of a body at rest."""
-_LEAST_FIXES = 10
-_LONGEST_HOLE_NS = 50_000_000
-"""Accelerations are interpolated over a shorter time: a body shakes slower."""
-_LEAST_FORCES = 0.5
-"""An accelerometer is used if this part of the gyroscope's samples has accelerations."""
-_AT_ZERO_RAD = 1e-8
-"""Nobody walks within 6 cm of latitude 0, longitude 0: receivers write it when they have no fix."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +41,7 @@ def declared_absent(covariance: Any) -> bool:
     return len(covariance) > 0 and float(covariance[0]) == -1.0
 
 
-def imu_channels(imu: ImuSamples, *, least: int = _LEAST_SAMPLES) -> ImuChannels:
+def imu_channels(imu: ImuSamples, *, least: int = MEASURED.least_samples) -> ImuChannels:
     """Find the channels of an IMU that were not measured.
 
     Args:
@@ -75,18 +66,18 @@ def without_unmeasured(fixes: GnssSamples, report: ImportReport) -> GnssSamples:
     Fixes at latitude 0, longitude 0 and those of a position that never changes are left out:
     counts ``gnss_at_zero`` and ``gnss_constant``.
     """
-    at_zero = np.hypot(fixes.lat_rad, fixes.lon_rad) < _AT_ZERO_RAD
+    at_zero = np.hypot(fixes.lat_rad, fixes.lon_rad) < MEASURED.at_zero_rad
     report.count("gnss_at_zero", int(np.count_nonzero(at_zero)))
     fixes = fixes.take(~at_zero)
-    if len(fixes) >= _LEAST_FIXES and _never_change(fixes.lat_rad, fixes.lon_rad):
+    if len(fixes) >= MEASURED.least_fixes and _never_change(fixes.lat_rad, fixes.lon_rad):
         report.count("gnss_constant", len(fixes))
         report.warn(f"the position of all {len(fixes)} GNSS fixes is the same: they are not used")
         return fixes.take(slice(0))
     heights, attitudes = fixes.height_m, fixes.rpy_ned_rad
-    if len(fixes) >= _LEAST_FIXES and np.all(heights == 0.0):
+    if len(fixes) >= MEASURED.least_fixes and np.all(heights == 0.0):
         report.warn("all GNSS heights are 0: they count as not measured")
         heights = np.full_like(heights, np.nan)
-    if len(fixes) >= _LEAST_FIXES and _never_change(*attitudes.T):
+    if len(fixes) >= MEASURED.least_fixes and _never_change(*attitudes.T):
         report.warn("the attitude of the INS never changes: it counts as not measured")
         attitudes = np.full_like(attitudes, np.nan)
     sd = np.where(fixes.sd_enu_m > 0.0, fixes.sd_enu_m, np.nan)
@@ -111,7 +102,7 @@ def with_forces(imu: ImuSamples, alone: ImuSamples, report: ImportReport) -> Imu
     if not len(forces) or not lacking.any():
         return imu
     accel, near = _interpolated(forces, imu.t_ns)
-    if near[lacking].sum() + (~lacking).sum() < _LEAST_FORCES * len(imu):
+    if near[lacking].sum() + (~lacking).sum() < MEASURED.least_forces * len(imu):
         report.warn(
             f"the accelerometer has {len(forces)} samples in {len(imu)} of the gyroscope, with "
             "holes: it counts as not measured, the map is leveled by its floor"
@@ -137,11 +128,10 @@ def _interpolated(forces: ImuSamples, t_ns: NDArray[np.int64]) -> tuple[Array, R
     """Accelerations at other times, and whether measured ones are near on both sides."""
     after = np.searchsorted(forces.t_ns, t_ns).clip(0, len(forces) - 1)
     before = np.searchsorted(forces.t_ns, t_ns, side="right").clip(1) - 1
+    hole_ns = MEASURED.longest_hole_ns
     # Beyond an end both neighbors are the same sample.
     far_ns = np.maximum(np.abs(forces.t_ns[after] - t_ns), np.abs(t_ns - forces.t_ns[before]))
-    near = (far_ns <= _LONGEST_HOLE_NS) & (
-        forces.t_ns[after] - forces.t_ns[before] <= _LONGEST_HOLE_NS
-    )
+    near = (far_ns <= hole_ns) & (forces.t_ns[after] - forces.t_ns[before] <= hole_ns)
     since, known = (v - forces.t_ns[0] for v in (t_ns, forces.t_ns))
     axes = [np.interp(since, known, axis) for axis in forces.accel_m_s2.T]
     return np.stack(axes, axis=1), near

@@ -13,6 +13,7 @@ import numpy as np
 
 from recon4.errors import CorruptFile
 from recon4.geometry.se3 import Array
+from recon4.recording.limits import LIMITS
 from recon4.recording.tables.coordinates import (
     AS_THE_TABLE_SAYS,
     ColumnChoice,
@@ -31,9 +32,6 @@ from recon4.recording.tables.layout import (
 from recon4.recording.tables.text import table_blocks, table_head
 
 TEXT_SUFFIXES = {".xyz", ".csv", ".txt", ".asc", ".pts", ".tsv", ".dat"}
-MAX_BYTES = 20 << 30
-_FIRST_THREE = 2
-"""Behind the third column a row may have any number of cells: nothing there is used."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +67,7 @@ class TextCloud:
             CorruptFile: Naming the line that is no point, or if there are fewer than promised.
         """
         line, got, left = 1, 0, self.layout.head_lines
-        for text in table_blocks(self.path, max_bytes=MAX_BYTES):
+        for text in table_blocks(self.path, max_bytes=LIMITS.cloud_file_bytes):
             body = text
             while left and body:
                 _, end, body = body.partition("\n")
@@ -85,7 +83,7 @@ class TextCloud:
         """Numbers of a block, (N, 3)."""
         if not text.strip():
             return np.empty((0, 3))
-        if max(self.columns.at) > _FIRST_THREE:
+        if max(self.columns.at) >= 3:  # behind the third, rows may have any number of cells
             self._check_widths(text, line)
         if self.layout.decimal == ",":
             text = with_points(text, self.layout.delimiter)

@@ -31,16 +31,7 @@ from recon4.recording.tables.proposals import (
     columns_by_order,
     with_id,
 )
-
-SHOWN_ROWS = 5
-_MAX_SHOWN_CELL = 40
-MAX_COLUMNS = 64
-NEAR_M = 20_000.0
-"""Coordinates this close to the map are of its place [m]."""
-GEODETIC_M = 100_000.0
-"""Larger coordinates are those of a national system, where x often points north [m]."""
-_SJTSK_Y, _SJTSK_X = (4.0e5, 9.3e5), (9.3e5, 1.24e6)
-"""Range of positive coordinates of S-JTSK, which count to the west and to the south [m]."""
+from recon4.recording.tables.tuning import PLACES, SHOWN_TABLE
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,13 +107,15 @@ def preview_table(
     """
     found = _propose(layout, choice, place, purpose=purpose)
     shown = tuple(
-        tuple(cell[:_MAX_SHOWN_CELL] for cell in row[:MAX_COLUMNS])
-        for row in layout.rows[:SHOWN_ROWS]
+        tuple(cell[: SHOWN_TABLE.cell_characters] for cell in row[: SHOWN_TABLE.columns])
+        for row in layout.rows[: SHOWN_TABLE.rows]
     )
     return TablePreview(
-        header=tuple(name[:_MAX_SHOWN_CELL] for name in layout.names[:MAX_COLUMNS]),
+        header=tuple(
+            name[: SHOWN_TABLE.cell_characters] for name in layout.names[: SHOWN_TABLE.columns]
+        ),
         rows=shown,
-        columns=found.columns[:MAX_COLUMNS],
+        columns=found.columns[: SHOWN_TABLE.columns],
         unit=found.units[0],
         question=found.question,
         description=_description(layout, found),
@@ -276,7 +269,7 @@ def _at_place(
         fits = [
             _renamed(columns, {x: first, y: second})
             for first, second, at in _other_axes(a, b)
-            if np.all(np.abs(np.array(at) - place) < NEAR_M)
+            if np.all(np.abs(np.array(at) - place) < PLACES.near_m)
         ]
         if columns in fits:
             return columns, ""
@@ -285,7 +278,8 @@ def _at_place(
             return fits[0], doubt if by_direction or purpose != "cloud" else ""
     if by_direction:
         return columns, ""
-    if _SJTSK_Y[0] < min(a, b) < _SJTSK_Y[1] and _SJTSK_X[0] < max(a, b) < _SJTSK_X[1]:
+    (least_y, most_y), (least_x, most_x) = PLACES.sjtsk_y, PLACES.sjtsk_x
+    if least_y < min(a, b) < most_y and least_x < max(a, b) < most_x:
         meanings: tuple[Meaning, Meaning] = ("-x", "-y") if a < b else ("-y", "-x")
         turned = _renamed(columns, dict(zip((x, y), meanings, strict=True)))
         return turned, "these are like Y and X of S-JTSK, which count to the west and south."
@@ -295,7 +289,7 @@ def _at_place(
             columns,
             f"is {_cell(first, x)} the easting (x) and {_cell(first, y)} the northing (y)?",
         )
-    if names and y < x and min(abs(a), abs(b)) > GEODETIC_M:
+    if names and y < x and min(abs(a), abs(b)) > PLACES.geodetic_m:
         return columns, "y stands before x: x may point north, as in geodetic lists."
     return columns, ""
 
@@ -316,7 +310,7 @@ def _renamed(columns: tuple[Meaning, ...], meanings: Mapping[int, Meaning]) -> t
 
 
 def _cell(row: Sequence[str], at: int) -> str:
-    return row[at][:_MAX_SHOWN_CELL] if at < len(row) else "–"
+    return row[at][: SHOWN_TABLE.cell_characters] if at < len(row) else "–"
 
 
 def _middle(layout: TableLayout, column: int) -> float:

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 
 from recon4.errors import CorruptFile
 from recon4.recording.tables.column_names import is_unit
+from recon4.recording.tables.tuning import TABLES
 
-_SAMPLE = 60
-"""Lines from which the layout is detected."""
 _COMMENTS = ("#", "//", "%", "!")
 NUMBER = re.compile(
     r"[-+]?(?:[0-9]+[.]?[0-9]*|[.][0-9]+)(?:[eE][-+]?[0-9]+)?|[-+]?(?:nan|inf)", re.I
@@ -20,7 +19,6 @@ _COMMA_NUMBER = re.compile(r"[-+]?[0-9]+,[0-9]+(?:[eE][-+]?[0-9]+)?")
 _QUOTED_COMMA = re.compile(r'"([-+]?[0-9]+),([0-9]+)"')
 _GROUPED = re.compile(r"[-+]?[0-9]{1,3}(?:[.' ,][0-9]{3})+(?:[.,][0-9]+)?")
 """Digits in groups of three, as 1.234,5 or 1'234.5: nobody can tell a group from a decimal."""
-_FEWEST = 3
 NOT_MEASURED = ("", "-", "–")
 """Cells of a coordinate that was not measured."""
 
@@ -52,7 +50,7 @@ class TableLayout:
         return len(_without_end(self.rows[0]))
 
     @staticmethod
-    def of(text: str, name: str, *, fewest: int = _FEWEST) -> TableLayout:
+    def of(text: str, name: str, *, fewest: int = TABLES.fewest_columns) -> TableLayout:
         r"""Detect the layout from the first lines.
 
         Args:
@@ -64,8 +62,8 @@ class TableLayout:
             CorruptFile: If no line has that many numbers.
         """
         lines = text.split("\n")
-        delimiter = _delimiter([line for line in lines[:_SAMPLE] if is_content(line)])
-        decimal = _decimal(lines[:_SAMPLE], delimiter)
+        delimiter = _delimiter([line for line in lines[: TABLES.sample] if is_content(line)])
+        decimal = _decimal(lines[: TABLES.sample], delimiter)
         for first, line in enumerate(lines):
             if is_content(line) and _numbers(split_row(line, delimiter, decimal)) >= fewest:
                 break
@@ -77,7 +75,7 @@ class TableLayout:
         rows = [split_row(line, delimiter, decimal) for line in lines[first:] if is_content(line)]
         head = lines[:first]
         width = len(_without_end(rows[0]))
-        names_line, names = _names(head, delimiter, width, exact=fewest == _FEWEST)
+        names_line, names = _names(head, delimiter, width, exact=fewest == TABLES.fewest_columns)
         return TableLayout(
             delimiter=delimiter,
             decimal=decimal,
@@ -86,7 +84,7 @@ class TableLayout:
             names_line=names_line,
             stray_head=_stray(head, names_line),
             promised=_promised(head),
-            rows=tuple(tuple(row) for row in rows[:_SAMPLE]),
+            rows=tuple(tuple(row) for row in rows[: TABLES.sample]),
         )
 
 
@@ -131,13 +129,15 @@ def is_content(line: str) -> bool:
 
 def _delimiter(lines: list[str]) -> str:
     body = lines[2:] if len(lines) > 3 else lines[-1:]
+    columns = TABLES.fewest_columns
+    signs = columns - 1
     for sign in ";\t|":
-        if body and min(line.count(sign) for line in body) >= _FEWEST - 1:
+        if body and min(line.count(sign) for line in body) >= signs:
             return sign
     by_blanks = [line.split() for line in body]
-    if by_blanks and all(sum(map(_loosely, cells)) >= _FEWEST for cells in by_blanks):
+    if by_blanks and all(sum(map(_loosely, cells)) >= columns for cells in by_blanks):
         return ""
-    return "," if body and min(line.count(",") for line in body) >= _FEWEST - 1 else ""
+    return "," if body and min(line.count(",") for line in body) >= signs else ""
 
 
 def _loosely(cell: str) -> bool:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import re
 
 from recon4.recording.tables.layout import NUMBER, is_content
+from recon4.recording.tables.tuning import TABLES
 
 _QUOTED_LINE = re.compile(r'\s*"([^"]*)"[\s;,]*')
 _SEPARATORS = ";,\t|"
 _GROUP = re.compile(r"[^()]*\(([^()]*)\)\s*")
-_FEWEST = 2
-"""Numbers that make a cell in parentheses a group."""
 
 
 def unpacked(text: str) -> str:
@@ -45,7 +44,7 @@ def _without_outer_quotes(lines: list[str]) -> list[str]:
 def _groups(line: str) -> bool:
     """Whether a line has several numbers in parentheses."""
     parts = re.findall(r"\(([^()]*)\)", line)
-    return any(sum(map(_is_number, _split(part))) >= _FEWEST for part in parts)
+    return any(sum(map(_is_number, _split(part))) >= TABLES.fewest_packed for part in parts)
 
 
 def _values(cell: str) -> list[str]:

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError, CorruptFile
+from recon4.recording.limits import LIMITS
 from recon4.recording.tables.coordinates import (
     AS_THE_TABLE_SAYS,
     ColumnChoice,
@@ -27,9 +28,6 @@ from recon4.recording.tables.packed import unpacked
 from recon4.recording.tables.proposals import Purpose
 from recon4.recording.tables.text import decode_table, universal
 from recon4.untrusted.names import check_name
-
-_LARGEST_M = 1e8
-_LONGEST_ID = 64
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +117,9 @@ def _point(line: int, cells: list[str], columns: TableColumns, *, partial: bool)
         raise ValueError(f"expected {max(columns.at) + 1} cells, got {';'.join(cells)[:60]!r}")
     numbers = [_number(cell(at), partial=partial) for at in columns.at]
     x, y, z = (n * factor for n, factor in zip(numbers, columns.factor, strict=True))
-    name = check_name(cell(columns.id) or str(line), what="the id of a point", most=_LONGEST_ID)
+    name = check_name(
+        cell(columns.id) or str(line), what="the id of a point", most=LIMITS.id_characters
+    )
     radius = _number(cell(columns.radius), partial=False) if cell(columns.radius) else 0.0
     return TablePoint(line, name, (x, y, z), cell(columns.role), radius * abs(columns.factor[0]))
 
@@ -135,6 +135,6 @@ def _number(text: str, *, partial: bool) -> float:
     if not is_number(text):
         raise ValueError(wrong_number(text))
     value = float(text)
-    if not math.isfinite(value) or abs(value) > _LARGEST_M:
+    if not math.isfinite(value) or abs(value) > LIMITS.coordinate_m:
         raise ValueError(f"expected a finite coordinate, got {text[:40]!r}")
     return value

@@ -14,10 +14,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from recon4.errors import CorruptFile
+from recon4.recording.tables.tuning import TABLES
 from recon4.untrusted.bounded import MAX_LINE_BYTES, check_file_size, open_regular
 
-HEAD_BYTES = 64 * 1024
-BLOCK_CHARACTERS = 16 << 20
 _BLANKS = re.compile("[\u00a0\u2007\u2009\u202f]")
 """Blanks that spreadsheets put between groups of digits; an ordinary one means the same."""
 
@@ -45,7 +44,7 @@ def table_head(path: Path) -> str:
         CorruptFile: If it holds a NUL byte, so that it is no text, or cannot be opened.
     """
     with open_regular(path) as file:
-        data = file.read(HEAD_BYTES)
+        data = file.read(TABLES.head_bytes)
         whole = not file.read(1)
     text = decode_table(data, path.name)
     end = max(text.rfind("\n"), text.rfind("\r")) + 1
@@ -61,11 +60,11 @@ def table_blocks(path: Path, *, max_bytes: int) -> Iterator[str]:
     """
     with open_regular(path) as file:
         check_file_size(file, path, max_bytes)
-        encoding = text_encoding(file.read(HEAD_BYTES))
+        encoding = text_encoding(file.read(TABLES.head_bytes))
         file.seek(0)
         reader = io.TextIOWrapper(file, encoding, errors="replace", newline=None)
         number = 1
-        while block := reader.read(BLOCK_CHARACTERS):
+        while block := reader.read(TABLES.block_characters):
             block += reader.readline(MAX_LINE_BYTES + 1)
             _check_lines(block, number, path.name)
             number += block.count("\n")
@@ -78,7 +77,7 @@ def decode_table(data: bytes, name: str) -> str:
     Raises:
         CorruptFile: Naming the line with a NUL byte.
     """
-    text = data.decode(text_encoding(data[:HEAD_BYTES]), errors="replace").lstrip("\ufeff")
+    text = data.decode(text_encoding(data[: TABLES.head_bytes]), errors="replace").lstrip("\ufeff")
     _refuse_nul(text, 1, name)
     return _BLANKS.sub(" ", text)
 

@@ -18,7 +18,8 @@ from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.chunks import BagIndex, ChunkMessages, ChunkRef, ChunkStream, Topic
 from recon4.recording.formats.limits import decompress
 from recon4.recording.info import describe
-from recon4.recording.report import MAX_TEXTS, ImportReport
+from recon4.recording.limits import LIMITS
+from recon4.recording.report import ImportReport
 from tests.builders import bag_path, storage_file, write_room_bag
 from tests.security.fuzz.seeds_recordings import SEEDS
 from tests.security.mcap_bombs import mcap, mcap_message
@@ -232,10 +233,10 @@ def test_poses_and_a_single_sample_are_described_without_a_time_span(tmp_path):
 def test_remarks_without_end_are_counted_not_kept():
     report = ImportReport()
 
-    for k in range(MAX_TEXTS + 1000):
+    for k in range(LIMITS.texts + 1000):
         report.warn(f"message {k} is damaged")
 
-    assert len(report.warnings) == MAX_TEXTS
+    assert len(report.warnings) == LIMITS.texts
     assert report.counts["remarks_more"] == 1000
 
 

@@ -17,7 +17,6 @@ from recon4.recording.laser2d import is_laser2d, read_laser2d
 from recon4.recording.report import ImportReport
 from recon4.recording.scan_capture import ScanCapture
 from recon4.recording.scan_datagrams import (
-    MAX_DATAGRAM_BYTES,
     HeadMessage,
     ScanMessage,
     decode_scan_datagram,
@@ -25,6 +24,7 @@ from recon4.recording.scan_datagrams import (
     encode_scan,
 )
 from recon4.recording.sources import Sources
+from recon4.recording.tuning_lasers import SCAN_DATAGRAMS
 from recon4.settings import IngestSettings
 from recon4.simulation.line_bag import open_line_bag
 from recon4.store.frames import FrameStore
@@ -312,7 +312,7 @@ def test_a_scan_with_too_many_beams_is_sent_without_its_intensities():
     payload = encode_scan(scan, START_NS)
     found = decode_scan_datagram(payload)
 
-    assert len(payload) < MAX_DATAGRAM_BYTES
+    assert len(payload) < SCAN_DATAGRAMS.bytes
     np.testing.assert_array_equal(np.array(found.ranges, np.float32), ranges)
     assert found.intensities == []
 

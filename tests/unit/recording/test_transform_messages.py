@@ -1,5 +1,7 @@
 """What a bag states about its frames: tf_static, tf, a robot description, and nonsense."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -7,8 +9,9 @@ from recon4.errors import CorruptFile
 from recon4.recording import transform_messages
 from recon4.recording.formats.bags import Bag
 from recon4.recording.formats.urdf import fixed_joints
+from recon4.recording.limits import LIMITS
 from recon4.recording.report import ImportReport
-from recon4.recording.transform_messages import MAX_TRANSFORMS, read_frames
+from recon4.recording.transform_messages import read_frames
 from tests.builders import T0_NS, bag_path
 from tests.robot_bags import TF1, TF2, RobotBag, mount
 
@@ -175,7 +178,7 @@ def test_cycles_and_more_transforms_than_any_robot_has_end(tmp_path):
     path = bag_path(tmp_path, "db3")
     with RobotBag(path, "db3") as bag:
         bag.tf(("a", "b", mount(1)), ("b", "c", mount(1)), ("c", "a", mount(1)))
-        for first in range(0, MAX_TRANSFORMS + 1000, 1000):
+        for first in range(0, LIMITS.frame_pairs + 1000, 1000):
             many = [
                 (f"n{k}", f"n{k + 1}", (0, 0, 0, 0, 0, 0, 1.0)) for k in range(first, first + 1000)
             ]
@@ -189,7 +192,8 @@ def test_cycles_and_more_transforms_than_any_robot_has_end(tmp_path):
 
 
 def test_a_flood_of_repeated_transforms_ends(tmp_path, monkeypatch):
-    monkeypatch.setattr(transform_messages, "MAX_READ", 100)
+    few = replace(transform_messages.LIMITS, transforms=100)
+    monkeypatch.setattr(transform_messages, "LIMITS", few)
     path = bag_path(tmp_path, "db3")
     with RobotBag(path, "db3") as bag:
         for k in range(60):

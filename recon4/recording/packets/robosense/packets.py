@@ -128,11 +128,8 @@ def variants_of(payloads: Payloads, model: RoboSenseModel) -> NDArray[np.uint8]:
     if model.layout.blocks == 3:
         ahead = azimuth[:, 1] == azimuth[:, 2]
         dual = azimuth[:, 0] == azimuth[:, 1]
-        return np.where(
-            dual,
-            PacketReturns.DUAL,
-            np.where(ahead, PacketReturns.DUAL_AHEAD, PacketReturns.SINGLE),
-        ).astype(np.uint8)
+        single = np.where(ahead, PacketReturns.DUAL_AHEAD, PacketReturns.SINGLE)
+        return np.where(dual, PacketReturns.DUAL, single).astype(np.uint8)
     rows = model.rows
     pairs = azimuth[:, :: 2 * rows] == azimuth[:, rows :: 2 * rows]
     return np.where(pairs.all(axis=1), PacketReturns.DUAL, PacketReturns.SINGLE).astype(np.uint8)

@@ -1,0 +1,42 @@
+"""Tuning of the assembly of multiframes."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class AssemblyTuning:
+    """Where frames are cut (`assembler.py`)."""
+
+    slack_ns: int = 20_000_000
+    """Margin after which a sensor has passed a time, because messages of one sensor may overlap."""
+    clocks_ns: int = 10_000_000_000
+    """First points of two LiDARs that are farther apart are of two clocks [ns]."""
+    kept_ratio: float = 0.2
+    """A first or last revolution below this ratio of the usual number of points is left out."""
+    fallback_hz: float = 10.0
+    """Without a rotation frames are cut this often."""
+    wait_s: float = 10.0
+    """Readers may deliver several seconds of one sensor at a time."""
+
+
+ASSEMBLY = AssemblyTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RotationTuning:
+    """How fast a LiDAR turns, by the azimuths of its points (`rotation.py`)."""
+
+    slowest_hz: float = 2.0
+    fastest_hz: float = 30.0
+    """Rates that are searched."""
+    points: int = 3000
+    """Points that are looked at."""
+    clear: float = 0.6
+    """Length of the mean phasor above which the azimuth follows a rotation."""
+    snap: float = 0.005
+    """A rate this near to whole turns a second is that."""
+
+
+ROTATION = RotationTuning()

@@ -1,0 +1,97 @@
+"""Tuning of samples of IMUs and GNSS receivers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.units import SECOND_NS
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ImuUnitTuning:
+    """In which unit an IMU writes (`units.py`)."""
+
+    fastest_rad_s: float = 12.0
+    """Largest sustained turn rate (690 deg/s); beyond it the unit is wrong."""
+    fast_rad_s: float = 3.0
+    """A walker turns faster for moments only: faster, the accelerations must agree."""
+    gravity_m_s2: tuple[float, float] = (7.0, 13.0)
+    """Median lengths of accelerations in m/s² …"""
+    gravity_g: tuple[float, float] = (0.8, 1.25)
+    """… and in g."""
+    constant: float = 0.5
+    """The mean of accelerations in g is at least this part of their length: gravity does not turn
+    with the body."""
+    window_ns: int = 100_000_000
+    """Turns of the vertical are compared over this time [ns]."""
+    least_turn_rad: float = 0.02
+    """Smaller ones say nothing [rad]."""
+    least_windows: int = 20
+    clearly: float = 2.0
+    """Ratio by which one unit must explain the turns of the vertical better than another."""
+
+
+IMU_UNITS = ImuUnitTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RepeatedTuning:
+    """Samples that are copies of those before (`clean.py`)."""
+
+    least_repeated: int = 10
+    moving_rad_s: float = 0.1
+    """Noise changes each sample of a sensor that works. A few equal ones are those of a slower
+    sensor; at rest they do no harm."""
+    least_stuck: int = 50
+    """The same of accelerations alone, which some drivers repeat for a faster gyroscope."""
+
+
+REPEATED = RepeatedTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasuredSampleTuning:
+    """Samples that were not measured (`measured.py`)."""
+
+    least_samples: int = 50
+    """Noise changes each sample of a sensor that works. Fewer equal ones may be of a body at
+    rest."""
+    least_fixes: int = 10
+    longest_hole_ns: int = 50_000_000
+    """Accelerations are interpolated over a shorter time: a body shakes slower."""
+    least_forces: float = 0.5
+    """An accelerometer is used if this part of the gyroscope's samples has accelerations."""
+    at_zero_rad: float = 1e-8
+    """Nobody walks within 6 cm of latitude 0, longitude 0: receivers write it when they have no
+    fix."""
+
+
+MEASURED = MeasuredSampleTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class NmeaTuning:
+    """Sentences of GNSS receivers (`datagrams.py`)."""
+
+    utc_within_ns: int = 5 * SECOND_NS // 2
+    """Largest difference between an NMEA time and its arrival at which the time is used."""
+    gst_lasts_ns: int = 3 * SECOND_NS
+    """A GST sentence holds for the fixes of this time [ns]."""
+
+
+NMEA = NmeaTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class HeightTuning:
+    """Heights above the ellipsoid or the geoid (`heights.py`)."""
+
+    spread_m: float = 2.0
+    """Differences of heights of two sources spread less if they are a geoid separation [m]."""
+    near_ns: int = 600_000_000
+    """Fixes of two sources are compared if they are nearer in time [ns]."""
+    least: int = 5
+    """Fixes that are compared."""
+
+
+HEIGHTS = HeightTuning()

@@ -1,0 +1,128 @@
+"""Tuning of clocks: stamps of messages, times of points, order."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockCompareTuning:
+    """Whether the clocks of two sensors differ (`clock_compare.py`)."""
+
+    other_s: float = 1.0
+    """Clocks that differ by less may be messages that travel for longer [s]."""
+    steady_s: float = 0.5
+    """Messages recorded long after they were sent (a converted bag) say nothing of clocks [s]."""
+    travel_s: float = 0.1
+    """Messages of sensors on one clock lag behind by amounts that differ by less [s]."""
+    joint_s: float = 0.25
+    """Messages of a joint and of its sensor travel for times that differ by less [s]."""
+    least: int = 3
+    """Messages of a sensor."""
+
+
+CLOCK_COMPARE = ClockCompareTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ClockNameTuning:
+    """Differences of clocks that have a name (`clock_names.py`)."""
+
+    within_s: float = 0.4
+    """A measured difference is this near to the known one [s]."""
+    dates_s: float = 1e8
+    """A larger one is a date against a time since power-on [s]."""
+
+
+CLOCK_NAMES = ClockNameTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PointClockTuning:
+    """Points with times of a clock of their own (`exact_times.py`)."""
+
+    same_clock_ns: int = 500_000_000
+    """Points this near to their stamp are on its clock."""
+    jump_ns: int = 1_000_000_000
+    """A stamp farther from where the points' clock says is wrong, or that clock has jumped."""
+    confirm: int = 3
+    """Clouds that must agree on a jump."""
+    far_ns: int = 1_000_000_000
+    """Points farther from the others of their cloud are damaged."""
+    many_points: int = 100
+    """Fewer points may have one time, intensity or ring."""
+
+
+POINT_CLOCK = PointClockTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PointTimeTuning:
+    """The unit and the meaning of the times of points (`point_times.py`)."""
+
+    units_ns: tuple[float, ...] = (1.0, 1e3, 1e6, 1e9)
+    """Units that are tried [ns]."""
+    dates: tuple[tuple[float, float], ...] = ((1e17, 1.0), (1e14, 1e3), (1e11, 1e6), (1e8, 1e9))
+    """From this value on a time is a date; nanoseconds of one unit."""
+    float_units: tuple[tuple[float, float], ...] = ((2.0, 1e9), (2e3, 1e6), (2e6, 1e3), (2e9, 1.0))
+    """Largest span -> unit of a fractional time [ns]."""
+    turn_s: tuple[float, float] = (0.01, 0.6)
+    """Duration of a revolution, from and to [s]; determines the unit of integer times."""
+    part_ns: float = 1e8
+    """A cloud that is part of a revolution may be timed from the start of the revolution [ns]."""
+    counter: int = 1 << 32
+    """Where a counter of 32 bits starts again."""
+    shortest_cycle_ns: int = 60_000_000_000
+    """A cycle of a few seconds would fit any stamp [ns]."""
+    bulk: float = 6.0
+    """Times within this multiple of the distance of 60 % of them from the middle one are the bulk:
+    all of an even revolution, without up to two fifths that are damaged."""
+    largest_ns: float = 2.0**62
+    """Larger values are no times [ns]."""
+    most_damaged: float = 0.2
+    """With a larger ratio of damaged times the field is not used."""
+    revolutions: float = 2.0
+    """Times farther from the others are damaged."""
+    part_ratio: tuple[float, float] = (0.2, 1.5)
+    """Duration of a cloud that is part of a revolution, from and to, in those from cloud to
+    cloud."""
+    steps: float = 50.0
+    """A revolution is resolved in at least this many steps, or the times are too coarse."""
+
+
+POINT_TIMES = PointTimeTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StampTuning:
+    """Stamps of messages: wrong ones, another clock, late ones (`stamps.py`, `stamp_order.py`)."""
+
+    other_ns: int = 10_000_000_000
+    """A stamp that is farther from its place among the others is wrong [ns]."""
+    confirm: int = 3
+    """Stamps in a row that must agree on another clock: fewer are wrong ones."""
+    strays_ratio: float = 0.05
+    """A larger ratio of stamps that are far from their neighbors is no set of wrong ones."""
+    ahead: int = 6
+    """Messages that are held back: one that is recorded after this many later ones is too late."""
+    set_back: int = 3
+    """This many messages with earlier stamps, and no later one among them, are a clock set back."""
+
+
+STAMPS = StampTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FrameTimeTuning:
+    """Times of files of points (`frame_times.py`, `folders.py`)."""
+
+    assumed_ns: int = 100_000_000
+    """Interval of frames without times [ns]."""
+    shortest_ns: int = 20_000_000
+    longest_ns: int = 250_000_000
+    """Plausible intervals of frames [ns]; outside them each frame counts as one revolution."""
+    earliest_ns: int = 300_000_000 * 1_000_000_000
+    """Times before 1979 do not count from 1970."""
+
+
+FRAME_TIMES = FrameTimeTuning()
