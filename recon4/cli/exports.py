@@ -25,8 +25,8 @@ def export(
     file: Annotated[
         Path,
         typer.Argument(
-            help="File to write; the suffix selects the format: .laz, .ply; .txt = KITTI poses; "
-            ".3dtk = folder of scans with poses for 3DTK; .csv, .geojson = the findings."
+            help="File to write; the suffix selects the format: .laz, .copc.laz (COPC), .ply; "
+            ".txt = KITTI poses; .3dtk = folder of scans with poses for 3DTK; .csv, .geojson = the findings."
         ),
     ],
     *,
@@ -36,7 +36,9 @@ def export(
     ] = False,
     strays: Annotated[
         bool,
-        typer.Option("--strays", help="Also stray returns, as classes 7 and 18 (noise); .laz."),
+        typer.Option(
+            "--strays", help="Also stray returns, as classes 7 and 18 (noise); LAZ, COPC."
+        ),
     ] = False,
     draft: DraftOption = False,
 ) -> None:
@@ -52,7 +54,7 @@ def export(
 
     if file.suffix.lower() in (".txt", *ENDINGS):
         if crs:
-            raise typer.BadParameter("--crs is for maps: .laz and .ply")
+            raise typer.BadParameter("--crs is for maps: .laz, .copc.laz, .ply")
         if file.suffix.lower() == ".txt":
             write(f"{export_poses(project, file, draft=draft)} poses in {file}")
         else:

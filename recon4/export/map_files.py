@@ -6,11 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.errors import ConfigError, StoreError
-from recon4.export.laz import export_laz
+from recon4.errors import StoreError
+from recon4.export.clouds import cloud_format
 from recon4.export.names import check_name
-from recon4.export.ply import export_ply
-from recon4.export.points import OutputCrs
+from recon4.export.points import CRS_OF_MAP, OutputCrs
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
@@ -34,7 +33,7 @@ class MapExport:
     raw: bool = False
     """Points where they were measured, not on their surfaces."""
     strays: bool = False
-    """Also the stray returns, marked as noise; only as LAZ."""
+    """Also the stray returns, marked as noise; only as LAZ and COPC."""
     draft: bool = False
     """Without an approval, whether or not there is one."""
 
@@ -62,11 +61,11 @@ class ExportedMap:
 
 
 def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
-    """Write the map of a finished run as LAZ or PLY; the file notes an approval.
+    """Write the map of a finished run; the file notes an approval.
 
     Args:
         project: The project folder.
-        path: File to write; ``.laz`` or ``.ply``.
+        path: File to write; its ending is one of `CLOUD_FORMATS`.
         wanted: Coordinates and kinds of points.
         progress: Counts points.
 
@@ -83,7 +82,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
     artifacts = read_artifacts(project)
     if "map" not in artifacts:
         raise StoreError(f"{project} has no map yet: run recon4 process")
-    ending = _ending_of_map(path, strays=wanted.strays)
+    write = cloud_format(path, strays=wanted.strays).write
     keys = {name: folder.name for name, folder in artifacts.items()}
     approval = None if wanted.draft else approval_of(project, keys)
     checked = None
@@ -91,35 +90,16 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         approval.evidence.check_frame(artifacts)
         checked = approval.evidence.artifact("map", artifacts["map"])
     place = read_crs(artifacts["level"], wanted.crs)
-    to_crs = place.to_crs if place else None
+    output = OutputCrs(place.wkt, place.to_crs) if place else CRS_OF_MAP
     tiles = TileSet.open(artifacts["map"], checked)
     tiles = tiles.as_measured() if wanted.raw else tiles
     # The stamp goes onto a file beside it, so that a file without one is never there.
     with atomic_file(path) as temporary:
-        if ending == ".laz":
-            output = OutputCrs(place.wkt if place else None, to_crs)
-            count = export_laz(tiles, temporary, output, strays=wanted.strays, progress=progress)
-        else:
-            count = export_ply(tiles, temporary, map_to_crs=to_crs, progress=progress)
+        count = write(tiles, temporary, output, strays=wanted.strays, progress=progress)
         if approval:
             stamp_file(temporary, temporary, approval.stamp)
     state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
     return ExportedMap(count, tiles.strays, wanted.strays, state)
-
-
-def _ending_of_map(path: Path, *, strays: bool) -> str:
-    """Ending of a file that can hold a map.
-
-    Raises:
-        ConfigError: If no map is written to such a file.
-    """
-    ending = path.suffix.lower()
-    if ending not in (".laz", ".ply"):
-        raise ConfigError(f"a map is written as .laz or .ply, got {path.name}")
-    if strays and ending != ".laz":
-        raise ConfigError(f"stray returns are written to .laz only, got {path.name}")
-    check_name(path, ending)
-    return ending
 
 
 def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:

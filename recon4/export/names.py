@@ -6,8 +6,8 @@ from pathlib import Path
 
 from recon4.errors import ConfigError
 
+COPC = ".copc.laz"
 _UNWRITTEN = {
-    ".copc.laz": "COPC",
     ".ept.laz": "an Entwine point tile",
     ".splat.ply": "a Gaussian splat",
     ".compressed.ply": "a compressed splat",
@@ -23,9 +23,11 @@ def check_name(path: Path, ending: str) -> None:
         ConfigError: Saying which name would do.
     """
     name = path.name.lower()
+    if ending == ".laz" and name.endswith(COPC):
+        raise ConfigError(f"{path.name}: a map is written as {COPC}, this is a plain LAZ file")
     for special, kind in _UNWRITTEN.items():
         if special.endswith(ending) and name.endswith(special):
             plain = path.name[: -len(special)] + ending
             raise ConfigError(f"{path.name}: {kind} is not supported; use {plain}")
-    if path.suffix.lower() != ending:
+    if not name.endswith(ending):
         raise ConfigError(f"a {ending[1:].upper()} file must be named {ending}, got {path.name}")

@@ -8,7 +8,7 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.export.names import check_name
-from recon4.export.points import Block, ToCrs, blocks, center, output_transform
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, output_transform
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
 from recon4.progress import Progress, Silent
@@ -30,8 +30,9 @@ _COLUMNS = {
 def export_ply(
     map_: Path | TileSet,
     path: Path,
+    output: OutputCrs = CRS_OF_MAP,
     *,
-    map_to_crs: ToCrs | None = None,
+    strays: bool = False,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as little-endian PLY with all its fields, streaming.
@@ -42,8 +43,8 @@ def export_ply(
     Args:
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.ply``.
-        map_to_crs: Map coordinates to those wanted; None = the shift by the map's origin in its
-            CRS.
+        output: CRS of the file.
+        strays: Not with this format, which has no classes.
         progress: Who watches.
 
     Returns:
@@ -53,9 +54,10 @@ def export_ply(
         ConfigError: If the map has no points, or the name is not one of a PLY file.
         StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
     """
+    assert not strays
     check_name(path, ".ply")
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = output_transform(tiles, map_to_crs)
+    transform = output_transform(tiles, output.map_to_crs)
     center(tiles, transform)
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
@@ -64,7 +66,7 @@ def export_ply(
         tiles, [*fields, "normal", "t_ns"], transform=transform, progress=progress or Silent()
     )
     with atomic_file(path) as temporary:
-        head = _head(row, len(tiles), tiles.crs.wkt if tiles.crs else "")
+        head = _head(row, len(tiles), output.crs or (tiles.crs.wkt if tiles.crs else ""))
         with temporary.open("wb") as file:
             file.write(head)
             for block in stream:

@@ -25,3 +25,22 @@ class PointExportTuning:
 
 
 POINT_EXPORT = PointExportTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class OctreeTuning:
+    """The octree of COPC."""
+
+    step_m: float = 0.0001
+    """Resolution of the coordinates: finer than anything a map holds."""
+    side_bits: int = 7
+    """A node samples what is below it in 2^7 cells along each edge: COPC's spacing."""
+    bucket_bits: int = 17
+    """Points are sorted by cubes of 2^17 steps (13 m) in files first."""
+    points_in_memory: int = 1_000_000
+    """A file with more points is split by the nodes below it: 60 MB and some copies."""
+    points_of_leaf: int = 50_000
+    """A node with fewer points has no nodes below it: one request of a viewer."""
+
+
+OCTREE = OctreeTuning()

@@ -23,6 +23,7 @@ NO_VERDICT = "unknown"
 VLR_USER = b"recon4"
 VLR_RECORD = 1
 _VLR = struct.Struct("<H16sHH32s")
+_EVLR = struct.Struct("<H16sHQ32s")
 _POINTS_AT, _EVLRS_AT = 96, 235
 _PNG_HEADER_BYTES = 8 + 25
 """Signature and header chunk."""
@@ -70,7 +71,10 @@ def stamp_file(source: Path, target: Path, stamp: Stamp) -> None:
 
 
 def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
-    """Insert a variable length record with user id ``recon4``; later offsets are shifted."""
+    """Insert a variable length record with user id ``recon4``; later offsets are shifted.
+
+    COPC states where its nodes are, and what comes first: there the record is the last one.
+    """
     header = bytearray(source.read(_HEADER_BYTES))
     if len(header) < _HEADER_BYTES or header[:4] != b"LASF" or header[25] != 4:
         raise StoreError("a LAZ file of version 1.4 was expected")
@@ -78,10 +82,17 @@ def _laz(source: BinaryIO, target: BinaryIO, stamp: Stamp) -> None:
     record = _VLR.pack(0, VLR_USER, VLR_RECORD, len(text), b"approval") + text
     points_at, count = struct.unpack_from("<II", header, _POINTS_AT)
     evlrs_at, evlrs = struct.unpack_from("<QI", header, _EVLRS_AT)
+    records = source.read(points_at - _HEADER_BYTES)
+    if records[2:7] == b"copc\0":
+        struct.pack_into("<I", header, _EVLRS_AT + 8, evlrs + 1)
+        target.write(header + records)
+        shutil.copyfileobj(source, target, 1 << 20)
+        target.write(_EVLR.pack(0, VLR_USER, VLR_RECORD, len(text), b"approval") + text)
+        return
     struct.pack_into("<II", header, _POINTS_AT, points_at + len(record), count + 1)
     if evlrs:
         struct.pack_into("<Q", header, _EVLRS_AT, evlrs_at + len(record))
-    target.write(header + source.read(points_at - _HEADER_BYTES) + record)
+    target.write(header + records + record)
     (table_at,) = struct.unpack("<q", source.read(8))
     target.write(struct.pack("<q", table_at + len(record) if table_at >= 0 else table_at))
     shutil.copyfileobj(source, target, 1 << 20)

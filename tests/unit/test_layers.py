@@ -155,7 +155,7 @@ ONLY_HERE = {
     "serial": {"recon4/live/recorder/serial_port.py"},
     "gtsam": {"recon4/pose_graph/solve.py"},
     "open3d": {"recon4/geometry/raycast.py"},
-    "laspy": {"recon4/export/laz.py"}
+    "laspy": {f"recon4/export/{name}.py" for name in ("copc", "las_points", "laz")}
     | {f"recon4/recording/formats/{name}.py" for name in ("las_records", "cloud_crs")}
     | {"recon4/recording/mandeye/write.py"},
     "ctypes": {"recon4/sandbox"},

@@ -11,8 +11,10 @@ from recon4.export.names import check_name
 @pytest.mark.parametrize(
     ("name", "ending", "text"),
     [
-        ("x.copc.laz", ".laz", r"COPC is not supported; use x\.laz"),
-        ("X.COPC.LAZ", ".laz", r"use X\.laz"),
+        ("x.copc.laz", ".laz", "this is a plain LAZ file"),
+        ("X.COPC.LAZ", ".laz", "this is a plain LAZ file"),
+        ("x.laz", ".copc.laz", r"must be named \.copc\.laz"),
+        ("X.SPLAT.PLY", ".ply", r"use X\.ply"),
         ("x.las", ".laz", r"must be named \.laz"),
         ("x.cog.tif", ".tif", r"use x\.tif"),
         ("x", ".ply", r"must be named \.ply"),

@@ -149,6 +149,12 @@ def test_ply_holds_every_point_with_all_its_fields(folder, tmp_path):
     np.testing.assert_allclose(points["nz"], column(tiles, "normal")[:, 2], atol=1e-6)
 
 
+def test_ply_names_the_crs_of_its_coordinates(folder, tmp_path):
+    export_ply(folder, tmp_path / "map.ply", OutputCrs("EPSG:32632", lambda xyz: xyz))
+
+    assert b"comment crs EPSG:32632\n" in (tmp_path / "map.ply").read_bytes()[:400]
+
+
 @pytest.mark.parametrize("export", [export_laz, export_ply])
 def test_an_empty_map_and_a_wrong_name_are_refused(export, folder, tmp_path):
     walk = room_walk(frames=2)
@@ -195,19 +201,17 @@ FULL = """
 import resource, signal, sys
 from pathlib import Path
 from recon4.errors import NoSpace
-from recon4.export.laz import export_laz
-from recon4.export.ply import export_ply
+from recon4.export.clouds import cloud_format
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 try:
-    export = export_laz if sys.argv[2].endswith("laz") else export_ply
-    export(Path(sys.argv[1]), Path(sys.argv[2]))
+    cloud_format(Path(sys.argv[2])).write(Path(sys.argv[1]), Path(sys.argv[2]))
 except NoSpace as error:
     sys.exit(f"NoSpace: {error}")
 """
 
 
-@pytest.mark.parametrize("name", ["map.laz", "map.ply"])
+@pytest.mark.parametrize("name", ["map.laz", "map.copc.laz", "map.ply"])
 def test_a_full_disk_is_named_and_leaves_nothing(name, folder, tmp_path):
     ran = subprocess.run(
         [sys.executable, "-c", FULL, str(folder), str(tmp_path / name)],

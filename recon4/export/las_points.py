@@ -1,0 +1,153 @@
+"""The map as points of LAS 1.4, point format 6: the header and the records of LAZ and COPC."""
+
+from __future__ import annotations
+
+import uuid
+from collections.abc import Iterator
+from dataclasses import replace
+from itertools import chain
+from typing import Any
+
+import laspy
+import numpy as np
+import pyproj
+
+import recon4
+from recon4.errors import GeoreferenceError
+from recon4.export.points import Block, OutputCrs, ToCrs, blocks, center, output_transform
+from recon4.mapping.tile import DEVIATION
+from recon4.mapping.tiles import TileSet
+from recon4.model.gps_time import day_of, is_absolute, point_time_s
+from recon4.progress import Progress
+
+NORMALIZED_STEP = 1.0 / 16.0
+"""Normalized intensities are rounded to this: finer than the raw step, and it compresses."""
+DEVIATION_STEP_M = 0.0001
+"""Deviations of positions are stored as whole steps, which compress better than floats [m]."""
+FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
+"""What is read beside the coordinates."""
+OPTIONAL = {
+    "intensity_normalized": ("f4", "beam, range, incidence removed"),
+    "surface_returns": ("u2", "returns the surface is fitted to"),
+    "surface_sd_m": ("f4", "deviation across the surface"),
+    "planarity": ("f4", "0..1"),
+    DEVIATION: ("u4", "1 sigma by pose, worst axis"),
+}
+"""Fields a map may have: type and description of the extra dimension."""
+COPIED = ("surface_returns", "surface_sd_m", "planarity")
+LOW_NOISE, HIGH_NOISE = 7, 18
+"""Classes of stray returns: beside a surface, as where a beam hits two things; alone in the air."""
+
+
+def las_blocks(
+    tiles: TileSet, transform: ToCrs, *, strays: bool, progress: Progress
+) -> Iterator[Block]:
+    """All points of a map with what their records need, the stray returns last if wanted."""
+    fields = [name for name in [*FIELDS, *OPTIONAL] if name in tiles.fields]
+    stream = blocks(tiles, fields, transform=transform, progress=progress)
+    if not strays:
+        return stream
+    only, more = tiles.only_strays(), [*fields, "normal"]
+    of_strays = blocks(only, more, transform=transform, progress=progress)
+    return chain(stream, (replace(block, strays=True) for block in of_strays))
+
+
+def las_header(tiles: TileSet, output: OutputCrs, *, scale_m: float) -> Any:
+    """The header of a file of the map, with its extra dimensions and its CRS, without points.
+
+    Args:
+        tiles: The map.
+        output: CRS of the file.
+        scale_m: Step of the coordinates [m].
+
+    Raises:
+        ConfigError: If the map has no points.
+        GeoreferenceError: If the CRS is not understood.
+    """
+    crs = output.crs or (tiles.crs and tiles.crs.wkt) or None
+    offset = center(tiles, output_transform(tiles, output.map_to_crs))
+    header = laspy.LasHeader(version="1.4", point_format=6)
+    header.scales, header.offsets = np.full(3, scale_m), offset
+    header.generating_software = f"recon4 {recon4.__version__}"
+    header.system_identifier = "MERGE"
+    # The same map gives the same bytes: no random UUID and no date of the day.
+    header.uuid = uuid.UUID(int=0)
+    first_ns = tiles.first_ns
+    header.creation_date = day_of(max(first_ns, 0))
+    header.global_encoding.gps_time_type = (
+        laspy.header.GpsTimeType.STANDARD
+        if is_absolute(first_ns)
+        else laspy.header.GpsTimeType.WEEK_TIME
+    )
+    extra = [("ring", "u1", "beam, 0 = lowest"), ("frame_id", "u4", "multiframe")]
+    extra += [(name, *OPTIONAL[name]) for name in OPTIONAL if name in tiles.fields]
+    header.add_extra_dims([_dimension(*row) for row in extra])
+    header.global_encoding.wkt = True
+    if crs is not None:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(crs)))
+    return header
+
+
+def _dimension(name: str, kind: str, description: str) -> Any:
+    """An extra dimension; deviations are whole steps with a scale, which readers apply."""
+    if name != DEVIATION:
+        return laspy.ExtraBytesParams(name, kind, description)
+    scale, offset = np.array([DEVIATION_STEP_M]), np.zeros(1)
+    return laspy.ExtraBytesParams(name, kind, description, offsets=offset, scales=scale)
+
+
+def _wkt(crs: str) -> str:
+    """The WKT that LAS 1.4 requires (version 1), or the newer one for a CRS it cannot express."""
+    try:
+        known = pyproj.CRS.from_user_input(crs)
+    except pyproj.exceptions.CRSError as error:
+        raise GeoreferenceError(f"not a CRS: {crs[:80]!r}: {error}") from error
+    try:
+        return str(known.to_wkt("WKT1_GDAL"))
+    except pyproj.exceptions.CRSError:
+        return str(known.to_wkt())
+
+
+def las_points(block: Block, header: Any) -> Any:
+    """Points of the map as records of a file.
+
+    Raises:
+        GeoreferenceError: If they are too far from the header's offset for its steps.
+    """
+    absolute = header.global_encoding.gps_time_type == laspy.header.GpsTimeType.STANDARD
+    steps = np.rint((block.xyz - header.offsets) / header.scales)
+    if not (np.abs(steps) < 2**31 - 1).all():
+        wide_km = round(4e6 * header.scales[0])
+        raise GeoreferenceError(
+            f"the map is wider than {wide_km} km or has coordinates without meaning"
+        )
+    points = laspy.ScaleAwarePointRecord.zeros(len(steps), header=header)
+    columns = block.columns
+    points.X[:], points.Y[:], points.Z[:] = steps.T.astype(np.int32)
+    points.intensity[:] = columns["intensity"]
+    points.return_number = columns["echo"] + 1
+    # The smallest it can be: a map does not store how many returns a shot had.
+    points.number_of_returns = columns["echo"] + 1
+    points.point_source_id[:] = columns["sensor"].astype(np.uint16) + 1
+    points.gps_time[:] = point_time_s(columns["t_ns"], absolute=absolute)
+    points["ring"][:] = columns["ring"]
+    points["frame_id"][:] = columns["frame_id"]
+    if block.strays:
+        # Too few others around it for a normal: nothing else was measured there.
+        alone = ~columns["normal"].any(axis=1)
+        points.classification[:] = np.where(alone, HIGH_NOISE, LOW_NOISE)
+    for name in COPIED:
+        if name in columns:
+            points[name][:] = columns[name]
+    if "intensity_normalized" in columns:
+        fine = columns["intensity_normalized"]
+        points["intensity_normalized"][:] = np.rint(fine / NORMALIZED_STEP) * NORMALIZED_STEP
+    if DEVIATION in columns:
+        points[DEVIATION] = columns[DEVIATION].astype(np.float64)
+    return points
+
+
+def crs_text(header: Any) -> str:
+    """The WKT that a header names; empty = none."""
+    found = header.vlrs.get("WktCoordinateSystemVlr")
+    return str(found[0].string).rstrip("\0") if found else ""
