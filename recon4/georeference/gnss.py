@@ -21,8 +21,9 @@ from recon4.model.pose_graph import AUTOMATIC, Judge, Judgment, PoseGraph
 from recon4.model.rig import Rig
 from recon4.model.samples import GnssSamples
 from recon4.model.trajectory import Times, Trajectory
+from recon4.pose_graph.priors import PosePriors, PositionPriors, Priors
 from recon4.pose_graph.robust import optimize_gnc
-from recon4.pose_graph.solve import PosePriors, PositionPriors, Priors, optimize
+from recon4.pose_graph.solve import optimize
 from recon4.pose_graph.tuning_solve import ROBUST
 from recon4.pose_graph.verification import outlier_judgments, with_judgments
 

@@ -8,14 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.pose_graph import Flags, PoseGraph, Relations
+from recon4.pose_graph.priors import Priors
 from recon4.pose_graph.relations import squared_residuals
-from recon4.pose_graph.solve import FactorProblem, Priors, Solution, solved
+from recon4.pose_graph.solve import Solution, solved
 from recon4.pose_graph.tuning_solve import ROBUST
+
+if TYPE_CHECKING:
+    from recon4.pose_graph.factors import FactorProblem
 
 
 def optimize_gnc(
@@ -42,6 +47,8 @@ def optimize_gnc(
     Raises:
         GraphError: As `solve.optimize`.
     """
+    from recon4.pose_graph.factors import FactorProblem  # loads gtsam
+
     of = graph.relations
     problem = FactorProblem.check(graph.T_map_body, of, fixed=fixed, priors=priors)
     everything = of.in_graph.astype(np.float64)

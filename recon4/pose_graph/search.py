@@ -23,8 +23,9 @@ from recon4.pose_graph.candidates import Ends, retry_pairs, rounds
 from recon4.pose_graph.files import save_graph
 from recon4.pose_graph.pairs import Pair, PairRegistrar
 from recon4.pose_graph.pieces import Pieces, joined_pieces, placed, weakened
+from recon4.pose_graph.priors import Kernel
 from recon4.pose_graph.recognition import recognize, without_settled
-from recon4.pose_graph.solve import Kernel, Solution, optimize
+from recon4.pose_graph.solve import Solution, optimize
 from recon4.pose_graph.tuning import GraphTuning, graph_tuning
 from recon4.pose_graph.tuning_solve import SEARCH
 from recon4.progress import Progress

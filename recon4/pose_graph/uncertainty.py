@@ -21,7 +21,7 @@ from recon4.pose_graph.carried_motion import CarriedMotion
 from recon4.pose_graph.error_model import CALIBRATED, ErrorModel, GraphAgreement, agreement
 from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import NOTHING_KNOWN, KnownErrors
-from recon4.pose_graph.solve import PositionPriors
+from recon4.pose_graph.priors import PositionPriors
 from recon4.pose_graph.tuning_solve import UNCERTAINTY
 
 

@@ -153,7 +153,7 @@ NOBODY_IMPORTS = {
 
 ONLY_HERE = {
     "serial": {"recon4/live/recorder/serial_port.py"},
-    "gtsam": {"recon4/pose_graph/solve.py"},
+    "gtsam": {"recon4/pose_graph/factors.py"},
     "open3d": {"recon4/geometry/raycast.py"},
     "laspy": {f"recon4/export/{name}.py" for name in ("copc", "las_points", "laz")}
     | {f"recon4/recording/formats/{name}.py" for name in ("las_records", "cloud_crs")}
@@ -330,6 +330,7 @@ def test_server_and_viewer_start_without_what_only_computing_needs():
         "open3d",
         "matplotlib",
         "ezdxf",
+        "gtsam",
     ]
     load = "import sys, recon4_app.main, recon4_app.viewer.process"
     program = f"{load}; print([n for n in {heavy} if n in sys.modules])"

@@ -14,9 +14,10 @@ from recon4.model.pose_graph import (
     relations_of,
 )
 from recon4.pose_graph.checks import check_relations
+from recon4.pose_graph.priors import PosePriors, PositionPriors
 from recon4.pose_graph.relations import reverse, squared_residuals
 from recon4.pose_graph.robust import optimize_gnc, outlier_limit
-from recon4.pose_graph.solve import PosePriors, PositionPriors, initialize, optimize
+from recon4.pose_graph.solve import initialize, optimize
 from tests.benchmarks.false_loops import inject_random, office_graph
 
 

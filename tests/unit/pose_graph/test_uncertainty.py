@@ -16,7 +16,7 @@ from recon4.pose_graph.carried_motion import CarriedMotion, load_carried_motion
 from recon4.pose_graph.error_model import ErrorModel
 from recon4.pose_graph.free_network import aligned_cov
 from recon4.pose_graph.known_errors import KnownErrors
-from recon4.pose_graph.solve import PositionPriors
+from recon4.pose_graph.priors import PositionPriors
 from recon4.pose_graph.uncertainty import pose_uncertainty
 from recon4.pose_graph.uncertainty_files import (
     load_uncertainty,
