@@ -1,4 +1,4 @@
-"""What a solve is told beside the graph: priors of poses, and how gross errors are treated."""
+"""What a solve is given beside the graph: priors of poses, and how gross errors are treated."""
 
 from __future__ import annotations
 
