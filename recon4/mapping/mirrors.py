@@ -15,6 +15,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import label
 from scipy.spatial import cKDTree
 
 from recon4.geometry.se3 import Array
@@ -163,9 +164,11 @@ def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFigures | None:
     met &= like > MIRRORS.same_cosine
     part = before[beams] / (before[beams] + behind[beams])
     at = origin + part[:, None] * (point - origin)
-    _, which, count = np.unique(wall.cells(at), axis=0, return_inverse=True, return_counts=True)
+    cells, which, count = np.unique(wall.cells(at), axis=0, return_inverse=True, return_counts=True)
     which = which.ravel()
-    mirrored = (count >= MIRRORS.min_beams) & (np.bincount(which, met) >= MIRRORS.min_ratio * count)
+    shown = np.bincount(which[met], minlength=len(count))
+    mirrored = (count >= MIRRORS.min_beams) & (shown >= MIRRORS.min_ratio * count)
+    mirrored &= _opening_ratio(cells, count, shown) >= MIRRORS.opening_ratio
     area_m2 = float(mirrored.sum()) * MIRRORS.grid_m**2
     if area_m2 < MIRRORS.min_area_m2 or _is_entered(wall, steep, point[met & mirrored[which]]):
         return None
@@ -173,6 +176,27 @@ def _mirror(wall: _Wall, steep: _Steep, every: Sight) -> MirrorFigures | None:
     crossing = wall.height(every.origin_m) > MIRRORS.before_m
     crossing &= wall.height(every.point_m) < -MIRRORS.behind_m
     return MirrorFigures(area_m2=area_m2, middle_m=(x, y), behind=float(crossing.mean()))
+
+
+def _opening_ratio(
+    cells: NDArray[np.int64], count: NDArray[np.intp], shown: NDArray[np.intp]
+) -> Array:
+    """Ratio of beams that show the room before the wall, in the opening of each cell, (N,).
+
+    An opening is all cells in a row that enough beams cross. All of a mirror shows reflections; of
+    the space over the wall between two flights of stairs, which are alike, a part seems to.
+
+    Args:
+        cells: Cells that beams cross, (N, 2).
+        count: Beams through each, (N,).
+        shown: Those of them that show the room, (N,).
+    """
+    at = tuple((cells - cells.min(axis=0)).T)
+    crossed = np.zeros(np.ptp(cells, axis=0) + 1, np.bool_)
+    crossed[at] = count >= MIRRORS.min_beams
+    opening = label(crossed)[0][at]
+    every, shows = (np.bincount(opening, values) for values in (count, shown))
+    return np.asarray((shows / np.maximum(every, 1))[opening])
 
 
 def _is_entered(wall: _Wall, steep: _Steep, reflected: Array) -> bool:

@@ -59,6 +59,9 @@ class MirrorTuning:
     min_ratio: float = 0.75
     """A cell is mirrored if this many beams cross it, and this ratio of them shows the room before
     it."""
+    opening_ratio: float = 0.65
+    """The opening around it is no mirror if fewer of its beams do: 0.88 and 0.93 in rooms with
+    mirrors, 0.47 over the wall of a staircase."""
     min_area_m2: float = 2.5
     """A smaller wall is no mirror [m²]."""
     entered_ratio: float = 0.5

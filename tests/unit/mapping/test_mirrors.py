@@ -106,9 +106,9 @@ def test_evenly_spaced_boards_have_none() -> None:
     assert find_mirrors(Sight(np.concatenate(points), np.concatenate(origins))) == []
 
 
-def like_rooms(origins_x):
-    """Two rooms of 4 m, one the mirror image of the other, with an opening of 2.4 x 2.4 m between
-    them, seen from places with these x."""
+def like_rooms(origins_x, *, half_m=1.2, board_m=-9.0):
+    """Two rooms of 4 m, one the mirror image of the other, with an opening between them, 2.4 m high,
+    seen from places with these x. Behind it a board, 1 m away, ends at ``board_m``."""
     rng = np.random.default_rng(3)
     points, origins = [], []
     for x0 in origins_x:
@@ -119,8 +119,11 @@ def like_rooms(origins_x):
             side = np.sign(x0)
             first = _reach(origin, d, (-4.0, 0.0) if side < 0 else (0.0, 4.0))
             at = origin + first[:, None] * d
-            through = (np.abs(at[:, 0]) < 1e-6) & (np.abs(at[:, 1]) < 1.2) & (at[:, 2] < 2.4)
+            through = (np.abs(at[:, 0]) < 1e-6) & (np.abs(at[:, 1]) < half_m) & (at[:, 2] < 2.4)
             reach = np.where(through, _reach(origin, d, (-4.0, 4.0)), first)
+            board = (1.0 - origin[0]) / d[:, 0]
+            hit = through & (side < 0) & ((origin + board[:, None] * d)[:, 1] < board_m)
+            reach = np.where(hit, board, reach)
             noisy = reach + rng.normal(0.0, 0.01, len(reach))
             points.append(origin + noisy[:, None] * d)
             origins.append(np.tile(origin, (len(d), 1)))
@@ -139,3 +142,7 @@ def test_a_like_room_is_no_reflection_once_it_was_entered() -> None:
 
     assert doubtful.middle_m[0] == pytest.approx(0.0, abs=0.1)
     assert find_mirrors(like_rooms((-3.0, -2.0, -1.0, 1.0, 2.0, 3.0))) == []
+
+
+def test_an_opening_of_which_a_part_shows_something_else_is_no_mirror():
+    assert find_mirrors(like_rooms((-3.0, -2.0, -1.0), half_m=2.4, board_m=-1.5)) == []
