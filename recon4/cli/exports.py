@@ -25,8 +25,9 @@ def export(
     file: Annotated[
         Path,
         typer.Argument(
-            help="File to write; the suffix selects the format: .laz, .copc.laz (COPC), .ply; "
-            ".txt = KITTI poses; .3dtk = folder of scans with poses for 3DTK; .csv, .geojson = the findings."
+            help="File to write; the suffix selects the format: .laz, .copc.laz (COPC), "
+            ".e57 (scans with poses), .ply; .txt = KITTI poses; .3dtk = folder of scans with poses "
+            "for 3DTK; .csv, .geojson = the findings."
         ),
     ],
     *,
@@ -50,11 +51,11 @@ def export(
     from recon4.cli.terminal import watcher
     from recon4.export.findings import ENDINGS, export_findings
     from recon4.export.map_files import MapExport, export_map, export_poses
-    from recon4.export.three_dtk import export_3dtk
+    from recon4.export.scan_files import export_3dtk, export_map_scans
 
     if file.suffix.lower() in (".txt", *ENDINGS):
         if crs:
-            raise typer.BadParameter("--crs is for maps: .laz, .copc.laz, .ply")
+            raise typer.BadParameter("--crs is for maps: .laz, .copc.laz, .e57, .ply")
         if file.suffix.lower() == ".txt":
             write(f"{export_poses(project, file, draft=draft)} poses in {file}")
         else:
@@ -68,7 +69,8 @@ def export(
             _write_approval(project, draft=draft)
             return
         wanted = MapExport(crs=crs, raw=raw, strays=strays, draft=draft)
-        made = export_map(project, file, wanted, progress=progress)
+        export = export_map_scans if file.suffix.lower() == ".e57" else export_map
+        made = export(project, file, wanted, progress=progress)
     write(f"{made.text} in {file}\n{made.approval.text}")
 
 

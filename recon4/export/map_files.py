@@ -17,7 +17,7 @@ from recon4.progress import Progress
 from recon4.recording.formats.poses import write_kitti
 from recon4.review.approval_state import WRITTEN_AS_DRAFT, ApprovalState, approval_state
 from recon4.review.approved import approval_of
-from recon4.review.stamp import stamp_file
+from recon4.review.stamp import Stamp, stamp_file
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file
 from recon4.store.frames import FrameStore
@@ -60,6 +60,45 @@ class ExportedMap:
         return f"{self.points} points, {self.strays} stray returns {where},"
 
 
+@dataclass(frozen=True, slots=True)
+class OpenedMap:
+    """The map of a finished run, compared with its approval if there is one."""
+
+    tiles: TileSet
+    output: OutputCrs
+    """The coordinates that are wanted."""
+    artifacts: Mapping[str, Path]
+    stamp: Stamp | None
+    """What the file has to say of the approval."""
+    state: ApprovalState
+
+
+def open_map(project: Path, wanted: MapExport) -> OpenedMap:
+    """Open the map of a finished run for an export.
+
+    Raises:
+        Altered: If it was approved and is not what was approved, or its approval is not to be
+            trusted (`approval_of`), unless a draft is wanted.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
+        StoreError: If there is no map yet.
+    """
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project} has no map yet: run recon4 process")
+    keys = {name: folder.name for name, folder in artifacts.items()}
+    approval = None if wanted.draft else approval_of(project, keys)
+    checked = None
+    if approval:
+        approval.evidence.check_frame(artifacts)
+        checked = approval.evidence.artifact("map", artifacts["map"])
+    place = read_crs(artifacts["level"], wanted.crs)
+    output = OutputCrs(place.wkt, place.to_crs) if place else CRS_OF_MAP
+    tiles = TileSet.open(artifacts["map"], checked)
+    tiles = tiles.as_measured() if wanted.raw else tiles
+    state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
+    return OpenedMap(tiles, output, artifacts, approval.stamp if approval else None, state)
+
+
 def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
     """Write the map of a finished run; the file notes an approval.
 
@@ -73,33 +112,18 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         How many points were written, and how many stray returns there are.
 
     Raises:
-        Altered: If it was approved and is not what was approved, or its approval is not to be
-            trusted (`approval_of`), unless a draft is wanted; nothing is written.
         ConfigError: If the ending is another.
-        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
+        Altered, GeoreferenceError: As `open_map`; nothing is written.
         StoreError: If there is no map yet or the file cannot be written.
     """
-    artifacts = read_artifacts(project)
-    if "map" not in artifacts:
-        raise StoreError(f"{project} has no map yet: run recon4 process")
     write = cloud_format(path, strays=wanted.strays).write
-    keys = {name: folder.name for name, folder in artifacts.items()}
-    approval = None if wanted.draft else approval_of(project, keys)
-    checked = None
-    if approval:
-        approval.evidence.check_frame(artifacts)
-        checked = approval.evidence.artifact("map", artifacts["map"])
-    place = read_crs(artifacts["level"], wanted.crs)
-    output = OutputCrs(place.wkt, place.to_crs) if place else CRS_OF_MAP
-    tiles = TileSet.open(artifacts["map"], checked)
-    tiles = tiles.as_measured() if wanted.raw else tiles
+    map_ = open_map(project, wanted)
     # The stamp goes onto a file beside it, so that a file without one is never there.
     with atomic_file(path) as temporary:
-        count = write(tiles, temporary, output, strays=wanted.strays, progress=progress)
-        if approval:
-            stamp_file(temporary, temporary, approval.stamp)
-    state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
-    return ExportedMap(count, tiles.strays, wanted.strays, state)
+        count = write(map_.tiles, temporary, map_.output, strays=wanted.strays, progress=progress)
+        if map_.stamp:
+            stamp_file(temporary, temporary, map_.stamp)
+    return ExportedMap(count, map_.tiles.strays, wanted.strays, map_.state)
 
 
 def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:

@@ -4,6 +4,7 @@ import json
 
 import laspy
 import numpy as np
+import pye57
 import pytest
 
 from recon4.cli.main import main
@@ -108,6 +109,13 @@ def test_verify_finds_the_project_whole(project, capsys):
 def test_the_map_is_exported_but_without_gnss_not_to_a_crs(project, tmp_path, capsys):
     assert main(["export", str(project), str(tmp_path / "map.ply")]) == 0
     assert (tmp_path / "map.ply").read_bytes().startswith(b"ply\n")
+    for name in ("map.copc.laz", "map.e57"):
+        assert main(["export", str(project), str(tmp_path / name)]) == 0
+    with laspy.CopcReader.open(str(tmp_path / "map.copc.laz")) as copc:
+        points = len(copc.query())
+    with pye57.E57(str(tmp_path / "map.e57")) as e57:
+        assert sum(e57.get_header(k).point_count for k in range(e57.scan_count)) == points > 0
+    capsys.readouterr()
 
     assert main(["export", str(project), str(tmp_path / "m.laz"), "--crs", "EPSG:32633"]) == 1
     assert "no GNSS in the recording" in capsys.readouterr().err

@@ -98,7 +98,7 @@ MAY_IMPORT = {
         "recon4.georeference",
         "recon4.review.state",
     },
-    "recon4/export/three_dtk.py": STAGE
+    "recon4/export/scan_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.pose_graph", "recon4.profiler"},
     "recon4/evaluation": STAGE
     | {"recon4.mapping", "recon4.evaluation", "recon4.simulation", "recon4.recording.tables"}

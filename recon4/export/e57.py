@@ -1,0 +1,249 @@
+"""The map as E57 (ASTM E2807): one scan for each node of the pose graph, with its pose.
+
+A point belongs to the last node before its multiframe. Points are relative to the pose of their
+scan, in single precision: 4 µm at 50 m.
+"""
+
+from __future__ import annotations
+
+import tempfile
+import uuid
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import recon4
+from recon4.errors import StoreError
+from recon4.export.points import OutputCrs, blocks, center, output_transform
+from recon4.export.tuning import POINT_EXPORT
+from recon4.geometry.se3 import SE3, Array
+from recon4.mapping.tiles import TileSet
+from recon4.model.gps_time import adjusted_gps_s, is_absolute
+from recon4.model.trajectory import Times
+from recon4.progress import Progress
+
+_ROW = np.dtype([("cartesianX", "<f8"), ("cartesianY", "<f8"), ("cartesianZ", "<f8"),
+                 ("intensity", "<f8")])  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class ScanPoses:
+    """Where and when the nodes of the pose graph are."""
+
+    frame_ids: NDArray[np.int64]
+    """Multiframe of each node, ascending, (N,)."""
+    t_ns: Times
+    """Its time [ns], (N,)."""
+    T_map_body: SE3
+    """Its pose, (N,)."""
+    note: str = ""
+    """Description of each scan: the approval, for one."""
+
+
+def export_e57(
+    tiles: TileSet,
+    path: Path,
+    scans: ScanPoses,
+    output: OutputCrs,
+    *,
+    progress: Progress,
+) -> int:
+    """Write a map as E57, and read its points back.
+
+    Intensity is the normalized one if the map has it. Memory grows with the points of one scan.
+
+    Args:
+        tiles: The map.
+        path: File to write.
+        scans: Nodes of the pose graph.
+        output: CRS of the coordinates.
+        progress: Who watches.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the map has no points.
+        StoreError: If the file cannot be written or does not read back.
+    """
+    from pye57 import libe57
+
+    transform = output_transform(tiles, output.map_to_crs)
+    center(tiles, transform)
+    origins = transform(scans.T_map_body.t)
+    crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
+    with tempfile.TemporaryDirectory(prefix=".e57.", dir=path.parent) as folder:
+        files = _sort_by_scan(tiles, scans, output, folder=Path(folder), progress=progress)
+        try:
+            image = libe57.ImageFile(str(path), "w")
+            data = _head(image, crs)
+            progress.start("scans", len(tiles), "points")
+            for number, file in files:
+                rows = np.fromfile(file, _ROW)
+                _write_scan(image, data, _Scan(number, rows, scans, origins[number]))
+                progress.advance(len(rows))
+            image.close()
+            _check(path, {number: file for number, file in files})
+        except libe57.E57Exception as error:
+            raise StoreError(f"cannot write {path.name}: {error}") from error
+    return len(tiles)
+
+
+def _sort_by_scan(
+    tiles: TileSet, scans: ScanPoses, output: OutputCrs, *, folder: Path, progress: Progress
+) -> list[tuple[int, Path]]:
+    """Write the points of each scan, relative to its pose, into a file; the scans with points."""
+    transform = output_transform(tiles, output.map_to_crs)
+    origins, R_map_body = transform(scans.T_map_body.t), scans.T_map_body.R
+    normalized = "intensity_normalized" in tiles.fields
+    name = "intensity_normalized" if normalized else "intensity"
+    stream = blocks(tiles, [name, "frame_id"], transform=transform, progress=progress)
+    for block in stream:
+        frames = block.columns["frame_id"].astype(np.int64)
+        scan = np.maximum(np.searchsorted(scans.frame_ids, frames, side="right") - 1, 0)
+        p_body = np.einsum("nji,nj->ni", R_map_body[scan], block.xyz - origins[scan])
+        rows = np.zeros(len(scan), _ROW)
+        rows["cartesianX"], rows["cartesianY"], rows["cartesianZ"] = p_body.T.astype(np.float32)
+        rows["intensity"] = block.columns[name].astype(np.float32)
+        for number, part in _by_scan(scan):
+            with (folder / str(number)).open("ab") as file:
+                file.write(np.ascontiguousarray(rows[part]).data)
+    return sorted((int(file.name), file) for file in folder.iterdir())
+
+
+def _by_scan(scan: NDArray[np.intp]) -> Iterator[tuple[int, NDArray[np.intp]]]:
+    order = np.argsort(scan, kind="stable")
+    numbers, starts = np.unique(scan[order], return_index=True)
+    for number, (first, end) in zip(numbers, pairwise([*starts, len(scan)]), strict=True):
+        yield int(number), order[first:end]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Scan:
+    """What is written of a scan."""
+
+    number: int
+    rows: NDArray[Any]
+    nodes: ScanPoses
+    origin: Array
+    """Position of its pose in the coordinates of the file, (3,)."""
+
+
+def _head(image: Any, crs: str) -> Any:
+    """Write what comes before the scans; the list of these."""
+    from pye57 import libe57
+
+    image.extensionsAdd("", libe57.E57_V1_0_URI)
+    root = image.root()
+    root.set("formatName", libe57.StringNode(image, "ASTM E57 3D Imaging Data File"))
+    root.set("guid", libe57.StringNode(image, _guid(f"map {crs}")))
+    root.set("versionMajor", libe57.IntegerNode(image, libe57.E57_FORMAT_MAJOR))
+    root.set("versionMinor", libe57.IntegerNode(image, libe57.E57_FORMAT_MINOR))
+    root.set("e57LibraryVersion", libe57.StringNode(image, f"recon4 {recon4.__version__}"))
+    root.set("coordinateMetadata", libe57.StringNode(image, crs))
+    data = libe57.VectorNode(image, True)
+    root.set("data3D", data)
+    root.set("images2D", libe57.VectorNode(image, True))
+    return data
+
+
+def _write_scan(image: Any, data: Any, scan: _Scan) -> None:
+    from pye57 import libe57
+
+    node = libe57.StructureNode(image)
+    frame_id = int(scan.nodes.frame_ids[scan.number])
+    node.set("guid", libe57.StringNode(image, _guid(f"scan {frame_id}")))
+    node.set("name", libe57.StringNode(image, f"multiframe {frame_id}"))
+    node.set("description", libe57.StringNode(image, scan.nodes.note))
+    node.set("pose", _pose(image, scan.nodes.T_map_body[scan.number], scan.origin))
+    t_ns = scan.nodes.t_ns[[scan.number]]
+    if is_absolute(int(t_ns[0])):
+        node.set("acquisitionStart", _time(image, float(adjusted_gps_s(t_ns)[0] + 1e9)))
+    node.set("cartesianBounds", _bounds(image, scan.rows, ("X", "Y", "Z")))
+    node.set("intensityLimits", _bounds(image, scan.rows, ("intensity",)))
+    prototype = libe57.StructureNode(image)
+    for name in _ROW.names or ():
+        low, high = float(scan.rows[name].min()), float(scan.rows[name].max())
+        prototype.set(name, libe57.FloatNode(image, low, libe57.E57_SINGLE, low, high))
+    points = libe57.CompressedVectorNode(image, prototype, libe57.VectorNode(image, True))
+    node.set("points", points)
+    data.append(node)
+    buffers = libe57.VectorSourceDestBuffer()
+    held = {name: np.empty(POINT_EXPORT.block) for name in _ROW.names or ()}
+    for name, values in held.items():
+        buffers.append(libe57.SourceDestBuffer(image, name, values, len(values), True, True))
+    writer = points.writer(buffers)
+    for first in range(0, len(scan.rows), POINT_EXPORT.block):
+        part = scan.rows[first : first + POINT_EXPORT.block]
+        for name, values in held.items():
+            values[: len(part)] = part[name]
+        writer.write(len(part))
+    writer.close()
+
+
+def _pose(image: Any, T_map_body: SE3, origin: Array) -> Any:
+    from pye57 import libe57
+
+    x, y, z, w = np.asarray(T_map_body.quat_xyzw()).tolist()
+    parts = {
+        "rotation": {"w": w, "x": x, "y": y, "z": z},  # some readers go by this order
+        "translation": dict(zip("xyz", origin, strict=True)),
+    }
+    pose = libe57.StructureNode(image)
+    for name, values in parts.items():
+        part = libe57.StructureNode(image)
+        for axis, value in values.items():
+            part.set(axis, libe57.FloatNode(image, float(value)))
+        pose.set(name, part)
+    return pose
+
+
+def _time(image: Any, gps_s: float) -> Any:
+    from pye57 import libe57
+
+    node = libe57.StructureNode(image)
+    node.set("dateTimeValue", libe57.FloatNode(image, gps_s))
+    node.set("isAtomicClockReferenced", libe57.IntegerNode(image, 0))
+    return node
+
+
+def _bounds(image: Any, rows: NDArray[Any], names: tuple[str, ...]) -> Any:
+    """Limits of some columns, as xMinimum or intensityMaximum."""
+    from pye57 import libe57
+
+    node = libe57.StructureNode(image)
+    for name in names:
+        values = rows[f"cartesian{name}" if name in "XYZ" else name]
+        node.set(f"{name.lower()}Minimum", libe57.FloatNode(image, float(values.min())))
+        node.set(f"{name.lower()}Maximum", libe57.FloatNode(image, float(values.max())))
+    return node
+
+
+def _guid(of: str) -> str:
+    """The same map gives the same file."""
+    return f"{{{uuid.uuid5(uuid.NAMESPACE_URL, f'recon4 {of}')}}}"
+
+
+def _check(path: Path, files: dict[int, Path]) -> None:
+    """Read every scan back and compare it with what was written.
+
+    Raises:
+        StoreError: If it differs.
+    """
+    import pye57
+
+    with pye57.E57(str(path)) as file:
+        if file.scan_count != len(files):
+            raise StoreError(
+                f"{path.name} reads back wrong: {file.scan_count} scans, expected {len(files)}"
+            )
+        for index, source in enumerate(files.values()):
+            expected, found = np.fromfile(source, _ROW), file.read_scan_raw(index)
+            for name in _ROW.names or ():
+                if not np.array_equal(found[name], expected[name]):
+                    raise StoreError(f"{path.name} reads back wrong: {name} of scan {index}")
