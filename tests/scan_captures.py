@@ -6,7 +6,8 @@ from pathlib import Path
 
 from recon4.live.recorder.capture_file import _FILE_HEADER, Datagram, pcap_record
 from recon4.live.replay import replay
-from recon4.model.rig import LASER2D_PORT, format_rig, parse_rig
+from recon4.model.ports import PORTS
+from recon4.model.rig import format_rig, parse_rig
 from recon4.progress import Silent
 from recon4.recording.scan_datagrams import encode_scans_row
 from recon4.recording.scan_replay import datagrams_of_scans
@@ -27,7 +28,7 @@ def write_capture(path, datagrams):
             file.write(pcap_record(Datagram(t_ns, ("10.0.0.9", 5000), port, payload)))
 
 
-def scan_datagrams(scans, port=LASER2D_PORT):
+def scan_datagrams(scans, port=PORTS.laser2d):
     """Scans as they arrive."""
     return [
         (int(t_ns) + DELAY_NS, port, encode_scans_row(scans, k))

@@ -8,14 +8,15 @@ import sqlalchemy as sa
 from alembic import command
 from alembic.config import Config
 
-from recon4.store.sqlite_files import BUSY_S, make_durable
+from recon4.store.sqlite_files import make_durable
+from recon4.store.tuning import SQLITE
 
 
 def open_engine(path: Path) -> sa.Engine:
     """An engine for a file; a commit survives a power cut."""
     # not made from text: a percent sign or a question mark in a path would change its meaning
     url = sa.URL.create("sqlite", database=str(path))
-    engine = sa.create_engine(url, connect_args={"timeout": BUSY_S})
+    engine = sa.create_engine(url, connect_args={"timeout": SQLITE.busy_s})
     sa.event.listen(engine, "connect", lambda connection, _: make_durable(connection))
     return engine
 

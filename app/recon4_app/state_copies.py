@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sqlite3
+import stat
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from recon4.store.atomic import atomic_file
 from recon4.store.sqlite_files import connect
 from recon4_app.tuning import STATE_COPIES
 
-PRIVATE = 0o600
+PRIVATE = stat.S_IRUSR | stat.S_IWUSR
 
 
 @dataclass(frozen=True, slots=True)

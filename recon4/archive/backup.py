@@ -24,11 +24,12 @@ from contextlib import closing
 from dataclasses import asdict, dataclass
 from pathlib import Path, PurePosixPath
 
-from recon4.archive.listing import FORMAT, BackedUpFile, BackupListing, Entries, newest, read_list
+from recon4.archive.listing import BackedUpFile, BackupListing, Entries, newest, read_list
 from recon4.errors import ConfigError, NoSpace, StoreError
 from recon4.progress import Progress, track
 from recon4.review.trusted_keys import SIGNING_KEY, STATE, TRUSTED_KEYS
 from recon4.store.atomic import atomic_file, fsync, raise_if_full, write_json
+from recon4.store.formats import FORMATS
 from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import is_project
 from recon4.store.seal import LOCK, OPEN, SEALS, TURN, Seal, read_seals, seals_text
@@ -320,7 +321,11 @@ def _write_list(out: Path, files: Entries, left_out: list[str], *, with_keys: bo
         path, number = out / f"{timestamp}-{number}.json", number + 1
     body = asdict(
         BackupListing(
-            format=FORMAT, made=timestamp, with_keys=with_keys, left_out=left_out, files=files
+            format=FORMATS.backup,
+            made=timestamp,
+            with_keys=with_keys,
+            left_out=left_out,
+            files=files,
         )
     )
     write_json(path, body | {"sha256": hash_json(body)})

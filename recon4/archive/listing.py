@@ -9,12 +9,11 @@ from pathlib import Path, PurePosixPath
 import msgspec
 
 from recon4.errors import StoreError
+from recon4.store.formats import FORMATS
 from recon4.store.hashing import hash_json
 from recon4.store.json_files import read_object
+from recon4.untrusted.limits import LIMITS
 
-FORMAT = 1
-MAX_PARTS = 100
-"""Most folders in a name; projects and recordings have fewer than ten."""
 _LIST = re.compile(r"\d{4}-\d{2}-\d{2}T\d{2}-\d{2}-\d{2}Z(-\d+)?\.json")
 
 
@@ -67,7 +66,7 @@ def read_list(path: Path) -> BackupListing:
     """
     record = read_object(path, max_bytes=1 << 30)
     body = {name: value for name, value in record.items() if name != "sha256"}
-    if record.get("format") != FORMAT or record.get("sha256") != hash_json(body):
+    if record.get("format") != FORMATS.backup or record.get("sha256") != hash_json(body):
         raise StoreError(f"{path} is not the listing of a backup, or was changed")
     try:
         listing = msgspec.convert(body, BackupListing)
@@ -84,9 +83,10 @@ def _check_entry(path: Path, name: str, entry: BackedUpFile) -> None:
         raise StoreError(f"{path}: the name {name[:100]!r} leads outside the backup")
     if "\0" in name or inside.as_posix() != name:
         raise StoreError(f"{path}: {name[:100]!r} is no name of a file")
-    if len(inside.parts) > MAX_PARTS:
+    if len(inside.parts) > LIMITS.folders:
         raise StoreError(
-            f"{path}: {name[:100]!r}: expected at most {MAX_PARTS} folders, got {len(inside.parts)}"
+            f"{path}: {name[:100]!r}: expected at most {LIMITS.folders} folders, "
+            f"got {len(inside.parts)}"
         )
     if entry.bytes < 0:
         raise StoreError(f"{path}: {name[:100]} has {entry.bytes} bytes")

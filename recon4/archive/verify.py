@@ -26,6 +26,7 @@ from recon4.store.seal import (
     end_change,
     read_seals,
 )
+from recon4.untrusted.limits import LIMITS
 
 STATE_FILES = (
     "jobs.sqlite",
@@ -39,8 +40,6 @@ STATE_FILES = (
     "backups",
 )
 """Files of the server's state that are sealed when it ends; thumbnails and logs are not."""
-MAX_STATE_BYTES = 64 << 20
-"""Larger files of the state are parts of uploads: the sender's checksum covers those."""
 _UNREADABLE = (Recon4Error, ValueError, KeyError, TypeError, AttributeError, OverflowError)
 """What a damaged file may lead to where its content is read."""
 
@@ -201,7 +200,7 @@ def accept(path: Path) -> Path | None:
 
 def _is_small_file(path: Path) -> bool:
     ours = path.name not in (LOCK, TURN, SEALS, "lock", "pid", "heartbeat")
-    return ours and path.is_file() and path.stat().st_size <= MAX_STATE_BYTES
+    return ours and path.is_file() and path.stat().st_size <= LIMITS.json_bytes
 
 
 def _named(found: Verified, name: Path) -> Verified:

@@ -42,7 +42,7 @@ ROUNDS = (
 NEAR_ROUNDS = (*ROUNDS[2:], _PURE)
 """The same near the right rig: bounds as wide as the first ones join both sides of thin walls and
 of flights of stairs, and a window that is bent so far does not come back."""
-LAST_ROUNDS = (_PURE,) * 4
+LAST_ROUNDS = (_PURE, _PURE, _PURE, _PURE)
 """The same at a rig that others confirm."""
 EXPLAIN = (
     RoundBounds(cube_m=0.6, max_sd_m=0.04, gate_m=0.40, kernel_m=0.15),

@@ -14,7 +14,7 @@ from recon4.calibration.window_selection import choose_windows
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import WEAK_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.progress import Progress, track
 from recon4.registration.odometry import Odometry
 from recon4.registration.smoother import dense_trajectory, smooth
@@ -51,7 +51,7 @@ class RecordedWalk:
         """
         steps = load_arrays(odometry / "steps.npz", ["lost", "weak_sd_m"])
         with_imu = frames.imu is not None and settings.use_imu
-        unobserved = (steps["weak_sd_m"] > WEAK_SD_M) & (not with_imu)
+        unobserved = (steps["weak_sd_m"] > OBSERVATION.weak_sd_m) & (not with_imu)
         trajectory = load_trajectory(odometry / "trajectory.npz")
         return cls(frames, trajectory, steps["lost"].astype(bool), unobserved)
 

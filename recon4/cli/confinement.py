@@ -21,10 +21,8 @@ from recon4.errors import StoreError
 from recon4.sandbox import Policy, confine
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import is_compiled, use_private_cache
+from recon4.sandbox.tuning import CONFINEMENT
 
-_OPEN_FILES = 4096
-_MEMORY_FRACTION = 0.7
-"""Of the computer's memory, as for a worker: a file that asks for more ends its command only."""
 _REMOVER = """
 import os, sys
 sys.stdin.buffer.read()
@@ -122,8 +120,8 @@ def confine_command(*, write: Iterable[Path] = ()) -> None:
             read=(Path("/"),),
             write=(*(folder.resolve() for folder in write), scratch),
             temporary=scratch / "tmp",
-            memory_bytes=int(_MEMORY_FRACTION * physical_memory_bytes()),
-            open_files=_OPEN_FILES,
+            memory_bytes=int(CONFINEMENT.memory_fraction * physical_memory_bytes()),
+            open_files=CONFINEMENT.open_files,
         )
     )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import uuid
 from collections.abc import Iterator
 from dataclasses import replace
+from enum import IntEnum
 from itertools import chain
 from typing import Any
 
@@ -15,15 +16,12 @@ import pyproj
 import recon4
 from recon4.errors import GeoreferenceError
 from recon4.export.points import Block, OutputCrs, ToCrs, blocks, center, output_transform
+from recon4.export.tuning import LAZ
 from recon4.mapping.tile import DEVIATION
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import day_of, is_absolute, point_time_s
 from recon4.progress import Progress
 
-NORMALIZED_STEP = 1.0 / 16.0
-"""Normalized intensities are rounded to this: finer than the raw step, and it compresses."""
-DEVIATION_STEP_M = 0.0001
-"""Deviations of positions are stored as whole steps, which compress better than floats [m]."""
 FIELDS = ["intensity", "ring", "sensor", "echo", "frame_id", "t_ns"]
 """What is read beside the coordinates."""
 OPTIONAL = {
@@ -35,8 +33,15 @@ OPTIONAL = {
 }
 """Fields a map may have: type and description of the extra dimension."""
 COPIED = ("surface_returns", "surface_sd_m", "planarity")
-LOW_NOISE, HIGH_NOISE = 7, 18
-"""Classes of stray returns: beside a surface, as where a beam hits two things; alone in the air."""
+
+
+class NoiseClass(IntEnum):
+    """ASPRS classes of stray returns (LAS 1.4 R15, table 17)."""
+
+    LOW = 7
+    """Beside a surface, as where a beam hits two things."""
+    HIGH = 18
+    """Alone in the air."""
 
 
 def las_blocks(
@@ -92,7 +97,7 @@ def _dimension(name: str, kind: str, description: str) -> Any:
     """An extra dimension; deviations are whole steps with a scale, which readers apply."""
     if name != DEVIATION:
         return laspy.ExtraBytesParams(name, kind, description)
-    scale, offset = np.array([DEVIATION_STEP_M]), np.zeros(1)
+    scale, offset = np.array([LAZ.deviation_step_m]), np.zeros(1)
     return laspy.ExtraBytesParams(name, kind, description, offsets=offset, scales=scale)
 
 
@@ -135,13 +140,15 @@ def las_points(block: Block, header: Any) -> Any:
     if block.strays:
         # Too few others around it for a normal: nothing else was measured there.
         alone = ~columns["normal"].any(axis=1)
-        points.classification[:] = np.where(alone, HIGH_NOISE, LOW_NOISE)
+        points.classification[:] = np.where(alone, NoiseClass.HIGH, NoiseClass.LOW)
     for name in COPIED:
         if name in columns:
             points[name][:] = columns[name]
     if "intensity_normalized" in columns:
         fine = columns["intensity_normalized"]
-        points["intensity_normalized"][:] = np.rint(fine / NORMALIZED_STEP) * NORMALIZED_STEP
+        points["intensity_normalized"][:] = (
+            np.rint(fine / LAZ.normalized_step) * LAZ.normalized_step
+        )
     if DEVIATION in columns:
         points[DEVIATION] = columns[DEVIATION].astype(np.float64)
     return points

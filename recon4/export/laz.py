@@ -21,12 +21,10 @@ from recon4.errors import StoreError
 from recon4.export.las_points import crs_text, las_blocks, las_header, las_points
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, output_transform
+from recon4.export.tuning import LAZ
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
-
-SCALE_M = 0.001
-"""Resolution of the coordinates [m]."""
 
 
 @dataclass(slots=True)
@@ -84,7 +82,7 @@ def export_laz(
     """
     check_name(path, ".laz")
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    header = las_header(tiles, output, scale_m=SCALE_M)
+    header = las_header(tiles, output, scale_m=LAZ.scale_m)
     transform = output_transform(tiles, output.map_to_crs)
     stream = las_blocks(tiles, transform, strays=strays, progress=progress or Silent())
     with atomic_file(path) as temporary, ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file:
@@ -133,8 +131,8 @@ def _check(path: Path, written: _WrittenBounds, header: Any) -> None:
                 f"{path.name} reads back wrong: {found.point_count} points, "
                 f"expected {written.count}"
             )
-        low = np.rint((found.mins - header.offsets) / SCALE_M)
-        high = np.rint((found.maxs - header.offsets) / SCALE_M)
+        low = np.rint((found.mins - header.offsets) / LAZ.scale_m)
+        high = np.rint((found.maxs - header.offsets) / LAZ.scale_m)
         first = file.read_points(1).array[0]
         file.seek(written.count - 1)
         last = file.read_points(1).array[0]

@@ -44,3 +44,18 @@ class OctreeTuning:
 
 
 OCTREE = OctreeTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LazTuning:
+    """Steps of the numbers of a LAZ file: coarser ones compress better."""
+
+    scale_m: float = 0.001
+    """Of the coordinates."""
+    normalized_step: float = 1.0 / 16.0
+    """Of normalized intensities: finer than the raw step."""
+    deviation_step_m: float = 0.0001
+    """Of deviations of positions, which are whole numbers in the file."""
+
+
+LAZ = LazTuning()

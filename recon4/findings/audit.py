@@ -10,6 +10,7 @@ import msgspec
 
 from recon4.errors import StoreError
 from recon4.findings.finding import Finding, Level, worst_first
+from recon4.findings.tuning import AUDIT_LIST
 from recon4.findings.walk import WalkRecord
 from recon4.findings.witnesses.base import Witness, placed
 from recon4.findings.witnesses.imports import Earlier, Import
@@ -29,11 +30,9 @@ from recon4.model.figures import AuditFigures
 from recon4.settings.reads import AuditReads
 from recon4.store.atomic import write_json
 from recon4.untrusted.bounded import read_json_object
+from recon4.untrusted.limits import LIMITS
 
 FINDINGS = "findings.json"
-_MOST_OF_A_KIND = 200
-"""No more findings of one kind are kept; the first ones are said."""
-_MAX_BYTES = 16 << 20
 
 
 def witnesses(settings: AuditReads) -> tuple[Witness, ...]:
@@ -93,7 +92,7 @@ def load_findings(folder: Path) -> tuple[Finding, ...]:
     Raises:
         StoreError: If it is missing or damaged.
     """
-    record = read_json_object(folder / FINDINGS, _MAX_BYTES, failure=StoreError)
+    record = read_json_object(folder / FINDINGS, LIMITS.findings_bytes, failure=StoreError)
     try:
         return tuple(msgspec.convert(record.get("findings"), list[Finding]))
     except msgspec.ValidationError as error:
@@ -105,6 +104,6 @@ def _most_of_a_kind(findings: Iterable[Finding]) -> list[Finding]:
     kept = []
     for finding in findings:
         seen[finding.kind] += 1
-        if seen[finding.kind] <= _MOST_OF_A_KIND:
+        if seen[finding.kind] <= AUDIT_LIST.most_of_a_kind:
             kept.append(finding)
     return kept

@@ -15,8 +15,7 @@ from recon4.slam2d.steps import Steps2d
 from recon4.store.arrays import load_record, load_trajectory
 from recon4.store.stage import read_figures
 from recon4.untrusted.bounded import read_json_object
-
-_MAX_REPORT_BYTES = 16 << 20
+from recon4.untrusted.limits import LIMITS
 
 
 def read_planar(artifacts: Mapping[str, Path]) -> PlanarRecord:
@@ -44,7 +43,7 @@ def read_planar(artifacts: Mapping[str, Path]) -> PlanarRecord:
 def import_report(artifacts: Mapping[str, Path]) -> Mapping[str, object]:
     """The parsed ``report.json`` of the import."""
     path = artifacts["scans_2d"] / "report.json"
-    return read_json_object(path, _MAX_REPORT_BYTES, failure=StoreError)
+    return read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
 
 
 def final_graph(artifacts: Mapping[str, Path]) -> Path:

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.findings.placement import Placement, placement_in
+from recon4.findings.tuning import AUDIT_LIST
 from recon4.geometry.se3 import Array
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import FrameFigures, LevelFigures, MapFigures, ReviewFigures
@@ -33,12 +34,7 @@ from recon4.store.earlier_names import STEPS, current_names
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.stage import OfStage, read_figures, read_manifest
 from recon4.untrusted.bounded import read_json_object
-
-_MAX_JSON_BYTES = 64 << 20
-
-
-_MAX_S = 1e9
-"""Later times are not in nanoseconds of 64 bits [s]."""
+from recon4.untrusted.limits import LIMITS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -141,7 +137,7 @@ def positions_along(walk: Trajectory, span_s: tuple[float, float], *, most: int)
         span_s: First and last time of the stretch, after the first pose [s].
         most: Between the ends every n-th pose, so that about as many remain.
     """
-    offsets_s = np.clip(span_s, 0.0, _MAX_S)
+    offsets_s = np.clip(span_s, 0.0, AUDIT_LIST.longest_s)
     ends_ns = walk.t_ns[0] + np.rint(1e9 * offsets_s).astype(np.int64)
     if ends_ns[0] > walk.t_ns[-1]:
         return np.empty((0, 3))
@@ -173,7 +169,7 @@ def _json(artifacts: Mapping[str, Path], stage: str, name: str) -> dict[str, obj
     if path is None:
         return {}
     try:
-        return read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
+        return read_json_object(path, LIMITS.json_bytes, failure=StoreError)
     except StoreError as error:
         raise StoreError(f"{stage}/{name} cannot be read: {error}") from error
 

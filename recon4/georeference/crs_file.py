@@ -10,8 +10,8 @@ from recon4.errors import GeoreferenceError, StoreError
 from recon4.georeference.crs import CrsTransform, GeodeticOrigin
 from recon4.model.local_frame import LocalReason
 from recon4.untrusted.bounded import read_json_object
+from recon4.untrusted.limits import LIMITS
 
-_MAX_JSON_BYTES = 16 << 20
 _WHY = {
     LocalReason.NO_GNSS: "no GNSS in the recording",
     LocalReason.SWITCHED_OFF: "GNSS is switched off (gnss.enabled)",
@@ -34,7 +34,7 @@ def read_crs(artifact: Path, crs: str = "") -> CrsTransform | None:
     """
     path = artifact / "georeference.json"
     try:
-        record = read_json_object(path, _MAX_JSON_BYTES, failure=StoreError)
+        record = read_json_object(path, LIMITS.findings_bytes, failure=StoreError)
         if not record["crs"]:
             if crs:
                 reason = record["georeference"]["reason"]

@@ -8,7 +8,7 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
 from recon4.intensity.surfaces import Surfaces
 from recon4.intensity.tuning import INTENSITY_TABLE, IntensityTuning
-from recon4.model.intensity_table import SHIFT_ONLY, IntensityTable
+from recon4.model.intensity_table import IntensityTable
 
 
 def table_of_sums(sums: Array, *, settings: IntensityTuning, largest: float) -> IntensityTable:
@@ -33,8 +33,8 @@ def table_of_sums(sums: Array, *, settings: IntensityTuning, largest: float) -> 
         enough = merged[..., 0] >= settings.min_count
         bin_mean, bin_std = _moments(merged)
         mean[enough], std[enough], level[enough] = bin_mean[enough], bin_std[enough], row
-    expected = target_std * mean / max(target_mean, SHIFT_ONLY)
-    scaled = std >= SHIFT_ONLY
+    expected = target_std * mean / max(target_mean, IntensityTable.SHIFT_ONLY)
+    scaled = std >= IntensityTable.SHIFT_ONLY
     std[scaled] = np.maximum(std, settings.min_contrast * expected)[scaled]
     return IntensityTable(
         mean=mean,

@@ -9,9 +9,7 @@ from recon4.live.session import CaptureSession
 from recon4.sandbox import Confinement, Network, Policy, confine, restart_with_one_thread
 from recon4.sandbox.limits import physical_memory_bytes
 from recon4.sandbox.private_cache import cached_elsewhere, private_cache
-
-_MEMORY_FRACTION = 0.7
-_OPEN_FILES = 1024
+from recon4.sandbox.tuning import CONFINEMENT
 
 
 def confine_recorder(session: CaptureSession) -> Confinement:
@@ -24,7 +22,7 @@ def confine_recorder(session: CaptureSession) -> Confinement:
         read=(session.project,),
         network=Network.RECEIVE,
         memory_bytes=_memory_bytes(),
-        open_files=_OPEN_FILES,
+        open_files=CONFINEMENT.open_files_live,
     )
     return confine(policy)
 
@@ -38,7 +36,7 @@ def confine_mapper(session: CaptureSession) -> Confinement:
         temporary=scratch_of(session) / "tmp",
         network=Network.UNIX,
         memory_bytes=_memory_bytes(),
-        open_files=_OPEN_FILES,
+        open_files=CONFINEMENT.open_files_live,
     )
     return confine(policy)
 
@@ -59,4 +57,4 @@ def _sockets(session: CaptureSession) -> Path:
 
 
 def _memory_bytes() -> int:
-    return int(_MEMORY_FRACTION * physical_memory_bytes())
+    return int(CONFINEMENT.memory_fraction * physical_memory_bytes())

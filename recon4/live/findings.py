@@ -13,7 +13,7 @@ from recon4.live.tuning import CAPTURE_WARNINGS
 from recon4.model.import_counts import ratio_text
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig, Sensor
-from recon4.model.usability import WEAK_SD_M
+from recon4.model.tuning import OBSERVATION
 
 Level = Literal["error", "warning", "info"]
 
@@ -291,7 +291,7 @@ def _degraded(pose: Pose) -> bool:
             and match_ratio is not None
             and match_ratio < CAPTURE_WARNINGS.degraded_match_ratio
         )
-        or (registered and weak_sd_m is not None and weak_sd_m > WEAK_SD_M)
+        or (registered and weak_sd_m is not None and weak_sd_m > OBSERVATION.weak_sd_m)
         or (pose.error_m or 0.0) > CAPTURE_WARNINGS.degraded_error_m
         or (pose.prediction_offset_m or 0.0) > CAPTURE_WARNINGS.degraded_offset_m
     )

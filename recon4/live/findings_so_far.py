@@ -11,7 +11,8 @@ from recon4.live.findings import Level as Urgency
 from recon4.live.protocol import Pose
 from recon4.live.stretches import Stretches
 from recon4.live.tuning import SO_FAR
-from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS, Usability
+from recon4.model.tuning import OBSERVATION
+from recon4.model.usability import Usability
 
 
 class WalkSoFar:
@@ -37,7 +38,9 @@ class WalkSoFar:
         self._t_ns = pose.t_ns
         self.multiframes += 1
         self.lost += pose.lost
-        weak = not pose.lost and pose.weak_sd_m is not None and pose.weak_sd_m > WEAK_SD_M
+        weak = (
+            not pose.lost and pose.weak_sd_m is not None and pose.weak_sd_m > OBSERVATION.weak_sd_m
+        )
         follows = 0.0 < step_s <= SO_FAR.longest_step_s
         if not follows:
             self.stretches.take(None, pose.p, counts=False)
@@ -60,7 +63,7 @@ class WalkSoFar:
     @property
     def _counted_s(self) -> float:
         """Of the present stretch: short ones are bridged by the motion before them."""
-        return self._stretch_s if self._stretch_s >= WEAK_SECONDS else 0.0
+        return self._stretch_s if self._stretch_s >= OBSERVATION.weak_s else 0.0
 
     def problems(self) -> list[Finding]:
         """Findings about the walk so far."""
@@ -76,7 +79,7 @@ class WalkSoFar:
                 Finding(kind=FindingKind.TRACKING_LOST, level=Level.DO_NOT_USE, values=values)
             )
         if self.unobserved_s:
-            bad = self.unobserved_s >= UNOBSERVED_SECONDS
+            bad = self.unobserved_s >= OBSERVATION.unobserved_s
             found.append(
                 Finding(
                     kind=FindingKind.WEAK_DIRECTION,

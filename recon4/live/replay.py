@@ -23,7 +23,8 @@ import numpy as np
 from recon4.errors import ConfigError, EmptyRecording
 from recon4.live.session import loopback_address, stretched
 from recon4.live.tuning import REPLAY
-from recon4.model.rig import GNSS_PORT, IMU_PORT, Rig
+from recon4.model.ports import PORTS
+from recon4.model.rig import Rig
 from recon4.progress import Progress
 from recon4.recording.formats.datagrams import address_text
 from recon4.recording.formats.pcap import read_pcap
@@ -129,7 +130,7 @@ def _captured(recording: Path) -> Iterator[ReplayDatagram]:
     files = capture_files(recording)
     folder = recording if recording.is_dir() else recording.parent
     parts = [_datagrams(file) for file in files]
-    for name, port in (("imu.csv", IMU_PORT), ("gnss.csv", GNSS_PORT)):
+    for name, port in (("imu.csv", PORTS.imu), ("gnss.csv", PORTS.gnss)):
         if (folder / name).exists():
             parts.append(_samples(folder / name, port))
     return heapq.merge(*parts, key=lambda datagram: datagram.t_ns)

@@ -18,11 +18,9 @@ from recon4.errors import StoreError
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.json_files import read_object
 from recon4.system.runtime_folder import runtime_folder
+from recon4.units import DAY_NS
+from recon4.untrusted.limits import LIMITS
 
-_DAY_NS = 86_400_000_000_000
-
-
-MAX_JSON_BYTES = 1 << 20
 _TYPES: dict[str, tuple[type, ...]] = {
     "preset": (str,),
     "address": (str,),
@@ -88,7 +86,7 @@ def stretched(t_ns: int, speed: float) -> int:
 
     Recorder and replay compute it independently; at speed 1 it is the time itself.
     """
-    midnight_ns = t_ns // _DAY_NS * _DAY_NS
+    midnight_ns = t_ns // DAY_NS * DAY_NS
     return midnight_ns + round((t_ns - midnight_ns) * speed)
 
 
@@ -107,7 +105,7 @@ def load_session(project: Path) -> CaptureSession:
         StoreError: If the project has no session, or the file is damaged.
     """
     path = project / "live" / "session.json"
-    facts = read_object(path, max_bytes=MAX_JSON_BYTES)
+    facts = read_object(path, max_bytes=LIMITS.session_bytes)
     try:
         session = CaptureSession(**{**facts, "project": project})
     except TypeError as error:

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.mapping.tile import FIELDS
 from recon4.store.earlier_names import TILE_FIELDS
+from recon4.store.growing_arrays import HEADER_BYTES, npy_header
 
-_HEADER_BYTES = 128
 _EARLIER = {now: earlier for earlier, now in TILE_FIELDS.items()}
 
 
@@ -32,17 +32,14 @@ def column_shape(name: str, rows: int) -> tuple[int, ...]:
 
 
 def column_header(name: str, rows: int) -> bytes:
-    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
-    shape = column_shape(name, rows)
-    text = f"{{'descr': '{FIELDS[name][0]}', 'fortran_order': False, 'shape': {shape}, }}"
-    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
-    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body
+    """Header of the file of a column."""
+    return npy_header(FIELDS[name][0], column_shape(name, rows))
 
 
 def row_offset(name: str, row: int) -> tuple[int, int]:
     """Offset of a row in its file, and the size of a row [bytes]."""
     row_bytes = np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
-    return _HEADER_BYTES + row * row_bytes, row_bytes
+    return HEADER_BYTES + row * row_bytes, row_bytes
 
 
 def map_rows(folder: Path, name: str, start: int, *, count: int) -> NDArray[Any]:
@@ -73,7 +70,7 @@ def check_columns(folder: Path, fields: Sequence[str], points: int) -> None:
         if name not in FIELDS:
             raise StoreError(f"tiles.json: unknown field {name!r}; known: {list(FIELDS)}")
         path = folder / column_file(folder, name)
-        expected = _HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
+        expected = HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
         found = path.stat().st_size if path.is_file() else -1
         if found != expected:
             raise StoreError(

@@ -9,9 +9,7 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.untrusted.bounded import read_json_object
-
-_MAX_BYTES = 256 << 20
-"""``tiles.json`` has some 300 bytes per tile."""
+from recon4.untrusted.limits import LIMITS
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +67,6 @@ def read_map_list(path: Path) -> dict[str, Any]:
         StoreError: If it is missing or damaged.
     """
     try:
-        return read_json_object(path, _MAX_BYTES, failure=StoreError)
+        return read_json_object(path, LIMITS.tile_list_bytes, failure=StoreError)
     except StoreError as error:
         raise StoreError(f"{path} is not the list of a map's tiles: {error}") from error

@@ -16,8 +16,8 @@ from recon4.errors import StoreError
 from recon4.mapping.columns import column_header, column_shape, row_offset
 from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.tile import FIELDS, Columns
-from recon4.mapping.tiles import FORMAT
 from recon4.store.atomic import raise_if_full, write_json
+from recon4.store.formats import FORMATS
 
 
 @dataclass(slots=True, kw_only=True)
@@ -151,7 +151,7 @@ class TileWriter:
         ]
         times = [t for row in rows for t in row.time_ns]
         points = self._points - sum(row.strays for row in rows)
-        facts: dict[str, object] = {"format": FORMAT, "points": points, "bounds_m": bounds}
+        facts: dict[str, object] = {"format": FORMATS.tiles, "points": points, "bounds_m": bounds}
         facts |= self.notes.to_json()
         facts["time_ns"] = [min(times), max(times)] if times else None
         listed = [asdict(row) for row in rows]

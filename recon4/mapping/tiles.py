@@ -27,14 +27,13 @@ from recon4.mapping.columns import (
 )
 from recon4.mapping.map_notes import MapCrs, MapNotes, read_map_list
 from recon4.mapping.tile import Columns, spatial_order
+from recon4.mapping.tuning import TILES
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.earlier_names import TILE_FIELDS
+from recon4.store.formats import FORMATS
 
-FORMAT = 1
 RAW_OFFSET = "raw_offset_m"
 """From the surface to where the point was measured; only in maps of fitted surfaces."""
-MARGIN_M = 0.2
-"""No point was measured farther than this from its surface [m]."""
 Surface = Literal["fitted", "raw", "strays"]
 """Points on the surfaces fitted to all returns, or as measured, or only the stray returns."""
 Number = TypeVar("Number", int, float)
@@ -118,7 +117,10 @@ class Tile:
 
     def as_measured(self) -> Tile:
         """The same points where they were measured."""
-        low_m, high_m = np.array(self.low_m) - MARGIN_M, np.array(self.high_m) + MARGIN_M
+        low_m, high_m = (
+            np.array(self.low_m) - TILES.margin_m,
+            np.array(self.high_m) + TILES.margin_m,
+        )
         return replace(self, raw=True, low_m=_triple(low_m, float), high_m=_triple(high_m, float))
 
     def stray_part(self, tile_m: float) -> Tile:
@@ -166,8 +168,10 @@ class TileSet:
             checked.check("tiles.json")
         try:
             facts = read_map_list(path)
-            if facts["format"] != FORMAT:
-                raise StoreError(f"{path.name}: expected format {FORMAT}, got {facts['format']}")
+            if facts["format"] != FORMATS.tiles:
+                raise StoreError(
+                    f"{path.name}: expected format {FORMATS.tiles}, got {facts['format']}"
+                )
             fields = tuple(TILE_FIELDS.get(name, str(name)) for name in facts["fields"])
             tiles = tuple(
                 _tile(folder / "tiles", fields, row, checked=checked) for row in facts["tiles"]

@@ -144,6 +144,8 @@ class TileTuning:
     """Rows made at once: the columns of a whole tile take more memory than all else of it."""
     far_cell_m: float = 1.0
     """Size of the cubes of ``MapSettings.far_ratio`` [m]."""
+    margin_m: float = 0.2
+    """No point was measured farther than this from its surface [m]."""
 
 
 TILES = TileTuning()

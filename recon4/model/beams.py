@@ -10,19 +10,14 @@ from numpy.typing import NDArray
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.model.limits import RIG_LIMITS
 from recon4.model.toml_tables import TomlTable
 
 Real = TypeVar("Real", np.float32, np.float64)
-MAX_BEAMS = 128
-"""Rings are numbered in 8 bits; no LiDAR that spins has more beams."""
 BEAMS_OF_MODEL = {
     "VLP-16": 16, "VLP-16 Hi-Res": 16, "VLP-32C": 32, "HDL-32E": 32, "HDL-64E": 64,
 }  # fmt: skip
 """Of a ``generic`` LiDAR the table tells the number."""
-_MAX_RANGE_M, _MAX_DEG = 0.2, 2.0
-"""Larger corrections are no errors of a beam."""
-_AXIS_M = 1e-6
-"""No point of a beam is nearer to the axis of rotation."""
 _KEYS = ("range_m", "elevation_deg", "azimuth_deg")
 
 
@@ -64,7 +59,8 @@ class BeamCorrections:
         beam = np.minimum(ring, len(self) - 1)
         added_m, turn, yaw = self.rows.astype(xyz.dtype)[:, beam] * known
         x, y, z = xyz[:, 0], xyz[:, 1], xyz[:, 2]
-        flat = np.maximum(np.hypot(x, y), xyz.dtype.type(_AXIS_M))
+        on_axis_m = 1e-6  # no point of a beam is nearer to the axis of rotation
+        flat = np.maximum(np.hypot(x, y), xyz.dtype.type(on_axis_m))
         scale = 1.0 + added_m / np.hypot(flat, z)
         cos, sin = np.cos(turn), np.sin(turn)
         level = scale * (cos - sin * z / flat)
@@ -116,12 +112,17 @@ def parse_beams(value: object, where: str, *, model: str) -> BeamCorrections | N
         raise ConfigError(f"{where}: expected some of {', '.join(_KEYS)}, got none")
     first = table.get(given[0])
     count = BEAMS_OF_MODEL.get(model, len(first) if isinstance(first, list) else 0)
-    if not 1 <= count <= MAX_BEAMS:
-        raise ConfigError(f"{where}: expected 1 to {MAX_BEAMS} beams in {given[0]}, got {count}")
-    zeros = (0.0,) * count
+    if not 1 <= count <= RIG_LIMITS.beams:
+        raise ConfigError(
+            f"{where}: expected 1 to {RIG_LIMITS.beams} beams in {given[0]}, got {count}"
+        )
+    limit_m, limit_deg, zeros = RIG_LIMITS.beam_m, RIG_LIMITS.beam_deg, (0.0,) * count
     range_m, *degrees = (table.vector(key, count, zeros) for key in _KEYS)
     for key, values, largest in zip(
-        _KEYS, (range_m, *degrees), (_MAX_RANGE_M, _MAX_DEG, _MAX_DEG), strict=True
+        _KEYS,
+        (range_m, *degrees),
+        (limit_m, limit_deg, limit_deg),
+        strict=True,
     ):
         worst = int(np.argmax(np.abs(values)))
         if abs(values[worst]) > largest:

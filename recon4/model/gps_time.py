@@ -8,6 +8,7 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
+from recon4.units import SECOND_NS
 
 _LEAPS = (
     "1981-07-01 1982-07-01 1983-07-01 1985-07-01 1988-01-01 1990-01-01 1991-01-01 1992-07-01 "
@@ -28,7 +29,6 @@ GPS_MINUS_UTC_S = len(_LEAPS.split())
 """How far GPS time is ahead of UTC now [s]."""
 GPS_EPOCH_NS = _utc_ns("1980-01-06")
 _LEAP_NS = np.array([_utc_ns(day) for day in _LEAPS.split()], dtype=np.int64)
-_ADJUSTED_NS = 10**18
 
 
 def is_absolute(t_ns: int) -> bool:
@@ -43,7 +43,7 @@ def adjusted_gps_s(t_ns: Times) -> Array:
         t_ns: UTC since 1970 without leap seconds (Unix time) [ns], (N,).
     """
     leaps_ns = np.searchsorted(_LEAP_NS, t_ns, side="right") * 10**9
-    return (t_ns - GPS_EPOCH_NS + leaps_ns - _ADJUSTED_NS) / 1e9
+    return (t_ns - GPS_EPOCH_NS + leaps_ns - 10**9 * SECOND_NS) / 1e9
 
 
 def point_time_s(t_ns: Times, *, absolute: bool) -> Array:

@@ -6,9 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from recon4.model.count_words import COUNT_WORDINGS, CountKind, CountWording
-
-WARNED_RATIO = 0.01
-"""From this ratio on a loss is a warning; smaller ones stand in `recon4 info` and the report."""
+from recon4.model.tuning import LOSSES
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +22,7 @@ class Loss:
     @property
     def is_warned(self) -> bool:
         """Whether it is a warning of its own: large, and nobody else says it."""
-        return not wording(self.name)[0].stated and not self.ratio < WARNED_RATIO
+        return not wording(self.name)[0].stated and not self.ratio < LOSSES.warned_ratio
 
 
 def wording(name: str) -> tuple[CountWording, str]:

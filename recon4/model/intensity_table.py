@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
-
-SHIFT_ONLY = 0.01
-"""Bins with a smaller deviation are shifted, not scaled."""
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class IntensityTable:
     """``x' = (x - mean_i) * target_std / std_i + target_mean`` with mean and deviation of a bin."""
 
+    SHIFT_ONLY: ClassVar[float] = 0.01
+    """Bins with a smaller deviation are shifted, not scaled."""
     mean: NDArray[np.float32]
     """Mean raw intensity by sensor, ring, incidence (last: no normal), range, (S, B, I, R)."""
     std: NDArray[np.float32]
@@ -34,7 +34,7 @@ class IntensityTable:
     @cached_property  # every tile of a map is normalized by both
     def gain(self) -> NDArray[np.float32]:
         """Factor of each bin; 1 if the deviation is too small as a divisor, (S, B, I, R)."""
-        safe = np.where(self.std < SHIFT_ONLY, np.float32(self.target_std or 1.0), self.std)
+        safe = np.where(self.std < self.SHIFT_ONLY, np.float32(self.target_std or 1.0), self.std)
         return np.asarray((self.target_std or 1.0) / safe, dtype=np.float32)
 
     @cached_property

@@ -9,12 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
-
-_SPIN_RAD = 2.0 * np.pi
-_WIDE_LINES = 5
-"""Lines over which the direction of the head is judged: its angles have noise."""
-_MIN_SWEEP = 0.25
-"""Shorter sweeps than this part of the median one are joined to their neighbor."""
+from recon4.model.tuning import SWEEPS
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -46,17 +41,17 @@ class LineScans:
         A sweep ends where the head reverses, or after a full revolution in one direction.
         """
         count = len(self)
-        if count <= 2 * _WIDE_LINES:
+        if count <= 2 * SWEEPS.wide_lines:
             return np.array([0, count], np.intp)
         ends = [0]
-        way = np.sign(self.head_rad[_WIDE_LINES:] - self.head_rad[:-_WIDE_LINES])
+        way = np.sign(self.head_rad[SWEEPS.wide_lines :] - self.head_rad[: -SWEEPS.wide_lines])
         start_rad, heading = self.head_rad[0], way[0]
         for line in range(1, len(way)):
-            turned = abs(self.head_rad[line] - start_rad) >= _SPIN_RAD - 1e-6
+            turned = abs(self.head_rad[line] - start_rad) >= 2.0 * np.pi - 1e-6
             reversed_ = way[line] != 0 and way[line] != heading
             if turned or reversed_:
                 # The reversal lies in the middle of the lines that were compared.
-                at = line + (_WIDE_LINES // 2 if reversed_ else 0)
+                at = line + (SWEEPS.wide_lines // 2 if reversed_ else 0)
                 ends.append(at)
                 start_rad, heading = self.head_rad[at], way[line] or heading
         return _without_short(np.array([*ends, count], np.intp))
@@ -72,7 +67,7 @@ class LineScans:
 
 def _without_short(ends: NDArray[np.intp]) -> NDArray[np.intp]:
     """Sweeps joined to the one before where they are far shorter than usual."""
-    least = _MIN_SWEEP * np.median(np.diff(ends))
+    least = SWEEPS.min_part * np.median(np.diff(ends))
     kept = [int(ends[0])]
     for end in ends[1:-1]:
         if end - kept[-1] >= least:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from recon4.errors import ConfigError
+from recon4.model.limits import RIG_LIMITS
 from recon4.model.toml_tables import TomlTable
 
 Units = Mapping[str, float]
@@ -38,7 +39,6 @@ PLACES = (
     ("range", "azimuth", "zenith"),
 )
 """Columns that say where a point is: one of these."""
-_MOST_TERMS = 3
 _TERM = re.compile(r"(-?)([^\s:+,=-][^\s:+,=]{0,99})(?::([^\s:+,=]{1,20}))?")
 
 
@@ -146,11 +146,13 @@ def recipe_of(texts: Mapping[str, str], where: str) -> PointRecipe:
 def _terms(role: str, text: str, where: str) -> tuple[Term, ...]:
     parts = [part.strip() for part in text.split("+")]
     found = tuple(_term(role, part, f"{where}: {role}") for part in parts)
-    are_sum = role == "time" and len(found) <= _MOST_TERMS and all(term.unit for term in found)
+    are_sum = (
+        role == "time" and len(found) <= RIG_LIMITS.time_terms and all(term.unit for term in found)
+    )
     if len(found) > 1 and not are_sum:
         raise ConfigError(
-            f"{where}: {role} must be one column (times may be a sum of up to {_MOST_TERMS} "
-            f"columns that have units, as sec:s+nsec:ns), got {text[:80]!r}"
+            f"{where}: {role} must be one column (times may be a sum of up to "
+            f"{RIG_LIMITS.time_terms} columns that have units, as sec:s+nsec:ns), got {text[:80]!r}"
         )
     return found
 

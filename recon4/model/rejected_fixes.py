@@ -16,14 +16,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Times
-
-MIN_FIXES, MIN_SECONDS = 10, 1.0
-"""Shorter runs count as noise."""
-_BRIDGED_S = 1.0
-"""Two runs with less than this between them are one [s]."""
-_AGREEMENT = 0.25
-"""Fixes of a run agree if their residuals change from one to the next by less than this part of
-their size."""
+from recon4.model.tuning import REJECTED_RUNS
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +50,7 @@ def rejected_runs(t_ns: Times, used: NDArray[np.bool_], residual_m: Array) -> li
     if not len(t_ns) or not len(rejected):
         return []
     t_s = (t_ns - t_ns[0]) / 1e9
-    runs = np.split(rejected, np.flatnonzero(np.diff(t_s[rejected]) > _BRIDGED_S) + 1)
+    runs = np.split(rejected, np.flatnonzero(np.diff(t_s[rejected]) > REJECTED_RUNS.bridged_s) + 1)
     return [
         RejectedRun(
             start_s=float(t_s[run[0]]),
@@ -67,8 +60,8 @@ def rejected_runs(t_ns: Times, used: NDArray[np.bool_], residual_m: Array) -> li
             height_m=float(np.abs(residual_m[run, 2]).max()),
         )
         for run in runs
-        if len(run) >= MIN_FIXES
-        and t_s[run[-1]] - t_s[run[0]] >= MIN_SECONDS
+        if len(run) >= REJECTED_RUNS.min_fixes
+        and t_s[run[-1]] - t_s[run[0]] >= REJECTED_RUNS.min_s
         and _agree(residual_m[run])
     ]
 
@@ -94,4 +87,4 @@ def _agree(residual_m: Array) -> bool:
     """Whether residuals (N, 3) change little from one fix to the next."""
     change_m = np.linalg.norm(np.diff(residual_m, axis=0), axis=1)
     size_m = np.linalg.norm(residual_m, axis=1)
-    return bool(np.median(change_m) < _AGREEMENT * np.median(size_m))
+    return bool(np.median(change_m) < REJECTED_RUNS.agreement * np.median(size_m))

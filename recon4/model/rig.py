@@ -17,29 +17,19 @@ from recon4.errors import ConfigError
 from recon4.geometry.se3 import SE3, Array
 from recon4.model.beams import BeamCorrections, format_beams, parse_beams
 from recon4.model.lidars import LIDARS, lidar_model
+from recon4.model.limits import RIG_LIMITS
 from recon4.model.point_recipes import PointRecipe, parse_fields
+from recon4.model.ports import PORTS
 from recon4.model.toml_tables import TomlTable, parse_toml
 from recon4.untrusted.bounded import read_text_limited
 
-IMU_PORT, GNSS_PORT = 8309, 8310
-"""Default UDP ports, next to Velodyne's 2368 (data) and 8308 (positions)."""
-LASER2D_PORT, PROFILER_PORT = 8311, 8312
-"""Default UDP ports of scans and of line scans (``docs/how-to/live.md``)."""
-MAX_RIG_BYTES = 128 * 1024
-"""A rig file has some hundred bytes per sensor."""
-MAX_SENSORS = 64
 SENSOR_MODELS = tuple(LIDARS)
 """Models that a rig file may name."""
 SensorKind = Literal["lidar", "profiler", "laser2d"]
 """``lidar``: many beams that spin. ``profiler``: one beam that measures line scans, on a head that
 turns slowly. ``laser2d``: one beam that spins in a plane."""
 _KINDS: tuple[SensorKind, ...] = get_args(SensorKind)
-DEFAULT_PORTS: dict[SensorKind, int] = {
-    "profiler": PROFILER_PORT,
-    "laser2d": LASER2D_PORT,
-}
-"""UDP port of the data of the other kinds, where a rig file says none; that of a LiDAR is in
-`recon4.model.lidars`."""
+DEFAULT_PORTS: dict[SensorKind, int] = {"profiler": PORTS.profiler, "laser2d": PORTS.laser2d}
 _MOUNTING_KEYS = {"xyz_m", "rpy_deg", "quat_xyzw", "time_offset_s", "port"}
 _SENSOR_KEYS = _MOUNTING_KEYS | {
     "name", "model", "address", "topic", "enabled", "serial", "description", "kind", "head_topic",
@@ -49,7 +39,6 @@ _IMU_KEYS = _MOUNTING_KEYS | {"topic", "sensor"}
 _GNSS_KEYS = {"lever_arm_m", "time_offset_s", "port", "serial", "topic"}
 _SD_KEYS = ("sd_deg", "sd_mm", "sd_ms")
 _OPTIONAL_SD_KEYS = ("sd_beam_deg", "sd_beam_mm", "sd_antenna_mm", "sd_gnss_ms")
-_MAX_HEAD_DEG_S = 3600.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -129,9 +118,9 @@ class Rig:
     """Lever arm: phase center of the GNSS antenna in the body [m], (3,)."""
     gnss_time_offset_s: float
     """Added to the GNSS time stamps to get rig time [s]."""
-    imu_port: int = IMU_PORT
+    imu_port: int = PORTS.imu
     """UDP port of the IMU's datagrams (``docs/how-to/live.md``); 0 = none."""
-    gnss_port: int = GNSS_PORT
+    gnss_port: int = PORTS.gnss
     """UDP port of the GNSS receiver's datagrams; 0 = none."""
     gnss_serial: str = ""
     """Serial device of the receiver, for example ``/dev/ttyUSB0:115200``; empty = none."""
@@ -182,7 +171,7 @@ def load_rig(name_or_path: str | PathLike[str]) -> Rig:
         preset = resources.files("recon4") / "rigs" / f"{name_or_path}.toml"
         return parse_rig(preset.read_text("utf-8"), where=str(name_or_path))
     try:
-        text = read_text_limited(path, MAX_RIG_BYTES, failure=ConfigError)
+        text = read_text_limited(path, RIG_LIMITS.file_bytes, failure=ConfigError)
     except ConfigError as error:
         raise ConfigError(f"cannot read rig file {error}") from error
     return parse_rig(text, where=path.name[:200])
@@ -194,12 +183,12 @@ def parse_rig(text: str, *, where: str) -> Rig:
     Raises:
         ConfigError: Names the key, the expected and the found value.
     """
-    values = parse_toml(text, where, max_characters=MAX_RIG_BYTES)
+    values = parse_toml(text, where, max_characters=RIG_LIMITS.file_bytes)
     table = TomlTable.of(values, where, {"name", "sensor", "imu", "gnss", "calibration"})
     rows = table.get("sensor", [])
-    if not isinstance(rows, list) or not 1 <= len(rows) <= MAX_SENSORS:
+    if not isinstance(rows, list) or not 1 <= len(rows) <= RIG_LIMITS.sensors:
         raise ConfigError(
-            f"{where}: a rig needs at least one [[sensor]] and at most {MAX_SENSORS}, "
+            f"{where}: a rig needs at least one [[sensor]] and at most {RIG_LIMITS.sensors}, "
             f"got {len(rows) if isinstance(rows, list) else rows!r:.40}"
         )
     sensors = tuple(
@@ -219,8 +208,8 @@ def parse_rig(text: str, *, where: str) -> Rig:
         imu_time_offset_s=imu.number("time_offset_s"),
         p_body_antenna=gnss.vector("lever_arm_m", 3),
         gnss_time_offset_s=gnss.number("time_offset_s"),
-        imu_port=imu.port(IMU_PORT),
-        gnss_port=gnss.port(GNSS_PORT),
+        imu_port=imu.port(PORTS.imu),
+        gnss_port=gnss.port(PORTS.gnss),
         gnss_serial=gnss.text("serial"),
         imu_topic=imu.text("topic"),
         imu_sensor=built_in.name if built_in else "",
@@ -366,7 +355,7 @@ def _sensor(row: TomlTable) -> Sensor:
         topic=row.text("topic"),
         enabled=row.flag("enabled", default=True),
         serial=row.text("serial"),
-        description=row.text("description", most=MAX_RIG_BYTES),
+        description=row.text("description", most=RIG_LIMITS.file_bytes),
         beams=parse_beams(row.get("beams"), f"{row.where}: beams", model=model),
         fields=parse_fields(row.get("fields"), f"{row.where}: fields"),
     )
@@ -382,9 +371,10 @@ def _kind(row: TomlTable) -> SensorKind:
 
 def _head_rate(row: TomlTable) -> float:
     rate_deg_s = row.number("head_rate_deg_s")
-    if abs(rate_deg_s) > _MAX_HEAD_DEG_S:
+    if abs(rate_deg_s) > RIG_LIMITS.head_deg_s:
         raise ConfigError(
-            f"{row.where}: head_rate_deg_s must be within ±{_MAX_HEAD_DEG_S:g}, got {rate_deg_s:g}"
+            f"{row.where}: head_rate_deg_s must be within ±{RIG_LIMITS.head_deg_s:g}, "
+            f"got {rate_deg_s:g}"
         )
     return float(np.deg2rad(rate_deg_s))
 

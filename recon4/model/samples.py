@@ -28,11 +28,6 @@ class ImuSamples:
         return len(self.t_ns)
 
 
-GEOID_SEPARATION_M = (5.0, 110.0)
-"""Differences of heights that are taken for a geoid separation, which is -107 to 86 m; below, other
-errors look alike [m]."""
-
-
 class GnssQuality(IntEnum):
     """Fix quality, numbered as in NMEA GGA."""
 

@@ -6,9 +6,8 @@ import re
 from dataclasses import dataclass
 
 from recon4.errors import ConfigError
+from recon4.model.limits import RIG_LIMITS
 
-USUAL_BAUD = 9600
-_MAX_BAUD = 10_000_000
 _NAME = re.compile(
     r"/dev/("
     r"tty[A-Z]\w{0,30}"  # ttyS0, ttyUSB0, ttyACM0, ttyAMA0, ttyTHS1; not tty, tty1, ttyp0
@@ -30,7 +29,8 @@ class SerialDevice:
     """A serial device that a rig names; whether it is one is known where it is opened."""
 
     path: str
-    baud: int
+    baud: int = 9600
+    """The rate of NMEA 0183."""
 
 
 def parse_serial_device(text: str) -> SerialDevice:
@@ -41,7 +41,7 @@ def parse_serial_device(text: str) -> SerialDevice:
     """
     name, colon, rate = text.rpartition(":")
     has_rate = bool(colon) and re.fullmatch("[0-9]{1,8}", rate) is not None
-    path, baud = (name, int(rate)) if has_rate else (text, USUAL_BAUD)
-    if not _NAME.fullmatch(path) or not 0 < baud < _MAX_BAUD:
+    device = SerialDevice(name, int(rate)) if has_rate else SerialDevice(text)
+    if not _NAME.fullmatch(device.path) or not 0 < device.baud < RIG_LIMITS.baud:
         raise ConfigError(f"gnss: serial: {_EXPECTED}, got {text!r:.200}")
-    return SerialDevice(path, baud)
+    return device

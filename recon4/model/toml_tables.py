@@ -11,12 +11,9 @@ import numpy as np
 
 from recon4.errors import ConfigError
 from recon4.geometry.se3 import Array
+from recon4.model.limits import RIG_LIMITS
 
-_MAX_TEXT = 1000
-_MAX_DOTS = 100
 _BETWEEN_KEYS = re.compile(r"[=\[\]{},\n]")
-_LARGEST = 4e9
-"""Clocks differ by seconds since 1970 at most; nanoseconds must fit into 64 bits."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +68,7 @@ class TomlTable:
             )
         return np.asarray(value, dtype=np.float64)
 
-    def text(self, key: str, default: str = "", *, most: int = _MAX_TEXT) -> str:
+    def text(self, key: str, default: str = "", *, most: int = RIG_LIMITS.text) -> str:
         """A text of at most ``most`` characters."""
         value = self.get(key, default)
         if not isinstance(value, str) or len(value) > most:
@@ -112,7 +109,7 @@ def parse_toml(text: str, where: str, *, max_characters: int) -> dict[str, objec
     if len(text) > max_characters:
         raise ConfigError(f"{where}: expected at most {max_characters} characters, got {len(text)}")
     longest = max((part.count(".") for part in _BETWEEN_KEYS.split(text)), default=0)
-    if longest > _MAX_DOTS:
+    if longest > RIG_LIMITS.dots:
         raise ConfigError(f"{where}: expected keys of few parts, got one with {longest} dots")
     try:
         return tomllib.loads(text)
@@ -126,4 +123,4 @@ def _is_usable(value: object) -> TypeGuard[int | float]:
     # A comparison is exact for whole numbers of any length; NaN fails it.
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
-    return -_LARGEST <= value <= _LARGEST
+    return abs(value) <= RIG_LIMITS.number

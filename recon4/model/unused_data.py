@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from recon4.model.count_words import COUNT_WORDINGS
-from recon4.model.import_counts import WARNED_RATIO, Loss, losses, wording
+from recon4.model.import_counts import Loss, losses, wording
+from recon4.model.tuning import LOSSES
 
-_SEVERE_RATIO = 0.5
 _SAMPLES = {"imu_kept", "gnss_kept", "gnss_samples", "sample_datagrams", "positions"}
 """Counts of what only supports a map: the stages that use it judge what is missing."""
 
 
 @dataclass(frozen=True, slots=True)
 class UnusedPart:
-    """Data of one kind of which at least `WARNED_RATIO` is not used."""
+    """Data of one kind of which at least `LOSSES.warned_ratio` is not used."""
 
     name: str
     """Count of the data of this kind."""
@@ -28,12 +28,12 @@ class UnusedPart:
     @property
     def is_severe(self) -> bool:
         """Whether most of what the map is made of is missing: the map must not be used."""
-        return self.name not in _SAMPLES and self.number > _SEVERE_RATIO * self.total
+        return self.name not in _SAMPLES and self.number > LOSSES.severe_ratio * self.total
 
     @property
     def is_scattered(self) -> bool:
         """Whether each reason by itself is too rare for a warning."""
-        return not any(loss.ratio >= WARNED_RATIO for loss in self.reasons)
+        return not any(loss.ratio >= LOSSES.warned_ratio for loss in self.reasons)
 
     @property
     def text(self) -> str:
@@ -47,7 +47,7 @@ class UnusedPart:
 
 
 def unused_parts(counts: Mapping[str, int]) -> list[UnusedPart]:
-    """Parts of a recording of which more than `WARNED_RATIO` is not used, the largest ratio first.
+    """Parts of a recording of which more than `warned_ratio` is not used, the largest ratio first.
 
     What is usual (points nearer than the limit, beams without a return) and what was repaired is
     no loss.
@@ -60,7 +60,7 @@ def unused_parts(counts: Mapping[str, int]) -> list[UnusedPart]:
         if of := wording(loss.name)[0].of:
             groups.setdefault(of, []).append(loss)
     parts = [_part(name, tuple(reasons), counts) for name, reasons in groups.items()]
-    large = [part for part in parts if part.number >= WARNED_RATIO * part.total]
+    large = [part for part in parts if part.number >= LOSSES.warned_ratio * part.total]
     return sorted(large, key=lambda part: -part.number / part.total)
 
 

@@ -10,16 +10,6 @@ import msgspec
 
 from recon4.errors import StoreError
 
-WEAK_SD_M = 0.05
-"""With a larger standard deviation of its LiDAR measurement a multiframe hardly observes a
-direction [m]."""
-OBSERVED_SD_M = 0.02
-"""With a smaller one it observes the direction [m]."""
-WEAK_SECONDS = 2.0
-"""Shorter stretches of such multiframes are bridged by the motion before them [s]."""
-UNOBSERVED_SECONDS = 10.0
-"""A longer time without observation of a direction makes a map unusable [s]."""
-
 
 class Usability(StrEnum):
     """Verdict on a map."""

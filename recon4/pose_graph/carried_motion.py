@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array, matrix_from_quat
 from recon4.model.trajectory import Times
-from recon4.model.usability import OBSERVED_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.store.arrays import load_arrays
 
 _COLUMNS = [
@@ -77,5 +77,5 @@ def load_carried_motion(odometry: Path) -> CarriedMotion | None:
     return CarriedMotion(
         along[:, :, None] * along[:, None, :],
         matrix_from_quat(steps["quat_xyzw"]),
-        tracked & (steps["stationary"] | (steps["weak_sd_m"] < OBSERVED_SD_M)),
+        tracked & (steps["stationary"] | (steps["weak_sd_m"] < OBSERVATION.observed_sd_m)),
     )

@@ -20,7 +20,7 @@ from recon4.pose_graph.tuning_places import DENSITY
 _REACH = round(DENSITY.max_shift_m / DENSITY.cell_m)
 _SHIFTS = np.arange(-_REACH, _REACH + 1)
 """Shifts that are tried along each axis, in cells."""
-_HEIGHTS_M = np.arange(-2.5, 5.0, 0.25)
+_HEIGHTS_M = np.arange(*DENSITY.heights_m)
 
 Spectrum = NDArray[np.complex64]
 

@@ -40,6 +40,8 @@ class DensityTuning:
     radii: int = 12
     angles: int = 32
     """Circles and directions of a descriptor."""
+    heights_m: tuple[float, float, float] = (-2.5, 5.0, 0.25)
+    """Lowest and highest edge of the layers around the body, and their thickness."""
 
 
 DENSITY = DensityTuning()

@@ -18,10 +18,8 @@ from recon4.model.trajectory import Trajectory
 from recon4.profiler.samples import TimedPoints
 from recon4.profiler.tuning_audits import MOUNT_AUDIT
 
-_UNIT = np.array([*np.deg2rad([0.25, 0.25, 0.25]), 0.01, 0.01])
+_UNIT = np.repeat([MOUNT_AUDIT.step_rad, MOUNT_AUDIT.step_m], [3, 2])
 """Step of the search: rotation about x, y, z of the body, shift along x and y."""
-_COARSE, _FINE = np.arange(-12.0, 13.0, 3.0), np.arange(-2.0, 3.0)
-"""Changes that are tried, in steps."""
 _SKEW = so3_exp(np.array([0.4, 0.7, 0.3]))
 """Turns the cubes: a tilt would bring a floor along their faces into one layer of them."""
 
@@ -79,13 +77,15 @@ def mount_change(
         return count_cubes(at @ _SKEW, cube_m)
 
     found = _lowest(
-        np.zeros(5), _COARSE, lambda x: places(x, MOUNT_AUDIT.coarse_points, MOUNT_AUDIT.coarse_m)
+        np.zeros(5),
+        np.array(MOUNT_AUDIT.coarse),
+        lambda x: places(x, MOUNT_AUDIT.coarse_points, MOUNT_AUDIT.coarse_m),
     )
 
     def fine(change: Array) -> int:
         return places(change, MOUNT_AUDIT.fine_points, MOUNT_AUDIT.fine_m)
 
-    found = _simplest(_lowest(found, _FINE, fine), fine)
+    found = _simplest(_lowest(found, np.array(MOUNT_AUDIT.fine), fine), fine)
     before, after = fine(np.zeros(5)), fine(found)
     return MountChange(found[:3], found[3:]) if after <= MOUNT_AUDIT.clear_ratio * before else None
 

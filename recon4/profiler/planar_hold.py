@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.trajectory import Times, Trajectory
-from recon4.model.usability import WEAK_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.profiler.imu_chain import ImuChain, Information
 from recon4.profiler.tuning_solve import PLANAR_HOLD
 from recon4.registration.state import END_POSE, START, VECTOR
@@ -67,7 +67,7 @@ def observed_motion(
             there is no 2-D laser.
         lost: Multiframes without a pose by it, (N,).
     """
-    known = (weak_sd_m <= WEAK_SD_M) & ~lost  # NaN is not
+    known = (weak_sd_m <= OBSERVATION.weak_sd_m) & ~lost  # NaN is not
     middle = knot_ns[:-1] + np.diff(knot_ns) // 2
     nearest = np.clip(np.searchsorted(t_mid_ns, middle), 1, len(t_mid_ns) - 1)
     nearest -= middle - t_mid_ns[nearest - 1] < t_mid_ns[nearest] - middle

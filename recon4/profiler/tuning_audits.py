@@ -74,6 +74,12 @@ class MountAuditTuning:
     """Number of searches along all axes."""
     clear_ratio: float = 0.98
     """Fewer places than this part of those as mounted show that the mount is another one."""
+    step_rad: float = float(np.deg2rad(0.25))
+    step_m: float = 0.01
+    """Step of the search …"""
+    coarse: tuple[float, ...] = (-12.0, -9.0, -6.0, -3.0, 0.0, 3.0, 6.0, 9.0, 12.0)
+    fine: tuple[float, ...] = (-2.0, -1.0, 0.0, 1.0, 2.0)
+    """… and the changes that are tried along an axis, in steps, coarsely and then finely."""
     coarse_points: int = 40_000
     fine_points: int = 80_000
     """Points that are placed in the coarse search and in the fine one."""

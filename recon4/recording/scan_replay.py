@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from recon4.errors import UnknownFormat
-from recon4.model.rig import LASER2D_PORT, Rig
+from recon4.model.ports import PORTS
+from recon4.model.rig import Rig
 from recon4.recording.bag_messages import imu_row, stamp_ns
 from recon4.recording.formats.bags import LASER_SCAN, Bag
 from recon4.recording.kinds import BAGS, PLANAR, bag_paths, recognize
@@ -80,7 +81,7 @@ def _line_rig(recording: Path, rig: Rig | None) -> Rig | None:
 
 def _of_laser(recording: Path, rig: Rig | None) -> Iterator[ScanDatagram]:
     row = None if rig is None else rig.row_of("laser2d")
-    port = LASER2D_PORT if rig is None or row is None else rig.sensors[row].port
+    port = PORTS.laser2d if rig is None or row is None else rig.sensors[row].port
     scans = read_laser2d([recording], ImportReport())
     for k, t_ns in enumerate(scans.t_ns.tolist()):
         yield ScanDatagram(t_ns, port, encode_scans_row(scans, k))

@@ -26,7 +26,7 @@ from recon4.geometry.se3 import TRANSLATION, Array
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times, Trajectory
-from recon4.model.usability import OBSERVED_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.registration.imu_saturation import saturated_samples
 from recon4.registration.motion import imu_in_body
 from recon4.registration.step import OdometryStep
@@ -117,7 +117,7 @@ def carried(steps: Sequence[OdometryStep], felt: FeltMotion) -> list[OdometrySte
 def is_carried(step: OdometryStep) -> bool:
     """Whether the points of a multiframe hardly observe its motion along a direction."""
     known = bool(np.isfinite(step.weak_direction).all()) and not step.lost and not step.bridged
-    return known and not step.stationary and not step.weak_sd_m < OBSERVED_SD_M
+    return known and not step.stationary and not step.weak_sd_m < OBSERVATION.observed_sd_m
 
 
 def _with_weak_motion(step: OdometryStep, sd_m: float) -> OdometryStep:
@@ -172,7 +172,7 @@ def _measurements(steps: Sequence[OdometryStep]) -> Iterator[tuple[Array, Array,
         tracked = not (before.lost or step.lost or step.bridged) and step.piece == before.piece
         if not tracked or not np.isfinite(step.weak_direction).all():
             cov = FELT.unknown_m**2 * np.eye(3)
-        elif not step.weak_sd_m < OBSERVED_SD_M and not step.stationary:
+        elif not step.weak_sd_m < OBSERVATION.observed_sd_m and not step.stationary:
             cov = cov + FELT.unknown_m**2 * np.outer(step.weak_direction, step.weak_direction)
         yield step.T_odom_body.t - before.T_odom_body.t, cov, step.stationary and before.stationary
 

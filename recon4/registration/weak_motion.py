@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from recon4.geometry.se3 import TRANSLATION, Array
-from recon4.model.usability import OBSERVED_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.registration.frame_fit import FrameFit
 from recon4.registration.tuning_motion import WEAK_MOTION
 
@@ -42,7 +42,7 @@ def weak_motion_cov(
         converged: If not, all directions are as weak as this one.
     """
     cov = np.zeros((6, 6))
-    if not np.isfinite(direction).all() or not weak_sd_m >= OBSERVED_SD_M:
+    if not np.isfinite(direction).all() or not weak_sd_m >= OBSERVATION.observed_sd_m:
         return cov
     ratio = (weak_sd_m / WEAK_MOTION.weak_sd_m) ** 4
     sd_m = unknown_m * ratio / (1.0 + ratio)

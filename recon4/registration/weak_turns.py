@@ -17,14 +17,14 @@ import numpy as np
 
 from recon4.geometry.se3 import ROTATION, TRANSLATION, Array
 from recon4.model.odometry_figures import TurnDoubt
-from recon4.model.usability import WEAK_SECONDS
+from recon4.model.tuning import OBSERVATION
 from recon4.registration.step import OdometryStep
 from recon4.registration.tuning_matching import DEGENERACY
 from recon4.registration.tuning_motion import WEAK_TURNS
 
 
 def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDoubt, ...]:
-    """Find the stretches of `WEAK_SECONDS` or more, in order of time.
+    """Find the stretches of `OBSERVATION.weak_s` or more, in order of time.
 
     Args:
         steps: Of all multiframes.
@@ -39,7 +39,7 @@ def weak_turns(steps: Sequence[OdometryStep], *, with_imu: bool) -> tuple[TurnDo
     return tuple(
         _doubt([steps[k] for k in run], t_s[run], steps[0].T_odom_body.t, rate_sd_rad_s=rate)
         for run in runs
-        if len(run) and t_s[run[-1]] - t_s[run[0]] >= WEAK_SECONDS
+        if len(run) and t_s[run[-1]] - t_s[run[0]] >= OBSERVATION.weak_s
     )
 
 

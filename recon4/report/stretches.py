@@ -12,6 +12,7 @@ from recon4.geometry.se3 import Array
 from recon4.model.trajectory import Trajectory
 from recon4.report.figures import AMBER, GRAY, ORANGE, bars
 from recon4.report.plan import PlanPath
+from recon4.report.tuning import STRETCH_CHART
 
 _COLORS = {Level.NOTE: GRAY, Level.CHECK: AMBER, Level.DO_NOT_USE: ORANGE}
 _PATHS = {
@@ -20,8 +21,6 @@ _PATHS = {
     Level.DO_NOT_USE: ("line-do-not-use", "do not use"),
 }
 """CSS class of a stretch in a plan, and its legend; the worst ones are drawn last."""
-_LEAST = 0.004
-"""Of the axis: a moment is drawn as wide."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +85,11 @@ class MarkedTimes:
 
     def _part(self, one: Finding) -> tuple[float, float, str]:
         start_s, end_s = one.span_s or (0.0, 0.0)
-        return start_s, max(end_s, start_s + _LEAST * self.duration_s), _COLORS[one.level]
+        return (
+            start_s,
+            max(end_s, start_s + STRETCH_CHART.least * self.duration_s),
+            _COLORS[one.level],
+        )
 
 
 def marked_times(findings: Sequence[Finding], duration_s: float) -> MarkedTimes:

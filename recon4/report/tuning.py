@@ -125,3 +125,14 @@ class RigChartTuning:
 
 
 RIG_CHARTS = RigChartTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StretchChartTuning:
+    """Stretches of findings on the time axis."""
+
+    least: float = 0.004
+    """Of the axis: a moment is drawn as wide."""
+
+
+STRETCH_CHART = StretchChartTuning()

@@ -29,13 +29,11 @@ from recon4.review.state import artifact_keys, decisions_in_map, read_summary
 from recon4.review.tuning import APPROVALS
 from recon4.store.atomic import atomic_folder, link_file, make_folders, sweep, write_json
 from recon4.store.checked import Altered, CheckedArtifact
+from recon4.store.formats import FORMATS
 from recon4.store.hashing import hash_file, hash_json
 from recon4.store.project import SUMMARY, Project
 from recon4.store.seal import changing, check_sealed
 
-FORMAT = 4
-"""Format of the statement. 2: it contains the manifest hash of every artifact. 3: the verdict.
-4: acknowledgments."""
 _FIGURES = (
     "points",
     "path_length_m",
@@ -73,7 +71,7 @@ class SignedJournal(TypedDict):
 
 
 class ApprovalStatement(TypedDict):
-    """What is signed, as JSON in format `FORMAT`."""
+    """What is signed, as JSON in format `FORMATS.approval`."""
 
     format: int
     project: str
@@ -336,7 +334,7 @@ def _statement(
     last = {stage["stage"]: stage.get("figures", {}) for stage in summary["stages"]}
     graph = last.get("review") or last.get("verification", {})
     return {
-        "format": FORMAT,
+        "format": FORMATS.approval,
         "project": summary["name"],
         "version": version,
         "who": asked.signer["who"],

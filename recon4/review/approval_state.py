@@ -19,7 +19,8 @@ from recon4.review.stamp import Stamp
 from recon4.review.trusted_keys import UnknownSigner
 from recon4.review.tuning import APPROVAL_NAMES
 from recon4.store.project import read_artifacts
-from recon4.untrusted.names import LONGEST_NOTE, visible
+from recon4.untrusted.limits import LIMITS
+from recon4.untrusted.names import visible
 
 
 class ApprovalKind(StrEnum):
@@ -132,7 +133,7 @@ def _state(rows: Sequence[JournalRow], approval: Approval | None) -> ApprovalSta
         time=stamp.time,
         hash=stamp.hash,
         verdict=stamp.verdict,
-        why=visible(" ".join(stamp.why.split()), most=LONGEST_NOTE),
+        why=visible(" ".join(stamp.why.split()), most=LIMITS.note),
     )
     if stamp.version < newest:
         text = f"{state.text}; version {newest} is newer"

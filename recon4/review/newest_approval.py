@@ -21,10 +21,10 @@ from recon4.review.trusted_keys import STATE, TRUSTED_KEYS
 from recon4.review.tuning import NEWEST_APPROVALS
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.checked import Altered
+from recon4.store.formats import FORMATS
 from recon4.store.json_files import read_object
 
 APPROVALS = "approvals"
-FORMAT = 1
 
 
 class Older(Altered):
@@ -153,8 +153,8 @@ def _read(path: Path) -> NewestApproval | None:
         return None
     record = read_object(path, max_bytes=NEWEST_APPROVALS.max_record_bytes)
     try:
-        if record.pop("format", None) != FORMAT:
-            raise msgspec.ValidationError(f"expected format {FORMAT}")
+        if record.pop("format", None) != FORMATS.newest_approval:
+            raise msgspec.ValidationError(f"expected format {FORMATS.newest_approval}")
         return msgspec.convert(record, NewestApproval)
     except msgspec.ValidationError as error:
         raise StoreError(
@@ -166,4 +166,4 @@ def _read(path: Path) -> NewestApproval | None:
 
 def _write(path: Path, newest: NewestApproval) -> None:
     make_folders(path.parent, 0o700)
-    write_json(path, {"format": FORMAT, **asdict(newest)})
+    write_json(path, {"format": FORMATS.newest_approval, **asdict(newest)})

@@ -26,6 +26,7 @@ from recon4.review.signature import ensure_key, fingerprint, public_key_of
 from recon4.review.tuning import KEY_LIMITS
 from recon4.store.atomic import make_folders, write_json
 from recon4.store.checked import Altered
+from recon4.store.formats import FORMATS
 from recon4.store.json_files import read_object
 from recon4.untrusted.names import visible
 
@@ -33,7 +34,6 @@ STATE = ".recon4"
 """Folder of a server's own files, in its folder of projects."""
 TRUSTED_KEYS = "trusted_keys"
 SIGNING_KEY = "signing.key"
-FORMAT = 1
 _PUBLIC_KEY = re.compile(r"[0-9a-f]{64}")
 _OWN_NAME = "this server"
 
@@ -268,8 +268,8 @@ def _own_key(folder: Path) -> TrustedKey | None:
 
 def _read(path: Path) -> TrustedKey:
     record = read_object(path, max_bytes=KEY_LIMITS.max_key_file_bytes)
-    if record.pop("format", None) != FORMAT:
-        raise StoreError(f"expected format {FORMAT}")
+    if record.pop("format", None) != FORMATS.trusted_key:
+        raise StoreError(f"expected format {FORMATS.trusted_key}")
     try:
         key = msgspec.convert(record, TrustedKey)
     except msgspec.ValidationError as error:
@@ -282,7 +282,7 @@ def _read(path: Path) -> TrustedKey:
 def _write(folder: Path, key: TrustedKey) -> None:
     path = _file_of(folder, key)
     make_folders(path.parent, 0o700)
-    write_json(path, {"format": FORMAT, **asdict(key)})
+    write_json(path, {"format": FORMATS.trusted_key, **asdict(key)})
 
 
 def _file_of(folder: Path, key: TrustedKey) -> Path:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon4.sandbox.environment import ONE_THREAD, allowed_environment
 from recon4.sandbox.policy import Barrier
+from recon4.sandbox.tuning import CONFINEMENT
 
 _TRY = """
 import json, logging, sys
@@ -18,7 +19,6 @@ logging.disable()
 from recon4.sandbox import Policy, confine
 print(json.dumps([asdict(barrier) for barrier in confine(Policy()).barriers]))
 """
-_WITHIN_S = 30.0
 
 
 def available_barriers() -> tuple[Barrier, ...]:
@@ -30,7 +30,11 @@ def available_barriers() -> tuple[Barrier, ...]:
     command = [sys.executable, "-P", "-c", _TRY]
     try:
         answer = subprocess.run(
-            command, env=environment, capture_output=True, timeout=_WITHIN_S, check=True
+            command,
+            env=environment,
+            capture_output=True,
+            timeout=CONFINEMENT.tried_within_s,
+            check=True,
         )
         return tuple(Barrier(**barrier) for barrier in json.loads(answer.stdout))
     except (OSError, subprocess.SubprocessError, ValueError, TypeError) as error:

@@ -13,6 +13,7 @@ from recon4.sandbox import landlock, seccomp
 from recon4.sandbox.environment import allowed_environment
 from recon4.sandbox.installation import WRITABLE, readable_paths
 from recon4.sandbox.kernel import PR_SET_NO_NEW_PRIVS, prctl, threads_of_this_process
+from recon4.sandbox.landlock import FileRight
 from recon4.sandbox.limits import apply_rlimits
 from recon4.sandbox.namespaces import drop_capabilities, own_network
 from recon4.sandbox.policy import Barrier, Confinement, Network, Policy
@@ -121,21 +122,21 @@ def _files(policy: Policy) -> str:
     if version == 0:
         raise OSError("this kernel has no Landlock (Linux 5.13 or later, turned on)")
     landlock.restrict(_rules(policy))
-    scopes = "" if version >= landlock.SCOPES_SINCE else ", no scope of signals (since Linux 6.12)"
+    scopes = "" if version >= landlock.Since.SCOPES else ", no scope of signals (since Linux 6.12)"
     return f"Landlock ABI {version}{scopes}"
 
 
-def _rules(policy: Policy) -> list[tuple[Path, int]]:
-    sockets = landlock.MAKE_SOCK if policy.network in (Network.UNIX, Network.RECEIVE) else 0
-    write = landlock.WRITE | sockets
-    rules = [(path, landlock.READ) for path in (*readable_paths(), *policy.read)]
+def _rules(policy: Policy) -> list[tuple[Path, FileRight]]:
+    sockets = FileRight.MAKE_SOCK if policy.network in (Network.UNIX, Network.RECEIVE) else 0
+    write = FileRight.WRITE | sockets
+    rules = [(path, FileRight.READ) for path in (*readable_paths(), *policy.read)]
     rules += [(path, write) for path in (*map(Path, WRITABLE), *policy.write)]
     if policy.temporary is not None:
         rules.append((policy.temporary, write))
     if policy.processes:
         programs = [sys.executable, sys.prefix, sys.base_prefix, "/usr/bin", "/bin"]
         programs += ["/usr/lib", "/lib", "/lib64"]
-        rules += [(Path(path), landlock.READ | landlock.EXECUTE) for path in programs]
+        rules += [(Path(path), FileRight.READ | FileRight.EXECUTE) for path in programs]
     return rules
 
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import ctypes
 
+from recon4.sandbox.tuning import CONFINEMENT
+
 _MMAP_THRESHOLD = -3
 """``M_MMAP_THRESHOLD`` of glibc's ``mallopt``."""
-_LARGE = 4 << 20
 
 
 def return_freed_memory() -> None:
@@ -17,5 +18,5 @@ def return_freed_memory() -> None:
     """
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt") and hasattr(libc, "malloc_trim"):
-        libc.mallopt(_MMAP_THRESHOLD, _LARGE)
+        libc.mallopt(_MMAP_THRESHOLD, CONFINEMENT.returned_block_bytes)
         libc.malloc_trim(0)

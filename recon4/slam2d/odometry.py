@@ -11,7 +11,7 @@ from recon4.geometry.se2 import between, compose, transform, wrap
 from recon4.geometry.se3 import Array
 from recon4.model.laser_scans import LaserScans
 from recon4.model.trajectory import Trajectory
-from recon4.model.usability import WEAK_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.progress import Progress, track
 from recon4.slam2d.correlative import LikelihoodField
 from recon4.slam2d.line_map import LineMap, Match2d, Prior2d, stack_points
@@ -157,7 +157,7 @@ class Odometry2d:
         steps.weak_direction[k] = found.weak_direction
         steps.motion_information[k] = self._in_scan_axes(match.pose, found.information)
         self._lost_in_a_row = 0
-        self._growth.observed(position=found.weak_sd_m <= WEAK_SD_M)
+        self._growth.observed(position=found.weak_sd_m <= OBSERVATION.weak_sd_m)
 
     def _in_scan_axes(self, pose: Array, information: Array) -> Array:
         """Information of lines and prediction together, in the axes of the scan."""

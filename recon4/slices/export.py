@@ -6,6 +6,7 @@ import csv
 import io
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
@@ -228,7 +229,7 @@ def write_geotiff(
     geo = _georeference(drawn, frame)
     for tag, values in geo.items():
         text = isinstance(values, str)
-        tags.tagtype[tag] = 2 if text else (3 if tag == _GEO_KEYS else 12)
+        tags.tagtype[tag] = 2 if text else (3 if tag == GeoTag.KEYS else 12)
         tags[tag] = values if text else tuple(values)
     tags[TiffImagePlugin.IMAGEDESCRIPTION] = description.encode("ascii", "replace").decode()
     image = Image.fromarray(rgba)
@@ -236,7 +237,14 @@ def write_geotiff(
         image.save(temporary, format="TIFF", compression="tiff_adobe_deflate", tiffinfo=tags)
 
 
-_GEO_KEYS, _GEO_ASCII, _GEO_MATRIX = 34735, 34737, 34264
+class GeoTag(IntEnum):
+    """Tags of GeoTIFF 1.1."""
+
+    MATRIX = 34264
+    KEYS = 34735
+    ASCII = 34737
+
+
 _FIRST_HANDLE = 0x10000
 _NEXT_HANDLE = 0x1000_0000
 
@@ -258,14 +266,14 @@ def _georeference(drawn: SliceImage, frame: MapFrame) -> dict[int, Any]:
     else:
         A, corner = np.diag([paper.pixel_m, -paper.pixel_m]), np.array([u0, v0])
         citation = f"recon4 slice {plane.name}, {frame.text}|"
-        keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, _GEO_ASCII, len(citation), 0)]
+        keys = [(1024, 0, 1, 32767), (1025, 0, 1, 1), (1026, GeoTag.ASCII, len(citation), 0)]
         keys.append((3076, 0, 1, 9001))
     matrix = [A[0, 0], A[0, 1], 0, corner[0], A[1, 0], A[1, 1], 0, corner[1],
               0, 0, 0, 0, 0, 0, 0, 1]  # fmt: skip
     directory = [1, 1, 1, len(keys), *(number for key in keys for number in key)]
-    tags: dict[int, Any] = {_GEO_KEYS: directory, _GEO_MATRIX: [float(x) for x in matrix]}
+    tags: dict[int, Any] = {GeoTag.KEYS: directory, GeoTag.MATRIX: [float(x) for x in matrix]}
     if citation:
-        tags[_GEO_ASCII] = citation.encode("ascii", "replace").decode()
+        tags[GeoTag.ASCII] = citation.encode("ascii", "replace").decode()
     return tags
 
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from recon4.model.samples import GEOID_SEPARATION_M
+from recon4.model.tuning import GEOID
 from recon4.slices.control_points import ControlPoint
 from recon4.slices.tuning import HEIGHT_HINTS
 
@@ -22,7 +22,7 @@ def common_height(up_m: Sequence[float], horizontal_m: Sequence[float]) -> str:
         return ""
     usual_m = float(np.median(up_m))
     alike = float(np.abs(np.array(up_m) - usual_m).max()) < HEIGHT_HINTS.nearly_m
-    low_m, high_m = GEOID_SEPARATION_M
+    low_m, high_m = GEOID.least_m, GEOID.most_m
     in_place = max(horizontal_m, default=0.0) < HEIGHT_HINTS.nearly_m
     if not (alike and in_place and low_m < abs(usual_m) < high_m):
         return ""
@@ -39,7 +39,7 @@ def beside_map(points: Sequence[ControlPoint], heights_m: tuple[float, float] | 
         return ""
     z_m = [point.xyz_m[2] for point in points]
     below_m, above_m = heights_m[0] - max(z_m), min(z_m) - heights_m[1]
-    low_m, high_m = GEOID_SEPARATION_M
+    low_m, high_m = GEOID.least_m, GEOID.most_m
     if not low_m < max(below_m, above_m) < high_m:
         return ""
     return (

@@ -18,6 +18,7 @@ from recon4.slices.slice_image import RasterGrid, SliceImage
 from recon4.slices.slice_plane import SlicePlane
 from recon4.slices.tuning_files import SHEETS, SLICE_COLORS
 from recon4.store.atomic import atomic_file
+from recon4.units import MM_PER_INCH
 from recon4.untrusted.names import visible
 
 Size = Literal["a4", "a3", "a2", "a1"]
@@ -27,7 +28,6 @@ SIZES_MM: dict[Size, tuple[float, float]] = {
     "a2": (594.0, 420.0),
     "a1": (841.0, 594.0),
 }
-_MM_PER_INCH = 25.4
 _INK, _QUIET, _GRID = "#17202a", "#56636f", "#b9c3cc"
 
 
@@ -63,7 +63,7 @@ class SheetLayout:
     @property
     def paper(self) -> RasterGrid:
         """Window and pixel size of the image to draw, at `SHEETS.dpi`."""
-        return RasterGrid(self.window, self.scale * _MM_PER_INCH / 1000.0 / SHEETS.dpi)
+        return RasterGrid(self.window, self.scale * MM_PER_INCH / 1000.0 / SHEETS.dpi)
 
 
 def lay_out(window: SliceWindow, size: Size = "a4", scale: int = 0) -> SheetLayout:
@@ -107,7 +107,7 @@ def write_sheet(
     }
     with matplotlib.rc_context({**plain, "font.size": 7, "path.simplify": False}):
         across_mm, up_mm = SIZES_MM[layout.size]
-        figure = Figure(figsize=(across_mm / _MM_PER_INCH, up_mm / _MM_PER_INCH), dpi=SHEETS.dpi)
+        figure = Figure(figsize=(across_mm / MM_PER_INCH, up_mm / MM_PER_INCH), dpi=SHEETS.dpi)
         _field(figure, drawn, layout, span=span)
         _head(figure, drawn, layout, text=text)
         _scale_bar(figure, layout)
@@ -238,7 +238,7 @@ def _legend(figure: Any, drawn: SliceImage, span: Span, *, text: SheetText) -> N
 
 def layout_size(figure: Any) -> Size:
     """Paper size of a figure."""
-    across_mm = figure.get_figwidth() * _MM_PER_INCH
+    across_mm = figure.get_figwidth() * MM_PER_INCH
     return min(SIZES_MM, key=lambda size: abs(SIZES_MM[size][0] - across_mm))
 
 

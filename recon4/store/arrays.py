@@ -20,14 +20,10 @@ from recon4.geometry.se3 import SE3
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Trajectory
 from recon4.untrusted.bounded import check_file_size, open_regular
+from recon4.untrusted.limits import LIMITS
 
 Record = TypeVar("Record")
 
-MAX_ARRAY_BYTES = 1 << 30
-"""Limit of the size of all arrays that are read from one file [bytes]."""
-MAX_RATIO = 200
-FREE_BYTES = 64 << 20
-"""Size below which any compression ratio is allowed: an intensity table is mostly zeros [bytes]."""
 ARRAY_HEADERS = {
     (1, 0): np.lib.format.read_array_header_1_0,
     (2, 0): np.lib.format.read_array_header_2_0,
@@ -113,7 +109,7 @@ def load_arrays(path: Path, names: list[str] | None = None) -> dict[str, NDArray
 
     Raises:
         StoreError: If the file is missing, damaged, lacks one of the names, or its arrays are
-            larger than `MAX_ARRAY_BYTES` together.
+            larger than `LIMITS.array_bytes` together.
     """
     with open_regular(path, failure=StoreError) as raw:
         try:
@@ -130,7 +126,7 @@ def load_array(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
         StoreError: If the file is missing, damaged, of another type or length.
     """
     with open_regular(path, failure=StoreError) as raw:
-        check_file_size(raw, path, MAX_ARRAY_BYTES, failure=StoreError)
+        check_file_size(raw, path, LIMITS.array_bytes, failure=StoreError)
         try:
             return _array(raw.read(), path.name, dtype)
         except DAMAGED as error:
@@ -149,10 +145,10 @@ def _members(
     chosen = {name: found[f"{name}.npy"] for name in names}
     size = sum(info.file_size for info in chosen.values())
     packed = sum(info.compress_size for info in chosen.values())
-    if size > MAX_ARRAY_BYTES or size > MAX_RATIO * packed + FREE_BYTES:
+    if size > LIMITS.array_bytes or size > LIMITS.expansion * packed + LIMITS.free_bytes:
         raise StoreError(
-            f"{where}: expected at most {MAX_ARRAY_BYTES} bytes and {MAX_RATIO} times the "
-            f"packed size, got {size} bytes from {packed}"
+            f"{where}: expected at most {LIMITS.array_bytes} bytes and {LIMITS.expansion} times "
+            f"the packed size, got {size} bytes from {packed}"
         )
     out = {}
     for name, info in chosen.items():

@@ -19,9 +19,8 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.store.hashing import BLOCK_BYTES, FileDigest, files_below
+from recon4.store.tuning import CHECKED_FILES
 
-MAX_FILES = 4096
-"""Number of files whose checked blocks are remembered."""
 _Identity = tuple[int, int, int, int, int, str]
 _checked: OrderedDict[_Identity, bytearray] = OrderedDict()
 _lock = threading.Lock()
@@ -166,7 +165,7 @@ def _flags(descriptor: int, expected: FileDigest) -> bytearray:
     with _lock:
         flags = _checked.setdefault(identity, _no_flags(expected))
         _checked.move_to_end(identity)
-        while len(_checked) > MAX_FILES:
+        while len(_checked) > CHECKED_FILES.remembered:
             _checked.popitem(last=False)
     return flags
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from recon4.errors import StoreError
-from recon4.store.arrays import FREE_BYTES, MAX_RATIO
 from recon4.store.tuning import PACKING
+from recon4.untrusted.limits import LIMITS
 
 
 def compress(data: bytes | bytearray | memoryview) -> bytes:
@@ -23,14 +23,14 @@ def expand(data: bytes, size: int, where: str) -> bytes:
         where: File and part of it, for errors.
 
     Raises:
-        StoreError: If the frame is damaged or has another size. No more than `MAX_RATIO` times
-            its bytes are expanded (at least `FREE_BYTES`).
+        StoreError: If the frame is damaged or has another size. No more than `expansion` times its
+            bytes are expanded (at least `free_bytes`).
     """
     import zstandard
 
-    if size > MAX_RATIO * len(data) + FREE_BYTES:
+    if size > LIMITS.expansion * len(data) + LIMITS.free_bytes:
         raise StoreError(
-            f"{where}: expected at most {MAX_RATIO} times the packed size, "
+            f"{where}: expected at most {LIMITS.expansion} times the packed size, "
             f"got {size} bytes from {len(data)}"
         )
     try:

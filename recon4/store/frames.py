@@ -33,6 +33,7 @@ from recon4.model.trajectory import Times
 from recon4.store.arrays import load_array, load_record, save_record
 from recon4.store.earlier_frames import EARLIER_INDEX, earlier_columns, is_earlier
 from recon4.untrusted.bounded import read_json_object
+from recon4.untrusted.limits import LIMITS
 
 INDEX = np.dtype(
     [
@@ -53,7 +54,6 @@ CALIBRATED_RIG = "rig.toml"
 """In the folder of the stage ``calibration``: the calibrated rig, if it is used."""
 CALIBRATION_SLICES = "slices.json"
 """There, too: what the LiDARs see with the rig file and with the calibrated rig."""
-_MAX_REPORT_BYTES = 64 << 20
 _NO_SPACE = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
@@ -347,7 +347,7 @@ def _check_points(folder: Path, index: NDArray[np.void]) -> None:
 
 def _read_report(path: Path) -> dict[str, object]:
     try:
-        return read_json_object(path, _MAX_REPORT_BYTES, failure=StoreError)
+        return read_json_object(path, LIMITS.json_bytes, failure=StoreError)
     except StoreError as error:
         if not path.exists():
             return {}

@@ -15,7 +15,6 @@ BLOCK_BYTES = 1 << 20
 """Files are hashed as a whole and in blocks of this size, so that parts can be checked [bytes]."""
 CHAIN_START = "0" * 64
 """What the first row of a hash chain has in place of the hash of the row before it."""
-_DIGEST_BYTES = 32
 
 
 class FileEntry(TypedDict):
@@ -59,7 +58,7 @@ class FileDigest:
         """
         blocks = base64.b64decode(value.get("blocks", ""), validate=True)
         size, sha256 = int(value["bytes"]), str(value["sha256"])
-        if blocks and len(blocks) != -(-size // BLOCK_BYTES) * _DIGEST_BYTES:
+        if blocks and len(blocks) != -(-size // BLOCK_BYTES) * hashlib.sha256().digest_size:
             raise ValueError(f"{len(blocks)} bytes of block hashes do not fit {size} bytes")
         return FileDigest(size, sha256, blocks)
 
@@ -74,7 +73,9 @@ class FileDigest:
         """SHA-256 of one block."""
         if not self.blocks:
             return bytes.fromhex(self.sha256)
-        return self.blocks[number * _DIGEST_BYTES : (number + 1) * _DIGEST_BYTES]
+        return self.blocks[
+            number * hashlib.sha256().digest_size : (number + 1) * hashlib.sha256().digest_size
+        ]
 
 
 def hash_file(path: Path, seen: Callable[[int], None] | None = None) -> str:

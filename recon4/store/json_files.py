@@ -11,12 +11,10 @@ from typing import Any
 
 from recon4.errors import StoreError
 from recon4.untrusted.bounded import parse_json, read_bytes_limited
-
-MAX_BYTES = 64 << 20
-"""Larger files are not read; files of recon4 are much smaller [bytes]."""
+from recon4.untrusted.limits import LIMITS
 
 
-def read_object(path: Path, *, max_bytes: int = MAX_BYTES) -> dict[str, Any]:
+def read_object(path: Path, *, max_bytes: int = LIMITS.json_bytes) -> dict[str, Any]:
     """Read the object in a JSON file.
 
     Raises:

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from recon4.errors import StoreError
 from recon4.store.atomic import raise_if_full
+from recon4.store.formats import FORMATS
 from recon4.store.sqlite_files import (
     connect,
     connect_read_only,
@@ -18,7 +19,6 @@ from recon4.store.sqlite_files import (
     merge_log,
 )
 
-SCHEMA_VERSION = 1
 _PAGE_BYTES = 512
 """The smallest page of SQLite."""
 _SCHEMA = """
@@ -96,11 +96,11 @@ class Ledger:
             (version,) = self._db.execute("PRAGMA user_version").fetchone()
             if version == 0 and not read_only:
                 self._db.executescript(
-                    f"BEGIN; {_SCHEMA} PRAGMA user_version = {SCHEMA_VERSION}; COMMIT;"
+                    f"BEGIN; {_SCHEMA} PRAGMA user_version = {FORMATS.ledger}; COMMIT;"
                 )
-        if version not in {0, SCHEMA_VERSION}:
+        if version not in {0, FORMATS.ledger}:
             raise StoreError(
-                f"{self.path} has version {version}, this recon4 reads version {SCHEMA_VERSION}"
+                f"{self.path} has version {version}, this recon4 reads version {FORMATS.ledger}"
             )
 
     @contextmanager

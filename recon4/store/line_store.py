@@ -20,9 +20,9 @@ from recon4.model.laser_scans import LaserScans
 from recon4.model.line_scans import LineScans
 from recon4.store.arrays import load_arrays, load_record, save_arrays, save_record
 from recon4.store.frames import storing
+from recon4.store.growing_arrays import npy_header
 
 LINES, SCANS, RANGES = "lines.npz", "laser2d.npz", "laser2d_range_m.npy"
-_HEADER_BYTES = 128
 _PER_SCAN = ("t_ns", "angle_min_rad", "angle_step_rad", "time_step_s")
 _FIELDS = (*_PER_SCAN, "start", "range_max_m")
 
@@ -52,7 +52,7 @@ class LineStoreWriter:
         with storing(self._folder):
             if self._file is None:
                 self._file = (self._folder / RANGES).open("wb")
-                self._file.write(_header(0))
+                self._file.write(npy_header("<f4", (0,)))
             self._file.write(np.ascontiguousarray(scans.range_m, "<f4").data)
         for name, parts in self._parts.items():
             parts.append(getattr(scans, name))
@@ -79,7 +79,7 @@ class LineStoreWriter:
         if len(known) == len(self._odometry):
             arrays["odometry"] = np.concatenate(known)
         file.seek(0)
-        file.write(_header(int(arrays["start"][-1])))
+        file.write(npy_header("<f4", (int(arrays["start"][-1]),)))
         file.close()
         save_arrays(self._folder / SCANS, arrays)
 
@@ -162,10 +162,3 @@ def _check_scans(folder: str, arrays: Mapping[str, NDArray[Any]], ranges: NDArra
     odometry = arrays.get("odometry")
     if odometry is not None and odometry.shape != (count, 3):
         raise StoreError(f"{folder}/{SCANS}: expected {count} poses, got {odometry.shape}")
-
-
-def _header(count: int) -> bytes:
-    """Header of a version 1.0 ``.npy`` file, of constant size so that it can be rewritten."""
-    text = f"{{'descr': '<f4', 'fortran_order': False, 'shape': ({count},), }}"
-    body = text.encode("latin1").ljust(_HEADER_BYTES - 11) + b"\n"
-    return b"\x93NUMPY\x01\x00" + len(body).to_bytes(2, "little") + body

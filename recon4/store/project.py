@@ -12,18 +12,18 @@ from typing import Any
 
 from recon4.errors import NoSpace, StoreError
 from recon4.store.atomic import make_folders, raise_if_full, sweep, write_json
+from recon4.store.formats import FORMATS
 from recon4.store.json_files import read_object
 from recon4.store.ledger import FinishedStage, Ledger
 from recon4.store.locks import open_lock_file, try_lock
 from recon4.store.seal import adopt, begin_change, end_change
+from recon4.untrusted.limits import LIMITS
 from recon4.untrusted.names import visible
 
-FORMAT = 1
 LEDGER = "ledger.sqlite"
 SUMMARY = "summary.json"
 SEALED = ("project.json", LEDGER)
 """Files that change while a project is open and are sealed when it is closed."""
-MAX_DESCRIPTION_BYTES = 4 << 20
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,9 +155,9 @@ def read_description(root: Path) -> dict[str, Any]:
     path = root / "project.json"
     if not path.exists():
         raise StoreError(f"{root} is not a recon4 project: it has no project.json")
-    found = read_object(path, max_bytes=MAX_DESCRIPTION_BYTES)
-    if found.get("format") != FORMAT:
-        raise StoreError(f"{path}: expected format {FORMAT}")
+    found = read_object(path, max_bytes=LIMITS.description_bytes)
+    if found.get("format") != FORMATS.project:
+        raise StoreError(f"{path}: expected format {FORMATS.project}")
     return found
 
 
@@ -214,7 +214,9 @@ def _make_folder(root: Path) -> None:
             _refuse_foreign(root)
             created = time.strftime("%Y-%m-%dT%H:%M:%SZ", time.gmtime())
             name = visible(root.resolve().name)
-            write_json(root / "project.json", {"format": FORMAT, "name": name, "created": created})
+            write_json(
+                root / "project.json", {"format": FORMATS.project, "name": name, "created": created}
+            )
         read_description(root)
         make_folders(root / "artifacts")
     except OSError as error:

@@ -21,6 +21,7 @@ from typing import TypedDict
 from recon4.errors import StoreError
 from recon4.store.atomic import write_json
 from recon4.store.checked import Altered, check_file
+from recon4.store.formats import FORMATS
 from recon4.store.hashing import FileDigest, files_below, hash_json
 from recon4.store.json_files import parse_object
 from recon4.store.locks import open_lock_file, wait_for_lock
@@ -28,7 +29,6 @@ from recon4.store.locks import open_lock_file, wait_for_lock
 SEALS = "seals.json"
 LOCK = ".seals.lock"
 TURN = ".changes.lock"
-FORMAT = 1
 
 
 class Seal(TypedDict, total=False):
@@ -59,7 +59,7 @@ def read_seals(root: Path) -> dict[str, Seal]:
     try:
         found = parse_object(data, SEALS)
         files: dict[str, Seal] = found["files"]
-        if found["format"] != FORMAT or found["sha256"] != hash_json(files):
+        if found["format"] != FORMATS.seal or found["sha256"] != hash_json(files):
             raise ValueError("its own hash does not fit")
         if data != seals_text(files).encode():
             raise ValueError("it is not as it was written")
@@ -223,7 +223,7 @@ def _write(root: Path, seals: Mapping[str, Seal]) -> None:
 
 def _value(seals: Mapping[str, Seal]) -> dict[str, object]:
     files = {name: dict(seals[name]) for name in sorted(seals)}
-    return {"format": FORMAT, "sha256": hash_json(files), "files": files}
+    return {"format": FORMATS.seal, "sha256": hash_json(files), "files": files}
 
 
 def seals_text(seals: Mapping[str, Seal]) -> str:

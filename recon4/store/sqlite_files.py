@@ -10,13 +10,10 @@ from contextlib import closing
 from pathlib import Path
 from typing import Any
 
-ROOM_BESIDE_BYTES = 64 << 10
-"""The index of a write-ahead log takes 32 KiB [bytes]."""
-BUSY_S = 10.0
-"""Longest wait for another writer [s]."""
+from recon4.store.tuning import SQLITE
 
 
-def connect(path: Path | str, *, busy_s: float = BUSY_S) -> sqlite3.Connection:
+def connect(path: Path | str, *, busy_s: float = SQLITE.busy_s) -> sqlite3.Connection:
     """Open a file to read and write, created if missing; transactions are explicit.
 
     Raises:
@@ -37,7 +34,7 @@ def connect_read_only(path: Path, *, immutable: bool = False) -> sqlite3.Connect
     """
     options = "mode=ro&immutable=1" if immutable else "mode=ro"
     uri = f"{path.resolve().as_uri()}?{options}"
-    return sqlite3.connect(uri, isolation_level=None, timeout=BUSY_S, uri=True)
+    return sqlite3.connect(uri, isolation_level=None, timeout=SQLITE.busy_s, uri=True)
 
 
 def connect_to_read(path: Path) -> sqlite3.Connection:
@@ -62,7 +59,7 @@ def has_room_beside(path: Path) -> bool:
     if not os.access(path.parent, os.W_OK):
         return False
     disk = os.statvfs(path.parent)
-    return disk.f_bavail * disk.f_frsize >= ROOM_BESIDE_BYTES
+    return disk.f_bavail * disk.f_frsize >= SQLITE.room_beside_bytes
 
 
 def _copy_with_log(path: Path, log: Path) -> sqlite3.Connection:

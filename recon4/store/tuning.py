@@ -17,3 +17,27 @@ class PackingTuning:
 
 
 PACKING = PackingTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SqliteTuning:
+    """Databases of one file."""
+
+    busy_s: float = 10.0
+    """Longest wait for another writer [s]."""
+    room_beside_bytes: int = 64 << 10
+    """The index of a write-ahead log takes 32 KiB."""
+
+
+SQLITE = SqliteTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CheckedFilesTuning:
+    """Files whose hashes are checked while they are read."""
+
+    remembered: int = 4096
+    """Number of files whose checked blocks are remembered."""
+
+
+CHECKED_FILES = CheckedFilesTuning()

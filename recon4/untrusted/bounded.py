@@ -16,14 +16,11 @@ from pathlib import Path
 from typing import Any, BinaryIO
 
 from recon4.errors import CorruptFile, Recon4Error
+from recon4.untrusted.limits import LIMITS
 
 Failure = type[Recon4Error]
 """Class of the error that a reader raises."""
 
-MAX_LINE_BYTES = 64 * 1024
-"""No table that recon4 reads has longer lines [bytes]."""
-MAX_DEPTH = 64
-"""Nesting of a JSON document: what recon4 writes has fewer than ten levels."""
 
 _UTF16 = (b"\xff\xfe", b"\xfe\xff")
 _SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
@@ -113,7 +110,7 @@ def decode_text(data: bytes, name: str, *, failure: Failure = CorruptFile) -> st
 def lines_limited(
     path: Path,
     *,
-    max_line_bytes: int = MAX_LINE_BYTES,
+    max_line_bytes: int = LIMITS.line_bytes,
     max_bytes: int,
     failure: Failure = CorruptFile,
     on_damaged: Callable[[Recon4Error], None] | None = None,
@@ -169,7 +166,7 @@ def text_blocks(
 
     Raises:
         Recon4Error: Of the class ``failure``, as `lines_limited`; a line longer than
-            `MAX_LINE_BYTES` is refused.
+            `LIMITS.line_bytes` is refused.
     """
     with open_regular(path, failure=failure) as file:
         check_file_size(file, path, max_bytes, failure=failure)
@@ -178,10 +175,10 @@ def text_blocks(
             data = rest + data
             end = data.rfind(b"\n") + 1
             block, rest = data[:end], data[end:]
-            if len(rest) > MAX_LINE_BYTES:
+            if len(rest) > LIMITS.line_bytes:
                 line = number + block.count(b"\n")
                 raise failure(
-                    f"{path.name}: line {line}: expected at most {MAX_LINE_BYTES} bytes, "
+                    f"{path.name}: line {line}: expected at most {LIMITS.line_bytes} bytes, "
                     "got a longer line"
                 )
             if block:
@@ -214,7 +211,7 @@ def parse_json(
         finite: Also refuse NaN and numbers that are too large for a computer.
 
     Raises:
-        Recon4Error: Of the class ``failure``, if it is no JSON, nested deeper than `MAX_DEPTH`
+        Recon4Error: Of the class ``failure``, if it is no JSON, nested deeper than `LIMITS.depth`
             or has text that cannot be written as UTF-8 (a lone surrogate).
     """
     if isinstance(text, bytes):
@@ -225,7 +222,9 @@ def parse_json(
     except ValueError as error:
         raise failure(f"{name}: expected JSON, got something else: {error}") from error
     except RecursionError as error:
-        raise failure(f"{name}: expected JSON of at most {MAX_DEPTH} levels, got more") from error
+        raise failure(
+            f"{name}: expected JSON of at most {LIMITS.depth} levels, got more"
+        ) from error
     _check_depth(value, name, failure)
     if _SURROGATE.search(text):
         _check_surrogates(value, name, failure)
@@ -265,7 +264,7 @@ def _finite(text: str) -> float:
 
 def _check_depth(value: Any, name: str, failure: Failure) -> None:
     level = [value]
-    for _ in range(MAX_DEPTH + 1):
+    for _ in range(LIMITS.depth + 1):
         level = [
             child
             for item in level
@@ -274,7 +273,7 @@ def _check_depth(value: Any, name: str, failure: Failure) -> None:
         ]
         if not level:
             return
-    raise failure(f"{name}: expected JSON of at most {MAX_DEPTH} levels, got more")
+    raise failure(f"{name}: expected JSON of at most {LIMITS.depth} levels, got more")
 
 
 def _check_surrogates(value: Any, name: str, failure: Failure) -> None:

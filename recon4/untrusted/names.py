@@ -9,14 +9,13 @@ from __future__ import annotations
 import unicodedata
 
 from recon4.errors import ConfigError
+from recon4.untrusted.limits import LIMITS
 
-LONGEST_NAME = 200
-LONGEST_NOTE = 500
 _HIDDEN = frozenset({"Cc", "Cf", "Cs", "Zl", "Zp"})
 """Unicode categories of control, format and surrogate characters, line and paragraph separators."""
 
 
-def check_name(text: str, *, what: str, most: int = LONGEST_NAME) -> str:
+def check_name(text: str, *, what: str, most: int = LIMITS.name) -> str:
     """A name as it was given.
 
     Args:
@@ -30,7 +29,7 @@ def check_name(text: str, *, what: str, most: int = LONGEST_NAME) -> str:
     return _check(text, what, most, allowed="")
 
 
-def check_note(text: str, *, what: str, most: int = LONGEST_NOTE) -> str:
+def check_note(text: str, *, what: str, most: int = LIMITS.note) -> str:
     """A text of several lines as it was given.
 
     Raises:
@@ -39,7 +38,7 @@ def check_note(text: str, *, what: str, most: int = LONGEST_NOTE) -> str:
     return _check(text, what, most, allowed="\t\n\r")
 
 
-def visible(text: str, *, most: int = LONGEST_NAME) -> str:
+def visible(text: str, *, most: int = LIMITS.name) -> str:
     """A name from a file, fit to be shown: hidden characters as their numbers, cut at ``most``."""
     short = text if len(text) <= most else f"{text[: most - 1]}…"
     return "".join(f"<U+{ord(one):04X}>" if _hidden(one) else one for one in short)

@@ -15,13 +15,10 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.usability import MapVerdict
 from recon4.report.facts import StageTiming
 from recon4.settings import Settings
+from recon4.store.formats import FORMATS
 from recon4.store.ledger import FinishedStage
 from recon4.store.project import ProjectDescription
 from recon4.store.stage import StageRun
-
-FORMAT = 3
-"""Format of ``summary.json``; 2 introduced ``path_length_m`` and ratios in the settings, 3
-findings as records in place of ``warnings``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +104,7 @@ class RunSummary:
         names = [one.name for one in fields(self) if one.name != "folder"]
         record = {name: to_plain(getattr(self, name)) for name in names}
         record["findings"] = [to_plain(said(finding)) for finding in self.findings]
-        return {"format": FORMAT} | record
+        return {"format": FORMATS.summary} | record
 
 
 def duration_s(trajectory: Trajectory) -> float:

@@ -13,6 +13,7 @@ from zxcvbn.frequency_lists import FREQUENCY_LISTS
 
 from recon4_app.access.login import passwords
 from recon4_app.access.login.passwords import require_strong
+from recon4_app.access.tuning import PASSWORDS
 from recon4_app.errors import WeakPassword
 
 NAME = "Anna Kowalska"
@@ -58,7 +59,7 @@ def dressed(word):
 
 @pytest.mark.parametrize("word", WORDS)
 def test_a_name_known_here_is_no_password_however_it_is_dressed(word):
-    candidates = [one for one in dressed(word) if len(one) >= passwords.SHORTEST]
+    candidates = [one for one in dressed(word) if len(one) >= PASSWORDS.shortest]
 
     assert len(candidates) >= 5
     assert accepted(candidates) == []
@@ -68,13 +69,13 @@ def test_two_names_known_here_joined_are_no_password():
     pairs = itertools.permutations(WORDS, 2)
     joined = [a + between + b for a, b in pairs for between in ("", " ", "-", "1")]
 
-    assert accepted([one for one in joined if len(one) >= passwords.SHORTEST]) == []
+    assert accepted([one for one in joined if len(one) >= PASSWORDS.shortest]) == []
 
 
 def test_the_ten_thousand_most_common_passwords_are_refused_also_doubled_and_with_a_year():
     common = FREQUENCY_LISTS["passwords"][:10_000]
     assert len(common) == 10_000
-    long_ones = [one for one in common if len(one) >= passwords.SHORTEST]
+    long_ones = [one for one in common if len(one) >= PASSWORDS.shortest]
     sample = common[::100]
     doubled = [(one * 3)[: max(12, 2 * len(one))] for one in sample]
     with_year = [f"{one}{'2026' * 3}"[: max(12, len(one) + 4)] for one in sample]
@@ -120,7 +121,7 @@ def test_the_reason_says_what_to_change():
 )
 def test_no_password_makes_the_check_slow(password):
     began = time.monotonic()
-    accepted([password[: passwords.LONGEST]])
+    accepted([password[: PASSWORDS.longest]])
 
     assert time.monotonic() - began < 2.0
 

@@ -24,7 +24,7 @@ from recon4_app.jobs.model import Inputs
 from recon4_app.settings import worker_environment
 
 pytestmark = pytest.mark.skipif(
-    kernel.machine() is None or landlock.abi() < landlock.SCOPES_SINCE,
+    kernel.machine() is None or landlock.abi() < landlock.Since.SCOPES,
     reason="needs Linux 6.12 or later with Landlock: `recon4 doctor` says what follows",
 )
 KINDS = ("worker", "viewer", "recorder", "mapper")

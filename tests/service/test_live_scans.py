@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from recon4.live.replay import ReplayDatagram
-from recon4.model.rig import LASER2D_PORT, load_rig
+from recon4.model.ports import PORTS
+from recon4.model.rig import load_rig
 from recon4.pipeline import process
 from recon4.progress import Silent
 from recon4.recording.formats.poses import read_tum
@@ -153,4 +154,4 @@ def test_a_backpack_with_a_profiler_gives_the_frames_of_its_bag(server, tmp_path
     for row in range(len(frames[0])):
         np.testing.assert_array_equal(frames[0][row].xyz, frames[1][row].xyz)
         np.testing.assert_array_equal(frames[0][row].dt_ns, frames[1][row].dt_ns)
-    assert LASER2D_PORT in {sender["port"] for sender in phone.newest["status"]["senders"]}
+    assert PORTS.laser2d in {sender["port"] for sender in phone.newest["status"]["senders"]}

@@ -6,8 +6,6 @@ import pytest
 
 from recon4.errors import ConfigError, CorruptFile, StoreError
 from recon4.untrusted.bounded import (
-    MAX_DEPTH,
-    MAX_LINE_BYTES,
     lines_limited,
     parse_json,
     read_bytes_limited,
@@ -15,6 +13,7 @@ from recon4.untrusted.bounded import (
     read_text_limited,
     text_blocks,
 )
+from recon4.untrusted.limits import LIMITS
 
 
 def sparse(path, size, head=b""):
@@ -75,7 +74,7 @@ def test_lines_and_blocks_make_up_the_text(tmp_path):
 
 
 def test_one_long_line_is_refused(tmp_path):
-    path = sparse(tmp_path / "a.csv", 7 << 30, b"a,b\n" + b"1" * (MAX_LINE_BYTES + 1))
+    path = sparse(tmp_path / "a.csv", 7 << 30, b"a,b\n" + b"1" * (LIMITS.line_bytes + 1))
     with pytest.raises(CorruptFile, match="line 2: expected at most 65536 bytes"):
         list(lines_limited(path, max_bytes=8 << 30))
     with pytest.raises(CorruptFile, match="line 2: expected at most 65536 bytes"):
@@ -86,7 +85,7 @@ def test_one_long_line_is_refused(tmp_path):
     "text",
     [
         "[" * 100_000,
-        "[" * (MAX_DEPTH + 2) + "]" * (MAX_DEPTH + 2),
+        "[" * (LIMITS.depth + 2) + "]" * (LIMITS.depth + 2),
         '{"a":' * 500 + "1" + "}" * 500,
         '{"name": "\\ud800"}',
         '{"name": ',
@@ -101,7 +100,7 @@ def test_json_that_is_damaged_or_too_deep_is_refused(text):
 
 
 def test_json_of_usual_depth_and_paired_surrogates_pass():
-    assert parse_json("[" * MAX_DEPTH + "]" * MAX_DEPTH, "p.json")
+    assert parse_json("[" * LIMITS.depth + "]" * LIMITS.depth, "p.json")
     assert parse_json('"\\ud83d\\ude00"', "p.json") == "😀"
 
 

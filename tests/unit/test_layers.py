@@ -28,7 +28,7 @@ STAGE = MODEL | {"recon4.kernels", "recon4.store"}
 MAY_IMPORT = {
     "recon4/errors.py": set(),
     "recon4/units.py": set(),
-    "recon4/untrusted": {"recon4.errors"},
+    "recon4/untrusted": {"recon4.errors", "recon4.untrusted"},
     "recon4/system": {"recon4.errors", "recon4.sandbox", "recon4.system"},
     "recon4/system/compile_kernels.py": {"recon4.kernels.signatures", "recon4.progress"}
     | {"recon4.sandbox", "recon4.store.locks", "recon4.system"},

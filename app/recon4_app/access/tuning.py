@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from recon4.units import HOUR_S
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AuditLogLimits:
@@ -47,6 +49,9 @@ LOGINS = LoginLimits()
 class PasswordLimits:
     """What a password must withstand."""
 
+    shortest: int = 12
+    longest: int = 256
+    """Characters of a password."""
     min_attempts: int = 10**10
     """Attempts a new password must withstand (the highest score of zxcvbn)."""
     longest_estimated: int = 64
@@ -62,6 +67,8 @@ PASSWORDS = PasswordLimits()
 class SessionTimes:
     """How long sessions last."""
 
+    browser_known_s: float = 365.0 * 24 * HOUR_S
+    """A browser in which somebody signed in is known for this long [s]."""
     clock_step_s: float = 60.0
     """A password given later than this from now was given before the clock was set back [s]."""
     cached_s: float = 2.0

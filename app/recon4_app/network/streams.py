@@ -18,9 +18,6 @@ from recon4_app.access.people import LOCAL, READER, Permission, person
 from recon4_app.errors import TooMany
 from recon4_app.network.tuning import STREAMS
 
-TOO_MANY = 4429
-"""Close code of a WebSocket beyond the limit; the reason has the message."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class StreamLimits:

@@ -6,8 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from recon4.model.beams import MAX_BEAMS
-from recon4.model.rig import MAX_RIG_BYTES, MAX_SENSORS, SensorKind
+from recon4.model.limits import RIG_LIMITS
+from recon4.model.rig import SensorKind
 from recon4_app.names import Name, Note
 from recon4_app.rigs.tuning import RIG_TEXTS
 
@@ -26,11 +26,11 @@ class RigPart(BaseModel):
 class BeamsContent(RigPart):
     """Corrections of the beams of a LiDAR, ring 0 (the lowest) first."""
 
-    range_m: list[Number] = Field(max_length=MAX_BEAMS)
+    range_m: list[Number] = Field(max_length=RIG_LIMITS.beams)
     """Added to the measured range [m]."""
-    elevation_deg: list[Number] = Field(max_length=MAX_BEAMS)
+    elevation_deg: list[Number] = Field(max_length=RIG_LIMITS.beams)
     """Added to the elevation of the data sheet [deg]."""
-    azimuth_deg: list[Number] = Field(max_length=MAX_BEAMS)
+    azimuth_deg: list[Number] = Field(max_length=RIG_LIMITS.beams)
     """Added to the azimuth [deg]."""
 
 
@@ -62,7 +62,7 @@ class SensorContent(RigPart):
     """False: its points are stored, but neither registered nor mapped."""
     serial: Name = Field(default="", max_length=RIG_TEXTS.longest_text)
     """Serial number; empty = not known."""
-    description: str = Field(default="", max_length=MAX_RIG_BYTES)
+    description: str = Field(default="", max_length=RIG_LIMITS.file_bytes)
     """Metadata or table of angles of this very sensor, as its maker writes them."""
     beams: BeamsContent | None = None
     """Corrections of single beams; null = none."""
@@ -103,7 +103,7 @@ class RigContent(RigPart):
 
     name: Name = Field(max_length=RIG_TEXTS.longest_text)
     """Display name."""
-    sensors: list[SensorContent] = Field(min_length=1, max_length=MAX_SENSORS)
+    sensors: list[SensorContent] = Field(min_length=1, max_length=RIG_LIMITS.sensors)
     imu: ImuContent
     gnss: GnssContent
 
@@ -112,7 +112,7 @@ class NewVersion(RigPart):
     """Request for a version of a rig; exactly one of ``content`` and ``toml``."""
 
     content: RigContent | None = None
-    toml: str | None = Field(default=None, max_length=MAX_RIG_BYTES)
+    toml: str | None = Field(default=None, max_length=RIG_LIMITS.file_bytes)
     """Text of a rig file."""
     note: Note = Field(default="", max_length=500)
     """Why there is a new version."""
@@ -127,7 +127,7 @@ class NewRig(RigPart):
     id: str = Field(pattern=RIG_ID)
     """Name of its folder."""
     content: RigContent | None = None
-    toml: str | None = Field(default=None, max_length=MAX_RIG_BYTES)
+    toml: str | None = Field(default=None, max_length=RIG_LIMITS.file_bytes)
     copy_of: str = Field(default="", max_length=64)
     """Rig whose newest version is copied."""
     note: Note = Field(default="", max_length=500)

@@ -8,7 +8,8 @@ from pathlib import Path
 from pydantic import BaseModel
 
 from recon4.errors import ConfigError
-from recon4.model.rig import MAX_RIG_BYTES, format_rig, parse_rig
+from recon4.model.limits import RIG_LIMITS
+from recon4.model.rig import format_rig, parse_rig
 from recon4.model.serial_device import parse_serial_device
 from recon4.untrusted.bounded import read_text_limited
 from recon4.untrusted.names import visible
@@ -35,8 +36,10 @@ def check_rig(text: str) -> CheckedRig:
         ConfigError: If it is no rig, or its receiver is on something else than a serial line.
     """
     size = len(text.encode("utf-8", "replace"))
-    if size > MAX_RIG_BYTES:
-        raise ConfigError(f"the rig file: expected at most {MAX_RIG_BYTES} bytes, got {size}")
+    if size > RIG_LIMITS.file_bytes:
+        raise ConfigError(
+            f"the rig file: expected at most {RIG_LIMITS.file_bytes} bytes, got {size}"
+        )
     rig = parse_rig(text, where="the rig file")
     if rig.gnss_serial:
         parse_serial_device(rig.gnss_serial)
@@ -54,7 +57,7 @@ def check_rig_in(path: Path) -> CheckedRig:
     Raises:
         ConfigError: If it cannot be read or is no rig.
     """
-    return check_rig(read_text_limited(path, MAX_RIG_BYTES, failure=ConfigError))
+    return check_rig(read_text_limited(path, RIG_LIMITS.file_bytes, failure=ConfigError))
 
 
 def read_content(path: Path) -> RigContent:
@@ -63,5 +66,5 @@ def read_content(path: Path) -> RigContent:
     Raises:
         ConfigError: If it cannot be read or is no rig.
     """
-    text = read_text_limited(path, MAX_RIG_BYTES, failure=ConfigError)
+    text = read_text_limited(path, RIG_LIMITS.file_bytes, failure=ConfigError)
     return content_of(parse_rig(text, where=path.name))

@@ -15,7 +15,8 @@ from pathlib import Path
 from stat import S_ISREG
 
 from recon4.errors import StoreError
-from recon4.model.rig import MAX_RIG_BYTES, rig_presets
+from recon4.model.limits import RIG_LIMITS
+from recon4.model.rig import rig_presets
 from recon4.store.atomic import atomic_folder, make_folders, sweep, write_json, write_text
 from recon4.store.json_files import read_object
 from recon4.store.project import is_project
@@ -196,7 +197,7 @@ def _is_file(path: Path) -> bool:
     except OSError:
         return False
     regular = S_ISREG(found.st_mode) and not path.parent.is_symlink()
-    return regular and found.st_size <= MAX_RIG_BYTES
+    return regular and found.st_size <= RIG_LIMITS.file_bytes
 
 
 def _text(row: dict[str, object], key: str, *, most: int = 200) -> str:

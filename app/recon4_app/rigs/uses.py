@@ -8,7 +8,8 @@ from functools import cache
 from pathlib import Path
 
 from recon4.errors import StoreError
-from recon4.model.rig import MAX_RIG_BYTES, format_rig, load_rig, rig_presets
+from recon4.model.limits import RIG_LIMITS
+from recon4.model.rig import format_rig, load_rig, rig_presets
 from recon4.untrusted.bounded import read_bytes_limited
 from recon4_app.jobs.store import JobStore
 from recon4_app.projects.store import ProjectStore
@@ -94,7 +95,7 @@ def _shipped() -> dict[str, str]:
 
 def _sha256(path: Path) -> str:
     try:
-        data = read_bytes_limited(path, MAX_RIG_BYTES, failure=StoreError)
+        data = read_bytes_limited(path, RIG_LIMITS.file_bytes, failure=StoreError)
     except StoreError:
         return ""
     return hashlib.sha256(data).hexdigest()

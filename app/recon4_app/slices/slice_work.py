@@ -54,10 +54,10 @@ from recon4_app.slices.model import (
     WindowSpec,
     Xyz,
 )
+from recon4_app.slices.tuning import WALK_STRETCH
 
 Artifacts = dict[str, str]
 """Stage -> folder of its artifact."""
-_MOST_POSITIONS = 500
 
 
 @lru_cache(maxsize=4)
@@ -100,11 +100,11 @@ def reference_of(folder: str, method: Method) -> Reference | None:
 
 
 def walk_stretch(artifacts: Artifacts, span_s: tuple[float, float]) -> WalkStretch:
-    """Positions of the walk during a stretch, at most about `_MOST_POSITIONS`."""
+    """Positions of the walk during a stretch, at most about `most_positions`."""
     walk = final_trajectory({stage: Path(folder) for stage, folder in artifacts.items()})
     if walk is None or not len(walk):
         return WalkStretch(positions_m=[])
-    p_map = positions_along(walk, span_s, most=_MOST_POSITIONS)
+    p_map = positions_along(walk, span_s, most=WALK_STRETCH.most_positions)
     return WalkStretch(positions_m=[_xyz(p) for p in np.round(p_map, 3)])
 
 

@@ -85,3 +85,14 @@ class SliceStoreLimits:
 
 
 SLICE_STORE = SliceStoreLimits()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class WalkStretchTuning:
+    """The walk during a finding, as the pages draw it."""
+
+    most_positions: int = 500
+    """A longer stretch is thinned out."""
+
+
+WALK_STRETCH = WalkStretchTuning()

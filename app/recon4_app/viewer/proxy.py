@@ -21,16 +21,13 @@ from websockets.typing import Subprotocol
 
 from recon4_app.deps import parts
 from recon4_app.errors import AppError, TooMany, ViewerFailed
-from recon4_app.network.streams import TOO_MANY
+from recon4_app.network.close_codes import CloseCode
 from recon4_app.viewer.browser_messages import RefusedMessage, checked
 from recon4_app.viewer.pool import ViewerPool
 from recon4_app.viewer.tuning import RELAY
 
 router = APIRouter()
 log = logging.getLogger(__name__)
-
-STALLED = 4408
-"""Close code: the browser read nothing for too long."""
 
 
 @router.websocket("/projects/{project_id}/viewer")
@@ -49,7 +46,7 @@ async def relay(browser: WebSocket, project_id: str) -> None:
                 await viewer.close()
     except TooMany as error:
         await browser.accept(subprotocol=offered[0] if offered else None)
-        await browser.close(TOO_MANY, reason=str(error)[:120])
+        await browser.close(CloseCode.TOO_MANY, reason=str(error)[:120])
     except AppError as error:
         log.warning("%s", error)
         await browser.close(1008, reason=str(error)[:120])
@@ -140,7 +137,7 @@ async def _to_browser(browser: WebSocket, viewer: ClientConnection) -> None:
         return
     except TimeoutError:
         log.warning("a browser read nothing for %.0f s: disconnected", RELAY.stalled_s)
-        code = STALLED
+        code = CloseCode.STALLED
     except ConnectionClosed:
         log.info("viewer connection lost")
     with contextlib.suppress(TimeoutError):

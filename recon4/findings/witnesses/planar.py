@@ -17,8 +17,8 @@ from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
 from recon4.model.trajectory import Trajectory
+from recon4.model.tuning import OBSERVATION
 from recon4.model.unused_data import unused_parts
-from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
 from recon4.slam2d.steps import Steps2d
 
 
@@ -65,9 +65,9 @@ class Corridor:
 
 
 def corridors(steps: Steps2d) -> tuple[Corridor, ...]:
-    """Stretches of `WEAK_SECONDS` or more along which the laser hardly observes one direction."""
+    """Stretches of `weak_s` or more along which the laser hardly observes one direction."""
     t_s = (steps.t_ns - steps.t_ns[0]) / 1e9
-    weak = (steps.weak_sd_m > WEAK_SD_M) & ~steps.lost
+    weak = (steps.weak_sd_m > OBSERVATION.weak_sd_m) & ~steps.lost
     weak[:1] = False  # there is no map yet to observe anything against
     rows = np.flatnonzero(weak)
     if not len(rows):
@@ -76,7 +76,7 @@ def corridors(steps: Steps2d) -> tuple[Corridor, ...]:
     return tuple(
         Corridor(float(t_s[run[0]]), float(t_s[run[-1]]), float(np.median(steps.degeneracy[run])))
         for run in runs
-        if t_s[run[-1]] - t_s[run[0]] >= WEAK_SECONDS
+        if t_s[run[-1]] - t_s[run[0]] >= OBSERVATION.weak_s
     )
 
 
@@ -147,7 +147,7 @@ def _by(record: PlanarRecord) -> str:
 def _corridors(record: PlanarRecord) -> Iterator[Finding]:
     found = corridors(record.steps)
     seconds = sum(one.end_s - one.start_s for one in found)
-    bad = seconds > UNOBSERVED_SECONDS and not record.scans.odometry
+    bad = seconds > OBSERVATION.unobserved_s and not record.scans.odometry
     for one in found:
         values: dict[str, Value] = {"degeneracy": one.degeneracy, "by": _by(record)}
         level = Level.DO_NOT_USE if bad else Level.CHECK

@@ -139,7 +139,8 @@ class WeakDirectionTuning:
     """Files of earlier versions do not state the standard deviation: there a direction counts as
     unobservable below this, as for pairs (`GraphTuning.min_degeneracy`)."""
     unsure_sd_m: float = 0.03
-    """As `WEAK_SD_M`, of a registration that did not converge: what it states is too small [m]."""
+    """As `OBSERVATION.weak_sd_m`, of a registration that did not converge: what it states is too
+    small [m]."""
     held_ratio: float = 0.7
     """A multiframe matches the map if its match ratio reaches this part of the median of the
     others."""

@@ -22,7 +22,7 @@ from recon4.findings.witnesses.tuning import WEAK_DIRECTION
 from recon4.findings.witnesses.uncertainty import is_known, known_to
 from recon4.geometry.se3 import Array
 from recon4.model.support import SurfaceSupport
-from recon4.model.usability import UNOBSERVED_SECONDS, WEAK_SD_M, WEAK_SECONDS
+from recon4.model.tuning import OBSERVATION
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,14 +65,14 @@ def held_by_surfaces(
     if support is None or not lost.any() or lost.all():
         return None
     usual = WEAK_DIRECTION.held_ratio * float(np.median(support.match_ratio[~lost]))
-    held = (support.match_ratio >= usual) & (support.weak_sd_m <= WEAK_SD_M)
+    held = (support.match_ratio >= usual) & (support.weak_sd_m <= OBSERVATION.weak_sd_m)
     return np.asarray(held[lost], np.bool_)
 
 
 def weak_stretches(
     steps: Mapping[str, NDArray[np.generic]], support: SurfaceSupport | None = None
 ) -> list[WeakStretch]:
-    """Find the stretches of `WEAK_SECONDS` or more, in order of time.
+    """Find the stretches of `OBSERVATION.weak_s` or more, in order of time.
 
     Args:
         steps: Columns of ``steps.npz``. Files of earlier versions have no ``weak_direction``.
@@ -84,10 +84,12 @@ def weak_stretches(
     degeneracy = np.asarray(steps["degeneracy"], np.float64)
     directions = np.asarray(steps.get("weak_direction", np.full((len(t_s), 3), np.nan)), np.float64)
     sd_m = np.asarray(steps.get("weak_sd_m", np.full(len(t_s), np.nan)), np.float64)
-    limit_m = np.where(steps.get("converged", True), WEAK_SD_M, WEAK_DIRECTION.unsure_sd_m)
+    limit_m = np.where(
+        steps.get("converged", True), OBSERVATION.weak_sd_m, WEAK_DIRECTION.unsure_sd_m
+    )
     weak = np.where(np.isnan(sd_m), degeneracy < WEAK_DIRECTION.weak_degeneracy, sd_m > limit_m)
     if support is not None:
-        weak &= support.weak_sd_m > WEAK_SD_M
+        weak &= support.weak_sd_m > OBSERVATION.weak_sd_m
     weak[0] = False  # there is no map yet to observe anything against
     weak &= ~np.asarray(steps["lost"], bool)  # lost tracking is reported by itself
     weak &= ~np.asarray(steps.get("stationary", np.zeros(len(t_s))), bool)  # it cannot drift
@@ -105,7 +107,7 @@ def weak_stretches(
         )
         for run in runs
     ]
-    return [stretch for stretch in found if stretch.seconds >= WEAK_SECONDS]
+    return [stretch for stretch in found if stretch.seconds >= OBSERVATION.weak_s]
 
 
 def _mean_direction(directions: Array) -> Array:
@@ -131,7 +133,7 @@ class WeakStretches:
             yield from _observed_by_profiler(weak_stretches(walk.steps))
         seconds = sum(stretch.seconds for stretch in stretches)
         georeferenced = walk.placement.gnss.georeferenced
-        bad = seconds >= UNOBSERVED_SECONDS and not georeferenced
+        bad = seconds >= OBSERVATION.unobserved_s and not georeferenced
         level = Level.DO_NOT_USE if bad else Level.CHECK
         level = Level.NOTE if is_known(walk) else level
         for stretch in stretches:

@@ -6,7 +6,8 @@ import zlib
 from dataclasses import dataclass
 
 from recon4.live.preview.cloud import Chunk
-from recon4.live.preview.coverage import CELL_M, Coverage
+from recon4.live.preview.coverage import Coverage
+from recon4.live.preview.tuning import PLAN_TILES
 from recon4.live.protocol import Gap, Gaps, MapperMessage, Path, Plan, Points
 from recon4.live.tuning import MESSAGES
 from recon4.model.plain import finite_or_none
@@ -43,7 +44,7 @@ def plan_message(coverage: Coverage) -> Plan:
     first_cell, seen = coverage.seen()
     return Plan(
         floor=coverage.floor,
-        cell_m=CELL_M,
+        cell_m=PLAN_TILES.cell_m,
         first_cell=first_cell.tolist(),
         shape=list(seen.shape),
         seen=zlib.compress(seen.tobytes(), 1),

@@ -7,8 +7,7 @@ import numpy as np
 from recon4.live.mapper.tuning import GNSS_WATCH
 from recon4.live.protocol import Fix
 from recon4.model.samples import GnssSamples
-
-EARTH_M = 6_371_000.0
+from recon4.units import EARTH_RADIUS_M
 
 
 class GnssWatch:
@@ -38,8 +37,8 @@ class GnssWatch:
     def _take(self, t_ns: int, lat_rad: float, lon_rad: float) -> None:
         if self._last is not None:
             before_ns, before_lat, before_lon = self._last
-            north_m = EARTH_M * (lat_rad - before_lat)
-            east_m = EARTH_M * (lon_rad - before_lon) * float(np.cos(lat_rad))
+            north_m = EARTH_RADIUS_M * (lat_rad - before_lat)
+            east_m = EARTH_RADIUS_M * (lon_rad - before_lon) * float(np.cos(lat_rad))
             moved_m = float(np.hypot(north_m, east_m))
             if moved_m > GNSS_WATCH.noise_m + GNSS_WATCH.fastest_m_s * (t_ns - before_ns) / 1e9:
                 self._jump = (t_ns, moved_m)

@@ -14,8 +14,6 @@ from recon4.live.mapper.tuning import MOTION_WATCH
 from recon4.live.protocol import Axis, Motion
 from recon4.registration.step import OdometryStep
 
-_ENOUGH = np.array([np.deg2rad(0.05)] * 3 + [0.005] * 3 + [5e-4])
-"""Expected standard deviations below which a calibration finds 0.2°, 1 cm and 5 ms [rad, m, s]."""
 _NAMES = (*(("rotation", axis) for axis in "xyz"), *(("position", axis) for axis in "xyz"))
 
 
@@ -65,7 +63,9 @@ class MotionWatch:
         """What was shown so far."""
         with np.errstate(divide="ignore"):
             sd = np.where(self._info > 0.0, self._info**-0.5, np.inf)
-        done = np.minimum((_ENOUGH / sd) ** 2, 1.0)
+        tuning = MOTION_WATCH
+        enough = np.repeat([tuning.enough_rad, tuning.enough_m, tuning.enough_s], [3, 3, 1])
+        done = np.minimum((enough / sd) ** 2, 1.0)
         tilts = np.zeros(2) if self._tilts is None else np.rad2deg(np.ptp(self._tilts, axis=0))
         left, right = np.rad2deg(self._turned).tolist()
         return Motion(

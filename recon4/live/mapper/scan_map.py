@@ -20,7 +20,8 @@ from recon4.live.mapper.shown_path import RecentCounts, ShownPath
 from recon4.live.mapper.swept_lines import SweptLines
 from recon4.live.mapper.tuning import SCAN_MAP
 from recon4.live.preview.cloud import PreviewCloud
-from recon4.live.preview.coverage import CELL_M, Coverage
+from recon4.live.preview.coverage import Coverage
+from recon4.live.preview.tuning import PLAN_TILES
 from recon4.live.protocol import Gaps, Loop, MapperMessage, Path, Points, Pose
 from recon4.model.laser_scans import LaserScans
 from recon4.model.laser_upright import is_upside_down, seen_from_above, turned_round
@@ -28,7 +29,7 @@ from recon4.model.multiframe import Multiframe
 from recon4.model.plain import finite_or_none
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
-from recon4.model.usability import WEAK_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.profiler.tuning import LineTuning
 from recon4.settings import Settings
 from recon4.settings.tuning import tuned
@@ -155,7 +156,7 @@ class ScanMap:
     def _pose(self, step: ScanStep, T_map_body: SE3) -> Pose:
         yaw = _yaw(T_map_body.R)
         along = ""
-        if not step.lost and step.weak_sd_m > WEAK_SD_M and self._scans > 1:
+        if not step.lost and step.weak_sd_m > OBSERVATION.weak_sd_m and self._scans > 1:
             off = float(wrap(np.array(step.weak_rad + self._T_map_odom[2] - yaw)))
             along = "along" if abs(np.cos(off)) > np.sqrt(0.5) else "across"
         return Pose(
@@ -198,8 +199,8 @@ class ScanMap:
         """With a profiler the 2-D laser says where there is space, not what was covered."""
         ray = ends - at
         length = np.linalg.norm(ray, axis=1, keepdims=True)
-        far = length[:, 0] > 2.0 * CELL_M
-        shorter = at + ray * (1.0 - 1.5 * CELL_M / np.maximum(length, CELL_M))
+        far = length[:, 0] > 2.0 * PLAN_TILES.cell_m
+        shorter = at + ray * (1.0 - 1.5 * PLAN_TILES.cell_m / np.maximum(length, PLAN_TILES.cell_m))
         self._coverage.add(at, shorter[far], solid=False)
 
     def _add_lines(self) -> list[MapperMessage]:

@@ -139,6 +139,10 @@ class MotionWatchTuning:
     still_rad_s: float = 0.05
     still_m_s: float = 0.05
     """A body that moves less stands still [rad/s], [m/s]."""
+    enough_rad: float = float(np.deg2rad(0.05))
+    enough_m: float = 0.005
+    enough_s: float = 5e-4
+    """Expected standard deviations below which a calibration finds 0.2°, 1 cm and 5 ms."""
 
 
 MOTION_WATCH = MotionWatchTuning()

@@ -20,11 +20,9 @@ from scipy.sparse.csgraph import connected_components
 from recon4.geometry.se3 import Array
 from recon4.kernels.live import trace
 from recon4.live.preview.floors import Floors
-from recon4.live.preview.tiles import MARGIN, TILE, Key, Tiles
+from recon4.live.preview.tiles import Key, Tiles
+from recon4.live.preview.tuning import PLAN_TILES
 
-CELL_M = 0.25
-RAY_M = CELL_M * (MARGIN - 8)
-"""Length up to which rays are traced, 30 m."""
 _FAR = 1e9
 _LAYERS = {
     "free": ("u2", 0),
@@ -95,9 +93,9 @@ class Coverage:
         self._rules = rules or CoverageRules()
         self._heights = Floors()
         self._floors: dict[int, _Floor] = {}
-        reach = int(self._rules.gap_reach_m / CELL_M)
+        reach = int(self._rules.gap_reach_m / PLAN_TILES.cell_m)
         steps = np.arange(-reach, reach + 1)
-        self._disk_m = (np.hypot(*np.meshgrid(steps, steps)) * CELL_M).astype(np.float32)
+        self._disk_m = (np.hypot(*np.meshgrid(steps, steps)) * PLAN_TILES.cell_m).astype(np.float32)
 
     @property
     def floor(self) -> int:
@@ -116,7 +114,7 @@ class Coverage:
         if floor not in self._floors:
             self._floors[floor] = _Floor()
         plan = self._floors[floor]
-        here = np.floor(body_m[:2] / CELL_M).astype(np.int64)
+        here = np.floor(body_m[:2] / PLAN_TILES.cell_m).astype(np.int64)
         if not plan.tiles.contains(here):
             self._count(plan)
             plan.tiles.move_to(here)
@@ -165,11 +163,11 @@ class Coverage:
         found = []
         for rows in _connected(cells):
             mine = cells[rows]
-            width_m = float(np.ptp(mine, axis=0).max() + 1) * CELL_M
+            width_m = float(np.ptp(mine, axis=0).max() + 1) * PLAN_TILES.cell_m
             if width_m < self._rules.gap_width_m:
                 continue
             middle = int(np.argmin(np.linalg.norm(mine - mine.mean(axis=0), axis=1)))
-            x, y = ((mine[middle] + 0.5) * CELL_M).tolist()
+            x, y = ((mine[middle] + 0.5) * PLAN_TILES.cell_m).tolist()
             found.append(CoverageGap((x, y), width_m, float(away_m[rows[middle]])))
         return sorted(found, key=lambda gap: (-gap.width_m, gap.p_map))
 
@@ -178,10 +176,10 @@ class Coverage:
         below = up_m < self._rules.ceiling_m
         ray_m, up_m = p_map[below] - body_m, up_m[below]
         plan_m = np.hypot(ray_m[:, 0], ray_m[:, 1])
-        cut = np.minimum(1.0, RAY_M / np.maximum(plan_m, 1e-9))
-        start = body_m[:2] / CELL_M - tiles.first_cell
-        ends = start + ray_m[:, :2] * (cut / CELL_M)[:, None]
-        walls = (up_m > -self._rules.floor_m) & (plan_m <= RAY_M) & solid
+        cut = np.minimum(1.0, PLAN_TILES.ray_m / np.maximum(plan_m, 1e-9))
+        start = body_m[:2] / PLAN_TILES.cell_m - tiles.first_cell
+        ends = start + ray_m[:, :2] * (cut / PLAN_TILES.cell_m)[:, None]
+        walls = (up_m > -self._rules.floor_m) & (plan_m <= PLAN_TILES.ray_m) & solid
         layers = (tiles.window[name] for name in ("free", "hits", "nearest_m"))
         trace(start, ends, np.linalg.norm(ray_m, axis=1), walls, *layers)
 
@@ -205,7 +203,7 @@ class Coverage:
         solid, well = near & (seen >= CoverageClass.POOR), near & (seen == CoverageClass.WELL)
         for key, rows in plan.tiles.parts():
             cells = np.argwhere(w["edge"][rows])
-            plan.edges[key] = cells + np.array(key) * TILE
+            plan.edges[key] = cells + np.array(key) * PLAN_TILES.tile
             plan.away_m[key] = w["away_m"][rows][tuple(cells.T)]
             plan.solid[key] = int(np.count_nonzero(solid[rows])), int(np.count_nonzero(well[rows]))
 

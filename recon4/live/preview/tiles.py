@@ -11,16 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-TILE = 64
-"""Side of a tile [cells]."""
-_AROUND = 2
-"""Tiles of the window on each side of the body's tile."""
-WINDOW = TILE * (2 * _AROUND + 1)
-SHOWN = 64
-"""Tiles on each side of the body's tile that a layer is given for: 8256 cells in all, which a phone
-can draw, and which bound the memory when the body jumps far away."""
-MARGIN = TILE * _AROUND
-"""Smallest distance of the body from the border of the window [cells]."""
+from recon4.live.preview.tuning import PLAN_TILES
 
 Key = tuple[int, int]
 Layers = dict[str, NDArray[Any]]
@@ -40,13 +31,13 @@ class Tiles:
         """
         self._layers = layers
         self._kept: dict[Key, Layers] = {}
-        self._corner: Key = (-_AROUND, -_AROUND)
-        self.window = self._blank(WINDOW)
+        self._corner: Key = (-PLAN_TILES.around, -PLAN_TILES.around)
+        self.window = self._blank(PLAN_TILES.window)
 
     @property
     def first_cell(self) -> NDArray[np.int64]:
         """Cell coordinates of the window's corner, (2,)."""
-        return np.array(self._corner, dtype=np.int64) * TILE
+        return np.array(self._corner, dtype=np.int64) * PLAN_TILES.tile
 
     def contains(self, cell: NDArray[np.int64]) -> bool:
         """Whether the window need not be moved for a body in this cell."""
@@ -58,16 +49,19 @@ class Tiles:
             return
         self.keep()
         self._corner = _corner_for(cell)
-        self.window = self._blank(WINDOW)
+        self.window = self._blank(PLAN_TILES.window)
         for key, rows in self.parts():
             for name, values in self._kept.get(key, {}).items():
                 self.window[name][rows] = values
 
     def parts(self) -> Iterator[tuple[Key, tuple[slice, slice]]]:
         """Tiles of the window, each with its rows and columns in it."""
-        for i in range(2 * _AROUND + 1):
-            for j in range(2 * _AROUND + 1):
-                rows = slice(i * TILE, (i + 1) * TILE), slice(j * TILE, (j + 1) * TILE)
+        for i in range(2 * PLAN_TILES.around + 1):
+            for j in range(2 * PLAN_TILES.around + 1):
+                rows = (
+                    slice(i * PLAN_TILES.tile, (i + 1) * PLAN_TILES.tile),
+                    slice(j * PLAN_TILES.tile, (j + 1) * PLAN_TILES.tile),
+                )
                 yield (self._corner[0] + i, self._corner[1] + j), rows
 
     def keep(self) -> None:
@@ -79,26 +73,28 @@ class Tiles:
                 self._kept[key] = {name: values.copy() for name, values in tile.items()}
 
     def whole(self, name: str) -> tuple[NDArray[np.int64], NDArray[Any]]:
-        """A layer of the plan up to `SHOWN` tiles from the body: first cell (2,), cells (H, W)."""
+        """A layer of the plan near the body: first cell (2,), cells (H, W)."""
         self.keep()
         dtype, fill = self._layers[name]
-        body = np.array(self._corner, np.int64) + _AROUND
+        body = np.array(self._corner, np.int64) + PLAN_TILES.around
         keys = np.array(list(self._kept), dtype=np.int64).reshape(-1, 2)
-        keys = keys[np.abs(keys - body).max(axis=1) <= SHOWN]
+        keys = keys[np.abs(keys - body).max(axis=1) <= PLAN_TILES.shown]
         if not len(keys):
             return np.zeros(2, np.int64), np.full((0, 0), fill, dtype)
         first = keys.min(axis=0)
-        shape = (keys.max(axis=0) - first + 1) * TILE
+        shape = (keys.max(axis=0) - first + 1) * PLAN_TILES.tile
         cells = np.full(shape, fill, dtype)
         for key in keys:
-            i, j = (key - first) * TILE
-            cells[i : i + TILE, j : j + TILE] = self._kept[int(key[0]), int(key[1])][name]
-        return first * TILE, cells
+            i, j = (key - first) * PLAN_TILES.tile
+            cells[i : i + PLAN_TILES.tile, j : j + PLAN_TILES.tile] = self._kept[
+                int(key[0]), int(key[1])
+            ][name]
+        return first * PLAN_TILES.tile, cells
 
     def _blank(self, size: int) -> Layers:
         return {n: np.full((size, size), fill, dtype) for n, (dtype, fill) in self._layers.items()}
 
 
 def _corner_for(cell: NDArray[np.int64]) -> Key:
-    i, j = (np.asarray(cell) // TILE - _AROUND).tolist()
+    i, j = (np.asarray(cell) // PLAN_TILES.tile - PLAN_TILES.around).tolist()
     return i, j

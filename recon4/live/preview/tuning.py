@@ -34,3 +34,36 @@ class FloorDetectionTuning:
 
 
 FLOOR_DETECTION = FloorDetectionTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanTileTuning:
+    """The plan of what was seen, in square tiles."""
+
+    cell_m: float = 0.25
+    """Edge of a cell [m]."""
+    tile: int = 64
+    """Side of a tile [cells]."""
+    around: int = 2
+    """Tiles of the window on each side of the body's tile."""
+    shown: int = 64
+    """Tiles on each side of the body's tile that a layer is given for: 8256 cells in all, which a
+    phone can draw, and which bound the memory when the body jumps far away."""
+
+    @property
+    def window(self) -> int:
+        """Side of the window [cells]."""
+        return self.tile * (2 * self.around + 1)
+
+    @property
+    def margin(self) -> int:
+        """Smallest distance of the body from the border of the window [cells]."""
+        return self.tile * self.around
+
+    @property
+    def ray_m(self) -> float:
+        """Length up to which rays are traced, 30 m."""
+        return self.cell_m * (self.margin - 8)
+
+
+PLAN_TILES = PlanTileTuning()

@@ -28,7 +28,8 @@ from recon4.recording.formats.cloud_headers import (
     ply_layout,
 )
 from recon4.recording.formats.three_dtk import SCAN_SUFFIX, read_scan, scan_fields
-from recon4.untrusted.bounded import MAX_LINE_BYTES, open_regular
+from recon4.untrusted.bounded import open_regular
+from recon4.untrusted.limits import LIMITS
 
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
@@ -210,12 +211,12 @@ def _some_lines(file: BinaryIO, most: int, name: str) -> list[str]:
     lines: list[str] = []
     size = 0
     while len(lines) < most and size < _CHUNK_BYTES:
-        line = file.readline(MAX_LINE_BYTES + 1)
+        line = file.readline(LIMITS.line_bytes + 1)
         if not line:
             break
-        if len(line) > MAX_LINE_BYTES:
+        if len(line) > LIMITS.line_bytes:
             raise CorruptFile(
-                f"{name}: expected lines of at most {MAX_LINE_BYTES} bytes, got a longer one"
+                f"{name}: expected lines of at most {LIMITS.line_bytes} bytes, got a longer one"
             )
         size += len(line)
         # Files of old Macs end their lines with \r alone.

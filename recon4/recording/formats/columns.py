@@ -18,8 +18,9 @@ from recon4.recording.formats.damaged_lines import DamagedLines
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.csv_files import csv_header, csv_number, csv_separator, csv_time
 from recon4.recording.stamps import strays
-from recon4.store.arrays import ARRAY_HEADERS, DAMAGED, FREE_BYTES, MAX_RATIO
+from recon4.store.arrays import ARRAY_HEADERS, DAMAGED
 from recon4.untrusted.bounded import check_file_size, lines_limited, open_regular
+from recon4.untrusted.limits import LIMITS
 
 TIME = "t_ns"
 """The column of absolute times; all others are numbers."""
@@ -172,11 +173,11 @@ def _npz_blocks(path: Path, wanted: Sequence[str]) -> Iterator[Columns]:
 
 def _check_sizes(archive: zipfile.ZipFile, wanted: Sequence[str], path: Path) -> None:
     size = sum(archive.getinfo(f"{name}.npy").file_size for name in wanted)
-    most = max(FREE_BYTES, MAX_RATIO * path.stat().st_size)
+    most = max(LIMITS.free_bytes, LIMITS.expansion * path.stat().st_size)
     if size > most:
         raise CorruptFile(
-            f"{path.name}: expected columns of at most {most} bytes, {MAX_RATIO} times the file, "
-            f"got {size}"
+            f"{path.name}: expected columns of at most {most} bytes, {LIMITS.expansion} times the "
+            f"file, got {size}"
         )
 
 

@@ -11,7 +11,8 @@ from typing import Any, BinaryIO
 from recon4.errors import CorruptFile
 from recon4.recording.formats.limits import MAX_RATIO, RATIO_FLOOR_BYTES
 from recon4.recording.report import ImportReport
-from recon4.untrusted.bounded import MAX_LINE_BYTES, open_regular
+from recon4.untrusted.bounded import open_regular
+from recon4.untrusted.limits import LIMITS
 
 MAX_LOG_BYTES = 4 << 30
 """A log of eight hours at 40 Hz with 1081 beams has 8 GB; decompressed logs are smaller."""
@@ -45,9 +46,9 @@ def log_lines(path: Path, report: ImportReport) -> Iterator[bytes]:
                 yield line
             if number > MAX_LOG_LINES:
                 raise CorruptFile(f"{path.name}: expected at most {MAX_LOG_LINES} lines, got more")
-            if len(rest) > MAX_LINE_BYTES:
+            if len(rest) > LIMITS.line_bytes:
                 raise CorruptFile(
-                    f"{path.name}: line {number + 1}: expected at most {MAX_LINE_BYTES} bytes, "
+                    f"{path.name}: line {number + 1}: expected at most {LIMITS.line_bytes} bytes, "
                     "got a longer line"
                 )
         if rest.strip():

@@ -8,7 +8,8 @@ import numpy as np
 
 from recon4.geometry.se3 import Array
 from recon4.model.import_notes import HEIGHTS_ORTHOMETRIC, HEIGHTS_UNSTATED
-from recon4.model.samples import GEOID_SEPARATION_M, GnssSamples
+from recon4.model.samples import GnssSamples
+from recon4.model.tuning import GEOID
 from recon4.recording.report import ImportReport
 from recon4.recording.samples.tuning import HEIGHTS
 
@@ -70,7 +71,7 @@ def compare_heights(given: GnssSamples, found: GnssSamples, report: ImportReport
         return
     usual_m = float(np.median(apart_m))
     spread_m = float(np.median(np.abs(apart_m - usual_m)))
-    low_m, high_m = GEOID_SEPARATION_M
+    low_m, high_m = GEOID.least_m, GEOID.most_m
     if low_m < abs(usual_m) < high_m and spread_m < HEIGHTS.spread_m:
         report.warn(
             f"heights of the GNSS file lie {abs(usual_m):.1f} m (± {spread_m:.1f} m) "

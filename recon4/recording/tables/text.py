@@ -15,7 +15,8 @@ from pathlib import Path
 
 from recon4.errors import CorruptFile
 from recon4.recording.tables.tuning import TABLES
-from recon4.untrusted.bounded import MAX_LINE_BYTES, check_file_size, open_regular
+from recon4.untrusted.bounded import check_file_size, open_regular
+from recon4.untrusted.limits import LIMITS
 
 _BLANKS = re.compile("[\u00a0\u2007\u2009\u202f]")
 """Blanks that spreadsheets put between groups of digits; an ordinary one means the same."""
@@ -55,8 +56,8 @@ def table_blocks(path: Path, *, max_bytes: int) -> Iterator[str]:
     r"""Whole lines of a table, about `BLOCK_CHARACTERS` at a time; every line ends with ``\n``.
 
     Raises:
-        CorruptFile: If the file is too large, a line is longer than `MAX_LINE_BYTES`, or there is
-            a NUL byte.
+        CorruptFile: If the file is too large, a line is longer than `LIMITS.line_bytes`, or there
+            is a NUL byte.
     """
     with open_regular(path) as file:
         check_file_size(file, path, max_bytes)
@@ -65,7 +66,7 @@ def table_blocks(path: Path, *, max_bytes: int) -> Iterator[str]:
         reader = io.TextIOWrapper(file, encoding, errors="replace", newline=None)
         number = 1
         while block := reader.read(TABLES.block_characters):
-            block += reader.readline(MAX_LINE_BYTES + 1)
+            block += reader.readline(LIMITS.line_bytes + 1)
             _check_lines(block, number, path.name)
             number += block.count("\n")
             yield _BLANKS.sub(" ", block)
@@ -90,12 +91,13 @@ def universal(text: str) -> str:
 def _check_lines(block: str, number: int, name: str) -> None:
     _refuse_nul(block, number, name)
     start = 0
-    while len(block) - start > MAX_LINE_BYTES:
-        end = block.rfind("\n", start, start + MAX_LINE_BYTES + 1)
+    while len(block) - start > LIMITS.line_bytes:
+        end = block.rfind("\n", start, start + LIMITS.line_bytes + 1)
         if end < 0:
             line = number + block.count("\n", 0, start)
             raise CorruptFile(
-                f"{name}: line {line}: expected at most {MAX_LINE_BYTES} bytes, got a longer line"
+                f"{name}: line {line}: expected at most {LIMITS.line_bytes} bytes, "
+                "got a longer line"
             )
         start = end + 1
 

@@ -4,9 +4,10 @@ import numpy as np
 import pytest
 
 from recon4.live.preview.cloud import PreviewCloud
-from recon4.live.preview.coverage import CELL_M, Coverage, CoverageClass
+from recon4.live.preview.coverage import Coverage, CoverageClass
 from recon4.live.preview.floors import Floors
-from recon4.live.preview.tiles import SHOWN, TILE, WINDOW, Tiles
+from recon4.live.preview.tiles import Tiles
+from recon4.live.preview.tuning import PLAN_TILES
 
 
 def values(count):
@@ -94,7 +95,7 @@ def look(coverage, at, p, times=20, z_m=0.0):
 
 def seen_at(coverage, x_m, y_m):
     first, seen = coverage.seen()
-    return seen[tuple((np.array([x_m, y_m]) / CELL_M - first).astype(int))]
+    return seen[tuple((np.array([x_m, y_m]) / PLAN_TILES.cell_m - first).astype(int))]
 
 
 def test_a_closed_room_has_no_gap_and_its_walls_are_seen_well():
@@ -238,7 +239,7 @@ def test_gaps_far_behind_are_kept_and_filled_when_somebody_goes_back():
 
 def test_a_gap_across_the_border_of_two_tiles_is_one():
     coverage = Coverage()
-    edge_m = TILE * CELL_M
+    edge_m = PLAN_TILES.tile * PLAN_TILES.cell_m
     outer = room(edge_m - 3, edge_m + 3, -2, 2)
     top = np.abs(outer[:, 1] - 2) > 0.2
     hole = (outer[:, 0] > edge_m - 1) & (outer[:, 0] < edge_m + 1) & ~top
@@ -312,14 +313,14 @@ def test_a_jump_far_away_does_not_make_the_plan_larger_than_a_phone_can_draw():
     tiles = Tiles({"seen": ("u1", 0)})
     for at in (0, 3000, 4_000_000):  # 0, 750 m and 1000 km away
         tiles.move_to(np.array([at, -at]))
-        tiles.window["seen"][WINDOW // 2, WINDOW // 2] = 1
+        tiles.window["seen"][PLAN_TILES.window // 2, PLAN_TILES.window // 2] = 1
 
     _, far = tiles.whole("seen")
     tiles.move_to(np.array([3000, -3000]))
     _, near = tiles.whole("seen")
 
-    assert far.sum() == 1 and max(far.shape) <= WINDOW
-    assert near.sum() == 2 and max(near.shape) <= (2 * SHOWN + 1) * TILE
+    assert far.sum() == 1 and max(far.shape) <= PLAN_TILES.window
+    assert near.sum() == 2 and max(near.shape) <= (2 * PLAN_TILES.shown + 1) * PLAN_TILES.tile
 
 
 def test_the_work_of_a_second_and_the_memory_of_a_plan_follow_what_was_seen():
@@ -328,10 +329,10 @@ def test_the_work_of_a_second_and_the_memory_of_a_plan_follow_what_was_seen():
     for x in range(0, 100_000, 64):
         tiles.move_to(np.array([x, x]))
         if x < 640:
-            tiles.window["seen"][WINDOW // 2, WINDOW // 2] = 1
+            tiles.window["seen"][PLAN_TILES.window // 2, PLAN_TILES.window // 2] = 1
 
-    assert tiles.window["seen"].shape == (WINDOW, WINDOW)
+    assert tiles.window["seen"].shape == (PLAN_TILES.window, PLAN_TILES.window)
     tiles.move_to(np.zeros(2, np.int64))
     _, cells = tiles.whole("seen")
     assert cells.sum() == 10
-    assert max(cells.shape) <= 12 * TILE
+    assert max(cells.shape) <= 12 * PLAN_TILES.tile

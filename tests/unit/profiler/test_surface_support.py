@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.model.usability import WEAK_SD_M
+from recon4.model.tuning import OBSERVATION
 from recon4.profiler.surface_support import surface_support
 
 _KNOTS = 401
@@ -32,7 +32,7 @@ def supported(H, *, matches=80):
 def test_walls_on_all_sides_hold_a_multiframe():
     found = supported(information(np.eye(3)))
 
-    assert found.weak_sd_m.max() < 0.3 * WEAK_SD_M
+    assert found.weak_sd_m.max() < 0.3 * OBSERVATION.weak_sd_m
     np.testing.assert_allclose(found.match_ratio, 0.8)
 
 
@@ -40,7 +40,7 @@ def test_a_corridor_holds_nothing_along_it():
     # Normals that err by a degree seem to hold it along the corridor: they must not count.
     found = supported(information([[0.02, 1.0, 0.0], [-0.02, 1.0, 0.0], [0.0, 0.0, 1.0]]))
 
-    assert found.weak_sd_m.min() > 20.0 * WEAK_SD_M
+    assert found.weak_sd_m.min() > 20.0 * OBSERVATION.weak_sd_m
     np.testing.assert_allclose(np.abs(found.weak_direction[:, 0]), 1.0, atol=0.01)
 
 
@@ -52,7 +52,7 @@ def test_only_lines_near_in_time_hold_a_multiframe(since_s):
 
     found = supported(H)
 
-    weak = found.weak_sd_m > WEAK_SD_M
+    weak = found.weak_sd_m > OBSERVATION.weak_sd_m
     t_s = 1e-9 * found.t_mid_ns
     assert weak[(t_s > since_s + 1.1) & (t_s < since_s + 1.9)].all()
     assert not weak[(t_s < since_s + 0.8) | (t_s > since_s + 2.2)].any()

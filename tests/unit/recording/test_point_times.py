@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from recon4.model.import_counts import WARNED_RATIO
+from recon4.model.tuning import LOSSES
 from recon4.recording.clock_names import described, known_offset_s
 from recon4.recording.cloud_points import CloudDecoder
 from recon4.recording.report import ImportReport
@@ -56,7 +56,7 @@ def test_many_damaged_times_are_a_field_that_is_not_used_with_numbers():
     assert any(f"{number} of {len(REL_NS)} points of a cloud" in text for text in report.lost())
     report.warn_of_losses()
     assert any("1 of 1 clouds: the times" in text for text in report.warnings)
-    assert number / len(REL_NS) > WARNED_RATIO
+    assert number / len(REL_NS) > LOSSES.warned_ratio
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,8 @@ import pytest
 
 from recon4.errors import ConfigError, EmptyRecording, RecordingError
 from recon4.model.laser_scans import LaserScans
-from recon4.model.rig import LASER2D_PORT, PROFILER_PORT, format_rig, load_rig, parse_rig
+from recon4.model.ports import PORTS
+from recon4.model.rig import format_rig, load_rig, parse_rig
 from recon4.model.samples import ImuSamples
 from recon4.progress import Silent
 from recon4.recording.info import describe
@@ -197,7 +198,7 @@ def test_a_datagram_that_is_no_scan_is_counted(tmp_path, scans, payload):
     assert decode_scan_datagram(payload) is None
     sent = scan_datagrams(scans)
     write_capture(
-        tmp_path / "walk.pcap", [*sent[:9], (sent[9][0], LASER2D_PORT, payload), *sent[9:]]
+        tmp_path / "walk.pcap", [*sent[:9], (sent[9][0], PORTS.laser2d, payload), *sent[9:]]
     )
 
     t_ns, report, _ = read(tmp_path / "walk.pcap")
@@ -217,7 +218,7 @@ def test_a_datagram_that_is_no_scan_is_counted(tmp_path, scans, payload):
 def test_angles_that_are_no_radians_are_left_out(tmp_path, scans, angles):
     text = b'{"ranges": [1.0, 2.0], ' + angles + b"}"
     write_capture(
-        tmp_path / "walk.pcap", [*scan_datagrams(scans), (START_NS * 2, LASER2D_PORT, text)]
+        tmp_path / "walk.pcap", [*scan_datagrams(scans), (START_NS * 2, PORTS.laser2d, text)]
     )
 
     t_ns, report, _ = read(tmp_path / "walk.pcap")
@@ -246,7 +247,7 @@ def test_a_scan_without_any_return_is_counted(tmp_path, scans):
 
 def test_without_a_time_the_arrival_counts(tmp_path):
     text = b'{"ranges": [1.0, 2.0], "angle_min": 0.0, "angle_increment": 0.1}'
-    write_capture(tmp_path / "walk.pcap", [(START_NS, LASER2D_PORT, text)])
+    write_capture(tmp_path / "walk.pcap", [(START_NS, PORTS.laser2d, text)])
 
     t_ns, _, _ = read(tmp_path / "walk.pcap")
 
@@ -275,14 +276,14 @@ def test_another_sender_is_left_out_where_the_rig_has_an_address(tmp_path, scans
 
 
 def test_one_port_for_both_scanners_is_refused(tmp_path):
-    text = format_rig(load_rig("wuerzburg")).replace(f"port = {PROFILER_PORT}", "port = 8311")
+    text = format_rig(load_rig("wuerzburg")).replace(f"port = {PORTS.profiler}", "port = 8311")
 
     with pytest.raises(ConfigError, match="both send to port 8311"):
         ScanCapture((tmp_path / "x",), parse_rig(text, where="test"), report=ImportReport())
 
 
 def test_a_capture_of_other_datagrams_has_no_scans(tmp_path):
-    write_capture(tmp_path / "walk.pcap", [(START_NS, LASER2D_PORT, b'{"t_ns": 1}')])
+    write_capture(tmp_path / "walk.pcap", [(START_NS, PORTS.laser2d, b'{"t_ns": 1}')])
 
     assert not is_laser2d(tmp_path / "walk.pcap")
     with pytest.raises(EmptyRecording, match="no datagrams of a 2-D laser"):
@@ -294,8 +295,8 @@ def test_a_head_that_stands_all_the_time_is_refused(tmp_path):
     sent = []
     for k in range(600):
         t_ns = START_NS + 10_000_000 * k
-        sent.append((t_ns, PROFILER_PORT, encode_head(0.3, t_ns)))
-        sent.append((t_ns + 1, PROFILER_PORT, encode_scan(scan, t_ns)))
+        sent.append((t_ns, PORTS.profiler, encode_head(0.3, t_ns)))
+        sent.append((t_ns + 1, PORTS.profiler, encode_scan(scan, t_ns)))
     write_capture(tmp_path / "walk.pcap", sent)
 
     with pytest.raises(RecordingError, match="expected a head that turns"):

@@ -21,7 +21,7 @@ from recon4_app.access.login.sessions import Sessions, hash_of, new_token
 from recon4_app.access.pairing.pairings import Pairings
 from recon4_app.access.people import Role
 from recon4_app.access.restoring import ACCESS_FILE
-from recon4_app.access.tuning import LOGINS
+from recon4_app.access.tuning import LOGINS, PASSWORDS
 from recon4_app.errors import NoRoom, Refused, TooMany, WrongPassword
 
 WRONG = "wrong name or password"
@@ -138,7 +138,7 @@ class LoginService:
     def _fits(self, name: str, password: str) -> bool:
         stored = self._accounts.active_password_hash(name)
         with self._verifying:
-            return passwords.matches(password[: passwords.LONGEST], stored)
+            return passwords.matches(password[: PASSWORDS.longest], stored)
 
     def _begin_session(self, account: Account, caller: LoginOrigin) -> LoginResult:
         session = self._sessions.begin(account.name, address=caller.address, agent=caller.agent)

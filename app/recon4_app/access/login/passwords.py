@@ -15,9 +15,6 @@ from recon4_app.access.tuning import PASSWORDS
 from recon4_app.errors import WeakPassword
 from recon4_app.settings import allowed_hosts_from_environment
 
-SHORTEST, LONGEST = 12, 256
-"""Characters of a password."""
-
 HASHER = PasswordHasher(time_cost=2, memory_cost=64 * 1024, parallelism=1)
 """64 MiB, two passes: a tenth of a second here, expensive on a graphics card."""
 STAND_IN = (
@@ -77,9 +74,10 @@ def require_strong(password: str, name: str) -> None:
     Raises:
         WeakPassword: With the reason and what to change, never with the password.
     """
-    if not SHORTEST <= len(password) <= LONGEST:
+    shortest, longest = PASSWORDS.shortest, PASSWORDS.longest
+    if not shortest <= len(password) <= longest:
         raise WeakPassword(
-            f"the password needs {SHORTEST} to {LONGEST} characters, got {len(password)}; "
+            f"the password needs {shortest} to {longest} characters, got {len(password)}; "
             "use three or four unrelated words, or let a password manager make one"
         )
     text = _normal(password)[: PASSWORDS.longest_estimated]

@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from recon4_app.access.audit import address, audit
 from recon4_app.access.login.login_service import Access, LoginOrigin, LoginResult
-from recon4_app.access.login.sessions import BROWSER_KNOWN_S, LIVES, PHONE_LIFE, Session, form_token
+from recon4_app.access.login.sessions import LIVES, PHONE_LIFE, Session, form_token
 from recon4_app.access.middleware.session import CookieNames, cookie, cookie_names
 from recon4_app.access.pairing.pairings import PairingGrant
 from recon4_app.access.people import (
@@ -23,6 +23,7 @@ from recon4_app.access.people import (
     interactive_login,
     needs,
 )
+from recon4_app.access.tuning import SESSION_TIMES
 from recon4_app.deps import Server
 from recon4_app.error_responses import ProblemDetail
 from recon4_app.errors import AppError, Conflict, TooMany
@@ -242,7 +243,7 @@ def _start_session(
     response.set_cookie(
         names.browser,
         result.browser,
-        max_age=int(BROWSER_KNOWN_S),
+        max_age=int(SESSION_TIMES.browser_known_s),
         path=names.path,
         secure=True,
         httponly=True,

@@ -18,14 +18,13 @@ from typing import Any
 
 import sqlalchemy as sa
 
+from recon4.units import HOUR_S
 from recon4_app.access.audit import printable
 from recon4_app.access.database import KNOWN_BROWSERS, PEOPLE, SESSIONS, writing
 from recon4_app.access.login.accounts import lookup_key
 from recon4_app.access.people import Person, Role
 from recon4_app.access.tuning import SESSION_TIMES
 from recon4_app.errors import NoRoom, NotFound
-
-HOUR_S = 3600.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +45,6 @@ LIVES = {
 }
 PHONE_LIFE = Life(12 * HOUR_S, 12 * HOUR_S)
 """A phone stays in a pocket for hours of a walk."""
-BROWSER_KNOWN_S = 365 * 24 * HOUR_S
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -201,7 +199,9 @@ class Sessions:
         token, now_s = new_token(), self._clock()
         row = {"token_hash": hash_of(token), "person": lookup_key(name), "known_s": now_s}
         with writing(self._engine) as connection:
-            old = KNOWN_BROWSERS.delete().where(KNOWN_BROWSERS.c.known_s < now_s - BROWSER_KNOWN_S)
+            old = KNOWN_BROWSERS.delete().where(
+                KNOWN_BROWSERS.c.known_s < now_s - SESSION_TIMES.browser_known_s
+            )
             connection.execute(old)
             connection.execute(KNOWN_BROWSERS.insert().values(**row))
         return token
@@ -212,7 +212,7 @@ class Sessions:
         mine = (columns.token_hash == hash_of(token)) & (columns.person == lookup_key(name))
         with self._engine.connect() as connection:
             known_s = connection.execute(sa.select(columns.known_s).where(mine)).scalar()
-        return known_s is not None and self._clock() - known_s < BROWSER_KNOWN_S
+        return known_s is not None and self._clock() - known_s < SESSION_TIMES.browser_known_s
 
     def _select(self, condition: sa.ColumnElement[bool]) -> list[Session]:
         join = sa.join(SESSIONS, PEOPLE, SESSIONS.c.person == PEOPLE.c.key)

@@ -1,0 +1,79 @@
+"""Tuning of what several stages judge alike."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ObservationTuning:
+    """When a multiframe observes a direction of the motion."""
+
+    weak_sd_m: float = 0.05
+    """With a larger standard deviation of its LiDAR measurement it hardly observes a direction."""
+    observed_sd_m: float = 0.02
+    """With a smaller one it observes the direction."""
+    weak_s: float = 2.0
+    """Shorter stretches of such multiframes are bridged by the motion before them."""
+    unobserved_s: float = 10.0
+    """A longer time without observation of a direction makes a map unusable."""
+
+
+OBSERVATION = ObservationTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class LossTuning:
+    """Data of a recording that is not used."""
+
+    warned_ratio: float = 0.01
+    """From this ratio on a loss is a warning; smaller ones stand in `recon4 info` and the
+    report."""
+    severe_ratio: float = 0.5
+    """With a larger one the map must not be used."""
+
+
+LOSSES = LossTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RejectedRunTuning:
+    """Runs of rejected fixes."""
+
+    min_fixes: int = 10
+    min_s: float = 1.0
+    """Shorter runs count as noise."""
+    bridged_s: float = 1.0
+    """Two runs with less than this between them are one."""
+    agreement: float = 0.25
+    """Fixes of a run agree if their residuals change from one to the next by less than this part of
+    their size."""
+
+
+REJECTED_RUNS = RejectedRunTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SweepTuning:
+    """Sweeps of the head of a profiler."""
+
+    wide_lines: int = 5
+    """Lines over which the direction of the head is judged: its angles have noise."""
+    min_part: float = 0.25
+    """Shorter sweeps than this part of the median one are joined to their neighbor."""
+
+
+SWEEPS = SweepTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class GeoidTuning:
+    """Heights above the sea in place of those above the ellipsoid."""
+
+    least_m: float = 5.0
+    most_m: float = 110.0
+    """Differences of heights that are taken for a geoid separation, which is -107 to 86 m; below,
+    other errors look alike."""
+
+
+GEOID = GeoidTuning()

@@ -1,0 +1,24 @@
+"""Tuning of confinement."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ConfinementTuning:
+    """What a confined process may take of the computer, and how barriers are tried."""
+
+    memory_fraction: float = 0.7
+    """Of the computer's memory: a file that asks for more ends its process only."""
+    open_files: int = 4096
+    """Of a command or a worker."""
+    open_files_live: int = 1024
+    """Of the recorder and the mapper."""
+    tried_within_s: float = 30.0
+    """Longest time of a child that says which barriers hold."""
+    returned_block_bytes: int = 4 << 20
+    """Freed blocks of this size go back to the system at once."""
+
+
+CONFINEMENT = ConfinementTuning()
