@@ -49,27 +49,24 @@ def export(
     """
     confine_command(write=[file.parent])
     from recon4.cli.terminal import watcher
-    from recon4.export.findings import ENDINGS, export_findings
-    from recon4.export.map_files import MapExport, export_map, export_poses
+    from recon4.export.findings import ENDINGS
+    from recon4.export.map_files import MapExport, export_map
     from recon4.export.scan_files import export_3dtk, export_map_scans
 
-    if file.suffix.lower() in (".txt", *ENDINGS):
+    ending = file.suffix.lower()
+    if ending in (".txt", *ENDINGS):
         if crs:
             raise typer.BadParameter("--crs is for maps: .laz, .copc.laz, .e57, .ply")
-        if file.suffix.lower() == ".txt":
-            write(f"{export_poses(project, file, draft=draft)} poses in {file}")
-        else:
-            write(f"{export_findings(project, file)} findings in {file}")
-        _write_approval(project, draft=draft)
+        _export_text(project, file, draft=draft)
         return
     with watcher() as progress:
-        if file.suffix.lower() == ".3dtk":
+        if ending == ".3dtk":
             points = export_3dtk(project, file, progress=progress, draft=draft)
             write(f"{points} points in {file}")
             _write_approval(project, draft=draft)
             return
         wanted = MapExport(crs=crs, raw=raw, strays=strays, draft=draft)
-        export = export_map_scans if file.suffix.lower() == ".e57" else export_map
+        export = export_map_scans if ending == ".e57" else export_map
         made = export(project, file, wanted, progress=progress)
     write(f"{made.text} in {file}\n{made.approval.text}")
 
@@ -101,3 +98,14 @@ def _write_approval(project: Path, *, draft: bool) -> None:
     from recon4.review.approval_state import latest_state
 
     write(latest_state(project, draft=draft).text)
+
+
+def _export_text(project: Path, file: Path, *, draft: bool) -> None:
+    from recon4.export.findings import export_findings
+    from recon4.export.map_files import export_poses
+
+    if file.suffix.lower() == ".txt":
+        write(f"{export_poses(project, file, draft=draft)} poses in {file}")
+    else:
+        write(f"{export_findings(project, file)} findings in {file}")
+    _write_approval(project, draft=draft)

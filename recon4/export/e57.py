@@ -49,8 +49,8 @@ def export_e57(
     tiles: TileSet,
     path: Path,
     scans: ScanPoses,
-    output: OutputCrs,
     *,
+    output: OutputCrs,
     progress: Progress,
 ) -> int:
     """Write a map as E57, and read its points back.

@@ -82,7 +82,7 @@ def export_map_scans(
     note = f"recon4 approval {map_.stamp.json_line()}" if map_.stamp else map_.state.text
     nodes = ScanPoses(np.asarray(graph.frame_ids, np.int64), graph.t_ns, poses, note)
     with atomic_file(path) as temporary:
-        count = export_e57(map_.tiles, temporary, nodes, map_.output, progress=progress)
+        count = export_e57(map_.tiles, temporary, nodes, output=map_.output, progress=progress)
     return ExportedMap(count, map_.tiles.strays, noise=False, approval=map_.state)
 
 

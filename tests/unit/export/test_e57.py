@@ -31,7 +31,7 @@ def made(tmp_path_factory):
 @pytest.fixture
 def path(made, tmp_path):
     tiles, scans = made
-    count = export_e57(tiles, tmp_path / "map.e57", scans, CRS_OF_MAP, progress=Silent())
+    count = export_e57(tiles, tmp_path / "map.e57", scans, output=CRS_OF_MAP, progress=Silent())
     assert count == len(tiles)
     assert [one.name for one in tmp_path.iterdir()] == ["map.e57"]
     return tmp_path / "map.e57"
@@ -70,7 +70,7 @@ def test_the_file_names_its_crs_and_is_the_same_each_time(made, path, tmp_path):
     tiles, scans = made
     with pye57.E57(str(path)) as file:
         assert file.root["coordinateMetadata"].value() == UTM.wkt
-    export_e57(tiles, tmp_path / "b.e57", scans, CRS_OF_MAP, progress=Silent())
+    export_e57(tiles, tmp_path / "b.e57", scans, output=CRS_OF_MAP, progress=Silent())
     assert (tmp_path / "b.e57").read_bytes() == path.read_bytes()
 
 
@@ -84,7 +84,7 @@ def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch):
 
     monkeypatch.setattr(e57, "_write_scan", another)
     with pytest.raises(StoreError, match="reads back wrong: cartesianX of scan 0"):
-        export_e57(tiles, tmp_path / "x.e57", scans, CRS_OF_MAP, progress=Silent())
+        export_e57(tiles, tmp_path / "x.e57", scans, output=CRS_OF_MAP, progress=Silent())
 
 
 def test_an_empty_map_is_refused(made, tmp_path):
@@ -93,4 +93,4 @@ def test_an_empty_map_is_refused(made, tmp_path):
     make(tmp_path / "empty", walk=empty, normalize=False)
     tiles = TileSet.open(tmp_path / "empty")
     with pytest.raises(ConfigError, match="no points"):
-        export_e57(tiles, tmp_path / "x.e57", made[1], CRS_OF_MAP, progress=Silent())
+        export_e57(tiles, tmp_path / "x.e57", made[1], output=CRS_OF_MAP, progress=Silent())
