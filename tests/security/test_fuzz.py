@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+from recon4.recording.formats.cloud_headers import HEADER_FORMATS
 from tests.security.fuzz.broken import BROKEN
 from tests.security.fuzz.corpus import CORPUS, read_kind
 from tests.security.fuzz.kinds import KINDS
@@ -55,6 +56,12 @@ def test_a_reader_in_order_is_not_accused(readers: Readers) -> None:
     tally = fuzz("broken-not", readers, count=40, seed=1)
     assert not tally.findings
     assert tally.mutants == 40
+
+
+def test_every_format_of_clouds_with_a_header_is_fuzzed() -> None:
+    fuzzed = {Path(kind.file_name).suffix for kind in KINDS.values()}
+
+    assert [one.name for one in HEADER_FORMATS if one.suffix not in fuzzed] == []
 
 
 def test_a_mutant_depends_on_its_number_alone() -> None:

@@ -1,4 +1,4 @@
-"""Point cloud files, PCD, PLY and KITTI BIN, as tables of named columns.
+"""Point cloud files, with a header (`cloud_headers`) or KITTI BIN, as tables of named columns.
 
 Every length is checked against the size of the file before anything is allocated: a cut file is
 refused, never padded, and a large one is read piece by piece.
@@ -20,12 +20,11 @@ from recon4.errors import CorruptFile, UnknownFormat
 from recon4.kernels.lzf import lzf_decompress
 from recon4.recording.formats.cloud_headers import (
     HEADER_BYTES,
+    HEADER_FORMATS,
     CloudLayout,
     Field,
-    is_pcd,
+    header_format,
     is_ply,
-    pcd_layout,
-    ply_layout,
 )
 from recon4.recording.formats.three_dtk import SCAN_SUFFIX, read_scan, scan_fields
 from recon4.untrusted.bounded import open_regular
@@ -34,9 +33,9 @@ from recon4.untrusted.limits import LIMITS
 Table = dict[str, NDArray[Any]]
 """Column name -> values, (N,) each."""
 
-CLOUD_SUFFIXES = (".pcd", ".ply", ".bin", SCAN_SUFFIX)
+CLOUD_SUFFIXES = (*(one.suffix for one in HEADER_FORMATS), ".bin", SCAN_SUFFIX)
 """Of files that are frames of a folder."""
-CLOUD_FORMATS = "PCD, PLY, KITTI BIN or 3DTK"
+CLOUD_FORMATS = f"{', '.join(one.name for one in HEADER_FORMATS)}, KITTI BIN or 3DTK"
 """Their formats, for messages."""
 MAX_FRAME_BYTES = 256 << 20
 """The points of a file that is read as a whole (one revolution, or a compressed block)."""
@@ -48,10 +47,10 @@ _LZF_MOST = 100
 
 
 def is_cloud_file(path: Path) -> bool:
-    """Whether the content is that of a PCD or PLY file, or plausibly of a KITTI BIN file."""
+    """Whether the content is that of a format with a header, or plausibly of a KITTI BIN file."""
     with path.open("rb") as file:
         head = file.read(HEADER_BYTES)
-    if is_ply(head) or is_pcd(head) or path.suffix.lower() == SCAN_SUFFIX:
+    if header_format(head) is not None or path.suffix.lower() == SCAN_SUFFIX:
         return True
     return path.suffix.lower() == ".bin" and _is_bin(head, path.stat().st_size)
 
@@ -70,11 +69,11 @@ def is_mesh(path: Path) -> bool:
 
 
 def read_cloud(path: Path) -> Table:
-    """Read a PCD, PLY or BIN file of at most `MAX_FRAME_BYTES`, or a scan of 3DTK, as a whole.
+    """Read a cloud file of at most `MAX_FRAME_BYTES`, or a scan of 3DTK, as a whole.
 
     Raises:
         CorruptFile: If the bytes do not match what the header promises, or there are too many.
-        UnknownFormat: If it is none of the three.
+        UnknownFormat: If it is none of `CLOUD_FORMATS`.
     """
     if path.suffix.lower() == SCAN_SUFFIX:
         return read_scan(path)
@@ -94,7 +93,7 @@ def read_cloud(path: Path) -> Table:
 
 
 def cloud_chunks(path: Path) -> Iterator[Table]:
-    """Read a PCD, PLY or BIN file of any size, some rows at a time.
+    """Read a cloud file of any size, some rows at a time.
 
     Raises:
         CorruptFile, UnknownFormat: As `read_cloud`.
@@ -129,10 +128,8 @@ def cloud_fields(path: Path) -> list[str]:
 
 def _layout(file: BinaryIO, path: Path) -> CloudLayout:
     head = file.read(HEADER_BYTES)
-    if is_ply(head):
-        return ply_layout(head, path.name)
-    if is_pcd(head):
-        return pcd_layout(head, path.name)
+    if (known := header_format(head)) is not None:
+        return known.layout(head, path.name)
     if path.suffix.lower() == ".bin":
         return _bin_layout(_size(file), path.name)
     raise UnknownFormat(f"{path.name}: expected a {CLOUD_FORMATS} file")

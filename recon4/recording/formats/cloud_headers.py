@@ -1,8 +1,12 @@
-"""Headers of PCD and PLY files: fields, rows and encoding, checked before any row is read."""
+"""Formats of point clouds with a header: fields, rows, encoding, checked before any row is read.
+
+`HEADER_FORMATS` at the end is their table; whatever reads clouds takes the formats from there.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -197,3 +201,29 @@ def _checked(layout: CloudLayout, name: str) -> CloudLayout:
             f"{MAX_ROW_BYTES} bytes a point, got {max(counts)} and {layout.row_bytes}"
         )
     return layout
+
+
+@dataclass(frozen=True, slots=True)
+class HeaderFormat:
+    """A format of point clouds, each file of which says in its header where its rows lie."""
+
+    name: str
+    """For messages."""
+    suffix: str
+    """Of the files that are frames of a folder."""
+    is_of: Callable[[bytes], bool]
+    """Whether the first `HEADER_BYTES` bytes are those of such a file."""
+    layout: Callable[[bytes, str], CloudLayout]
+    """Layout of its rows, from the same bytes and the name of the file. It raises `CorruptFile` if
+    the header is damaged. Whether the file is as long as it says is checked afterwards."""
+
+
+HEADER_FORMATS = (
+    HeaderFormat("PCD", ".pcd", is_pcd, pcd_layout),
+    HeaderFormat("PLY", ".ply", is_ply, ply_layout),
+)
+
+
+def header_format(head: bytes) -> HeaderFormat | None:
+    """The format whose first `HEADER_BYTES` bytes these are; None = none of the table."""
+    return next((one for one in HEADER_FORMATS if one.is_of(head)), None)

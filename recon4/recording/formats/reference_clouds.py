@@ -18,7 +18,7 @@ from recon4.errors import CorruptFile, RecordingError, UnknownFormat
 from recon4.geometry.se3 import Array
 from recon4.recording.formats.cloud_crs import StatedCrs, geographic_crs, stated_crs
 from recon4.recording.formats.cloud_files import cloud_chunks, cloud_fields, cloud_rows
-from recon4.recording.formats.cloud_headers import is_ply
+from recon4.recording.formats.cloud_headers import HEADER_BYTES, HEADER_FORMATS, header_format
 from recon4.recording.formats.e57_points import E57Points
 from recon4.recording.formats.las_records import (
     CHUNK,
@@ -76,7 +76,8 @@ def open_cloud(
         chunks, columns = text.chunks(), text.columns.description
         stated = geographic_crs() if text.columns.geographic else StatedCrs()
     else:
-        raise UnknownFormat(f"{path.name}: expected a PLY, PCD, LAS, LAZ, E57, XYZ or CSV cloud")
+        names = ", ".join(one.name for one in HEADER_FORMATS)
+        raise UnknownFormat(f"{path.name}: expected a {names}, LAS, LAZ, E57, XYZ or CSV cloud")
     return CloudSource(_checked(chunks, path.name), stated, columns)
 
 
@@ -104,7 +105,7 @@ def _kind(head: bytes, path: Path) -> Literal["las", "e57", "table", "text", ""]
         return "las"
     if head[:8] == b"ASTM-E57":
         return "e57"
-    if is_ply(head) or b"\nDATA " in head:
+    if header_format(head) is not None:
         return "table"
     return "text" if path.suffix.lower() in TEXT_SUFFIXES else ""
 
@@ -112,7 +113,7 @@ def _kind(head: bytes, path: Path) -> Literal["las", "e57", "table", "text", ""]
 def _head(path: Path) -> bytes:
     with open_regular(path, failure=RecordingError) as file:
         size = os.fstat(file.fileno()).st_size
-        head = file.read(64 * 1024)
+        head = file.read(HEADER_BYTES)
     if size > LIMITS.cloud_file_bytes:
         raise RecordingError(
             f"{path.name} has {size >> 30} GiB, at most {LIMITS.cloud_file_bytes >> 30}"
