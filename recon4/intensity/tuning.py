@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Literal
 
 from recon4.settings import IntensitySettings
 
@@ -26,6 +27,9 @@ class IntensityTuning(IntensitySettings):
     incidence and range (``surfaces``)."""
     normal_cell_m: float = 0.15
     """Edge of a cell for normals [m]; a neighborhood has three cells along each axis."""
+    upper: Literal["raw", "twice_mean"] = "raw"
+    """Normalized values are clamped to 0 and the largest raw value, or twice the target mean as in
+    the author's code, which clips reflectors."""
     windows: int = 40
     """Largest number of sampled sections of the walk, ten multiframes each."""
 

@@ -19,6 +19,3 @@ class IntensitySettings(Checked):
     """With ``bins``: lower limit of a bin's deviation as a fraction of the value expected from its
     mean, so that a bin of one material is not stretched to the contrast of all; 0 = plain
     Eq. 2.17."""
-    upper: Literal["raw", "twice_mean"] = "raw"
-    """Normalized values are clamped to 0 and the largest raw value, or twice the target mean as in
-    the author's code, which clips reflectors."""
