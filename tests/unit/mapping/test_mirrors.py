@@ -107,7 +107,7 @@ def test_evenly_spaced_boards_have_none() -> None:
 
 
 def like_rooms(origins_x, *, half_m=1.2, board_m=-9.0):
-    """Two rooms of 4 m, one the mirror image of the other, with an opening between them, 2.4 m high,
+    """Two rooms of 4 m, one the mirror image of the other, with an opening of 2.4 m between them,
     seen from places with these x. Behind it a board, 1 m away, ends at ``board_m``."""
     rng = np.random.default_rng(3)
     points, origins = [], []
