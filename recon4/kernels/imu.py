@@ -2,20 +2,48 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-ROTATION, POSITION, VELOCITY, GYRO_BIAS, ACCEL_BIAS, GRAVITY = 0, 3, 6, 9, 12, 15
-"""First row of each quantity in the error state; `recon4.registration.state` has slices."""
-GYRO_GAIN, CLOCK, SIZE = 18, 27, 28
-"""Error of the gyroscope's scale and axes, a (3, 3) matrix row by row, and of the clock of the IMU.
-A state of 18 rows has neither."""
-_ROTATION_ROWS = 3
-"""The vector of a state (15,) has no rotation: its rows are those of the error state minus 3."""
-_GYRO_NOISE, _ACCEL_NOISE, _GYRO_BIAS_WALK, _ACCEL_BIAS_WALK = 0, 1, 2, 3
-_GAIN_WALK, _CLOCK_WALK = 4, 5
-"""Rows of the noise densities."""
+
+class ErrorRows(NamedTuple):
+    """First row of each quantity in the error state; `recon4.registration.state` has slices."""
+
+    rotation: int = 0
+    position: int = 3
+    velocity: int = 6
+    gyro_bias: int = 9
+    accel_bias: int = 12
+    gravity: int = 15
+    gyro_gain: int = 18
+    """Error of the gyroscope's scale and axes, a (3, 3) matrix row by row. A state of 18 rows has
+    neither this nor a clock."""
+    clock: int = 27
+    """Error of the clock of the IMU."""
+    size: int = 28
+    """All rows."""
+    vector: int = 3
+    """First row in the vector of a state (25,), which has no rotation."""
+
+
+ROWS = ErrorRows()
+
+
+class NoiseRows(NamedTuple):
+    """Rows of the noise densities."""
+
+    gyro: int = 0
+    accel: int = 1
+    gyro_bias_walk: int = 2
+    accel_bias_walk: int = 3
+    gain_walk: int = 4
+    clock_walk: int = 5
+
+
+NOISE = NoiseRows()
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -43,7 +71,7 @@ def rotation(w: NDArray[np.float64]) -> NDArray[np.float64]:
 @njit(cache=True, nogil=True, error_model="numpy")
 def _quantity(state: NDArray[np.float64], first: int) -> NDArray[np.float64]:
     """Three rows of the vector of a state, by their first row in the error state."""
-    return state[first - _ROTATION_ROWS : first]
+    return state[first - ROWS.vector : first]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -61,19 +89,21 @@ def _step_transition(
     Returns:
         (N, N).
     """
+    R, p, v = ROWS.rotation, ROWS.position, ROWS.velocity
+    bg, ba, g = ROWS.gyro_bias, ROWS.accel_bias, ROWS.gravity
     F = np.eye(size)
-    F[VELOCITY, ROTATION + 1], F[VELOCITY, ROTATION + 2] = f[2] * dt, -f[1] * dt
-    F[VELOCITY + 1, ROTATION], F[VELOCITY + 1, ROTATION + 2] = -f[2] * dt, f[0] * dt
-    F[VELOCITY + 2, ROTATION], F[VELOCITY + 2, ROTATION + 1] = f[1] * dt, -f[0] * dt
+    F[v, R + 1], F[v, R + 2] = f[2] * dt, -f[1] * dt
+    F[v + 1, R], F[v + 1, R + 2] = -f[2] * dt, f[0] * dt
+    F[v + 2, R], F[v + 2, R + 1] = f[1] * dt, -f[0] * dt
     for i in range(3):
-        F[POSITION + i, VELOCITY + i] = dt
-        F[VELOCITY + i, GRAVITY + i] = dt
-        F[POSITION + i, GRAVITY + i] = 0.5 * dt * dt
+        F[p + i, v + i] = dt
+        F[v + i, g + i] = dt
+        F[p + i, g + i] = 0.5 * dt * dt
         for j in range(3):
-            F[ROTATION + i, GYRO_BIAS + j] = -half[i, j] * dt
-            F[VELOCITY + i, ACCEL_BIAS + j] = -half[i, j] * dt
-            F[POSITION + i, ACCEL_BIAS + j] = -0.5 * half[i, j] * dt * dt
-            F[POSITION + i, ROTATION + j] = 0.5 * dt * F[VELOCITY + i, ROTATION + j]
+            F[R + i, bg + j] = -half[i, j] * dt
+            F[v + i, ba + j] = -half[i, j] * dt
+            F[p + i, ba + j] = -0.5 * half[i, j] * dt * dt
+            F[p + i, R + j] = 0.5 * dt * F[v + i, R + j]
     return F
 
 
@@ -94,30 +124,31 @@ def _add_calibration(
         more: What angular rate and specific force gain over the step, (6,).
         dt: Length of the step [s].
     """
+    R, p, v, gain, clock = ROWS.rotation, ROWS.position, ROWS.velocity, ROWS.gyro_gain, ROWS.clock
     for i in range(3):
         for j in range(3):
-            F[ROTATION + i, CLOCK] += half[i, j] * more[j]
-            F[VELOCITY + i, CLOCK] += half[i, j] * more[3 + j]
+            F[R + i, clock] += half[i, j] * more[j]
+            F[v + i, clock] += half[i, j] * more[3 + j]
             for k in range(3):
-                F[ROTATION + i, GYRO_GAIN + 3 * j + k] = half[i, j] * gyro[k] * dt
-        F[POSITION + i, CLOCK] = 0.5 * dt * F[VELOCITY + i, CLOCK]
+                F[R + i, gain + 3 * j + k] = half[i, j] * gyro[k] * dt
+        F[p + i, clock] = 0.5 * dt * F[v + i, clock]
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def _add_noise(P: NDArray[np.float64], noise: NDArray[np.float64], dt: float) -> None:
     """Add the noise of one step to the covariance of the error state (N, N), in place."""
     for i in range(3):
-        P[ROTATION + i, ROTATION + i] += noise[_GYRO_NOISE] ** 2 * dt
-        P[POSITION + i, POSITION + i] += noise[_ACCEL_NOISE] ** 2 * dt**3 / 3.0
-        P[POSITION + i, VELOCITY + i] += noise[_ACCEL_NOISE] ** 2 * dt**2 / 2.0
-        P[VELOCITY + i, POSITION + i] += noise[_ACCEL_NOISE] ** 2 * dt**2 / 2.0
-        P[VELOCITY + i, VELOCITY + i] += noise[_ACCEL_NOISE] ** 2 * dt
-        P[GYRO_BIAS + i, GYRO_BIAS + i] += noise[_GYRO_BIAS_WALK] ** 2 * dt
-        P[ACCEL_BIAS + i, ACCEL_BIAS + i] += noise[_ACCEL_BIAS_WALK] ** 2 * dt
-    if len(P) == SIZE:
-        for i in range(GYRO_GAIN, CLOCK):
-            P[i, i] += noise[_GAIN_WALK] ** 2 * dt
-        P[CLOCK, CLOCK] += noise[_CLOCK_WALK] ** 2 * dt
+        P[ROWS.rotation + i, ROWS.rotation + i] += noise[NOISE.gyro] ** 2 * dt
+        P[ROWS.position + i, ROWS.position + i] += noise[NOISE.accel] ** 2 * dt**3 / 3.0
+        P[ROWS.position + i, ROWS.velocity + i] += noise[NOISE.accel] ** 2 * dt**2 / 2.0
+        P[ROWS.velocity + i, ROWS.position + i] += noise[NOISE.accel] ** 2 * dt**2 / 2.0
+        P[ROWS.velocity + i, ROWS.velocity + i] += noise[NOISE.accel] ** 2 * dt
+        P[ROWS.gyro_bias + i, ROWS.gyro_bias + i] += noise[NOISE.gyro_bias_walk] ** 2 * dt
+        P[ROWS.accel_bias + i, ROWS.accel_bias + i] += noise[NOISE.accel_bias_walk] ** 2 * dt
+    if len(P) == ROWS.size:
+        for i in range(ROWS.gyro_gain, ROWS.clock):
+            P[i, i] += noise[NOISE.gain_walk] ** 2 * dt
+        P[ROWS.clock, ROWS.clock] += noise[NOISE.clock_walk] ** 2 * dt
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -140,8 +171,8 @@ def propagate(
         state0: Position, velocity, gyro bias, accel bias, gravity, then gain of the gyroscope and
             clock or nothing, (N - 3,). The samples are those of the clock already.
         P0: Covariance of the error (rotation about odom axes, then as ``state0``), (N, N) with N
-            of 18 or `SIZE`.
-        noise: Densities per sqrt(s): gyro, accel, gyro bias walk, accel bias walk, with `SIZE`
+            of 18 or 28.
+        noise: Densities per sqrt(s): gyro, accel, gyro bias walk, accel bias walk, with 28
             rows also walks of gain and clock, (4,) or (6,).
 
     Returns:
@@ -151,16 +182,16 @@ def propagate(
     count = len(t_s)
     R_all, p_all = np.empty((count, 3, 3)), np.empty((count, 3))
     R = R0.copy()
-    p = _quantity(state0, POSITION).copy()
-    v = _quantity(state0, VELOCITY).copy()
-    bg, ba = _quantity(state0, GYRO_BIAS), _quantity(state0, ACCEL_BIAS)
-    gravity = _quantity(state0, GRAVITY)
+    p = _quantity(state0, ROWS.position).copy()
+    v = _quantity(state0, ROWS.velocity).copy()
+    bg, ba = _quantity(state0, ROWS.gyro_bias), _quantity(state0, ROWS.accel_bias)
+    gravity = _quantity(state0, ROWS.gravity)
     size = len(P0)
     gain = np.eye(3)
     more = np.zeros(6)
-    if size == SIZE:
+    if size == ROWS.size:
         for i in range(9):
-            gain[i // 3, i % 3] += state0[GYRO_GAIN - _ROTATION_ROWS + i]
+            gain[i // 3, i % 3] += state0[ROWS.gyro_gain - ROWS.vector + i]
     Phi = np.eye(size)
     P = P0.copy()
     R_all[0], p_all[0] = R, p
@@ -172,7 +203,7 @@ def propagate(
         half = R @ rotation(omega * (0.5 * dt))
         a = half @ force + gravity
         F = _step_transition(half, half @ force, dt, size)
-        if size == SIZE:
+        if size == ROWS.size:
             more[:3] = gain @ (gyro[k + 1] - gyro[k])
             more[3:] = accel[k + 1] - accel[k]
             _add_calibration(F, half, rate, more, dt)

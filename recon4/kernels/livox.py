@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-WORDS, HALVES, DEPTHS = 0, 1, 2
-"""Coordinates of 32 bits, of 16 bits, or depths along the direction of the shot."""
+
+class PointNumbers(NamedTuple):
+    """What the numbers of a shot are."""
+
+    words: int = 0
+    """Coordinates of 32 bits …"""
+    halves: int = 1
+    """… or of 16 bits …"""
+    depths: int = 2
+    """… or depths along the direction of the shot."""
+
+
+NUMBERS = PointNumbers()
+
+
 _TURN = np.deg2rad(0.01) * np.arange(36000)
 COS, SIN = np.cos(_TURN).astype(np.float32), np.sin(_TURN).astype(np.float32)
 """Of every angle on the wire, the last tables of `decode`, (36000,)."""
@@ -25,7 +40,7 @@ def _word(packet: NDArray[np.uint8], at: int) -> np.int64:
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
 def _signed(packet: NDArray[np.uint8], at: int, numbers: int) -> np.float32:
-    if numbers == WORDS:
+    if numbers == NUMBERS.words:
         value = _word(packet, at)
         return np.float32(value - (1 << 32) if value >= 1 << 31 else value)
     half = _half(packet, at)
@@ -71,8 +86,8 @@ def decode(
         t_ns: Time of the first shot of each packet [ns], (P,).
         step_ns: From one shot to the next [ns], (P,).
         plan: Bytes of the header; shots of a packet; bytes of a shot; its returns; offset and bytes
-            of a return; offsets of reflectivity and tag in a return (-1 = no tag); `WORDS`,
-            `HALVES` or `DEPTHS`; offset of the angles; number of lines; whether tags name noise,
+            of a return; offsets of reflectivity and tag in a return (-1 = no tag); one of
+            `PointNumbers`; offset of the angles; number of lines; whether tags name noise,
             (12,).
         limits: Smallest and largest range [m], and the unit of a number [m], (3,).
         cos: Cosines of 0, 0.01, … 359.99°, (36000,).
@@ -97,17 +112,17 @@ def decode(
         packet = packets[p]
         for s in range(shots):
             begin = header + s * stride
-            if numbers == DEPTHS:
+            if numbers == NUMBERS.depths:
                 _direction(packet, begin + angles, cos, sin, direction)
             different = 0
             for r in range(returns):
                 at = begin + first + r * size
-                if numbers == DEPTHS:
+                if numbers == NUMBERS.depths:
                     depth = np.float32(_word(packet, at)) * limits[2]
                     for axis in range(3):
                         found[r, axis] = depth * direction[axis]
                 else:
-                    width = 4 if numbers == WORDS else 2
+                    width = 4 if numbers == NUMBERS.words else 2
                     for axis in range(3):
                         found[r, axis] = _signed(packet, at + width * axis, numbers) * limits[2]
                 x, y, z = found[r, 0], found[r, 1], found[r, 2]

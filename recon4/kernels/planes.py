@@ -14,17 +14,11 @@ from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.moments import add_point
+from recon4.kernels.plane_tables import CUBE, STATE
 
 EMPTY = np.int64(-1)
-DIRTY, PLANE, NO_PLANE = np.uint8(0), np.uint8(1), np.uint8(2)
 MIN_POINTS, MAX_SD, MIN_EXTENT, MAX_RATIO, MIN_BATCHES = range(5)
 """Rows of the array of criteria that a cube's points have to meet to count as a plane."""
-COLUMNS = 15
-"""Columns of ``sums``: ten moments, the number of batches, the number of the newest batch and the
-sum of the places from which the points were seen (NaN = unknown)."""
-BATCHES, _NEWEST, _VIEW = 10, 11, 12
-FIT_COLUMNS = 10
-"""Columns of ``fits``, see `_fit`."""
 _MIN_SIDE_M = 0.2
 """Nearer to a plane than this, the side from which it is seen is not certain [m]."""
 _OFFSET = np.int64(1 << 19)
@@ -93,17 +87,17 @@ def add_points(
                     keys[row] = key
                     used += 1
                 last_key[level], last_row[level] = key, row
-                if sums[row, _NEWEST] != batch:
-                    sums[row, _NEWEST] = batch
-                    sums[row, BATCHES] += 1.0
-                state[row] = DIRTY
+                if sums[row, CUBE.newest] != batch:
+                    sums[row, CUBE.newest] = batch
+                    sums[row, CUBE.batches] += 1.0
+                state[row] = STATE.dirty
             # Moments about the cube's center are small numbers: removal stays accurate.
             x = p[k, 0] - (jx + 0.5) * sizes[level]
             y = p[k, 1] - (jy + 0.5) * sizes[level]
             z = p[k, 2] - (jz + 0.5) * sizes[level]
             add_point(sums[row], sign, x, y, z)
             for axis in range(3):
-                sums[row, _VIEW + axis] += sign * view[axis]
+                sums[row, CUBE.seen_from + axis] += sign * view[axis]
     return len(p), used
 
 
@@ -134,7 +128,7 @@ def rehash(
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], int]:
     """Copy the non-empty cubes to tables of another size (a power of two)."""
     new_keys = np.full(capacity, EMPTY, np.int64)
-    new_sums = np.zeros((capacity, COLUMNS), np.float64)
+    new_sums = np.zeros((capacity, CUBE.sums), np.float64)
     used = 0
     for row in range(len(keys)):
         if keys[row] != EMPTY and sums[row, 0] > 0.5:
@@ -202,8 +196,8 @@ def _fit(
     mean distance of the views, negative behind the plane.
     """
     n = s[0]
-    if n < criteria[MIN_POINTS] or s[BATCHES] < criteria[MIN_BATCHES]:
-        return NO_PLANE
+    if n < criteria[MIN_POINTS] or s[CUBE.batches] < criteria[MIN_BATCHES]:
+        return STATE.no_plane
     mx, my, mz = s[1] / n, s[2] / n, s[3] / n
     a, vecs, vals = work[0:3], work[3:6], work[6]
     a[0, 0] = s[4] / n - mx * mx
@@ -217,9 +211,9 @@ def _fit(
     across, along = max(vals[0], 0.0), max(vals[1], 1e-12)
     min_sd = max(0.1 * size, criteria[MIN_EXTENT])
     if across > criteria[MAX_SD] ** 2 or along < min_sd * min_sd:
-        return NO_PLANE
+        return STATE.no_plane
     if across > criteria[MAX_RATIO] * along:
-        return NO_PLANE
+        return STATE.no_plane
     ix = ((key >> 40) & _MASK) - _OFFSET
     iy = ((key >> 20) & _MASK) - _OFFSET
     iz = (key & _MASK) - _OFFSET
@@ -230,8 +224,8 @@ def _fit(
     f[6], f[7], f[8] = across, along, n
     f[9] = 0.0
     for axis in range(3):
-        f[9] += f[3 + axis] * (s[_VIEW + axis] / n - f[axis])
-    return PLANE
+        f[9] += f[3 + axis] * (s[CUBE.seen_from + axis] / n - f[axis])
+    return STATE.plane
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -246,7 +240,7 @@ def fit_all(
     """Fit the planes of all cubes, so that several threads can match without writing."""
     work = np.empty((7, 3))
     for row in range(len(keys)):
-        if keys[row] != EMPTY and state[row] == DIRTY:
+        if keys[row] != EMPTY and state[row] == STATE.dirty:
             level = keys[row] >> 60
             state[row] = _fit(keys[row], sums[row], sizes[level], criteria, fits[row], work)
 
@@ -276,9 +270,9 @@ def _finest_planes(
             row = _slot(keys, key)
             if keys[row] == EMPTY:
                 continue
-            if state[row] == DIRTY:
+            if state[row] == STATE.dirty:
                 state[row] = _fit(key, sums[row], sizes[level], criteria, fits[row], work)
-            if state[row] == PLANE:
+            if state[row] == STATE.plane:
                 rows[k] = row
                 break
     return rows

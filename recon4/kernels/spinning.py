@@ -14,22 +14,33 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-_CDEG = np.deg2rad(0.01)
-_AZIMUTH = _CDEG * (np.arange(72000) % 36000)
+from recon4.units import CDEG_RAD
+
+_AZIMUTH = CDEG_RAD * (np.arange(72000) % 36000)
 CIRCLE = np.column_stack([np.cos(_AZIMUTH), np.sin(_AZIMUTH)]).astype(np.float32)
 """Cosine and sine of every azimuth on the wire plus any offset, the last argument of `decode`:
 numba compiles arrays of modules into the code. (72000, 2)."""
 
-COS_EL, SIN_EL = 0, 1
-"""Cosine and sine of the elevation of a beam."""
-ALONG, RIGHT, HEIGHT = 2, 3, 4
-"""Where it begins: along f, to the right of f as seen from above, above the center [m]."""
-RANGE = 5
-"""Added to every distance [m]."""
-FRACTION = 6
-"""Firing time as a fraction of the time from a firing to the next: of the turn in between."""
-OFFSET = 7
-"""The small rest of the offset of the azimuth beside whole 0.01° [rad]."""
+
+class BeamNumbers(NamedTuple):
+    """Where the numbers of a beam are."""
+
+    cos_el: int = 0
+    sin_el: int = 1
+    """Cosine and sine of the elevation of a beam."""
+    along: int = 2
+    right: int = 3
+    height: int = 4
+    """Where it begins: along f, to the right of f as seen from above, above the center [m]."""
+    range: int = 5
+    """Added to every distance [m]."""
+    fraction: int = 6
+    """Firing time as a fraction of the time from a firing to the next: of the turn in between."""
+    offset: int = 7
+    """The small rest of the offset of the azimuth beside whole 0.01° [rad]."""
+
+
+BEAM = BeamNumbers()
 
 
 class Layout(NamedTuple):
@@ -84,7 +95,7 @@ class Channels(NamedTuple):
     """
 
     beam: NDArray[np.float32]
-    """See `COS_EL` to `OFFSET`, (T, C, 8)."""
+    """See `BeamNumbers`, (T, C, 8)."""
     offset_cdeg: NDArray[np.int64]
     """Added to the azimuth of the block: whole 0.01°, 0 to 35999, (T, C)."""
     ring: NDArray[np.uint8]
@@ -201,7 +212,7 @@ def decode(
             order = channels.order[roles.table[v, k]]
             base = layout.first + b * layout.block
             azimuth = _word(payload, base + layout.azimuth, layout.big_endian) % 36000
-            step_rad = turn_rad[p] if is_given else np.float32(steps[b]) * np.float32(_CDEG)
+            step_rad = turn_rad[p] if is_given else np.float32(steps[b]) * np.float32(CDEG_RAD)
             base += layout.channel_first
             to_twin = (twin - b) * layout.block
             for i in range(layout.channels):
@@ -226,7 +237,7 @@ def decode(
                     counts[0] += 1
                     continue
                 beam = beams[c]
-                turn = step_rad * beam[FRACTION] + beam[OFFSET]
+                turn = step_rad * beam[BEAM.fraction] + beam[BEAM.offset]
                 half = np.float32(0.5) * turn * turn
                 cos_turn = np.float32(1.0) - half
                 sin_turn = turn * (np.float32(1.0) - half * np.float32(1.0 / 3.0))
@@ -240,13 +251,13 @@ def decode(
                     elif distance > distances.most:
                         counts[2] += 1
                     else:
-                        r = np.float32(distance) * distances.unit_m + beam[RANGE]
-                        flat = r * beam[COS_EL] + beam[ALONG]
-                        right = beam[RIGHT]
+                        r = np.float32(distance) * distances.unit_m + beam[BEAM.range]
+                        flat = r * beam[BEAM.cos_el] + beam[BEAM.along]
+                        right = beam[BEAM.right]
                         out_t[n] = start_ns + time_ns[c]
                         out_xyz[n, 0] = flat * cos_az - right * sin_az
                         out_xyz[n, 1] = -(flat * sin_az + right * cos_az)
-                        out_xyz[n, 2] = r * beam[SIN_EL] + beam[HEIGHT]
+                        out_xyz[n, 2] = r * beam[BEAM.sin_el] + beam[BEAM.height]
                         out_intensity[n] = intensity
                         out_ring[n] = ring[c]
                         out_echo[n] = echo

@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.surface_records import OFFSET, Cells, Neighbors, Returns
+from recon4.kernels.surface_records import PLANE, Cells, Neighbors, Returns
 from recon4.kernels.voxels import PER_METER
 
 _SEARCH = 16
@@ -232,4 +232,4 @@ def distance_in_front(plane: NDArray[np.float64], returns: Returns, p: int) -> f
     xyz, to_sensor = returns.xyz, returns.to_sensor
     if plane[0] * to_sensor[p, 0] + plane[1] * to_sensor[p, 1] + plane[2] * to_sensor[p, 2] <= 0.0:
         return np.inf
-    return plane[0] * xyz[p, 0] + plane[1] * xyz[p, 1] + plane[2] * xyz[p, 2] - plane[OFFSET]
+    return plane[0] * xyz[p, 0] + plane[1] * xyz[p, 1] + plane[2] * xyz[p, 2] - plane[PLANE.offset]

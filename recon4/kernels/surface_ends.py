@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -11,14 +13,23 @@ from recon4.kernels.surface_records import SLOTS, Cells, Moved, Neighbors, Retur
 
 KEPT = SLOTS + 1
 """In place of a plane: the point has none, but is not a stray return."""
-_HALVES = 2
-"""Parts of a cell along each axis of its plane."""
-_UNEVEN = 0.5
-"""Largest mean distance of the returns of such a part from their plane [standard deviations]."""
-_CERTAIN = 3.0
-"""The mean distance is that many of its own standard deviations, at least."""
-_SAME_COS = 0.95
-"""Planes of other cells with a larger cosine are parts of the same surface."""
+
+
+class EndLimits(NamedTuple):
+    """When returns were moved beyond the end of a surface."""
+
+    halves: int = 2
+    """Parts of a cell along each axis of its plane."""
+    uneven: float = 0.5
+    """Largest mean distance of the returns of such a part from their plane [standard
+    deviations]."""
+    certain: float = 3.0
+    """The mean distance is that many of its own standard deviations, at least."""
+    same_cos: float = 0.95
+    """Planes of other cells with a larger cosine are parts of the same surface."""
+
+
+ENDS = EndLimits()
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -29,7 +40,7 @@ def _part_of(
     part = 0
     for d in range(3):
         if d != along:
-            part = _HALVES * part + (1 if xyz[p, d] > center[d] else 0)
+            part = ENDS.halves * part + (1 if xyz[p, d] > center[d] else 0)
     return part
 
 
@@ -54,7 +65,7 @@ def _add_column(
         if of_point[p] >= SLOTS:
             continue
         one = surfaces[surface_of[p]]
-        if one[0] * normal[0] + one[1] * normal[1] + one[2] * normal[2] < _SAME_COS:
+        if one[0] * normal[0] + one[1] * normal[1] + one[2] * normal[2] < ENDS.same_cos:
             continue
         u, v, w = shift_m[p, 0], shift_m[p, 1], shift_m[p, 2]
         off = -(one[0] * u + one[1] * v + one[2] * w)
@@ -89,7 +100,7 @@ def find_beyond(
     """
     first, of_point = returns.first, supported.of_point
     _, surface_of, surfaces = moved
-    parts, normal = np.zeros((_HALVES * _HALVES, 2)), np.zeros(3)
+    parts, normal = np.zeros((ENDS.halves * ENDS.halves, 2)), np.zeros(3)
     row_of = np.empty(SLOTS, np.int64)
     for c in range(len(cells.number)):
         beyond[c] = False
@@ -112,7 +123,7 @@ def find_beyond(
                     cell = neighbors.row[k]
                     _add_column(returns, cell, center, normal, of_point, moved, parts)
             for q in range(len(parts)):
-                least = max(_UNEVEN * parts[q, 0], _CERTAIN * np.sqrt(parts[q, 0]))
+                least = max(ENDS.uneven * parts[q, 0], ENDS.certain * np.sqrt(parts[q, 0]))
                 beyond[c, s, q] = abs(parts[q, 1]) > surfaces[row_of[s], 3] * least
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -9,11 +11,7 @@ from numpy.typing import NDArray
 from recon4.kernels.moments import MOMENTS
 from recon4.kernels.surface_cells import distance_in_front
 from recon4.kernels.surface_records import (
-    MIDDLE,
-    OFFSET,
-    OWN_OFFSET,
     PLANE,
-    SIGMA,
     SLOTS,
     Cells,
     Moved,
@@ -25,14 +23,21 @@ from recon4.kernels.surface_records import (
 )
 from recon4.kernels.surface_slots import refit_plane
 
-_MOST_EDGES = 6
-"""Planes of a cell and of its neighbors that its points are compared with."""
-_MIN_AROUND = 12.0
-"""Returns around each stray return at least; fewer say nothing of it."""
-_ALIKE = 0.9
-"""A plane of a neighbor with a larger cosine makes no edge."""
-_ONE_SIDE_M = 0.012
-"""A surface whose middle is nearer to a plane than this lies on both sides of it [m]."""
+
+class PointLimits(NamedTuple):
+    """When a point is compared with a plane, and is stray."""
+
+    most_edges: int = 6
+    """Planes of a cell and of its neighbors that its points are compared with."""
+    min_around: float = 12.0
+    """Returns around each stray return at least; fewer say nothing of it."""
+    alike: float = 0.9
+    """A plane of a neighbor with a larger cosine makes no edge."""
+    one_side_m: float = 0.012
+    """A surface whose middle is nearer to a plane than this lies on both sides of it [m]."""
+
+
+POINTS = PointLimits()
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -53,12 +58,12 @@ def planes_at(
         c: Row of the cell.
         cells: Of `find_cells`.
         neighbors: Of `list_neighbors`.
-        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        planes: Of `window_planes`, two rows for each cell, (2 C, 11).
         supported: Of `choose_planes`.
         moments: As in `refit_plane`.
         limits: As in `refit_plane`.
         scratch: As in `refit_plane`.
-        out: Receives the planes, (L, PLANE).
+        out: Receives the planes, (L, 11).
 
     Returns:
         How many there are of the cell, and of both.
@@ -67,7 +72,7 @@ def planes_at(
     if supported.several[c] < 0:
         # Fitted to the same points when the window was.
         out[0] = planes[slots[c, 0]]
-        out[0, OFFSET] = out[0, OWN_OFFSET]
+        out[0, PLANE.offset] = out[0, PLANE.own_offset]
         return 1, 1
     count = 0
     while count < SLOTS and slots[c, count] >= 0:
@@ -86,7 +91,7 @@ def planes_at(
             u, v, w = planes[row, 0], planes[row, 1], planes[row, 2]
             known = count == 0
             for q in range(every):
-                known |= out[q, 0] * u + out[q, 1] * v + out[q, 2] * w > _ALIKE
+                known |= out[q, 0] * u + out[q, 1] * v + out[q, 2] * w > POINTS.alike
             if not known and every < len(out):
                 out[every] = planes[row]
                 every += 1
@@ -115,7 +120,7 @@ def onto_planes(
         rings: Of `find_rings`; the points of the outermost cells stay, (C,).
         neighbors: Of `list_neighbors`.
         normals: Of points without a plane [unit], (C, 3).
-        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        planes: Of `window_planes`, two rows for each cell, (2 C, 11).
         moments: As in `refit_plane`.
         supported: Of `choose_planes`; receives the plane of each point.
         limits: As in `refit_plane`.
@@ -126,7 +131,8 @@ def onto_planes(
         How many surfaces there are.
     """
     first, of_point = returns.first, supported.of_point
-    mine_of, side_of = np.zeros((_MOST_EDGES, PLANE)), np.zeros((_MOST_EDGES, _MOST_EDGES))
+    edges = POINTS.most_edges
+    mine_of, side_of = np.zeros((edges, PLANE.numbers)), np.zeros((edges, edges))
     rows, shift, scratch = np.empty(SLOTS + 1, np.int32), np.zeros(3), np.empty(MOMENTS + 11)
     surfaces = 0
     for c in range(len(cells.number)):
@@ -144,8 +150,8 @@ def onto_planes(
             off = 0.0
             for s in range(count):
                 away = distance_in_front(mine_of[s], returns, p)
-                if abs(away) < best * mine_of[s, SIGMA]:
-                    best = abs(away) / mine_of[s, SIGMA]
+                if abs(away) < best * mine_of[s, PLANE.sigma]:
+                    best = abs(away) / mine_of[s, PLANE.sigma]
                     mine = s
                     off = away
             of_point[p] = mine
@@ -258,7 +264,8 @@ def find_strays(
                 every += around[0]
                 loose += around[1]
                 far += around[3]
-            few = loose <= max(limits.ratio * every, limits.few) and every >= _MIN_AROUND * loose
+            few = loose <= max(limits.ratio * every, limits.few)
+            few = few and every >= POINTS.min_around * loose
             far_few = far <= limits.far_ratio * every
         for p in range(first[c], first[c + 1]):
             from_afar = far_few and range_of(to_sensor, p) > sums[c, 4]
@@ -290,18 +297,18 @@ def edge_sides(
     """On which side of each plane of a cell the surfaces of the others lie: 1, -1, 0 = both.
 
     Args:
-        planes: Of `planes_at`, (L, PLANE).
+        planes: Of `planes_at`, (L, 11).
         count: How many there are of the cell.
         every: How many there are.
         out: Receives the sides: ``out[a, b]`` = surface a, side of b, (L, L).
     """
     for a in range(count):
-        middle = planes[a, MIDDLE : MIDDLE + 3]
+        middle = planes[a, PLANE.middle : PLANE.middle + 3]
         for b in range(every):
             q = planes[b]
-            away = q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2] - q[OFFSET]
+            away = q[0] * middle[0] + q[1] * middle[1] + q[2] * middle[2] - q[PLANE.offset]
             out[a, b] = 0.0
-            if abs(away) > _ONE_SIDE_M:
+            if abs(away) > POINTS.one_side_m:
                 out[a, b] = 1.0 if away > 0.0 else -1.0
 
 
@@ -321,13 +328,13 @@ def keep_inside(
         q = planes[b]
         if b == mine or side_of[mine, b] == 0.0:
             continue
-        away = -q[OFFSET]
+        away = -q[PLANE.offset]
         for d in range(3):
             away += q[d] * (xyz[p, d] + shift[d])
         if away * side_of[mine, b] >= 0.0:
             continue
         dot = a[0] * q[0] + a[1] * q[1] + a[2] * q[2]
-        if abs(dot) > 0.9 or abs(away) > 3.0 * q[SIGMA]:
+        if abs(dot) > 0.9 or abs(away) > 3.0 * q[PLANE.sigma]:
             continue
         # Within plane a, against the part of b's normal that lies in it.
         scale = away / (1.0 - dot * dot)

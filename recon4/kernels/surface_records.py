@@ -10,20 +10,30 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-PLANE = 11
-"""Numbers of a plane. It is oriented: the normal points to the sensors that saw it."""
-OFFSET = 3
-"""n · p of its points p [m]; before it the unit normal n (0, 1, 2)."""
-SIGMA = 4
-"""Standard deviation of the returns across it [m]; 0 = there is no plane."""
-WEIGHT = 5
-"""Returns that it was fitted to."""
-PLANARITY = 6
-"""From 0 (a line, a ball) to 1."""
-MIDDLE = 7
-"""Mean of its returns x, y, z [m] (7, 8, 9)."""
-OWN_OFFSET = 10
-"""The offset at the cell itself: a surface need not be quite flat [m]."""
+
+class PlaneNumbers(NamedTuple):
+    """Where the numbers of a plane are. Its unit normal (0, 1, 2) points to the sensors that saw
+    it.
+    """
+
+    offset: int = 3
+    """n · p of its points p [m]."""
+    sigma: int = 4
+    """Standard deviation of the returns across it [m]; 0 = there is no plane."""
+    weight: int = 5
+    """Returns that it was fitted to."""
+    planarity: int = 6
+    """From 0 (a line, a ball) to 1."""
+    middle: int = 7
+    """First of the mean of its returns x, y, z [m]."""
+    own_offset: int = 10
+    """The offset at the cell itself: a surface need not be quite flat [m]."""
+    numbers: int = 11
+    """Of a plane."""
+
+
+PLANE = PlaneNumbers()
+
 
 SLOTS = 3
 """Planes of a cell: a surface, an edge of two, a corner of three."""

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from recon4.kernels.surface_cells import center_of, distance_in_front, main_axis
-from recon4.kernels.surface_records import (
-    MIDDLE,
-    OFFSET,
-    PLANARITY,
-    SIGMA,
-    WEIGHT,
-    Cells,
-    Neighbors,
-    Returns,
-)
+from recon4.kernels.surface_records import PLANE, Cells, Neighbors, Returns
 
-_BESIDE = 0.55
-"""A plane farther from the middle of its cell does not cross it [cells along the main axis]."""
-_THIN = 0.9
-"""The shape of distances is not looked at below this part of the least standard deviation."""
+
+class ShapeLimits(NamedTuple):
+    """Which planes are looked at."""
+
+    beside: float = 0.55
+    """A plane farther from the middle of its cell does not cross it [cells along the main axis]."""
+    thin: float = 0.9
+    """The shape of distances is not looked at below this part of the least standard deviation."""
+
+
+SHAPES = ShapeLimits()
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -31,18 +31,18 @@ def write_plane(
     """Write the plane through moments about the tile's origin.
 
     Args:
-        out: Receives the plane, (PLANE,).
+        out: Receives the plane, (11,).
         fitted: Of `plane_of`, (7,).
         sign: 1, or -1 to turn the normal.
         total: The moments, (MOMENTS,).
     """
     for d in range(4):
         out[d] = sign * fitted[d]
-    out[SIGMA] = max(np.sqrt(fitted[4]), 1e-4)
-    out[WEIGHT] = total[0]
-    out[PLANARITY] = (fitted[5] - fitted[4]) / fitted[6]
+    out[PLANE.sigma] = max(np.sqrt(fitted[4]), 1e-4)
+    out[PLANE.weight] = total[0]
+    out[PLANE.planarity] = (fitted[5] - fitted[4]) / fitted[6]
     for d in range(3):
-        out[MIDDLE + d] = total[1 + d] / total[0]
+        out[PLANE.middle + d] = total[1 + d] / total[0]
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -53,16 +53,17 @@ def own_offset(plane: NDArray[np.float64], column: NDArray[np.float64], bend_m: 
     normal, because noise crosses their borders.
 
     Args:
-        plane: Of the window, (PLANE,).
+        plane: Of the window, (11,).
         column: Weight and weighted sums x y z of the three cells.
         bend_m: Standard deviation of a cell's surface from the plane of its window [m].
     """
     if not column[0] > 0.0:
-        return plane[OFFSET]
+        return plane[PLANE.offset]
+    offset, sigma = plane[PLANE.offset], plane[PLANE.sigma]
     x, y, z = column[1] / column[0], column[2] / column[0], column[3] / column[0]
-    own = plane[0] * x + plane[1] * y + plane[2] * z - plane[OFFSET]
+    own = plane[0] * x + plane[1] * y + plane[2] * z - offset
     prior = bend_m * bend_m
-    return plane[OFFSET] + own * prior / (prior + plane[SIGMA] * plane[SIGMA] / column[0])
+    return offset + own * prior / (prior + sigma * sigma / column[0])
 
 
 @njit(cache=True, nogil=True, error_model="numpy", inline="always")
@@ -81,7 +82,7 @@ def is_bent(columns: NDArray[np.float64], fitted: NDArray[np.float64], limit_m: 
         if w > 0.0:
             away = (
                 fitted[0] * columns[j, 1] + fitted[1] * columns[j, 2] + fitted[2] * columns[j, 3]
-            ) / w - fitted[OFFSET]
+            ) / w - fitted[PLANE.offset]
             squares += w * away * away
             weights += w
             parts += 1
@@ -96,7 +97,7 @@ def shape_sums(
 
     Args:
         returns: Of the tile.
-        planes: (C, K, PLANE).
+        planes: (C, K, 11).
         reach_m: Farther points are left out [m].
         sums: Receives the sums, (C, K, 5).
     """
@@ -105,7 +106,7 @@ def shape_sums(
         for s in range(planes.shape[1]):
             s0 = s1 = s2 = s3 = s4 = 0.0
             plane = planes[c, s]
-            if plane[SIGMA] > 0.0:
+            if plane[PLANE.sigma] > 0.0:
                 for p in range(first[c], first[c + 1]):
                     away = distance_in_front(plane, returns, p)
                     if abs(away) < reach_m:
@@ -168,7 +169,7 @@ def drop_mixed(
         sums: Of `shape_sums`, (C, 2, 5).
         least_m: As in `is_one_sheet`.
         limit: As in `is_one_sheet`.
-        planes: Of both sides, (C, 2, PLANE).
+        planes: Of both sides, (C, 2, 11).
         kept: Receives which of them are one surface, (C, 2).
     """
     total = np.zeros(5)
@@ -176,12 +177,12 @@ def drop_mixed(
         cx, cy, cz = center_of(c, cells)
         for s in range(2):
             mine = planes[c, s]
-            kept[c, s] = mine[SIGMA] > 0.0
-            away = mine[0] * cx + mine[1] * cy + mine[2] * cz - mine[OFFSET]
-            if abs(away) > _BESIDE * cells.edge_m * abs(mine[main_axis(mine)]):
+            kept[c, s] = mine[PLANE.sigma] > 0.0
+            away = mine[0] * cx + mine[1] * cy + mine[2] * cz - mine[PLANE.offset]
+            if abs(away) > SHAPES.beside * cells.edge_m * abs(mine[main_axis(mine)]):
                 kept[c, s] = False
                 continue
-            if mine[SIGMA] < _THIN * least_m:
+            if mine[PLANE.sigma] < SHAPES.thin * least_m:
                 continue
             t0 = t1 = t2 = t3 = t4 = 0.0
             nx, ny, nz = mine[0], mine[1], mine[2]
@@ -189,7 +190,7 @@ def drop_mixed(
                 o = neighbors.row[k]
                 for t in range(2):
                     q = planes[o, t]
-                    if q[SIGMA] > 0.0 and nx * q[0] + ny * q[1] + nz * q[2] > 0.97:
+                    if q[PLANE.sigma] > 0.0 and nx * q[0] + ny * q[1] + nz * q[2] > 0.97:
                         t0 += sums[o, t, 0]
                         t1 += sums[o, t, 1]
                         t2 += sums[o, t, 2]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,10 +17,8 @@ from recon4.kernels.surface_cells import (
     main_axis,
 )
 from recon4.kernels.surface_records import (
-    OFFSET,
-    SIGMA,
+    PLANE,
     SLOTS,
-    WEIGHT,
     Cells,
     Neighbors,
     PlaneLimits,
@@ -29,13 +27,22 @@ from recon4.kernels.surface_records import (
 )
 from recon4.kernels.surface_shapes import own_offset, write_plane
 
-_MOST_LISTED = 24
-_MIN_TAIL = 250.0
-"""A surface has this many times the returns of a cell that holds the end of its noise only."""
-_SAME_COS, _SAME = 0.95, 1.0
-"""Planes are similar with a larger cosine and a smaller distance [standard deviations]."""
-_THINNER = 0.95
-"""A similar plane takes the place of another one below this ratio of their deviations."""
+
+class SlotLimits(NamedTuple):
+    """Which planes of a cell and its neighbors are candidates, and when two are one."""
+
+    most_listed: int = 24
+    min_tail: float = 250.0
+    """A surface has this many times the returns of a cell that holds the end of its noise only."""
+    same_cos: float = 0.95
+    """Planes are similar with a larger cosine …"""
+    same: float = 1.0
+    """… and a smaller distance [standard deviations]."""
+    thinner: float = 0.95
+    """A similar plane takes the place of another one below this ratio of their deviations."""
+
+
+LISTS = SlotLimits()
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -54,7 +61,7 @@ def list_candidates(
     Args:
         c: Row of the cell.
         cells: Of `find_cells`.
-        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        planes: Of `window_planes`, two rows for each cell, (2 C, 11).
         thickness: Of `thickness_of`, (2 C,).
         out: Receives the rows of the planes, (L,).
 
@@ -76,24 +83,24 @@ def list_candidates(
                     if not thickness[p] < np.inf:
                         continue
                     nx, ny, nz = planes[p, 0], planes[p, 1], planes[p, 2]
-                    away = nx * cx + ny * cy + nz * cz - planes[p, OFFSET]
-                    if abs(away) > 0.87 * cells.edge_m + 2.0 * planes[p, SIGMA]:
+                    away = nx * cx + ny * cy + nz * cz - planes[p, PLANE.offset]
+                    if abs(away) > 0.87 * cells.edge_m + 2.0 * planes[p, PLANE.sigma]:
                         continue
                     same = -1
                     for q in range(count):
                         d = out[q]
                         ux, uy, uz = planes[d, 0], planes[d, 1], planes[d, 2]
-                        off = away - (ux * cx + uy * cy + uz * cz - planes[d, OFFSET])
+                        off = away - (ux * cx + uy * cy + uz * cz - planes[d, PLANE.offset])
                         if (
-                            ux * nx + uy * ny + uz * nz > _SAME_COS
-                            and abs(off) < _SAME * planes[p, SIGMA]
+                            ux * nx + uy * ny + uz * nz > LISTS.same_cos
+                            and abs(off) < LISTS.same * planes[p, PLANE.sigma]
                         ):
                             same = q
                             break
                     if same < 0 and count < len(out):
                         out[count] = p
                         count += 1
-                    elif same >= 0 and thickness[p] < _THINNER * thickness[out[same]]:
+                    elif same >= 0 and thickness[p] < LISTS.thinner * thickness[out[same]]:
                         out[same] = p
     return count
 
@@ -103,13 +110,13 @@ def thickness_of(planes: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     """Standard deviation across planes, plus what few returns leave uncertain of it.
 
     Args:
-        planes: (K, PLANE).
+        planes: (K, 11).
         out: Receives it [m], inf where there is no plane, (K,).
     """
     for k in range(len(planes)):
         out[k] = np.inf
-        if planes[k, SIGMA] > 0.0:
-            out[k] = planes[k, SIGMA] * (1.0 + 2.0 / np.sqrt(planes[k, WEIGHT]))
+        if planes[k, PLANE.sigma] > 0.0:
+            out[k] = planes[k, PLANE.sigma] * (1.0 + 2.0 / np.sqrt(planes[k, PLANE.weight]))
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -125,7 +132,7 @@ def only_plane(
 
     Args:
         returns: Of the tile.
-        planes: Of `window_planes`, (C, 2, PLANE).
+        planes: Of `window_planes`, (C, 2, 11).
         calm: Of `window_planes`, (C,).
         gate: Returns within that many standard deviations support a plane.
         least: Least support of a second plane.
@@ -140,14 +147,15 @@ def only_plane(
         out.several[c] = count
         count += 1
         out.plane[c] = -1
-        s = 0 if planes[c, 0, SIGMA] > 0.0 else 1
+        s = 0 if planes[c, 0, PLANE.sigma] > 0.0 else 1
         plane = planes[c, s]
-        if not (calm[c] and plane[SIGMA] > 0.0) or (s == 0 and planes[c, 1, SIGMA] > 0.0):
+        is_sure = calm[c] and plane[PLANE.sigma] > 0.0
+        if not is_sure or (s == 0 and planes[c, 1, PLANE.sigma] > 0.0):
             continue
         loose = 0.0
         for p in range(first[c], first[c + 1]):
             out.of_point[p] = 0
-            if not abs(distance_in_front(plane, returns, p)) <= gate * plane[SIGMA]:
+            if not abs(distance_in_front(plane, returns, p)) <= gate * plane[PLANE.sigma]:
                 out.of_point[p] = SLOTS
                 loose += weight[p]
         if loose > least:
@@ -175,7 +183,7 @@ def choose_planes(
     Args:
         returns: Of the tile.
         cells: Of `find_cells`.
-        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        planes: Of `window_planes`, two rows for each cell, (2 C, 11).
         thickness: Of `thickness_of`, (2 C,).
         gate: Returns within that many standard deviations support a plane.
         least: Least support of a second plane; a tenth of it is enough for the first.
@@ -183,7 +191,7 @@ def choose_planes(
     """
     xyz, _, weight, first_point = returns
     several, of_point = out.several, out.of_point
-    listed = np.empty(_MOST_LISTED, np.int64)
+    listed = np.empty(LISTS.most_listed, np.int64)
     most = 0
     for c in range(len(cells.number)):
         most = max(most, first_point[c + 1] - first_point[c])
@@ -200,7 +208,7 @@ def choose_planes(
         count = list_candidates(c, cells, planes, thickness, listed)
         for q in range(count):
             plane = planes[listed[q]]
-            scale = 1.0 / (gate * plane[SIGMA])
+            scale = 1.0 / (gate * plane[PLANE.sigma])
             for p in range(points):
                 away = scale * distance_in_front(plane, returns, first + p)
                 fits[q, p] = 1.0 - away * away
@@ -213,14 +221,14 @@ def choose_planes(
                     if of_point[first + p] == SLOTS and fits[q, p] > 0.0:
                         support += weight[first + p] * fits[q, p]
                 # A plane through the tail of another surface's noise has less weight than that one.
-                if support > enough and support * planes[listed[q], WEIGHT] > best:
-                    best, chosen = support * planes[listed[q], WEIGHT], q
+                if support > enough and support * planes[listed[q], PLANE.weight] > best:
+                    best, chosen = support * planes[listed[q], PLANE.weight], q
             if chosen < 0 and slot == 0:
                 # A cell of few returns may hold the noise of a surface of many.
-                best = _MIN_TAIL * total
+                best = LISTS.min_tail * total
                 for q in range(count):
-                    if planes[listed[q], WEIGHT] > best:
-                        best, chosen = planes[listed[q], WEIGHT], q
+                    if planes[listed[q], PLANE.weight] > best:
+                        best, chosen = planes[listed[q], PLANE.weight], q
             if chosen < 0:
                 break
             out.plane[c, slot] = listed[chosen]
@@ -256,12 +264,12 @@ def refit_plane(
         c: Row of the cell.
         cells: Of `find_cells`.
         neighbors: Of `list_neighbors`.
-        planes: Of `window_planes`, two rows for each cell, (2 C, PLANE).
+        planes: Of `window_planes`, two rows for each cell, (2 C, 11).
         supported: Of `choose_planes`.
         moments: Of the sides of each cell, two rows for each, (2 C, MOMENTS).
         limits: What is a plane.
         scratch: (MOMENTS + 11,).
-        new: Receives the plane, (PLANE,).
+        new: Receives the plane, (11,).
     """
     center, cell_m = center_of(c, cells), cells.edge_m
     total, column, fitted = (
@@ -271,8 +279,8 @@ def refit_plane(
     )
     mine = planes[row]
     along = main_axis(mine)
-    nx, ny, nz, reach = mine[0], mine[1], mine[2], 0.7 * mine[SIGMA]
-    middle = nx * center[0] + ny * center[1] + nz * center[2] - mine[OFFSET]
+    nx, ny, nz, reach = mine[0], mine[1], mine[2], 0.7 * mine[PLANE.sigma]
+    middle = nx * center[0] + ny * center[1] + nz * center[2] - mine[PLANE.offset]
     total[:] = 0.0
     column[:] = 0.0
     for k in range(neighbors.first[c], neighbors.first[c + 1]):
@@ -290,7 +298,7 @@ def refit_plane(
             u, v, w = planes[s, 0], planes[s, 1], planes[s, 2]
             if (
                 nx * u + ny * v + nz * w <= 0.96
-                or abs(u * x + v * y + w * z - planes[s, OFFSET] - away) >= reach
+                or abs(u * x + v * y + w * z - planes[s, PLANE.offset] - away) >= reach
             ):
                 continue
             own = column_of(cell, along) == OWN_COLUMN
@@ -314,4 +322,4 @@ def refit_plane(
     if fitted[5] < limits.min_along_m**2 or abs(dot) < 0.94:
         return
     write_plane(new, fitted, 1.0 if dot > 0.0 else -1.0, total)
-    new[OFFSET] = own_offset(new, column, limits.bend_m)
+    new[PLANE.offset] = own_offset(new, column, limits.bend_m)

@@ -8,15 +8,7 @@ from numpy.typing import NDArray
 
 from recon4.kernels.moments import MOMENTS, add_point, plane_of
 from recon4.kernels.surface_cells import OWN_COLUMN, column_of, main_axis
-from recon4.kernels.surface_records import (
-    OFFSET,
-    OWN_OFFSET,
-    SIGMA,
-    Neighbors,
-    PlaneLimits,
-    Returns,
-    Sides,
-)
+from recon4.kernels.surface_records import PLANE, Neighbors, PlaneLimits, Returns, Sides
 from recon4.kernels.surface_shapes import is_bent, own_offset, write_plane
 
 _CALM_COS = 0.9
@@ -140,7 +132,7 @@ def near_moments(returns: Returns, planes: NDArray[np.float64], gate: float, sid
 
     Args:
         returns: Of the tile.
-        planes: Planes of both sides, (C, 2, PLANE).
+        planes: Planes of both sides, (C, 2, 11).
         gate: Farther points are taken out [standard deviations].
         sides: Of `side_moments`; the moments are changed in place.
     """
@@ -149,15 +141,15 @@ def near_moments(returns: Returns, planes: NDArray[np.float64], gate: float, sid
     for c in range(len(planes)):
         nx, ny, nz = axis[c]
         for s in range(2):
-            if not planes[c, s, SIGMA] > 0.0:
+            if not planes[c, s, PLANE.sigma] > 0.0:
                 continue
             u, v, w, offset = (
                 planes[c, s, 0],
                 planes[c, s, 1],
                 planes[c, s, 2],
-                planes[c, s, OFFSET],
+                planes[c, s, PLANE.offset],
             )
-            reach = gate * planes[c, s, SIGMA]
+            reach = gate * planes[c, s, PLANE.sigma]
             for p in range(first[c], first[c + 1]):
                 x, y, z = np.float64(xyz[p, 0]), np.float64(xyz[p, 1]), np.float64(xyz[p, 2])
                 if abs(u * x + v * y + w * z - offset) <= reach:
@@ -184,7 +176,7 @@ def view_axes(
 
     Args:
         returns: Of the tile.
-        planes: Of `window_planes`, (C, 2, PLANE).
+        planes: Of `window_planes`, (C, 2, 11).
         axis: Of the cells, changed in place, (C, 3).
         changed: Receives which cells, (C,).
     """
@@ -192,7 +184,7 @@ def view_axes(
     m = np.zeros((3, 3))
     v, u = np.zeros(3), np.zeros(3)
     for c in range(len(planes)):
-        changed[c] = not (planes[c, 0, SIGMA] > 0.0 or planes[c, 1, SIGMA] > 0.0)
+        changed[c] = not (planes[c, 0, PLANE.sigma] > 0.0 or planes[c, 1, PLANE.sigma] > 0.0)
         if not changed[c]:
             continue
         m[:] = 0.0
@@ -249,7 +241,7 @@ def window_planes(
         least_cos: Cells whose normals differ more are left out.
         limits: What is a plane.
         todo: Cells to compute; the others keep their planes, (C,).
-        planes: Receives the planes, (C, 2, PLANE).
+        planes: Receives the planes, (C, 2, 11).
         calm: Receives whether all cells of the window have similar normals, (C,).
     """
     axis, moments, views = sides
@@ -261,7 +253,7 @@ def window_planes(
         nx, ny, nz = axis[c]
         along = main_axis(axis[c])
         for s in range(2):
-            planes[c, s, SIGMA] = 0.0
+            planes[c, s, PLANE.sigma] = 0.0
             if moments[c, s, 0] <= 0.0:
                 continue
             m0 = m1 = m2 = m3 = m4 = m5 = m6 = m7 = m8 = m9 = vx = vy = vz = vw = 0.0
@@ -315,5 +307,7 @@ def window_planes(
             if (fitted[0] * nx + fitted[1] * ny + fitted[2] * nz < 0.0) != (s == 1):
                 sign = -1.0
             write_plane(planes[c, s], fitted, sign, total)
-            planes[c, s, OWN_OFFSET] = own_offset(planes[c, s], columns[OWN_COLUMN], limits.bend_m)
+            planes[c, s, PLANE.own_offset] = own_offset(
+                planes[c, s], columns[OWN_COLUMN], limits.bend_m
+            )
         calm[c] = quiet

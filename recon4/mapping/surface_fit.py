@@ -22,7 +22,6 @@ from recon4.kernels import (
 from recon4.kernels.moments import MOMENTS
 from recon4.kernels.surface_records import (
     PLANE,
-    SIGMA,
     SLOTS,
     SURFACE,
     Cells,
@@ -195,7 +194,7 @@ class _Windows:
     """The planes of the windows of 3 x 3 x 3 cells around each cell."""
 
     planes: NDArray[np.float64]
-    """For both sides of each cell, (C, 2, PLANE)."""
+    """For both sides of each cell, (C, 2, 11)."""
     moments: NDArray[np.float64]
     """Of the returns of each side of a cell that lie near its plane, (C, 2, MOMENTS)."""
     calm: NDArray[np.bool_]
@@ -208,7 +207,7 @@ class _Windows:
     @property
     def in_rows(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Planes and moments, two rows for each cell."""
-        return self.planes.reshape(-1, PLANE), self.moments.reshape(-1, MOMENTS)
+        return self.planes.reshape(-1, PLANE.numbers), self.moments.reshape(-1, MOMENTS)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -263,7 +262,7 @@ class _Fit:
         axis, normals = array("axes", (2, count, 3), np.float64)
         moments = array("moments", (count, 2, MOMENTS), np.float64)
         sides = Sides(axis, moments, array("views", (count, 2, 4), np.float64))
-        planes = array("planes", (count, 2, PLANE), np.float64)
+        planes = array("planes", (count, 2, PLANE.numbers), np.float64)
         support = array("window_support", (count,), np.int32)
         calm, every, changed, again, inner = array("marks", (5, count), np.bool_)
         made = _Windows(planes, moments, calm, normals, support)
@@ -309,7 +308,7 @@ class _Fit:
         surface_shapes.drop_mixed(
             self.cells, self.neighbors, sums, least_m, TUNING.max_skew, planes, kept
         )
-        planes[:, :, SIGMA] *= kept
+        planes[:, :, PLANE.sigma] *= kept
 
     def supported(self, windows: _Windows) -> Supported:
         """The planes of every cell that its returns support."""

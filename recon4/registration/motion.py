@@ -9,7 +9,7 @@ from enum import Enum, auto
 import numpy as np
 
 from recon4.geometry.se3 import SE3, Array, interpolate, proper, so3_exp, so3_log
-from recon4.kernels.imu import SIZE, propagate
+from recon4.kernels.imu import ROWS, propagate
 from recon4.model.rig import Rig
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Times
@@ -21,7 +21,7 @@ from recon4.settings import OdometrySettings
 from recon4.settings.tuning import tuned
 from recon4.units import STANDARD_GRAVITY_M_S2
 
-_VECTOR_SIZE = SIZE - 3
+_VECTOR_SIZE = ROWS.size - 3
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -198,7 +198,9 @@ class ImuMotion:
 
     def turn(self, start_ns: int, end_ns: int) -> Array:
         """Rotation from the body at one time to the body at another by the gyroscope, (3, 3)."""
-        state = MotionState(start_ns, np.eye(3), np.zeros(_VECTOR_SIZE), np.zeros((SIZE, SIZE)))
+        state = MotionState(
+            start_ns, np.eye(3), np.zeros(_VECTOR_SIZE), np.zeros((ROWS.size, ROWS.size))
+        )
         return self.predict(state, end_ns).end.R
 
     def predict(self, state: MotionState, end_ns: int) -> Prediction:
@@ -295,7 +297,7 @@ def _predict(
 
 def _start_sd(first: Sequence[float]) -> Array:
     """Standard deviations of a state without gain and clock, (28,), from those of the others."""
-    sd = np.full(SIZE, 1e-9)
+    sd = np.full(ROWS.size, 1e-9)
     sd[: 3 * len(first)] = np.repeat(first, 3)
     return sd
 

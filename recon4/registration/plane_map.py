@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
 from recon4.kernels import planes
+from recon4.kernels.plane_tables import CUBE
 from recon4.registration.tuning import PLANES, PlaneTuning
 from recon4.registration.tuning_matching import PLANE_MAP
 
@@ -83,7 +84,7 @@ class PlaneMap:
         )  # fmt: skip
         self._sizes: Array = settings.finest_m * np.exp2(np.arange(settings.levels))
         self._keys = np.full(PLANE_MAP.first_capacity, planes.EMPTY, np.int64)
-        self._sums = np.zeros((PLANE_MAP.first_capacity, planes.COLUMNS))
+        self._sums = np.zeros((PLANE_MAP.first_capacity, CUBE.sums))
         self._batch = 0
         self._used = 0
         self._make_room_for_fits()
@@ -147,7 +148,7 @@ class PlaneMap:
         self._make_room_for_fits()
 
     def _make_room_for_fits(self) -> None:
-        self._fits = np.empty((len(self._keys), planes.FIT_COLUMNS))
+        self._fits = np.empty((len(self._keys), CUBE.fits))
         self._state = np.zeros(len(self._keys), np.uint8)
 
     def normals(self, p_map: Array, gate_m: float) -> Array:

@@ -4,17 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from recon4.kernels.imu import (
-    ACCEL_BIAS,
-    CLOCK,
-    GRAVITY,
-    GYRO_BIAS,
-    GYRO_GAIN,
-    POSITION,
-    ROTATION,
-    SIZE,
-    VELOCITY,
-)
+from recon4.kernels.imu import ROWS
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,38 +41,38 @@ def _rows(first: int) -> slice:
 
 
 STATE = StateIndex(
-    rotation=_rows(ROTATION),
-    position=_rows(POSITION),
-    velocity=_rows(VELOCITY),
-    gyro_bias=_rows(GYRO_BIAS),
-    accel_bias=_rows(ACCEL_BIAS),
-    gravity=_rows(GRAVITY),
-    gyro_gain=slice(GYRO_GAIN, CLOCK),
-    clock=slice(CLOCK, SIZE),
-    unit=slice(GYRO_GAIN, SIZE),
-    pose=slice(ROTATION, VELOCITY),
-    calibration=slice(GYRO_BIAS, SIZE),
+    rotation=_rows(ROWS.rotation),
+    position=_rows(ROWS.position),
+    velocity=_rows(ROWS.velocity),
+    gyro_bias=_rows(ROWS.gyro_bias),
+    accel_bias=_rows(ROWS.accel_bias),
+    gravity=_rows(ROWS.gravity),
+    gyro_gain=slice(ROWS.gyro_gain, ROWS.clock),
+    clock=slice(ROWS.clock, ROWS.size),
+    unit=slice(ROWS.gyro_gain, ROWS.size),
+    pose=slice(ROWS.rotation, ROWS.velocity),
+    calibration=slice(ROWS.gyro_bias, ROWS.size),
 )
 """Rows of the error state: the rotation is a tangent vector there."""
 
 VECTOR = StateIndex(
     rotation=slice(0, 0),
-    position=_rows(POSITION - 3),
-    velocity=_rows(VELOCITY - 3),
-    gyro_bias=_rows(GYRO_BIAS - 3),
-    accel_bias=_rows(ACCEL_BIAS - 3),
-    gravity=_rows(GRAVITY - 3),
-    gyro_gain=slice(GYRO_GAIN - 3, CLOCK - 3),
-    clock=slice(CLOCK - 3, SIZE - 3),
-    unit=slice(GYRO_GAIN - 3, SIZE - 3),
-    pose=_rows(POSITION - 3),
-    calibration=slice(GYRO_BIAS - 3, SIZE - 3),
+    position=_rows(ROWS.position - 3),
+    velocity=_rows(ROWS.velocity - 3),
+    gyro_bias=_rows(ROWS.gyro_bias - 3),
+    accel_bias=_rows(ROWS.accel_bias - 3),
+    gravity=_rows(ROWS.gravity - 3),
+    gyro_gain=slice(ROWS.gyro_gain - 3, ROWS.clock - 3),
+    clock=slice(ROWS.clock - 3, ROWS.size - 3),
+    unit=slice(ROWS.gyro_gain - 3, ROWS.size - 3),
+    pose=_rows(ROWS.position - 3),
+    calibration=slice(ROWS.gyro_bias - 3, ROWS.size - 3),
 )
 """Rows of `MotionState.vector`: the rotation is kept as a matrix beside it."""
 
 START = slice(0, 6)
 """Rows of the pose at the start of a frame in the joint error of a frame (34,)."""
-END = slice(6, 6 + SIZE)
+END = slice(6, 6 + ROWS.size)
 """Rows of the state at the end of a frame in the joint error of a frame (34,)."""
 END_POSE = slice(6, 12)
 """Rows of the pose at the end of a frame in the joint error of a frame (34,)."""

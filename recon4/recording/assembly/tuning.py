@@ -26,7 +26,7 @@ ASSEMBLY = AssemblyTuning()
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RotationTuning:
-    """How fast a LiDAR turns, by the azimuths of its points (`rotation.py`)."""
+    """How fast a LiDAR turns, by the azimuths of its points (`rotation_rate.py`)."""
 
     slowest_hz: float = 2.0
     fastest_hz: float = 30.0

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from recon4.kernels.moments import MOMENTS, add_point
-from recon4.kernels.surface_records import PLANE, SIGMA, Neighbors, Sides
+from recon4.kernels.surface_records import PLANE, Neighbors, Sides
 from recon4.kernels.surface_windows import window_planes
 from recon4.mapping import surfaces as surfaces_module
 from recon4.mapping.grid import Grid
@@ -193,7 +193,7 @@ def test_few_of_the_returns_of_a_window_are_no_plane(rng, returns_beside, is_pla
         for p in points:
             add_point.py_func(moments[c, 0], 1.0, *p)
         views[c, 0] = [*(len(points) * normals[c]), len(points)]
-    planes, calm = np.zeros((2, 2, PLANE)), np.zeros(2, np.bool_)
+    planes, calm = np.zeros((2, 2, PLANE.numbers)), np.zeros(2, np.bool_)
     neighbors = Neighbors(
         np.array([0, 2, 4], np.int32),
         np.array([0, 1, 0, 1], np.int32),
@@ -204,8 +204,8 @@ def test_few_of_the_returns_of_a_window_are_no_plane(rng, returns_beside, is_pla
 
     window_planes(neighbors, sides, 0.5, limits, np.ones(2, np.bool_), planes, calm)
 
-    assert (planes[0, 0, SIGMA] > 0.0) == is_plane
-    assert planes[1, 0, SIGMA] > 0.0
+    assert (planes[0, 0, PLANE.sigma] > 0.0) == is_plane
+    assert planes[1, 0, PLANE.sigma] > 0.0
 
 
 def test_a_few_returns_before_a_wall_are_strays_and_keep_their_place(rng):

@@ -86,9 +86,9 @@ def shot_steps_ns(payloads: Payloads, source: LivoxSource) -> NDArray[np.float64
 def _plan(layout: PointLayout, model: LivoxModel) -> NDArray[np.int64]:
     """Where the fields of a shot are, as `kernel.decode` wants it, (12,)."""
     record, one = layout.record, layout.record["returns"].base
-    numbers = kernel.DEPTHS if layout.is_spherical else kernel.WORDS
+    numbers = kernel.NUMBERS.depths if layout.is_spherical else kernel.NUMBERS.words
     if not layout.is_spherical and one["xyz"].base.itemsize == 2:
-        numbers = kernel.HALVES
+        numbers = kernel.NUMBERS.halves
     at = {name: int(found[1]) for name, found in (record.fields or {}).items()}
     inside = {name: int(found[1]) for name, found in (one.fields or {}).items()}
     fields = [

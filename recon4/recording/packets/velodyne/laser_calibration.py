@@ -15,19 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.kernels.laser_corrections import (
-    ASIDE,
-    COS_EL,
-    FAR,
-    FOCUS,
-    LEAST,
-    LESS_X,
-    LESS_Y,
-    MOST,
-    NUMBERS,
-    SIN_EL,
-    SLOPE,
-)
+from recon4.kernels.laser_corrections import LASER
 from recon4.recording.packets.family import Companion, Payloads
 
 LASERS = 64
@@ -217,21 +205,19 @@ def _of_status(block: bytes) -> LaserCalibration | None:
 
 
 def correction_table(calibration: LaserCalibration) -> NDArray[np.float32]:
-    """The numbers that `laser_corrections.correct` needs of each laser, (L, NUMBERS).
+    """The numbers that `laser_corrections.correct` needs of each laser, (L, 10).
 
     Between near and far points the correction of the range is interpolated, along x and y on their
     own; upwards it is their mean, as in velodyne-decoder (the manual takes that along x).
     """
     less = calibration.far_m[:, None] - calibration.near_m
     focal = calibration.focal
-    table = np.zeros((len(less), NUMBERS))
-    table[:, COS_EL], table[:, SIN_EL] = (
-        np.cos(calibration.elevation_rad),
-        np.sin(calibration.elevation_rad),
-    )
-    table[:, ASIDE], table[:, FAR] = calibration.aside_m, calibration.far_m
-    table[:, LESS_Y], table[:, LESS_X] = less.T
-    table[:, FOCUS] = 256.0 * (1.0 - focal[:, 0] / _FARTHEST_M) ** 2
-    table[:, SLOPE] = focal[:, 1]
-    table[:, LEAST], table[:, MOST] = np.clip(focal[:, 2:], 0.0, 255.0).T
+    table = np.zeros((len(less), LASER.numbers))
+    table[:, LASER.cos_el] = np.cos(calibration.elevation_rad)
+    table[:, LASER.sin_el] = np.sin(calibration.elevation_rad)
+    table[:, LASER.aside], table[:, LASER.far] = calibration.aside_m, calibration.far_m
+    table[:, LASER.less_y], table[:, LASER.less_x] = less.T
+    table[:, LASER.focus] = 256.0 * (1.0 - focal[:, 0] / _FARTHEST_M) ** 2
+    table[:, LASER.slope] = focal[:, 1]
+    table[:, LASER.least], table[:, LASER.most] = np.clip(focal[:, 2:], 0.0, 255.0).T
     return table.astype(np.float32)
