@@ -61,7 +61,7 @@ class ExportedMap:
 
 
 @dataclass(frozen=True, slots=True)
-class OpenedMap:
+class MapToExport:
     """The map of a finished run, compared with its approval if there is one."""
 
     tiles: TileSet
@@ -73,7 +73,7 @@ class OpenedMap:
     state: ApprovalState
 
 
-def open_map(project: Path, wanted: MapExport) -> OpenedMap:
+def open_map(project: Path, wanted: MapExport) -> MapToExport:
     """Open the map of a finished run for an export.
 
     Raises:
@@ -96,7 +96,7 @@ def open_map(project: Path, wanted: MapExport) -> OpenedMap:
     tiles = TileSet.open(artifacts["map"], checked)
     tiles = tiles.as_measured() if wanted.raw else tiles
     state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
-    return OpenedMap(tiles, output, artifacts, approval.stamp if approval else None, state)
+    return MapToExport(tiles, output, artifacts, approval.stamp if approval else None, state)
 
 
 def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
