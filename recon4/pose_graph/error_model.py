@@ -55,6 +55,9 @@ class ErrorModel:
     """Error of a single pose that no other shares: of the first, and of each [rad] …"""
     anchor_m: float = 1.5e-3
     """… and of its position [m]."""
+    first_turn: float = 2.0
+    """The turn of the first pose is wrong by this multiple of it: a walk begins standing, and the
+    scans of a body that stands share their error."""
     anchor_ratio: float = 0.06
     """The same as a ratio of what half a second of odometry usually states, of shifts along its
     worst axis: without an IMU the points of a multiframe, and its pose, lie wrong along the motion.

@@ -370,4 +370,5 @@ def _alone(chain: _Chain, model: ErrorModel, single: Array, *, on_earth: bool) -
         move = _transport(chain.T_map_body.t - chain.T_map_body.t.mean(axis=0))
         return np.asarray(alone + common + move @ about_z @ np.swapaxes(move, 1, 2))
     move = _transport(chain.T_map_body.t - chain.T_map_body.t[0])
-    return np.asarray(move @ alone @ np.swapaxes(move, 1, 2) + alone)
+    first = np.diag(np.repeat(single * [model.first_turn, 1.0], 3) ** 2)
+    return np.asarray(move @ first @ np.swapaxes(move, 1, 2) + alone)

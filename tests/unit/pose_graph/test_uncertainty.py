@@ -348,3 +348,14 @@ def test_single_poses_are_as_wrong_as_the_worst_axis_of_the_odometry_states() ->
 
     sideways_m = np.sqrt([even.cov[1, 4, 4], along.cov[1, 4, 4]])
     np.testing.assert_allclose(sideways_m, [0.0027, 0.0062], rtol=0.1)
+
+
+def test_the_turn_of_the_first_pose_is_more_wrong_than_that_of_another() -> None:
+    model = replace(EXACT, anchor_rad=0.01)
+    tilts = []
+    for factor in (1.0, 2.0):
+        found = pose_uncertainty(chain(6), model=replace(model, first_turn=factor))
+        assert found is not None
+        tilts.append(found.cov[:, 0, 0])
+
+    assert tilts[1] - tilts[0] == pytest.approx(np.full(6, 3.0 * 0.01**2), rel=1e-6)
