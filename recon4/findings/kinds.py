@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-AUDIT_VERSION = 5
+AUDIT_VERSION = 6
 """Raise it when witnesses find something else in the same walk: then finished projects are audited
 again."""
 
@@ -114,6 +114,7 @@ class FindingKind(StrEnum):
     POSITION_UNCERTAIN = "POSITION-UNCERTAIN"
     MAPPED_TWICE = "MAPPED-TWICE"
     LASER_MOUNT = "LASER-MOUNT"
+    BEAM_ORDER = "BEAM-ORDER"
     GRID_COARSE = "GRID-COARSE"
     PATH_UNCONFIRMED = "PATH-UNCONFIRMED"
 

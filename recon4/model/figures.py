@@ -218,6 +218,10 @@ class Scan2dFigures(Figures, frozen=True, kw_only=True):
     warnings: tuple[str, ...] = ()
     tilt_deg: float = 0.0
     """Angle between the plane of the laser and the level one, by rig file or tf [°]."""
+    mirrored: bool = False
+    """Whether the scans turned against the odometry, and were mirrored."""
+    mount: str = ""
+    """What states the mount of the laser, and how it is; empty = nothing does."""
     doubts: tuple[str, ...] = ()
     """Warnings about the mount of the laser."""
 

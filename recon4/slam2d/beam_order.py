@@ -12,20 +12,16 @@ from recon4.slam2d.tuning import Slam2dTuning
 from recon4.slam2d.tuning_graph import BEAM_ORDER
 
 
-def with_true_order(scans: LaserScans) -> tuple[LaserScans, str]:
+def with_true_order(scans: LaserScans) -> tuple[LaserScans, bool]:
     """The scans, mirrored if they turn against the odometry of the recording.
 
     Returns:
-        The scans, and what was done; empty = nothing. Without odometry, or without a turn, it
-        cannot be known.
+        The scans, and whether they were. Without odometry, or without a turn, it cannot be known.
     """
     votes = [_vote(scans[rows]) for rows in _turns(scans)]
     if not votes or sum(votes) >= 0:
-        return scans, ""
-    return turned_round(scans), (
-        "the scans turn against the odometry: their beams are stored in the wrong order, "
-        "they are mirrored"
-    )
+        return scans, False
+    return turned_round(scans), True
 
 
 def _turns(scans: LaserScans) -> list[slice]:

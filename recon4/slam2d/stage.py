@@ -18,7 +18,7 @@ from recon4.model.trajectory import Trajectory
 from recon4.pose_graph.files import load_graph, save_graph
 from recon4.progress import Progress
 from recon4.recording.laser2d import read_laser_recording
-from recon4.recording.laser_mount import MountedScans, mount_of_rig, mounted_scans
+from recon4.recording.laser_mount import mount_of_rig, mounted_scans
 from recon4.recording.report import ImportReport
 from recon4.settings import IngestSettings
 from recon4.settings.reads import Graph2dReads, Map2dReads, Odometry2dReads
@@ -64,8 +64,9 @@ def import_scans(
     topic = laser.topic if laser is not None else ""
     recording = read_laser_recording(recordings, report, settings=settings, topic=topic)
     mounted = mounted_scans(recording, by_rig, report=report)
-    scans = _in_true_order(mounted, report)
-    _report_gaps(scans, report)
+    scans, mirrored = with_true_order(mounted.scans)
+    report.count("scans_mirrored", len(scans) if mirrored else 0)
+    report.count("gaps", int((np.diff(scans.t_ns) > round(1e9 * SCAN_GAPS.gap_s)).sum()))
     report.warn_of_losses()
     progress.advance(len(recordings))
     writer = LineStoreWriter(out)
@@ -81,6 +82,8 @@ def import_scans(
         outcome=report.outcome,
         warnings=tuple(report.warnings),
         tilt_deg=round(mounted.tilt_deg, 2),
+        mirrored=mirrored,
+        mount=mounted.mount.source if mounted.mount is not None else "",
         doubts=tuple(report.doubts),
     )
 
@@ -96,30 +99,6 @@ def _write_report(path: Path, recordings: Sequence[Path], report: ImportReport) 
             "warnings": report.warnings,
         },
     )
-
-
-def _in_true_order(mounted: MountedScans, report: ImportReport) -> LaserScans:
-    """The scans, turned round if the odometry turns the other way, whatever their mount is."""
-    scans, mirrored = with_true_order(mounted.scans)
-    if not mirrored:
-        return scans
-    report.count("scans_mirrored", len(scans))
-    if mounted.mount is None:
-        report.warn(mirrored)
-    else:
-        report.doubt(f"{mirrored}; this contradicts what is stated: {mounted.mount.source}")
-    return scans
-
-
-def _report_gaps(scans: LaserScans, report: ImportReport) -> None:
-    seconds = np.diff(scans.t_ns) / 1e9
-    wide = np.flatnonzero(seconds > SCAN_GAPS.gap_s)
-    report.count("gaps", len(wide))
-    for k in wide[: SCAN_GAPS.gaps_listed]:
-        since = (scans.t_ns[k] - scans.t_ns[0]) / 1e9
-        report.warn(f"the laser is silent for {seconds[k]:.1f} s at {since:.1f} s")
-    if len(wide) > SCAN_GAPS.gaps_listed:
-        report.warn(f"the laser is silent for more than {SCAN_GAPS.gap_s:.0f} s {len(wide)} times")
 
 
 def read_scans(folder: Path) -> LaserScans:

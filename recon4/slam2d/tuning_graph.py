@@ -162,9 +162,7 @@ class ScanGapTuning:
     """What the import of scans reports."""
 
     gap_s: float = 2.0
-    """A longer time without a scan is reported [s]."""
-    gaps_listed: int = 5
-    """Number of gaps that are listed with their times."""
+    """A longer time without a scan is counted [s]."""
     checked_scans: int = 1000
     """Scans that are compared with the finished map."""
 

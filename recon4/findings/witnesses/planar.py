@@ -13,6 +13,7 @@ from recon4.findings.kinds import FindingKind
 from recon4.findings.witnesses.base import finding, placed
 from recon4.findings.witnesses.imports import gyro_unit_assumed
 from recon4.findings.witnesses.tuning import PLANAR_WITNESS
+from recon4.geometry.se3 import Array
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, PoseGraph, Verdict
@@ -106,6 +107,9 @@ def _mounting(scans: Scan2dFigures) -> Iterator[Finding]:
     level = Level.DO_NOT_USE if scans.tilt_deg > PLANAR_WITNESS.steep_deg else Level.CHECK
     for text in scans.doubts:
         yield finding(FindingKind.LASER_MOUNT, level, {"text": text})
+    if scans.mirrored:
+        stated: dict[str, Value] = {"mount": scans.mount} if scans.mount else {}
+        yield finding(FindingKind.BEAM_ORDER, level if stated else Level.NOTE, stated)
 
 
 def _tracking(record: PlanarRecord) -> Iterator[Finding]:
@@ -127,9 +131,9 @@ def _motion(record: PlanarRecord) -> Iterator[Finding]:
     odometry, has_odometry = record.odometry, record.scans.odometry
     silent_s = np.diff(record.steps.t_ns) / 1e9
     gaps = silent_s[silent_s > PLANAR_WITNESS.silent_s]
-    if len(gaps) and not has_odometry:
-        values: dict[str, Value] = {"count": len(gaps), "longest_s": float(gaps.max())}
-        yield finding(FindingKind.SCANS_SILENT, Level.CHECK, values)
+    if len(gaps):
+        level = Level.NOTE if has_odometry else Level.CHECK
+        yield finding(FindingKind.SCANS_SILENT, level, _silence(record, silent_s))
     if odometry.resets:
         yield finding(
             FindingKind.SUBMAP_RESTARTED,
@@ -138,6 +142,17 @@ def _motion(record: PlanarRecord) -> Iterator[Finding]:
         )
     if odometry.searched > PLANAR_WITNESS.searched_ratio * odometry.scans:
         yield finding(FindingKind.SCANS_SEARCHED, Level.CHECK, {"searched": odometry.searched})
+
+
+def _silence(record: PlanarRecord, silent_s: Array) -> dict[str, Value]:
+    """How long the laser is silent between two scans, (N - 1,), and what bridges that."""
+    longest = int(silent_s.argmax())
+    return {
+        "count": int((silent_s > PLANAR_WITNESS.silent_s).sum()),
+        "longest_s": float(silent_s[longest]),
+        "since_s": float((record.steps.t_ns[longest] - record.steps.t_ns[0]) / 1e9),
+        "by": _by(record),
+    }
 
 
 def _by(record: PlanarRecord) -> str:

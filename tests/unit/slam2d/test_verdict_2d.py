@@ -4,11 +4,13 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from msgspec.structs import replace as replace_struct
 
 from recon4.findings.finding import Level
 from recon4.findings.kinds import FindingKind
 from recon4.findings.verdict import verdict_of
 from recon4.findings.witnesses.planar import PlanarRecord, check_planar
+from recon4.findings.wording import text_of
 from recon4.model.figures import Map2dFigures, Odometry2dFigures, Scan2dFigures
 from recon4.model.import_notes import ImportNotes
 from recon4.model.pose_graph import EdgeKind, Verdict, known_judgment
@@ -16,6 +18,10 @@ from recon4.model.trajectory import Trajectory
 from recon4.model.usability import Usability
 from recon4.slam2d.steps import empty_steps
 from tests.project_builder import loop_walk, verified_graph
+
+
+def of_kind(record, kind):
+    return [one for one in check_planar(record) if one.kind is kind]
 
 
 def facts(verdict):
@@ -51,3 +57,41 @@ def test_loop_closures_that_no_alternative_path_confirms_are_said_beside_a_good_
     assert verdict_of(found).usability is Usability.GOOD
     notes = [one for one in found if one.kind is FindingKind.LOOPS_UNVERIFIED]
     assert [one.level for one in notes] == ([Level.NOTE] if said else [])
+
+
+@pytest.mark.parametrize(
+    ("mount", "tilt_deg", "level"),
+    [
+        ("", 0.0, Level.NOTE),
+        ("the rig file: roll 180°", 0.0, Level.CHECK),
+        ("the rig file: roll 140°", 40.0, Level.DO_NOT_USE),
+    ],
+)
+def test_scans_that_had_to_be_mirrored_contradict_a_stated_mount(mount, tilt_deg, level):
+    record = facts(Verdict.ACCEPTED)
+    scans = replace_struct(record.scans, mirrored=True, mount=mount, tilt_deg=tilt_deg)
+
+    (found,) = of_kind(replace(record, scans=scans), FindingKind.BEAM_ORDER)
+
+    assert found.level is level
+    assert ("contradicts" in text_of(found)) == bool(mount) and mount in text_of(found)
+    assert not of_kind(record, FindingKind.BEAM_ORDER)
+
+
+@pytest.mark.parametrize(
+    ("odometry", "level", "said"), [(True, Level.NOTE, "says how"), (False, Level.CHECK, "unknown")]
+)
+def test_a_silent_laser_is_worse_where_no_odometry_says_how_it_moved(odometry, level, said):
+    record = facts(Verdict.ACCEPTED)
+    t_ns = record.steps.t_ns.copy()
+    t_ns[5:] += 7_000_000_000
+    silent = replace(
+        record,
+        steps=replace(record.steps, t_ns=t_ns),
+        scans=replace_struct(record.scans, odometry=odometry),
+    )
+
+    (found,) = of_kind(silent, FindingKind.SCANS_SILENT)
+
+    assert found.level is level and said in text_of(found)
+    assert f"{(t_ns[4] - t_ns[0]) / 1e9:.1f} s after the start" in text_of(found)
