@@ -37,6 +37,8 @@ DRAW_LESS = """{
   };
 }
 if (window !== window.parent) {
+  if (location.pathname.endsWith("/viewer/"))
+    history.replaceState(history.state, "", `${location.pathname}?fixedDpr=0.5${location.hash}`);
   const request = window.requestAnimationFrame.bind(window);
   const timers = new Map();
   let last = 0;
@@ -55,8 +57,9 @@ if (window !== window.parent) {
     timers.delete(id);
   };
 }"""
-"""Script for every page: no antialiasing in WebGL; in a page within a page 10 frames a second, and
-none while a test sets ``window.unwatched`` of the page around it.
+"""Script for every page: no antialiasing in WebGL; in a page within a page half of the viewer's
+pixels in width and height (an option of viser's), and 10 frames a second, none while a test sets
+``window.unwatched`` of the page around it.
 
 Without a graphics card each frame takes processor time that the other tests need. Menus follow the
 frames, too: with fewer of them a test clicks beside an entry. The viewer by itself draws at its own
