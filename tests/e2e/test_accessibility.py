@@ -7,9 +7,8 @@ import pytest
 from recon4_app.pages import WEB
 from tests.e2e.conftest import leave_out_viewer
 from tests.project_builder import build_project
-from tests.review_project import make
-from tests.served import served
-from tests.service.running import SLOW
+from tests.review_fixtures import copy_made
+from tests.service.running import SLOW, server_thread
 
 pytestmark = pytest.mark.e2e
 
@@ -33,12 +32,13 @@ ELSEWHERE = {"account/login.html", "account/account.html", "account/pair.html"}
 """Pages of a server with login."""
 
 
-def projects(root):
-    make(root / "office")
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    copy_made(tmp_path_factory, root / "office")
     build_project(root / "hall")
-
-
-server = served(projects, worker_module=SLOW)
+    with server_thread(root, worker_module=SLOW) as running:
+        yield running
 
 
 @pytest.mark.skipif(not AXE.exists(), reason="no npm: axe-core is not installed")

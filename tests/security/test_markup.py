@@ -12,8 +12,7 @@ from playwright.sync_api import expect
 
 from recon4.review.decisions import Decision, DecisionKind
 from recon4.review.journal import append
-from tests.review_project import make
-from tests.served import served
+from tests.review_fixtures import copy_made
 from tests.service.secure import PASSWORD, secure_server
 
 pytestmark = pytest.mark.e2e
@@ -40,17 +39,23 @@ setInterval(unfold, 100);
 """
 
 
-def projects(root):
-    make(root / "office")
+@pytest.fixture(scope="module")
+def server(tmp_path_factory):
+    root = tmp_path_factory.mktemp("projects")
+    copy_made(tmp_path_factory, root / "office")
+    fill(root)
+    with secure_server(root) as running:
+        yield running
+
+
+def fill(root):
+    """Write the corpus into what the server finds when it starts."""
     describe(root / "office")
     append(
         root / "office",
         Decision(kind=DecisionKind.REJECT, who=SHORT, why=PAYLOAD[:500], pair=(17, 77)),
     )
     (root / SHORT.replace("/", "")).mkdir()
-
-
-server = served(projects, run=secure_server)
 
 
 def describe(folder):
