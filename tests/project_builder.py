@@ -9,7 +9,8 @@ import numpy as np
 
 from recon4.geometry.se3 import SE3
 from recon4.mapping.map_notes import MapNotes
-from recon4.mapping.tile import FIELDS
+from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.tile import FIELDS, STORED
 from recon4.mapping.tile_writer import TileWriter
 from recon4.model.figures import FrameFigures, LevelFigures, MapFigures
 from recon4.model.multiframe import Multiframe
@@ -244,7 +245,9 @@ def _level(context: StageContext, *, walk: Trajectory) -> LevelFigures:
 def _map(context: StageContext, *, points: int, strays: int, normals: bool) -> MapFigures:
     rng = np.random.default_rng(7)
     p = room_points(rng, points)
-    with TileWriter(context.out, list(FIELDS), tile_m=TILE_M) as writer:
+    walk = loop_walk()
+    paths = SensorPaths(walk.t_ns, walk.t_ns, np.stack([walk.T_a_b.t, walk.T_a_b.t]))
+    with TileWriter(context.out, STORED, tile_m=TILE_M, paths=paths) as writer:
         writer.notes = MapNotes(voxel_m=0.01)
         ijk = np.floor(p / TILE_M).astype(np.int64)
         for key in np.unique(ijk, axis=0):

@@ -171,7 +171,7 @@ def _write_image(opened: OpenedMap, plane: SlicePlane, file: Path, *, look: Slic
         return made.points
     layout = lay_out(window)
     made = draw(tiles, plane, layout.paper, color=color, reference=look.reference)
-    key = tiles.tiles[0].folder.parent.name if tiles.tiles else ""
+    key = tiles.columns.folder.parent.name
     lie = surface_text(tiles.surface)
     against = look.reference.caption if look.reference else ""
     text = SheetText(look.name, frame.text, source_text(key), approval, lie, against)

@@ -9,7 +9,6 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from threading import Event
 from typing import TypeVar
 
 import numpy as np
@@ -19,9 +18,10 @@ from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs, MapNotes
 from recon4.mapping.records import Records, Tile, split_into_tiles
-from recon4.mapping.tile import DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
+from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
 from recon4.mapping.tile_memory import Scratch
-from recon4.mapping.tile_writer import TileWriter
+from recon4.mapping.tile_writer import PackedTile, TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import BUCKETS, MAP_BUILD, TILE_SURFACES
 from recon4.mapping.undistort import place_with_origins
@@ -30,7 +30,7 @@ from recon4.model.frames import Frames
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Rig
-from recon4.model.trajectory import Trajectory
+from recon4.model.trajectory import Times, Trajectory
 from recon4.progress import Progress, Silent, track
 from recon4.settings import MapSettings
 
@@ -80,26 +80,24 @@ def build_map(
         StoreError: If the folder cannot be written (`NoSpace` when the disk is full).
     """
     progress = progress or Silent()
-    grid, frames = Grid.of(settings), inputs.frames
-    t_ns = np.array([frames[k].t_ns for k in range(len(frames))], dtype=np.int64)
-    noise_m = settings.range_noise_m or surface_noise_m(frames.rig)
-    recipe = Recipe(grid, settings, inputs.intensity, t_ns, noise_m, inputs.covariances)
-    with (
-        TemporaryDirectory(dir=out, prefix="buckets-") as folder,
-        TileWriter(out, _fields(recipe, inputs), tile_m=grid.tile_m) as writer,
-    ):
+    grid, rig = Grid.of(settings), inputs.frames.rig
+    noise_m = settings.range_noise_m or surface_noise_m(rig)
+    with TemporaryDirectory(dir=out, prefix="buckets-") as folder:
         buckets = TileBuckets(Path(folder), grid, burst=burst)
-        _distribute(inputs, buckets, settings=settings, progress=progress)
-        finish = partial(
-            _finish_tile, buckets=buckets, recipe=recipe, scratch=Scratch(), writer=writer
-        )
-        removed = _finish_tiles(buckets.tiles(), finish, progress=progress)
-        writer.notes = MapNotes(
-            voxel_m=settings.voxel_m,
-            crs=inputs.crs,
-            sensors=tuple(sensor.name for sensor in frames.rig.sensors),
-            removed=dict(removed),
-        )
+        starts = _distribute(inputs, buckets, settings=settings, progress=progress)
+        paths = SensorPaths.of(starts, inputs.trajectory, rig)
+        recipe = Recipe(grid, settings, inputs.intensity, starts, noise_m, inputs.covariances)
+        with TileWriter(out, _fields(recipe), tile_m=grid.tile_m, paths=paths) as writer:
+            finish = partial(
+                _finish_tile, buckets=buckets, recipe=recipe, scratch=Scratch(), writer=writer
+            )
+            removed = _finish_tiles(buckets.tiles(), finish, writer, progress=progress)
+            writer.notes = MapNotes(
+                voxel_m=settings.voxel_m,
+                crs=inputs.crs,
+                sensors=tuple(sensor.name for sensor in rig.sensors),
+                removed=dict(removed),
+            )
     made = TileSet.open(out)
     progress.event(MapBuilt(points=len(made), removed=dict(removed)))
     return made
@@ -111,23 +109,27 @@ def surface_noise_m(rig: Rig) -> float:
     return max([TILE_SURFACES.least_noise_m, *(model.range_sd_m for model in used)])
 
 
-def _fields(recipe: Recipe, inputs: MapInputs) -> list[str]:
+def _fields(recipe: Recipe) -> list[str]:
     """Fields of the map, in their order: some need an intensity table or fitted surfaces."""
-    left_out = set() if recipe.intensity else {"intensity_normalized"}
-    left_out |= set() if inputs.covariances else {DEVIATION}
+    left_out = set(DERIVED)
+    left_out |= set() if recipe.intensity else {"intensity_normalized"}
+    left_out |= set() if recipe.covariances else {DEVIATION}
     left_out |= set(SURFACE_FIELDS) if recipe.settings.surface == "raw" else set()
     return [name for name in FIELDS if name not in left_out]
 
 
 def _distribute(
     inputs: MapInputs, buckets: TileBuckets, *, settings: MapSettings, progress: Progress
-) -> None:
+) -> Times:
+    """Put every point into the buckets of its tiles; the start of each multiframe [ns]."""
     frames = inputs.frames
     grid, rig = Grid.of(settings), frames.rig
     enabled = np.array([sensor.enabled for sensor in rig.sensors])
+    starts = np.zeros(len(frames), np.int64)
 
     def split(k: int) -> dict[Tile, Records]:
         frame = frames[k]
+        starts[k] = frame.t_ns
         placed = place_with_origins(frame, inputs.trajectory, rig)
         return split_into_tiles(
             frame, placed, grid, enabled=enabled, max_range_m=settings.max_range_m
@@ -138,47 +140,30 @@ def _distribute(
         for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
             buckets.add(part, pool)
         buckets.flush(pool)
-
-
-@dataclass(frozen=True, slots=True)
-class _Turn:
-    """A tile, and when its rows may be reserved: after those of the one before it."""
-
-    tile: Tile
-    before: Event
-    done: Event
-
-
-def _turns(tiles: Sequence[Tile]) -> Iterator[_Turn]:
-    before = Event()
-    before.set()
-    for tile in tiles:
-        yield _Turn(tile, before, before := Event())
+    return starts
 
 
 def _finish_tile(
-    turn: _Turn, *, buckets: TileBuckets, recipe: Recipe, scratch: Scratch, writer: TileWriter
-) -> Counter[str]:
-    """Make a tile and write it; what was removed from it."""
-    try:
-        made = make_tile(buckets.read(turn.tile), turn.tile, recipe, scratch=scratch)
-        buckets.drop(turn.tile)
-        turn.before.wait()
-        rows = writer.reserve(turn.tile, made.count, strays=made.strays)
-    finally:
-        turn.done.set()
-    for block in made.blocks:
-        rows.write(block)
-    return made.removed
+    tile: Tile, *, buckets: TileBuckets, recipe: Recipe, scratch: Scratch, writer: TileWriter
+) -> tuple[PackedTile, Counter[str]]:
+    """Make a tile and compress it; with what was removed from it."""
+    made = make_tile(buckets.read(tile), tile, recipe, scratch=scratch)
+    buckets.drop(tile)
+    return writer.pack(tile, made.blocks, cuts=made.cuts, strays=made.strays), made.removed
 
 
 def _finish_tiles(
-    tiles: Sequence[Tile], finish: Callable[[_Turn], Counter[str]], *, progress: Progress
+    tiles: Sequence[Tile],
+    finish: Callable[[Tile], tuple[PackedTile, Counter[str]]],
+    writer: TileWriter,
+    *,
+    progress: Progress,
 ) -> Counter[str]:
     removed: Counter[str] = Counter()
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        parts = _in_order(pool, finish, _turns(tiles))
-        for part in track(parts, progress, what="map", unit="tiles", total=len(tiles)):
+        made = _in_order(pool, finish, tiles)
+        for packed, part in track(made, progress, what="map", unit="tiles", total=len(tiles)):
+            writer.write(packed)
             removed += part
     return removed
 

@@ -1,79 +1,244 @@
-"""Columns of the map on disk: one ``.npy`` file per field, with a header of constant size."""
+"""Columns of a map on disk: compressed blocks of rows, one file per field.
+
+    <field>.zst    the blocks of a field, one after the other (`recon4.mapping.tile_packing`)
+    blocks.npy     of each block: the row after its last, and the byte after it in every field
+
+The blocks of a field can be read one by one: those of some rows, and only of the fields needed.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from recon4.errors import StoreError
-from recon4.mapping.tile import FIELDS
-from recon4.store.earlier_names import TILE_FIELDS
-from recon4.store.growing_arrays import HEADER_BYTES, npy_header
+from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.tile import FIELDS, Columns
+from recon4.mapping.tile_order import Order, spatial_order_of
+from recon4.mapping.tile_packing import FIELD_PACKING, unpack
+from recon4.store.arrays import load_array
+from recon4.store.checked import CheckedArtifact
 
-_EARLIER = {now: earlier for earlier, now in TILE_FIELDS.items()}
-
-
-def column_file(folder: Path, name: str) -> str:
-    """Name of the file of a column; maps of earlier versions have some under another one."""
-    earlier = f"{_EARLIER[name]}.npy" if name in _EARLIER else ""
-    current = f"{name}.npy"
-    is_earlier = earlier and not (folder / current).exists() and (folder / earlier).exists()
-    return earlier if is_earlier else current
+BLOCKS = "blocks.npy"
+PATHS = "paths.npz"
 
 
-def column_shape(name: str, rows: int) -> tuple[int, ...]:
-    """Shape of a column."""
-    width = FIELDS[name][1]
-    return (rows, width) if width > 1 else (rows,)
+class TileColumns(Protocol):
+    """The columns of a map, however they are stored."""
+
+    @property
+    def folder(self) -> Path:
+        """``tiles`` in the artifact."""
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of those that are stored."""
+
+    @property
+    def paths(self) -> SensorPaths:
+        """Where the sensors were."""
+
+    def read(
+        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+    ) -> Columns:
+        """Some rows of some fields.
+
+        Args:
+            names: Of fields.
+            rows: Of all tiles; any positive step.
+            checked: Hashes that their bytes must match before they are used.
+
+        Raises:
+            Altered: If they do not match.
+            StoreError: If they cannot be read or are damaged.
+        """
 
 
-def column_header(name: str, rows: int) -> bytes:
-    """Header of the file of a column."""
-    return npy_header(FIELDS[name][0], column_shape(name, rows))
+def index_dtype(fields: Sequence[str]) -> np.dtype[Any]:
+    """One row of `BLOCKS`: ``stop`` counts rows, ``end`` bytes; ``width`` is of a number."""
+    many = (len(fields),)
+    return np.dtype([("stop", "<i8"), ("end", "<i8", many), ("width", "<i8", many)])
 
 
-def row_offset(name: str, row: int) -> tuple[int, int]:
-    """Offset of a row in its file, and the size of a row [bytes]."""
-    row_bytes = np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
-    return HEADER_BYTES + row * row_bytes, row_bytes
+@dataclass(frozen=True, slots=True, eq=False)
+class PackedColumns:
+    """The columns of a map in blocks."""
+
+    folder: Path
+    """``tiles``"""
+    fields: tuple[str, ...]
+    index: NDArray[np.void]
+    """Of `index_dtype`, (B,)."""
+    parts: NDArray[np.int64]
+    """Where the parts of the tiles begin and the last one ends: points, stray returns, (P + 1,)."""
+    paths: SensorPaths
+    kept: KeptBlocks
+
+    @staticmethod
+    def open(
+        folder: Path,
+        fields: Sequence[str],
+        parts: NDArray[np.int64],
+        *,
+        checked: CheckedArtifact | None = None,
+        kept_bytes: int = 0,
+    ) -> PackedColumns:
+        """Open the columns that a `TileWriter` left.
+
+        Args:
+            folder: ``tiles``
+            fields: Their names, in the order of the index.
+            parts: See the field.
+            checked: Hashes that the index and the paths must match.
+            kept_bytes: Memory for blocks that may be needed again.
+
+        Raises:
+            Altered: If they do not match.
+            StoreError: If something is missing, or the files do not fit each other.
+        """
+        for name in fields:
+            if name not in FIELD_PACKING:
+                raise StoreError(
+                    f"tiles.json: unknown field {name!r}; known: {list(FIELD_PACKING)}"
+                )
+        if checked is not None:
+            checked.check(f"tiles/{BLOCKS}")
+            checked.check(f"tiles/{PATHS}")
+        index = load_array(folder / BLOCKS, index_dtype(fields))
+        _check_index(folder, fields, index, parts=parts)
+        paths = SensorPaths.load(folder / PATHS)
+        return PackedColumns(folder, tuple(fields), index, parts, paths, KeptBlocks(kept_bytes))
+
+    def read(
+        self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
+    ) -> Columns:
+        """See `TileColumns.read`."""
+        needed = [*names, *(["frame_id"] if "t_ns" in names and "frame_id" not in names else [])]
+        found = _room(needed, len(range(rows.start, rows.stop, rows.step or 1)))
+        at = 0
+        for block, taken in self._blocks(rows):
+            for name in needed:
+                values = self._block(name, block, checked=checked)[taken]
+                found[name][at : at + len(values)] = values
+            at += len(range(taken.start, taken.stop, taken.step))
+        if "t_ns" in names:
+            found["t_ns"] += self.paths.began_ns(found["frame_id"])
+        return {name: found[name] for name in names}
+
+    def _blocks(self, rows: slice) -> Iterator[tuple[int, slice]]:
+        """The blocks that some rows are in, each with the rows of it."""
+        step, at = rows.step or 1, rows.start
+        stops = self.index["stop"]
+        while at < rows.stop:
+            block = int(np.searchsorted(stops, at, side="right"))
+            first = int(stops[block - 1]) if block else 0
+            stop = min(int(stops[block]), rows.stop)
+            yield block, slice(at - first, stop - first, step)
+            at += -(-(stop - at) // step) * step
+
+    def _block(self, name: str, block: int, *, checked: CheckedArtifact | None) -> NDArray[Any]:
+        """All rows of a field in a block."""
+        column, file = self.fields.index(name), f"{name}.zst"
+        ends = self.index["end"][:, column]
+        first, stop = int(ends[block - 1]) if block else 0, int(ends[block])
+        if checked is not None:
+            checked.check(f"tiles/{file}", first, stop)
+        return self.kept.get((name, block), lambda: self._unpacked(name, block, first, stop=stop))
+
+    def _unpacked(self, name: str, block: int, first: int, *, stop: int) -> NDArray[Any]:
+        where = f"{self.folder.name}/{name}.zst"
+        try:
+            with (self.folder / f"{name}.zst").open("rb", buffering=0) as opened:
+                opened.seek(first)
+                data = opened.read(stop - first)
+        except OSError as error:
+            raise StoreError(f"{where} cannot be read: {error.strerror}") from error
+        width = int(self.index["width"][block, self.fields.index(name)])
+        order = self.kept.get(("", block), lambda: self.order(block))
+        return unpack(name, data, width, order=order, where=f"{where}: block {block}")
+
+    def order(self, block: int) -> Order:
+        """Rows of a block in spatial order."""
+        stops = self.index["stop"]
+        first, stop = int(stops[block - 1]) if block else 0, int(stops[block])
+        part = int(np.searchsorted(self.parts, first, side="right")) - 1
+        begin, end = self.parts[part : part + 2].tolist()
+        return spatial_order_of(end - begin, first - begin, stop - begin)
 
 
-def map_rows(folder: Path, name: str, start: int, *, count: int) -> NDArray[Any]:
-    """Rows of a column, mapped.
+class KeptBlocks:
+    """Unpacked blocks that may be needed again; the least recently used are removed first.
+
+    People who look at a part of a map read it many times: slices, chunks of detail, clicks.
+    """
+
+    def __init__(self, most_bytes: int) -> None:
+        self._most = most_bytes
+        self._bytes = 0
+        self._kept: OrderedDict[tuple[str, int], NDArray[Any]] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, key: tuple[str, int], make: Callable[[], NDArray[Any]]) -> NDArray[Any]:
+        """A field of a block, unpacked if it is not kept."""
+        with self._lock:
+            if key in self._kept:
+                self._kept.move_to_end(key)
+                return self._kept[key]
+        made = make()
+        with self._lock:
+            if key not in self._kept and made.nbytes <= self._most:
+                self._kept[key] = made
+                self._bytes += made.nbytes
+            while self._bytes > self._most:
+                self._bytes -= self._kept.popitem(last=False)[1].nbytes
+        return made
+
+
+def _room(names: Sequence[str], count: int) -> Columns:
+    shapes: Mapping[str, tuple[str, int]] = {name: FIELDS[name] for name in names}
+    return {
+        name: np.empty((count, width) if width > 1 else count, dtype)
+        for name, (dtype, width) in shapes.items()
+    }
+
+
+def _check_index(
+    folder: Path, fields: Sequence[str], index: NDArray[np.void], *, parts: NDArray[np.int64]
+) -> None:
+    """Check that blocks follow each other and fill the map and the files.
 
     Raises:
-        StoreError: If they cannot be read.
+        StoreError: If they do not.
     """
-    dtype = np.dtype(FIELDS[name][0])
-    if count == 0:
-        return np.empty(column_shape(name, 0), dtype)
-    offset, _ = row_offset(name, start)
-    path = folder / column_file(folder, name)
-    try:
-        mapped = np.memmap(path, dtype, mode="r", offset=offset, shape=column_shape(name, count))
-    except (OSError, ValueError, OverflowError) as error:
-        raise StoreError(f"{folder.name}/{path.name} cannot be read: {error}") from error
-    return mapped.view(np.ndarray)
-
-
-def check_columns(folder: Path, fields: Sequence[str], points: int) -> None:
-    """Check that there is a column of the right size for every field.
-
-    Raises:
-        StoreError: If a field is unknown or a file has another size.
-    """
-    for name in fields:
-        if name not in FIELDS:
-            raise StoreError(f"tiles.json: unknown field {name!r}; known: {list(FIELDS)}")
-        path = folder / column_file(folder, name)
-        expected = HEADER_BYTES + points * np.dtype(FIELDS[name][0]).itemsize * FIELDS[name][1]
+    where = f"{folder.name}/{BLOCKS}"
+    stops, ends = index["stop"], index["end"]
+    good = (np.diff(stops, prepend=0) > 0) & (np.diff(ends, axis=0, prepend=0) > 0).all(axis=1)
+    good &= ((index["width"] >= 1) & (index["width"] <= 8)).all(axis=1)
+    if not good.all():
+        row = int(np.argmin(good))
+        raise StoreError(f"{where}: row {row}: expected the block after the last, got {index[row]}")
+    last = int(stops[-1]) if len(index) else 0
+    if last != parts[-1]:
+        raise StoreError(f"{where}: expected blocks of {parts[-1]} points, got {last}")
+    # The order of a block's rows is that of the part of a tile that it lies in.
+    whole = np.isin(parts, [0, *stops.tolist()])
+    if not whole.all() or np.any(np.diff(parts) < 0):
+        raise StoreError(
+            f"{where}: expected tiles of whole blocks, got one to point {parts[np.argmin(whole)]}"
+        )
+    for column, name in enumerate(fields):
+        path = folder / f"{name}.zst"
+        expected = int(ends[-1, column]) if len(index) else 0
         found = path.stat().st_size if path.is_file() else -1
         if found != expected:
             raise StoreError(
-                f"{folder.name}/{path.name}: expected {expected} bytes for {points} points, "
+                f"{folder.name}/{path.name}: expected {expected} bytes of {len(index)} blocks, "
                 f"got {found if found >= 0 else 'no file'}"
             )

@@ -42,4 +42,5 @@ def point_deviations(
         np.ascontiguousarray(p_map), np.ascontiguousarray(frame_id),
         np.ascontiguousarray(poses.position_m), np.ascontiguousarray(poses.cov), out,
     )  # fmt: skip
-    return out.astype(np.float16)
+    # What is beyond 65 km is as good as unknown, and stays a number.
+    return np.minimum(out, np.finfo(np.float16).max).astype(np.float16)

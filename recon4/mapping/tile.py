@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
@@ -24,6 +24,7 @@ from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.mapping.tile_memory import Scratch
+from recon4.mapping.tile_order import cut, progressive
 from recon4.mapping.tuning import TILES
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
@@ -50,6 +51,9 @@ FIELDS: dict[str, tuple[str, int]] = {
 }
 """Name -> (dtype, width). ``intensity_normalized`` exists only with an intensity table,
 ``position_sd_m`` only where covariances of the poses are stated."""
+DERIVED = ("range_m", "incidence_rad")
+"""Follow from the other fields and the paths of the sensors; not stored."""
+STORED = tuple(name for name in FIELDS if name not in DERIVED)
 SURFACE_FIELDS = ("raw_offset_m", "surface_returns", "surface_sd_m", "planarity")
 """Exist only in maps of fitted surfaces."""
 
@@ -76,11 +80,11 @@ class Recipe:
 class MadeTile:
     """Columns of a tile in the stored order, and counts of removed points by reason."""
 
-    count: int
-    """Rows, stray returns included."""
     removed: Counter[str]
+    cuts: Sequence[tuple[int, int]]
+    """First row of each block, and the row after its last."""
     blocks: Iterator[Columns]
-    """The columns, `TILES.block` rows at a time; valid until the thread makes its next tile."""
+    """The columns, block by block; valid until the thread makes its next tile."""
     strays: int = 0
     """How many of the last rows are stray returns."""
 
@@ -105,27 +109,29 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch)
         strays = progressive(np.flatnonzero(stray))
         rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
         columns = partial(_fitted_columns, records, surfaces, recipe=recipe)
-        return MadeTile(
-            len(rows), removed, _blocks(rows, columns, tile=tile, recipe=recipe), len(strays)
-        )
+        cuts = cut(len(rows), len(strays))
+        blocks = _blocks(rows, cuts, columns, tile=tile, recipe=recipe)
+        return MadeTile(removed, cuts, blocks, len(strays))
     normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
     lonely = own & (normals.support < settings.min_neighborhood)
     removed["lonely"] = int(lonely.sum())
     rows = progressive(np.flatnonzero(own & ~lonely))
     columns = partial(_raw_columns, records, normals, recipe=recipe)
-    return MadeTile(len(rows), removed, _blocks(rows, columns, tile=tile, recipe=recipe))
+    cuts = cut(len(rows))
+    return MadeTile(removed, cuts, _blocks(rows, cuts, columns, tile=tile, recipe=recipe))
 
 
 def _blocks(
     rows: NDArray[np.intp],
+    cuts: Sequence[tuple[int, int]],
     columns_of: Callable[[NDArray[np.intp]], Columns],
     *,
     tile: Tile,
     recipe: Recipe,
 ) -> Iterator[Columns]:
     origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
-    for first in range(0, len(rows), TILES.block):
-        columns = columns_of(rows[first : first + TILES.block])
+    for first, stop in cuts:
+        columns = columns_of(rows[first:stop])
         if recipe.covariances:
             p_map = columns["xyz"] + origin_m
             columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
@@ -176,28 +182,6 @@ def _without_far(records: Records, ratio: float) -> tuple[Records, int]:
     range_m = np.linalg.norm(to_sensor_m(records), axis=1)
     seen_from_far(np.ascontiguousarray(records["xyz"]), range_m, TILES.far_cell_m, ratio, keep)
     return np.compress(keep | ~own, records), int(own.sum() - keep.sum())
-
-
-def progressive(rows: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Reorder rows given in spatial order so that every prefix samples all of them evenly.
-
-    Stratum ``s`` has every 64th row from the ``s``-th on. The strata are in bit-reversed order, so
-    that halves, quarters and eighths are regular samples too. Within a stratum the order stays
-    spatial, which compresses well. `spatial_order` is the inverse.
-    """
-    return rows[np.concatenate([np.arange(s, len(rows), TILES.strata) for s in _strata()])]
-
-
-def spatial_order(count: int) -> NDArray[np.intp]:
-    """Rows of a tile of ``count`` points in spatial order, the inverse of `progressive`."""
-    inverse = np.empty(count, np.intp)
-    inverse[progressive(np.arange(count))] = np.arange(count)
-    return inverse
-
-
-def _strata() -> list[int]:
-    bits = TILES.strata.bit_length() - 1
-    return [int(f"{s:0{bits}b}"[::-1], 2) for s in range(TILES.strata)]
 
 
 def _columns(

@@ -1,10 +1,9 @@
-"""Write the map: one ``.npy`` file per field, tile after tile, and ``tiles.json``."""
+"""Write the map: the blocks of one tile after the other, and ``tiles.json`` last."""
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self
@@ -12,12 +11,16 @@ from typing import BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.errors import StoreError
-from recon4.mapping.columns import column_header, column_shape, row_offset
+from recon4.mapping.columns import BLOCKS, PATHS, index_dtype
 from recon4.mapping.map_notes import MapNotes
-from recon4.mapping.tile import FIELDS, Columns
-from recon4.store.atomic import raise_if_full, write_json
+from recon4.mapping.sensor_paths import SensorPaths
+from recon4.mapping.tile import Columns
+from recon4.mapping.tile_order import Order, cut, spatial_order_of
+from recon4.mapping.tile_packing import as_stored, pack
+from recon4.model.trajectory import Times
+from recon4.store.atomic import write_json
 from recon4.store.formats import FORMATS
+from recon4.store.frames import storing
 
 
 @dataclass(slots=True, kw_only=True)
@@ -26,87 +29,92 @@ class _TileRow:
 
     ijk: list[int]
     origin_m: list[float]
-    start: int
-    stop: int
+    start: int = 0
+    stop: int = 0
     strays: int = 0
-    low_m: list[float]
-    high_m: list[float]
-    time_ns: list[int]
+    low_m: list[float] = field(default_factory=lambda: [np.nan] * 3)
+    high_m: list[float] = field(default_factory=lambda: [np.nan] * 3)
+    time_ns: list[int] = field(default_factory=list)
     """Times of its first and last point [ns], (2,)."""
 
+    def extend(self, xyz: NDArray[np.float64], t_ns: NDArray[np.int64]) -> None:
+        """Extend the bounds by some points."""
+        origin = np.array(self.origin_m)
+        self.low_m = np.fmin(self.low_m, origin + xyz.min(axis=0)).tolist()
+        self.high_m = np.fmax(self.high_m, origin + xyz.max(axis=0)).tolist()
+        times = [*self.time_ns, int(t_ns.min()), int(t_ns.max())]
+        self.time_ns = [min(times), max(times)]
 
-class TileRows:
-    """The rows of one tile, reserved in the files of a map, filled block by block.
 
-    Tiles may be filled at the same time, each by one thread.
-    """
+@dataclass(frozen=True, slots=True)
+class _Block:
+    """A compressed block."""
 
-    def __init__(self, files: Mapping[str, BinaryIO], row: _TileRow) -> None:
-        self._files = files
-        self._row = row
-        self._at = row.start
-        # A tile of strays only has their bounds: every tile has some.
-        self._bounded = row.stop if row.stop > row.start else row.stop + row.strays
+    count: int
+    data: list[bytes]
+    """Of each field."""
+    width: list[int]
+    """Bytes of a number of each field."""
 
-    def write(self, columns: Columns) -> None:
-        """Write the next rows.
 
-        Args:
-            columns: All fields of the map.
+@dataclass(frozen=True, slots=True)
+class PackedTile:
+    """A tile as it will be stored."""
 
-        Raises:
-            OSError: If they cannot be written.
-        """
-        count = len(columns["xyz"])
-        for name, file in self._files.items():
-            column = np.ascontiguousarray(columns[name], dtype=FIELDS[name][0])
-            assert column.shape == column_shape(name, count), f"{name}: {column.shape}"
-            _write_at(file, column.data.cast("B"), row_offset(name, self._at)[0])
-        part = slice(max(0, min(count, self._bounded - self._at)))
-        self._at += count
-        if part.stop:
-            self._extend_bounds(columns["xyz"][part], columns["t_ns"][part])
-
-    def _extend_bounds(self, xyz: NDArray[np.float32], t_ns: NDArray[np.int64]) -> None:
-        row, origin = self._row, np.array(self._row.origin_m)
-        row.low_m = np.fmin(row.low_m, origin + xyz.min(axis=0)).tolist()
-        row.high_m = np.fmax(row.high_m, origin + xyz.max(axis=0)).tolist()
-        times = [*row.time_ns, int(t_ns.min()), int(t_ns.max())]
-        row.time_ns = [min(times), max(times)]
+    row: _TileRow
+    count: int
+    """Rows, stray returns included."""
+    blocks: list[_Block]
 
 
 class TileWriter:
-    """Writes tiles one after the other; ``tiles.json`` last, if the block ends without error."""
+    """Writes tiles one after the other; ``tiles.json`` last, if the block ends without error.
 
-    def __init__(self, folder: Path, fields: Sequence[str], *, tile_m: float) -> None:
+    Several threads may `pack` tiles, which takes nearly all of the time; one `write`s them.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        fields: Sequence[str],
+        *,
+        tile_m: float,
+        paths: SensorPaths | None = None,
+    ) -> None:
+        """Nothing is written before the block begins.
+
+        Args:
+            folder: Receives ``tiles/`` and ``tiles.json``.
+            fields: Names of those that are stored.
+            tile_m: Edge of a tile [m].
+            paths: Where the sensors were; None = not known, and no ranges of the points either.
+        """
         self._folder = folder
         self._fields = list(fields)
         self._tile_m = tile_m
+        self._paths = paths or SensorPaths()
         self._rows: list[_TileRow] = []
         self._points = 0
-        self._files: dict[str, BinaryIO] = {}
+        self._index: list[tuple[int, list[int], list[int]]] = []
+        self._ends = [0] * len(self._fields)
+        self._files: list[BinaryIO] = []
         self.notes = MapNotes()
 
     def __enter__(self) -> Self:
-        (self._folder / "tiles").mkdir(parents=True)
-        for name in self._fields:
-            self._files[name] = (self._folder / "tiles" / f"{name}.npy").open("wb")
-            self._files[name].write(column_header(name, 0))
+        with storing(self._folder):
+            folder = self._folder / "tiles"
+            folder.mkdir(parents=True)
+            self._files = [(folder / f"{name}.zst").open("wb") for name in self._fields]
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None
     ) -> None:
-        try:
-            for name, file in self._files.items():
-                with file:
-                    file.seek(0)
-                    file.write(column_header(name, self._points))
-        except OSError as failed:
-            raise_if_full(failed, self._folder)
-            raise StoreError(f"cannot write {self._folder}: {failed.strerror}") from failed
-        if kind is None:
-            self._write_list()
+        with storing(self._folder):
+            for file in self._files:
+                file.close()
+            if kind is None:
+                self._finish()
 
     def append(self, ijk: tuple[int, int, int], columns: Columns, *, strays: int = 0) -> None:
         """Write the points of one tile in the given order; an empty tile is omitted.
@@ -116,34 +124,75 @@ class TileWriter:
             columns: Its fields.
             strays: How many of the last rows are stray returns.
         """
-        count = len(columns["xyz"])
-        if count:
-            self.reserve(ijk, count, strays=strays).write(columns)
+        cuts = cut(len(columns["xyz"]), strays)
+        blocks = ({k: v[first:stop] for k, v in columns.items()} for first, stop in cuts)
+        self.write(self.pack(ijk, blocks, cuts=cuts, strays=strays))
 
-    def reserve(self, ijk: tuple[int, int, int], count: int, *, strays: int = 0) -> TileRows:
-        """The next rows, to be filled before the block ends; an empty tile is omitted.
+    def pack(
+        self,
+        ijk: tuple[int, int, int],
+        blocks: Iterable[Columns],
+        *,
+        cuts: Sequence[tuple[int, int]],
+        strays: int,
+    ) -> PackedTile:
+        """Compress a tile.
 
         Args:
             ijk: Index in the grid of tiles.
-            count: Points of the tile, stray returns included.
+            blocks: Its fields, ``xyz`` and ``t_ns`` among them, block by block.
+            cuts: First row of each block and the row after its last, of `cut`.
             strays: How many of the last rows are stray returns.
         """
-        row = _TileRow(
-            ijk=list(ijk),
-            origin_m=(np.array(ijk) * self._tile_m).tolist(),
-            start=self._points,
-            stop=self._points + count - strays,
-            strays=strays,
-            low_m=[np.nan] * 3,
-            high_m=[np.nan] * 3,
-            time_ns=[],
-        )
-        if count:
-            self._rows.append(row)
-        self._points += count
-        return TileRows(self._files, row)
+        row = _TileRow(ijk=list(ijk), origin_m=(np.array(ijk) * self._tile_m).tolist())
+        count = cuts[-1][1] if cuts else 0
+        row.strays, own = strays, count - strays
+        packed = []
+        for (first, stop), columns in zip(cuts, blocks, strict=True):
+            began_ns = self._began_ns(columns)
+            within_ns = columns["t_ns"] - began_ns
+            # A tile of strays only has their bounds: every tile has some.
+            if first < own or not own:
+                t_ns = began_ns + as_stored("t_ns", within_ns).astype(np.int64)
+                row.extend(as_stored("xyz", columns["xyz"]), t_ns)
+            begin, end = (0, own) if first < own else (own, count)
+            order = spatial_order_of(end - begin, first - begin, stop - begin)
+            packed.append(self._block(columns | {"t_ns": within_ns}, order))
+        return PackedTile(row, count, packed)
 
-    def _write_list(self) -> None:
+    def _block(self, columns: Columns, order: Order) -> _Block:
+        made = [pack(name, columns[name], order) for name in self._fields]
+        return _Block(len(order), [data for data, _ in made], [width for _, width in made])
+
+    def _began_ns(self, columns: Columns) -> Times:
+        """Start of the multiframe of each point [ns], (N,); zeros if none is known."""
+        if not self._paths.known:
+            return np.zeros(len(columns["t_ns"]), np.int64)
+        return self._paths.began_ns(columns["frame_id"])
+
+    def write(self, tile: PackedTile) -> None:
+        """Write the next tile; an empty one is omitted.
+
+        Raises:
+            StoreError: If it cannot be written (`NoSpace` when the disk is full).
+        """
+        if not tile.count:
+            return
+        tile.row.start = self._points
+        tile.row.stop = self._points + tile.count - tile.row.strays
+        self._rows.append(tile.row)
+        with storing(self._folder):
+            for block in tile.blocks:
+                self._points += block.count
+                for column, data in enumerate(block.data):
+                    self._files[column].write(data)
+                    self._ends[column] += len(data)
+                self._index.append((self._points, list(self._ends), block.width))
+
+    def _finish(self) -> None:
+        folder = self._folder / "tiles"
+        self._paths.save(folder / PATHS)
+        np.save(folder / BLOCKS, np.array(self._index, dtype=index_dtype(self._fields)))
         rows = self._rows
         bounds = [
             np.min([row.low_m for row in rows], axis=0).tolist() if rows else None,
@@ -154,16 +203,14 @@ class TileWriter:
         facts: dict[str, object] = {"format": FORMATS.tiles, "points": points, "bounds_m": bounds}
         facts |= self.notes.to_json()
         facts["time_ns"] = [min(times), max(times)] if times else None
-        listed = [asdict(row) for row in rows]
-        for row in listed:
-            if not row["strays"]:
-                del row["strays"]
-        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": listed}
+        facts |= {"tile_m": self._tile_m, "fields": self._fields, "tiles": list(_listed(rows))}
         write_json(self._folder / "tiles.json", facts)
 
 
-def _write_at(file: BinaryIO, data: memoryview, offset: int) -> None:
-    """Write all bytes at an offset, whatever other threads write elsewhere."""
-    while data:
-        done = os.pwrite(file.fileno(), data, offset)
-        data, offset = data[done:], offset + done
+def _listed(rows: Iterable[_TileRow]) -> Iterator[dict[str, object]]:
+    """Entries of ``tiles.json``; the number of stray returns only where there are some."""
+    for row in rows:
+        listed = asdict(row)
+        if not row.strays:
+            del listed["strays"]
+        yield listed

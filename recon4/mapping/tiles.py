@@ -1,7 +1,7 @@
-"""The map on disk: one ``.npy`` file per field, tile after tile, and ``tiles.json``.
+"""The map on disk: tile after tile in compressed blocks, field by field, and ``tiles.json``.
 
-    tiles.json           fields, bounds, CRS, and rows and origin of each tile
-    tiles/<field>.npy    one row per point
+    tiles.json    fields, bounds, CRS, and rows and origin of each tile
+    tiles/        the columns (`recon4.mapping.columns`), one row per point
 
 Rows ``start`` to ``stop`` belong to a tile; any first part of them is an even sample of the tile.
 """
@@ -19,14 +19,12 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.geometry.se3 import Array
-from recon4.mapping.columns import (
-    check_columns,
-    column_file,
-    map_rows,
-    row_offset,
-)
+from recon4.mapping.columns import PackedColumns, TileColumns
+from recon4.mapping.earlier_columns import EarlierColumns
 from recon4.mapping.map_notes import MapCrs, MapNotes, read_map_list
-from recon4.mapping.tile import Columns, spatial_order
+from recon4.mapping.sensor_paths import range_and_incidence
+from recon4.mapping.tile import DERIVED, FIELDS, Columns
+from recon4.mapping.tile_order import spatial_order
 from recon4.mapping.tuning import TILES
 from recon4.store.checked import Altered, CheckedArtifact
 from recon4.store.earlier_names import TILE_FIELDS
@@ -37,6 +35,7 @@ RAW_OFFSET = "raw_offset_m"
 Surface = Literal["fitted", "raw", "strays"]
 """Points on the surfaces fitted to all returns, or as measured, or only the stray returns."""
 Number = TypeVar("Number", int, float)
+_DERIVED_FROM = ("xyz", "normal", "t_ns", "sensor")
 _MALFORMED = (ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError)
 _SURFACE_TEXT: dict[Surface, str] = {
     "fitted": "on fitted surfaces",
@@ -54,9 +53,8 @@ def surface_text(surface: Surface) -> str:
 class Tile:
     """One cube of the map."""
 
-    folder: Path
-    """Folder of the columns."""
-    fields: tuple[str, ...]
+    columns: TileColumns
+    """Of all tiles."""
     ijk: tuple[int, int, int]
     """Index in the grid of tiles."""
     origin_m: tuple[float, float, float]
@@ -77,12 +75,20 @@ class Tile:
     def __len__(self) -> int:
         return self.stop - self.start
 
-    def read(self, fields: Sequence[str], *, limit: int | None = None) -> Columns:
-        """Read some fields, memory-mapped and read-only (raw coordinates are computed).
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of the fields that can be read."""
+        return readable_fields(self.columns)
+
+    def read(
+        self, fields: Sequence[str], *, limit: int | None = None, rows: slice | None = None
+    ) -> Columns:
+        """Read some fields, read-only.
 
         Args:
             fields: Names of `FIELDS`.
             limit: Largest number of points, an even sample of the tile; None = all.
+            rows: Rows of the tile, none below 0, any positive step; None = the first ones.
 
         Raises:
             Altered: If the tile is checked and its bytes do not match the hashes.
@@ -91,23 +97,27 @@ class Tile:
         unknown = sorted(set(fields) - set(self.fields))
         if unknown:
             raise StoreError(f"the map has no field {unknown}; it has {list(self.fields)}")
-        count = len(self) if limit is None else min(limit, len(self))
-        moved = self.raw and "xyz" in fields and RAW_OFFSET in self.fields
-        needed = {*fields, RAW_OFFSET} if moved else set(fields)
-        for name in sorted(needed):
-            self._check(name, count)
-        columns = {name: map_rows(self.folder, name, self.start, count=count) for name in needed}
-        if moved:
-            columns["xyz"] = columns["xyz"] + columns[RAW_OFFSET].astype(np.float32)
+        taken = rows or slice(0, len(self) if limit is None else min(limit, len(self)), 1)
+        derived = set(fields) - set(self.columns.fields)
+        needed = (set(fields) - derived) | (set(_DERIVED_FROM) if derived else set())
+        moved = RAW_OFFSET in self.columns.fields and bool(
+            derived or (self.raw and "xyz" in needed)
+        )
+        columns = self._stored(sorted(needed | ({RAW_OFFSET} if moved else set())), taken)
+        at = columns["xyz"] if "xyz" in columns else np.empty((0, 3), np.float32)
+        measured = at + columns[RAW_OFFSET].astype(np.float32) if moved else at
+        if derived:
+            to_sensor_m = self.columns.paths.at(columns["t_ns"], columns["sensor"])
+            to_sensor_m -= measured + np.array(self.origin_m)
+            columns |= range_and_incidence(to_sensor_m, columns["normal"])
+        if self.raw and "xyz" in fields:
+            columns["xyz"] = measured
         return {name: columns[name] for name in fields}
 
-    def _check(self, name: str, count: int) -> None:
-        if self.checked is None or count == 0:
-            return
-        first, row_bytes = row_offset(name, self.start)
+    def _stored(self, names: Sequence[str], rows: slice) -> Columns:
+        within = slice(self.start + rows.start, self.start + rows.stop, rows.step or 1)
         try:
-            file = column_file(self.folder, name)
-            self.checked.check(f"tiles/{file}", first, first + count * row_bytes)
+            return self.columns.read(names, within, checked=self.checked)
         except Altered as error:
             raise Altered(f"tile {self.ijk} of the map was changed: {error}") from error
 
@@ -140,7 +150,8 @@ class TileSet:
     """A finished map."""
 
     tiles: tuple[Tile, ...]
-    fields: tuple[str, ...]
+    columns: TileColumns
+    """Of all tiles."""
     points: int
     tile_m: float
     """Edge of a tile [m]."""
@@ -152,12 +163,15 @@ class TileSet:
     """Where its points lie."""
 
     @staticmethod
-    def open(folder: Path, checked: CheckedArtifact | None = None) -> TileSet:
+    def open(
+        folder: Path, checked: CheckedArtifact | None = None, *, kept_bytes: int = 0
+    ) -> TileSet:
         """Open the artifact of the stage ``map``.
 
         Args:
             folder: The artifact.
             checked: Hashes that all bytes read must match; None = not checked.
+            kept_bytes: Memory for what is unpacked and may be needed again.
 
         Raises:
             Altered: If ``checked`` is given and ``tiles.json`` was changed.
@@ -168,23 +182,34 @@ class TileSet:
             checked.check("tiles.json")
         try:
             facts = read_map_list(path)
-            if facts["format"] != FORMATS.tiles:
+            if facts["format"] not in (FORMATS.earlier_tiles, FORMATS.tiles):
                 raise StoreError(
-                    f"{path.name}: expected format {FORMATS.tiles}, got {facts['format']}"
+                    f"{path.name}: expected format {FORMATS.earlier_tiles} or {FORMATS.tiles}, "
+                    f"got {facts['format']}"
                 )
             fields = tuple(TILE_FIELDS.get(name, str(name)) for name in facts["fields"])
-            tiles = tuple(
-                _tile(folder / "tiles", fields, row, checked=checked) for row in facts["tiles"]
-            )
+            parts = _parts(facts["tiles"], int(facts["points"]))
+            columns: TileColumns
+            if facts["format"] == FORMATS.earlier_tiles:
+                columns = EarlierColumns.open(folder / "tiles", fields, int(parts[-1]))
+            else:
+                columns = PackedColumns.open(
+                    folder / "tiles", fields, parts, checked=checked, kept_bytes=kept_bytes
+                )
+            tiles = tuple(_tile(columns, row, checked=checked) for row in facts["tiles"])
             points, tile_m = int(facts["points"]), float(facts["tile_m"])
             first_ns, last_ns = (int(t_ns) for t_ns in facts["time_ns"] or (0, 0))
             notes = MapNotes.of(facts)
         except _MALFORMED as error:
             raise StoreError(f"{path} is not the list of a map's tiles: {error!r}") from error
-        check_columns(folder / "tiles", fields, points + sum(tile.strays for tile in tiles))
         _check_rows(tiles, points, path.name)
-        surface: Surface = "fitted" if RAW_OFFSET in fields else "raw"
-        return TileSet(tiles, fields, points, tile_m, first_ns, last_ns, notes, surface)
+        surface: Surface = "fitted" if RAW_OFFSET in columns.fields else "raw"
+        return TileSet(tiles, columns, points, tile_m, first_ns, last_ns, notes, surface)
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Names of the fields that can be read."""
+        return readable_fields(self.columns)
 
     def __len__(self) -> int:
         return self.points
@@ -233,16 +258,22 @@ class TileSet:
         return low, np.max([tile.high_m for tile in self.tiles], axis=0)
 
 
-def _tile(
-    folder: Path,
-    fields: tuple[str, ...],
-    row: Mapping[str, Any],
-    *,
-    checked: CheckedArtifact | None,
-) -> Tile:
+def readable_fields(columns: TileColumns) -> tuple[str, ...]:
+    """Fields that are stored or follow from others."""
+    follow = columns.paths.known and set(_DERIVED_FROM) <= set(columns.fields)
+    known = {*columns.fields, *(DERIVED if follow else ())}
+    return tuple(name for name in FIELDS if name in known)
+
+
+def _parts(tiles: Any, points: int) -> NDArray[np.int64]:
+    """Where the points and the stray returns of each listed tile begin, and the last ones end."""
+    rows = [int(row[name]) for row in tiles for name in ("start", "stop")]
+    return np.array([*rows, points + sum(int(row.get("strays", 0)) for row in tiles)], np.int64)
+
+
+def _tile(columns: TileColumns, row: Mapping[str, Any], *, checked: CheckedArtifact | None) -> Tile:
     return Tile(
-        folder,
-        fields,
+        columns,
         _triple(row["ijk"], int),
         _triple(row["origin_m"], float),
         int(row["start"]),

@@ -141,7 +141,22 @@ class TileTuning:
     strata: int = 64
     """Number of uniform samples of itself in which a tile is stored, one after the other."""
     block: int = 1 << 16
-    """Rows made at once: the columns of a whole tile take more memory than all else of it."""
+    """Most rows of a block, which are made and stored together: the columns of a whole tile take
+    more memory than all else of it."""
+    sample: int = 16
+    """The first block of a tile has this part of its rows: a sample of many tiles is read from
+    few."""
+    kept_bytes: int = 96 << 20
+    """Memory of a process for blocks of a map that people look at."""
+    intensity_step: float = 1.0 / 16.0
+    """Steps of normalized intensities: finer than the raw ones."""
+    deviation_step_m: float = 0.0001
+    """Steps of the deviations of positions, those of a LAZ [m]."""
+    time_step_ns: int = 1000
+    """Steps of times, from the start of a multiframe [ns]. A sensor turns by 0.006° meanwhile."""
+    path_step_ns: int = 10_000_000
+    """Interval of the positions of the sensors [ns]. Between them a person moves straight to
+    0.2 mm."""
     far_cell_m: float = 1.0
     """Size of the cubes of ``MapSettings.far_ratio`` [m]."""
     margin_m: float = 0.2

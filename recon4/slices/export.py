@@ -17,7 +17,8 @@ from recon4.errors import ConfigError, GeoreferenceError
 from recon4.export.names import check_name
 from recon4.export.points import OutputCrs
 from recon4.geometry.se3 import Array
-from recon4.mapping.tile import DEVIATION, progressive
+from recon4.mapping.tile import DEVIATION, STORED
+from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.scratch import scratch_folder
@@ -73,9 +74,10 @@ def write_laz(chosen: SliceSelection, path: Path, *, frame: MapFrame) -> int:
     with scratch_folder(0) as folder:
         out = folder / "tiles"
         out.mkdir()
-        with TileWriter(out, tiles.fields, tile_m=tiles.tile_m) as writer:
+        fields = [name for name in tiles.fields if name in STORED]
+        with TileWriter(out, fields, tile_m=tiles.tile_m, paths=tiles.columns.paths) as writer:
             writer.notes = tiles.notes
-            for _, part, _ in chosen.parts(tiles.fields):
+            for _, part, _ in chosen.parts(fields):
                 order = progressive(np.arange(len(part)))
                 writer.append(part.tile.ijk, {k: v[order] for k, v in part.columns.items()})
         if not len(TileSet.open(out)):

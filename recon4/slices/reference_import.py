@@ -15,7 +15,7 @@ from recon4.errors import ConfigError, CorruptFile, UnknownFormat
 from recon4.evaluation.reference_mesh import TriangleMesh
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.normals import local_normals
-from recon4.mapping.tile import progressive
+from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 from recon4.recording.formats.cloud_crs import StatedCrs

@@ -8,10 +8,10 @@ from recon4.untrusted.limits import LIMITS
 
 
 def compress(data: bytes | bytearray | memoryview) -> bytes:
-    """A frame of Zstandard, which states the size of its content."""
+    """A frame of Zstandard, which states the size and a checksum of its content."""
     import zstandard
 
-    return zstandard.ZstdCompressor(level=PACKING.level).compress(data)
+    return zstandard.ZstdCompressor(level=PACKING.level, write_checksum=True).compress(data)
 
 
 def expand(data: bytes, size: int, where: str) -> bytes:

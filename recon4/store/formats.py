@@ -19,8 +19,10 @@ class FileFormats:
     """The ledger of the stages (``PRAGMA user_version``)."""
     seal: int = 1
     """Hashes of the files of an artifact."""
-    tiles: int = 1
-    """``tiles.json`` and the columns of the tiles."""
+    tiles: int = 2
+    """``tiles.json`` and the blocks of the tiles."""
+    earlier_tiles: int = 1
+    """Tiles in plain columns, which are only read."""
     summary: int = 3
     """``summary.json``; those of formats 1 and 2 are shown, too."""
     approval: int = 4

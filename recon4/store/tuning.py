@@ -15,6 +15,11 @@ class PackingTuning:
     level: int = 1
     """Of Zstandard. A higher one makes the noise of a sensor no smaller, and takes longer."""
 
+    @property
+    def step_m(self) -> float:
+        """Step of coordinates [m]."""
+        return float(2.0**self.step)
+
 
 PACKING = PackingTuning()
 

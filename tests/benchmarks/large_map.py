@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from recon4.mapping.map_notes import MapNotes
-from recon4.mapping.tile import FIELDS, progressive
+from recon4.mapping.tile import FIELDS, STORED
+from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.progress import Silent
 from recon4.settings import Settings
@@ -48,7 +49,7 @@ def write_large_map(out: Path, *, points: int) -> None:
     rng = np.random.default_rng(20)
     cells = [(i, j, k) for k in range(ROOMS[2]) for j in range(ROOMS[1]) for i in range(ROOMS[0])]
     share = np.diff(np.linspace(0, points, len(cells) + 1).astype(int))
-    with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
+    with TileWriter(out, STORED, tile_m=TILE_M) as writer:
         writer.notes = MapNotes(voxel_m=0.01, sensors=("V1", "V2"))
         rooms: dict[tuple[int, int, int], list[np.ndarray]] = {}
         for (i, j, k), count in zip(cells, share, strict=True):

@@ -20,7 +20,8 @@ import numpy as np
 import psutil
 
 from recon4.mapping.map_notes import MapNotes
-from recon4.mapping.tile import FIELDS, progressive
+from recon4.mapping.tile import FIELDS, STORED
+from recon4.mapping.tile_order import progressive
 from recon4.mapping.tile_writer import TileWriter
 from recon4.progress import Silent
 from recon4.settings import Settings
@@ -212,7 +213,7 @@ def _level(context: StageContext) -> None:
 def _map(points: int, out: Path) -> None:
     rng = np.random.default_rng(3)
     tiles = points // IN_A_TILE
-    with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
+    with TileWriter(out, STORED, tile_m=TILE_M) as writer:
         writer.notes = MapNotes(voxel_m=0.02)
         for k in range(tiles):
             ijk = (k // LANE_TILES, k % LANE_TILES, 0)

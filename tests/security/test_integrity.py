@@ -25,6 +25,7 @@ from recon4.store.checked import Altered
 from recon4.store.hashing import FileDigest, hash_json
 from recon4.store.project import Project, read_artifacts
 from recon4.store.seal import begin_change
+from tests import moved_points
 from tests.benchmarks.flips import flip_bits, make, make_server_state
 from tests.project_builder import approve_project, build_project
 from tests.service.running import server_thread
@@ -49,10 +50,15 @@ def office(approved, tmp_path):
 
 
 def move_points(root):
-    """Every point of the map 0.1 m to the east, in place; the file keeps its length."""
-    path = read_artifacts(root)["map"] / "tiles" / "xyz.npy"
+    """Some points of the map 0.1 m to the east."""
+    moved_points.move_points(read_artifacts(root)["map"])
+
+
+def damage_points(root, at=40):
+    """A byte of the points, in place; the file keeps its length."""
+    path = read_artifacts(root)["map"] / "tiles" / "xyz.zst"
     data = bytearray(path.read_bytes())
-    data[128 + 3 : 128 + 12_000 : 12] = bytes(b ^ 1 for b in data[128 + 3 : 128 + 12_000 : 12])
+    data[at] ^= 1
     path.write_bytes(data)
 
 
@@ -69,7 +75,8 @@ def write_manifest_again(root):
     move_points(root)
     folder = read_artifacts(root)["map"]
     record = json.loads((folder / "manifest.json").read_text())
-    record["files"]["tiles/xyz.npy"] = FileDigest.of(folder / "tiles/xyz.npy").to_json()
+    for name in moved_points.CHANGED:
+        record["files"][name] = FileDigest.of(folder / name).to_json()
     (folder / "manifest.json").write_text(json.dumps(record))
 
 
@@ -89,7 +96,14 @@ def change_signer(root):
     path.write_text(path.read_text().replace("anna", "emma"))
 
 
-ATTACKS = [move_points, move_tile, write_manifest_again, put_elsewhere, change_signer]
+ATTACKS = [
+    move_points,
+    damage_points,
+    move_tile,
+    write_manifest_again,
+    put_elsewhere,
+    change_signer,
+]
 
 
 @pytest.mark.parametrize("attack", ATTACKS)
@@ -104,13 +118,13 @@ def test_an_altered_map_is_not_exported_with_an_approval(office, tmp_path, attac
 
 
 def test_the_refusal_names_tile_file_and_hashes(office, tmp_path, capsys):
-    move_points(office)
+    damage_points(office)
 
     assert main(["slice", str(office), str(tmp_path / "s.csv"), "--z", "1.5"]) == 1
 
     words = capsys.readouterr().err
     assert "tile (0, 0, 0) of the map was changed" in words
-    assert "tiles/xyz.npy" in words and "expected " in words and ", got " in words
+    assert "tiles/xyz.zst" in words and "expected " in words and ", got " in words
 
 
 @pytest.mark.parametrize("attack", ATTACKS)
@@ -132,12 +146,11 @@ def test_what_was_not_altered_is_stamped(office, tmp_path):
     assert '"who": "anna"' in (tmp_path / "slice.csv").read_text()[:600]
 
 
-def test_a_tile_the_cut_does_not_touch_does_not_stop_it(office, tmp_path):
-    folder = read_artifacts(office)["map"]
-    path = folder / "tiles" / "xyz.npy"
-    data = bytearray(path.read_bytes())
-    data[-1] ^= 1  # the last block: a tile in the far corner
-    path.write_bytes(data)
+def test_a_tile_the_cut_does_not_touch_does_not_stop_it(tmp_path):
+    office = tmp_path / "office"
+    build_project(office, points=600_000)  # three blocks of hashes
+    approve_project(office, tmp_path / ".recon4" / "signing.key", who="anna")
+    damage_points(office, at=-1)  # the last block: a tile in the far corner
     line = ["--line", "0.5,0.5,0.5,9.0"]
 
     assert (

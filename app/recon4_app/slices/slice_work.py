@@ -14,6 +14,7 @@ import numpy as np
 from recon4.errors import ConfigError, StoreError
 from recon4.findings.walk import final_trajectory, positions_along
 from recon4.mapping.tiles import TileSet
+from recon4.mapping.tuning import TILES
 from recon4.model.plain import to_plain
 from recon4.review.approval_state import ApprovalState
 from recon4.review.evidence import Evidence
@@ -63,13 +64,14 @@ Artifacts = dict[str, str]
 @lru_cache(maxsize=4)
 def tiles_of(folder: str) -> TileSet:
     """Open a map; its folder name is its hash, so it never changes."""
-    return TileSet.open(Path(folder))
+    return TileSet.open(Path(folder), kept_bytes=TILES.kept_bytes)
 
 
 @lru_cache(maxsize=4)
 def _approved_tiles(folder: str, manifest_sha256: str) -> TileSet:
     """Open an approved map; every byte is checked before it is used."""
-    return TileSet.open(Path(folder), CheckedArtifact.open(Path(folder), manifest_sha256))
+    checked = CheckedArtifact.open(Path(folder), manifest_sha256)
+    return TileSet.open(Path(folder), checked, kept_bytes=TILES.kept_bytes)
 
 
 def map_of(artifacts: Artifacts, evidence: Evidence | None) -> TileSet:

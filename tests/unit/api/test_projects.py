@@ -9,9 +9,9 @@ import pytest
 
 from recon4 import api
 from recon4.cli.main import main
-from recon4.mapping.columns import column_file
 from recon4.store.checked import Altered
 from recon4.store.project import Project, read_artifacts
+from tests.moved_points import move_points
 from tests.planar_walks import along, furnished_room, scanned, write_carmen
 from tests.project_builder import approve_project, build_project
 
@@ -121,10 +121,7 @@ def test_points_that_were_changed_after_the_approval_are_refused(tmp_path):
     approve_project(root, tmp_path / ".recon4" / "signing.key")
     tiles = api.read_tiles(root)
     assert sum(len(tile.xyz_m()) for tile in tiles) == 2000
-    column = read_artifacts(root)["map"] / "tiles" / column_file(tiles.tiles[0].folder, "xyz")
-    data = bytearray(column.read_bytes())
-    data[-5] ^= 1
-    column.write_bytes(data)
+    move_points(read_artifacts(root)["map"])
 
     with pytest.raises(Altered):
         [tile.xyz_m() for tile in api.read_tiles(root)]

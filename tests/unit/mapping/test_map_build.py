@@ -2,7 +2,6 @@
 
 import hashlib
 import json
-import shutil
 import tracemalloc
 from dataclasses import replace
 
@@ -15,7 +14,7 @@ from recon4.mapping import build as map_build
 from recon4.mapping.build import MapInputs, build_map
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs
-from recon4.mapping.tile import FIELDS, SURFACE_FIELDS
+from recon4.mapping.tile import FIELDS, STORED, SURFACE_FIELDS
 from recon4.mapping.tiles import TileSet
 from recon4.mapping.tuning import MAP_BUILD
 from recon4.mapping.undistort import place
@@ -23,7 +22,7 @@ from recon4.model.events import MapBuilt
 from recon4.progress import Silent
 from recon4.settings import MapSettings, preset
 from recon4.store.earlier_names import TILE_FIELDS
-from recon4_app.viewer.cloud.parts import Cloud
+from tests.earlier_map import write_earlier
 from tests.room_walks import FRAME_NS, T0_NS, Walk, room_walk
 
 ALL = MapSettings(voxel_m=0.0, min_neighborhood=1, surface="raw")
@@ -38,6 +37,14 @@ def build(walk, folder, settings, *, crs=None, **options):
 
 def points(tiles, field):
     return np.concatenate([tile.read([field])[field] for tile in tiles])
+
+
+def names_of(tiles):
+    """A number for each point, the same in every map of a walk."""
+    name = (points(tiles, "t_ns") - T0_NS + 500) // 1000
+    for field, values in (("sensor", 2), ("ring", 16), ("intensity", 1 << 16)):
+        name = name * values + points(tiles, field)
+    return name
 
 
 def everything(tiles):
@@ -59,7 +66,9 @@ def test_without_thinning_every_point_is_in_the_map_once_with_its_fields(tmp_pat
         name: np.concatenate([getattr(frame, name) for frame in walk.frames])
         for name in ("intensity", "ring", "sensor", "echo")
     }
-    facts["t_ns"] = np.concatenate([f.t_ns + f.dt_ns.astype(np.int64) for f in walk.frames])
+    dt_us = [(f.dt_ns.astype(np.int64) + 500) // 1000 for f in walk.frames]
+    starts = [f.t_ns for f in walk.frames]
+    facts["t_ns"] = np.concatenate([t + 1000 * dt for t, dt in zip(starts, dt_us, strict=True)])
     facts["frame_id"] = np.repeat(np.arange(6), 800)
     facts["range_m"] = np.concatenate([np.linalg.norm(f.xyz, axis=1) for f in walk.frames])
     found = everything(tiles)
@@ -67,7 +76,7 @@ def test_without_thinning_every_point_is_in_the_map_once_with_its_fields(tmp_pat
     mine = np.lexsort((points(tiles, "intensity"), points(tiles, "ring"), t_mine))
     theirs = np.lexsort((facts["intensity"], facts["ring"], t_theirs))
     assert len(tiles) == len(expected) == 4800
-    np.testing.assert_allclose(found[mine], expected[theirs], atol=1e-5)
+    np.testing.assert_allclose(found[mine], expected[theirs], atol=2.5e-4)
     for name in ("intensity", "ring", "sensor", "echo", "t_ns", "frame_id"):
         np.testing.assert_array_equal(points(tiles, name)[mine], facts[name][theirs])
     np.testing.assert_allclose(points(tiles, "range_m")[mine], facts["range_m"][theirs], atol=0.005)
@@ -80,17 +89,23 @@ def test_no_two_points_share_a_voxel_and_the_nearest_one_stays(tmp_path):
     tiles = build(walk, tmp_path / "thin", settings)
     full = build(walk, tmp_path / "full", ALL)
 
-    voxel = np.floor(everything(tiles) / 0.1 + 1e-6).astype(int)
-    assert len(np.unique(voxel, axis=0)) == len(tiles)
+    # Coordinates are stored to 0.25 mm: at the faces of a voxel they may lie in the next one.
+    voxel, inside = voxels_of(everything(tiles))
+    assert inside.mean() > 0.95
+    assert len(np.unique(voxel[inside], axis=0)) == inside.sum()
     nearest = {}
     for key, range_m in zip(
-        map(tuple, np.floor(everything(full) / 0.1 + 1e-6).astype(int)),
-        points(full, "range_m"),
-        strict=True,
+        map(tuple, voxels_of(everything(full))[0]), points(full, "range_m"), strict=True
     ):
         nearest[key] = min(nearest.get(key, np.inf), range_m)
-    assert len(nearest) == len(tiles)
-    np.testing.assert_allclose(points(tiles, "range_m"), [nearest[tuple(v)] for v in voxel])
+    off_m = points(tiles, "range_m")[inside] - [nearest[tuple(v)] for v in voxel[inside]]
+    assert np.mean(np.abs(off_m) < 0.005) > 0.99  # chosen to 4 mm
+
+
+def voxels_of(p_map):
+    """Voxels of 10 cm of points, and which points are not at their faces."""
+    at = p_map / 0.1
+    return np.floor(at + 1e-6).astype(int), (np.abs(at - np.rint(at)) > 0.003).all(axis=1)
 
 
 def test_the_map_does_not_depend_on_the_number_of_bursts(tmp_path):
@@ -122,8 +137,7 @@ def test_normals_of_walls_point_to_the_sensor_and_ignore_tile_borders(tmp_path):
     expected = np.arccos(np.minimum(height / points(tiles, "range_m")[floor], 1.0))
     assert np.median(np.abs(incidence - expected)) < np.deg2rad(1.5)
     # A point on a border may lie in either voxel, so a handful of them differ.
-    t_a, t_b = points(tiles, "t_ns"), points(large, "t_ns")
-    _, a, b = np.intersect1d(t_a, t_b, return_indices=True)
+    _, a, b = np.intersect1d(names_of(tiles), names_of(large), return_indices=True)
     assert len(a) > 0.999 * len(tiles)
     difference = np.abs(normal[a] - points(large, "normal").astype(float)[b]).max(axis=1)
     assert (difference > 0.01).mean() < 0.001
@@ -190,7 +204,8 @@ def test_points_of_long_range_are_removed_next_to_points_of_short_range(tmp_path
     np.minimum.at(nearest, group, points(tiles, "range_m"))
     assert tiles.notes.removed["far"] + len(tiles) == 20 * 3000
     assert tiles.notes.removed["far"] > 100
-    assert (points(tiles, "range_m") <= 1.5 * nearest[group] + 1e-4).all()
+    near = points(tiles, "range_m") <= 1.5 * nearest[group] + 0.01
+    assert near.mean() > 0.999  # a point at the face of a cube may be stored in the next one
 
 
 def test_the_list_of_tiles_has_rows_and_bounds(tmp_path):
@@ -201,7 +216,8 @@ def test_the_list_of_tiles_has_rows_and_bounds(tmp_path):
     listed = json.loads((tmp_path / "map" / "tiles.json").read_text())
     assert tiles.crs == crs
     left_out = {"intensity_normalized", "position_sd_m", *SURFACE_FIELDS}
-    assert listed["fields"] == [name for name in FIELDS if name not in left_out]
+    assert listed["fields"] == [name for name in STORED if name not in left_out]
+    assert tiles.fields == tuple(name for name in FIELDS if name not in left_out)
     assert listed["points"] == len(tiles) == sum(map(len, tiles))
     low, high = tiles.bounds_m
     np.testing.assert_allclose(low, everything(tiles).min(axis=0), atol=1e-6)
@@ -210,7 +226,6 @@ def test_the_list_of_tiles_has_rows_and_bounds(tmp_path):
     for tile in tiles:
         xyz = tile.read(["xyz"])["xyz"]
         assert (xyz >= 0).all() and (xyz <= listed["tile_m"]).all()
-    np.testing.assert_array_equal(np.load(tmp_path / "map/tiles/ring.npy"), points(tiles, "ring"))
 
 
 def test_a_walk_without_points_gives_a_map_without_tiles(tmp_path):
@@ -253,13 +268,8 @@ def test_damaged_maps_are_refused(tmp_path):
     with pytest.raises(StoreError, match="no field"):
         tiles.tiles[0].read(["color"])
 
-    column = tmp_path / "map" / "tiles" / "ring.npy"
-    column.write_bytes(column.read_bytes()[:-1])
-    with pytest.raises(StoreError, match=r"ring\.npy: expected \d+ bytes"):
-        TileSet.open(tmp_path / "map")
-
     (tmp_path / "map" / "tiles.json").write_text('{"format": 99}')
-    with pytest.raises(StoreError, match="expected format 1, got 99"):
+    with pytest.raises(StoreError, match="expected format 1 or 2, got 99"):
         TileSet.open(tmp_path / "map")
 
 
@@ -317,7 +327,7 @@ def test_fitted_tiles_hold_both_positions_of_every_point_and_the_strays_last(tmp
 def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(tmp_path):
     fitted, _ = fitted_and_raw(tmp_path)
     current, folder = tmp_path / "fitted", tmp_path / "earlier"
-    shutil.copytree(current, folder)
+    write_earlier(current, folder)
     facts = json.loads((folder / "tiles.json").read_text())
     for earlier, now in TILE_FIELDS.items():
         (folder / "tiles" / f"{now}.npy").rename(folder / "tiles" / f"{earlier}.npy")
@@ -329,7 +339,6 @@ def test_a_map_whose_fields_have_their_earlier_names_is_read_and_exported_alike(
     assert found.fields == fitted.fields
     for name in TILE_FIELDS.values():
         np.testing.assert_array_equal(points(found, name), points(fitted, name))
-        assert len(Cloud(folder)._columns[name]) == len(fitted) + fitted.strays
     for map_ in (current, folder):
         export_laz(map_, map_ / "map.laz")
     assert (folder / "map.laz").read_bytes() == (current / "map.laz").read_bytes()
@@ -350,7 +359,7 @@ def test_the_tiles_of_a_map_do_not_show_in_its_surfaces(tmp_path):
         build(walk, tmp_path / f"{tile_m:g}", MapSettings(tile_m=tile_m)) for tile_m in (1.0, 10.0)
     )
 
-    _, a, b = np.intersect1d(points(small, "t_ns"), points(large, "t_ns"), return_indices=True)
+    _, a, b = np.intersect1d(names_of(small), names_of(large), return_indices=True)
     apart = np.linalg.norm(everything(small)[a] - everything(large)[b], axis=1)
     assert len(a) > 0.98 * len(large)
     assert np.mean(apart > 0.001) < 0.06  # sparse places: their larger cells begin at the tile

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.mapping.map_notes import MapNotes
-from recon4.mapping.tile import FIELDS
+from recon4.mapping.tile import FIELDS, STORED
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
 
@@ -18,7 +18,7 @@ def write_map(out: Path, p_map, *, crs=None, strays=0, **columns) -> TileSet:
     out.mkdir(parents=True, exist_ok=True)
     n = len(p_map)
     given = {"t_ns": np.full(n, T0_NS, np.int64), **columns}
-    with TileWriter(out, list(FIELDS), tile_m=TILE_M) as writer:
+    with TileWriter(out, STORED, tile_m=TILE_M) as writer:
         writer.notes = MapNotes(voxel_m=0.01, crs=crs, sensors=("V1", "V2"))
         ijk = np.floor(p_map / TILE_M).astype(np.int64)
         for key in np.unique(ijk, axis=0):

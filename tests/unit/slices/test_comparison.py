@@ -16,9 +16,12 @@ from recon4.store.atomic import write_json
 from tests.unit.slices.room_map import wall, write_map
 from tests.unit.slices.test_references import BOX, reference_wall, write_mesh
 
+X_M = 62 * 2.0**-11
+"""A place of a wall that a tile stores exactly, about 3 cm."""
+
 
 def test_the_table_says_how_far_the_map_is_off_and_to_which_side(tmp_path):
-    p, normal = wall(np.random.default_rng(2), 20_000, x_m=0.03, sigma_m=0.0)
+    p, normal = wall(np.random.default_rng(2), 20_000, x_m=X_M, sigma_m=0.0)
     tiles = write_map(tmp_path / "map", p, normal=normal.astype(np.float16))
     reference = reference_wall(tmp_path)
 
@@ -27,11 +30,11 @@ def test_the_table_says_how_far_the_map_is_off_and_to_which_side(tmp_path):
     )
 
     first, second = found.slices
-    assert first.mean_m == pytest.approx(0.03, abs=1e-4)
+    assert first.mean_m == pytest.approx(X_M, abs=1e-4)
     assert (first.ratio_within_2cm, first.ratio_within_5cm) == (0.0, 1.0)
-    assert first.signed.mean_m == pytest.approx(0.03, abs=1e-4)  # towards the one who saw it
+    assert first.signed.mean_m == pytest.approx(X_M, abs=1e-4)  # towards the one who saw it
     assert first.signed.sd_m < 1e-4 and first.signed.points == first.points
-    assert first.signed.shift_m == (pytest.approx(0.03, abs=1e-4), None, None)
+    assert first.signed.shift_m == (pytest.approx(X_M, abs=1e-4), None, None)
     assert second.mean_m is second.signed.mean_m is None
     assert found.point_weighted.mean_m == pytest.approx(found.plain_mean_m)
     at = int(np.argmax(found.histogram))
@@ -40,7 +43,7 @@ def test_the_table_says_how_far_the_map_is_off_and_to_which_side(tmp_path):
     rows = to_csv(found).splitlines()
     assert "# against wall.xyz: ✓ The reference fits" in to_csv(found)
     assert rows[1].split(",")[3:] == [
-        *("3.00", "0.00", "100.00", str(first.points), "3.00", "0.00", "3.00", "–", "–"),
+        *("3.03", "0.00", "100.00", str(first.points), "3.03", "0.00", "3.03", "–", "–"),
     ]
     assert rows[2] == "z = 9.000 m,0,0,–,–,–,0,–,–,–,–,–"
 

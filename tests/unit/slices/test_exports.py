@@ -145,7 +145,7 @@ def test_a_laz_whose_writer_was_killed_leaves_nothing_beside_it(tiles, tmp_path,
     temporary.mkdir()
     monkeypatch.setenv("TMPDIR", str(temporary))
     monkeypatch.setattr(tempfile, "tempdir", str(temporary))
-    command = [sys.executable, "-c", KILLED, str(tiles.tiles[0].folder.parent), str(out / "s.laz")]
+    command = [sys.executable, "-c", KILLED, str(tiles.columns.folder.parent), str(out / "s.laz")]
 
     ended = subprocess.run(command, capture_output=True, check=False, timeout=300.0)
 
@@ -259,7 +259,7 @@ def test_coordinates_of_another_place_are_refused():
 
 
 def test_a_map_without_a_place_is_local(tiles):
-    folder = tiles.tiles[0].folder.parent
+    folder = tiles.columns.folder.parent
 
     assert frame_of({"map": folder}).text == "map frame (local), x y z, z up, meters"
 

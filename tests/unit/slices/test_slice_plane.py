@@ -30,14 +30,14 @@ PLANES = [
 
 @pytest.mark.parametrize("plane", PLANES, ids=lambda plane: plane.kind)
 def test_a_cut_holds_exactly_the_points_within_half_its_thickness(cloud, tiles, plane):
-    stored = np.concatenate([tile.xyz_m() for tile in tiles])  # as float32 of their tile
+    stored = np.concatenate([tile.xyz_m() for tile in tiles])  # in steps of half a millimeter
     expected = np.abs((stored - plane.origin_m) @ plane.normal) <= plane.thickness_m / 2.0
 
     parts = list(points_in(tiles, plane))
 
     found = np.concatenate([plane.to_map(part.uvd) for part in parts])
     assert len(found) == expected.sum() > 50
-    assert np.abs(sorted_rows(found) - sorted_rows(stored[expected])).max() < 1e-9
+    assert np.abs(sorted_rows(np.round(found, 11)) - sorted_rows(stored[expected])).max() < 1e-9
 
 
 @pytest.mark.parametrize("plane", PLANES, ids=lambda plane: plane.kind)
@@ -95,7 +95,7 @@ def test_far_from_the_origin_nothing_is_lost(tmp_path):
     part = next(points_in(tiles, SlicePlane.horizontal(300.0, thickness_m=0.004)))
 
     assert len(part) == 1
-    assert part.uvd[0, :2] == pytest.approx(p[0, :2], abs=1e-6)
+    assert part.uvd[0, :2] == pytest.approx(p[0, :2], abs=2.5e-4)
 
 
 def test_a_moved_cut_gives_moved_points_the_same_place():

@@ -60,7 +60,7 @@ def test_the_viewer_draws_either(folder, surface, x_m):
     part, tile = cloud.part((0, 0)), cloud.tiles.tiles[0]
     for x in (cloud.base.p_part[:, 0] + cloud.base.origin_m[0], part.p_part[:, 0]):
         assert np.abs(x - x_m).max() < 1e-6
-    assert np.abs(cloud.column(tile, "xyz")[:, 0] - x_m).max() < 1e-6
+    assert np.abs(tile.read(["xyz"])["xyz"][:, 0] - x_m).max() < 1e-6
     view = ViewState(surface=surface)
     assert view_from_json(view.to_json()) == view
     expected = {"fitted": "On fitted surfaces, 0 ", "raw": "As measured, 0 "}[surface]

@@ -31,7 +31,7 @@ WORK = [
     if not name.startswith("_")
     if function.__module__ == module.__name__ or name in getattr(module, "__all__", ())
 ]
-HELPERS = {"reference_of", "span_of"}
+HELPERS = {"map_of", "reference_of", "span_of"}
 """Not called through the pool."""
 ROW = SliceError("z = 1.00 m", 10, 1, 0.01, 0.9, 1.0)
 CHANGE = Difference(1.0, 2.0, 5, 4, (Move(3, 30, 10**18, 0.1),), ((10, 40),), ())

@@ -30,9 +30,10 @@ class Rows:
     def __len__(self) -> int:
         return len(range(self.start, self.stop, self.step))
 
-    def within(self, offset: int) -> slice:
-        """The same rows of a file in which the tile begins at ``offset``."""
-        return slice(offset + self.start, offset + self.stop, self.step)
+    @property
+    def slice(self) -> slice:
+        """The same for indexing."""
+        return slice(self.start, self.stop, self.step)
 
 
 def base_step(points: int, most: int) -> int:

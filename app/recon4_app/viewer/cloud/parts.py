@@ -1,6 +1,6 @@
 """The map as the viewer needs it: parts of tiles with values to color by, read when asked for.
 
-Nothing but the coarsest sample is held in memory; the rest is mapped from the stage's files.
+Nothing but the coarsest sample is held in memory; the rest is read from the stage's files.
 """
 
 from __future__ import annotations
@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from recon4.geometry.se3 import Array
-from recon4.mapping.columns import column_file
 from recon4.mapping.tile import DEVIATION
-from recon4.mapping.tiles import RAW_OFFSET, Surface, Tile, TileSet
+from recon4.mapping.tiles import Surface, TileSet
+from recon4.mapping.tuning import TILES
 from recon4_app.viewer.client.view import COLOR_BY, ColorBy
 from recon4_app.viewer.cloud.lod import Chunk, Rows, TileBoxes, base_step, chunks_of
 from recon4_app.viewer.cloud.palette import (
@@ -61,25 +61,24 @@ class CloudPart:
 class Cloud:
     """A finished map."""
 
-    def __init__(self, artifact: Path, *, began_ns: int = 0, surface: Surface = "fitted") -> None:
+    def __init__(
+        self, map_: Path | TileSet, *, began_ns: int = 0, surface: Surface = "fitted"
+    ) -> None:
         """Open it.
 
         Args:
-            artifact: Folder of the stage ``map``.
+            map_: Folder of the stage ``map``, or what is open of it.
             began_ns: When the recording began [ns].
             surface: Where points are drawn; a map without fitted surfaces has them as measured.
 
         Raises:
             StoreError: If the map is missing or damaged.
         """
-        self.tiles = TileSet.open(artifact).on(surface)
-        self._artifact = artifact
+        if isinstance(map_, Path):
+            map_ = TileSet.open(map_, kept_bytes=TILES.kept_bytes)
+        self._every = map_
+        self.tiles = self._every.on(surface)
         self.began_ns = began_ns
-        folder = artifact / "tiles"
-        self._columns = {
-            name: np.load(folder / column_file(folder, name), mmap_mode="r").view(np.ndarray)
-            for name in self.tiles.fields
-        }
         step = base_step(len(self.tiles), CLOUD_PARTS.base_points)
         self._chunks = [chunks_of(len(tile), step) for tile in self.tiles]
         self._painted = _Painted(CLOUD_PARTS.painted_points)
@@ -97,18 +96,18 @@ class Cloud:
     def _measured(self) -> Cloud:
         if self.tiles.surface == "raw":
             return self
-        return Cloud(self._artifact, began_ns=self.began_ns, surface="raw")
+        return Cloud(self._every, began_ns=self.began_ns, surface="raw")
 
     @cached_property
     def _strays(self) -> Cloud:
         if not self.tiles.strays:
             return self
-        return Cloud(self._artifact, began_ns=self.began_ns, surface="strays")
+        return Cloud(self._every, began_ns=self.began_ns, surface="strays")
 
     @property
     def colors(self) -> tuple[ColorBy, ...]:
         """Attributes by which the points can be colored."""
-        return tuple(color for color in COLOR_BY if FIELD_OF[color] in self._columns)
+        return tuple(color for color in COLOR_BY if FIELD_OF[color] in self.tiles.fields)
 
     @cached_property
     def boxes(self) -> TileBoxes:
@@ -163,20 +162,10 @@ class Cloud:
         """What the points of a chunk (None = the coarsest sample) are colored by, (N,)."""
         return self._base_values(color_by) if chunk is None else self._values(chunk, color_by)
 
-    def column(self, tile: Tile, name: str) -> NDArray[Any]:
-        """All rows of a field in a tile, mapped."""
-        return self._read(name, slice(tile.start, tile.stop))
-
     def _rows(self, field: str, chunk: Chunk) -> NDArray[Any]:
         row, number = chunk
         rows: Rows = self._chunks[row][number]
-        return self._read(field, rows.within(self.tiles.tiles[row].start))
-
-    def _read(self, field: str, rows: slice) -> NDArray[Any]:
-        values = self._columns[field][rows]
-        if field == "xyz" and self.tiles.surface == "raw" and RAW_OFFSET in self._columns:
-            values = values + self._columns[RAW_OFFSET][rows].astype(np.float32)
-        return values
+        return self.tiles.tiles[row].read([field], rows=rows.slice)[field]
 
     def _base_values(self, color_by: ColorBy) -> NDArray[Any]:
         kept: dict[ColorBy, NDArray[Any]] = self.__dict__.setdefault("_base", {})

@@ -114,7 +114,7 @@ def _first_hit(cloud: Cloud, ray: Ray, widening: float) -> tuple[Tile, int] | No
         if not np.isfinite(entry_m[row]) or (best is not None and entry_m[row] > best[0]):
             break
         tile = cloud.tiles.tiles[row]
-        hit = _hit_in_tile(cloud.column(tile, "xyz"), tile, ray, widening=widening)
+        hit = _hit_in_tile(tile.read(["xyz"])["xyz"], tile, ray, widening=widening)
         if hit is not None and (best is None or hit[0] < best[0]):
             best = (hit[0], tile, hit[1])
     return best and best[1:]
@@ -162,20 +162,19 @@ def _hit_in_tile(
 
 
 def _picked(cloud: Cloud, tile: Tile, row: int) -> PickedPoint:
-    def value(name: str) -> float:
-        return float(cloud.column(tile, name)[row])
-
-    p_map = cloud.column(tile, "xyz")[row].astype(np.float64) + tile.origin_m
+    names = ["xyz", "t_ns", "sensor", "ring", "frame_id", "intensity", "range_m"]
     known = "intensity_normalized" in cloud.tiles.fields
+    names += ["intensity_normalized"] if known else []
+    found = {name: values[0] for name, values in tile.read(names, rows=slice(row, row + 1)).items()}
     return PickedPoint(
-        p_map=as_position(p_map),
-        t_ns=int(cloud.column(tile, "t_ns")[row]),
-        sensor=int(value("sensor")),
-        ring=int(value("ring")),
-        frame_id=int(value("frame_id")),
-        intensity=int(value("intensity")),
-        intensity_normalized=value("intensity_normalized") if known else None,
-        range_m=value("range_m"),
+        p_map=as_position(found["xyz"].astype(np.float64) + tile.origin_m),
+        t_ns=int(found["t_ns"]),
+        sensor=int(found["sensor"]),
+        ring=int(found["ring"]),
+        frame_id=int(found["frame_id"]),
+        intensity=int(found["intensity"]),
+        intensity_normalized=float(found["intensity_normalized"]) if known else None,
+        range_m=float(found["range_m"]),
     )
 
 

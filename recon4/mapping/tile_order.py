@@ -1,0 +1,68 @@
+"""In which order the rows of a tile are stored, and where its blocks end."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.kernels.tile_packing import spatial_rows
+from recon4.mapping.tuning import TILES
+
+Order = NDArray[np.int32]
+"""Rows of a block in spatial order, (N,)."""
+
+
+def progressive(rows: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Reorder rows given in spatial order so that every prefix samples all of them evenly.
+
+    Stratum ``s`` has every 64th row from the ``s``-th on. The strata are in bit-reversed order, so
+    that halves, quarters and eighths are regular samples too. Within a stratum the order stays
+    spatial, which compresses well. `spatial_order` is the inverse.
+    """
+    return rows[np.concatenate([np.arange(s, len(rows), TILES.strata) for s in _strata().tolist()])]
+
+
+def spatial_order(count: int) -> NDArray[np.intp]:
+    """Rows of a tile of ``count`` points in spatial order, the inverse of `progressive`."""
+    inverse = np.empty(count, np.intp)
+    inverse[progressive(np.arange(count))] = np.arange(count)
+    return inverse
+
+
+def _strata() -> NDArray[np.int64]:
+    """The strata of a tile in their stored order, (S,)."""
+    bits = TILES.strata.bit_length() - 1
+    return np.array([int(f"{s:0{bits}b}"[::-1], 2) for s in range(TILES.strata)])
+
+
+def cut(count: int, strays: int = 0) -> Sequence[tuple[int, int]]:
+    """First row of each block of a tile, and the row after its last: strays are blocks apart."""
+    own = count - strays
+    ends = _block_ends(own) + [own + end for end in _block_ends(strays)]
+    return list(pairwise([0, *ends]))
+
+
+def _block_ends(count: int) -> list[int]:
+    """Where the blocks of a part of a tile end: the first sixteenth, then about equal ones.
+
+    A small sample of many tiles is in the first block of each.
+    """
+    sample = min(TILES.block, -(-count // TILES.sample))
+    many = -(-(count - sample) // TILES.block)
+    return [sample + (count - sample) * k // max(many, 1) for k in range(many + 1) if count]
+
+
+def spatial_order_of(count: int, first: int, stop: int) -> Order:
+    """Rows of a block, counted from its first, in spatial order.
+
+    Args:
+        count: Rows of its part of the tile.
+        first: First of them in the block.
+        stop: The one after its last.
+    """
+    order = np.empty(stop - first, np.int32)
+    spatial_rows(count, _strata(), first, stop, order)
+    return order

@@ -1,0 +1,110 @@
+"""A block of a tile's rows as compressed bytes, field by field.
+
+Each field becomes whole numbers: lengths and times in steps, all else as it is. The rows of a block
+are stored in spatial order, where neighbors are alike; the bytes of the numbers stand apart, and
+Zstandard with a checksum compresses them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.kernels.tile_packing import bits_to_bytes, bytes_to_numbers, numbers_to_bits
+from recon4.mapping.tile import DEVIATION, FIELDS
+from recon4.mapping.tile_order import Order
+from recon4.mapping.tuning import TILES
+from recon4.store.compressed import compress, expand
+from recon4.store.tuning import PACKING
+
+
+@dataclass(frozen=True, slots=True)
+class FieldPacking:
+    """How the numbers of a field are stored."""
+
+    along: bool = False
+    """As differences to the point before: for what is alike on a surface."""
+    step: float = 0.0
+    """In whole steps of this [unit of the field]; 0 = exact."""
+
+
+FIELD_PACKING: Mapping[str, FieldPacking] = {
+    "xyz": FieldPacking(along=True, step=PACKING.step_m),
+    "intensity": FieldPacking(along=True),
+    "intensity_normalized": FieldPacking(along=True, step=TILES.intensity_step),
+    "ring": FieldPacking(),
+    "sensor": FieldPacking(),
+    "echo": FieldPacking(),
+    "frame_id": FieldPacking(along=True),
+    "t_ns": FieldPacking(step=TILES.time_step_ns),
+    "normal": FieldPacking(along=True),
+    "raw_offset_m": FieldPacking(step=PACKING.step_m),
+    "surface_returns": FieldPacking(along=True),
+    "surface_sd_m": FieldPacking(along=True),
+    "planarity": FieldPacking(along=True),
+    DEVIATION: FieldPacking(along=True, step=TILES.deviation_step_m),
+}
+"""Of every field that is stored."""
+
+
+def pack(name: str, values: NDArray[Any], order: Order) -> tuple[bytes, int]:
+    """A field of a block, compressed, and the bytes of each of its numbers.
+
+    Args:
+        name: Of the field.
+        values: (N,) or (N, K); times from the start of their multiframes.
+        order: Of the rows.
+    """
+    numbers = _numbers(name, values).reshape(len(order), -1)
+    bits = np.empty(numbers.shape[::-1], np.uint64)
+    packing, halves = FIELD_PACKING[name], FIELDS[name][0] == "<f2"
+    width = numbers_to_bits(numbers, order, packing.along, halves and not packing.step, bits)
+    out = np.empty((len(bits), width, len(order)), np.uint8)
+    bits_to_bytes(bits, out)
+    return compress(out.data), width
+
+
+def unpack(name: str, data: bytes, width: int, *, order: Order, where: str) -> NDArray[Any]:
+    """The values of `pack`, (N,) or (N, K).
+
+    Args:
+        name: Of the field.
+        data: What `pack` returned.
+        width: What it returned, too.
+        order: As given to it.
+        where: File and block, for errors.
+
+    Raises:
+        StoreError: If the data are damaged or of another number of rows.
+    """
+    dtype, many = np.dtype(FIELDS[name][0]), FIELDS[name][1]
+    packing, count = FIELD_PACKING[name], len(order)
+    expanded = expand(data, many * width * count, where)
+    packed = np.frombuffer(expanded, np.uint8).reshape(many, width, count)
+    in_steps = packing.step > 0.0 and dtype.kind == "f"
+    out = np.empty((count, many), np.float32 if in_steps else np.int64)
+    bytes_to_numbers(packed, order, packing.along, packing.step if in_steps else 1.0, out)
+    found = out.reshape(count) if many == 1 else out
+    if dtype.kind != "f":
+        return (found * int(packing.step) if packing.step else found).astype(dtype, copy=False)
+    return found.astype(dtype, copy=False) if in_steps else found.astype(np.int16).view(dtype)
+
+
+def as_stored(name: str, values: NDArray[Any]) -> NDArray[Any]:
+    """The values of a field in steps as they will be read, in double precision."""
+    return _numbers(name, values) * FIELD_PACKING[name].step
+
+
+def _numbers(name: str, values: NDArray[Any]) -> NDArray[np.int64]:
+    """Whole numbers of a field, in steps or as they are; of halves their bits."""
+    dtype, step = FIELDS[name][0], FIELD_PACKING[name].step
+    column = np.ascontiguousarray(values, dtype=dtype)
+    if step > 0.0 and column.dtype.kind == "f":
+        return np.rint(column.astype(np.float64) / step).astype(np.int64)
+    if step > 0.0:
+        return (column + int(step) // 2) // int(step)
+    return (column.view(np.int16) if column.dtype.kind == "f" else column).astype(np.int64)
