@@ -26,8 +26,8 @@ def export(
         Path,
         typer.Argument(
             help="File to write; the suffix selects the format: .laz, .copc.laz (COPC), "
-            ".e57 (scans with poses), .ply; .txt = KITTI poses; .3dtk = folder of scans with poses "
-            "for 3DTK; .csv, .geojson = the findings."
+            ".e57 (scans with poses), .ply, .pcd, .xyz; .txt = KITTI poses; .3dtk = folder of "
+            "scans with poses for 3DTK; .csv, .geojson = the findings."
         ),
     ],
     *,
@@ -56,7 +56,7 @@ def export(
     ending = file.suffix.lower()
     if ending in (".txt", *ENDINGS):
         if crs:
-            raise typer.BadParameter("--crs is for maps: .laz, .copc.laz, .e57, .ply")
+            raise typer.BadParameter("--crs is for maps, as .laz")
         _export_text(project, file, draft=draft)
         return
     with watcher() as progress:

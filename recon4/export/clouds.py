@@ -10,8 +10,10 @@ from recon4.errors import ConfigError
 from recon4.export.copc import export_copc
 from recon4.export.laz import export_laz
 from recon4.export.names import COPC, check_name
+from recon4.export.pcd import export_pcd
 from recon4.export.ply import export_ply
 from recon4.export.points import CRS_OF_MAP, OutputCrs
+from recon4.export.xyz import export_xyz
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress
 
@@ -43,6 +45,8 @@ CLOUD_FORMATS = {
     COPC: CloudFormat(export_copc, classes=True),
     ".laz": CloudFormat(export_laz, classes=True),
     ".ply": CloudFormat(export_ply, classes=False),
+    ".pcd": CloudFormat(export_pcd, classes=False),
+    ".xyz": CloudFormat(export_xyz, classes=False),
 }
 """Ending -> format; the first that matches counts."""
 

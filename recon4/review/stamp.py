@@ -145,6 +145,8 @@ _WRITERS: dict[str, Callable[[BinaryIO, BinaryIO, Stamp], None]] = {
     ".laz": _laz,
     ".ply": _after_first_line("comment"),
     ".g2o": _after_first_line("#"),
+    ".pcd": _after_first_line("#"),
+    ".xyz": _after_first_line("//"),
     ".csv": _after_first_line("#"),
     ".dxf": _dxf,
     ".tum": _comment_first,

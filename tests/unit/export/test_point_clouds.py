@@ -1,19 +1,23 @@
 """Exports of the map: LAZ and PLY."""
 
+import re
 import subprocess
 import sys
 from datetime import date
 
 import laspy
 import numpy as np
+import open3d
 import pyproj
 import pytest
 
 from recon4.errors import ConfigError, GeoreferenceError, StoreError
 from recon4.export import laz
 from recon4.export.laz import export_laz
+from recon4.export.pcd import export_pcd
 from recon4.export.ply import export_ply
 from recon4.export.points import OutputCrs
+from recon4.export.xyz import export_xyz
 from recon4.intensity.normalize import learn_intensity
 from recon4.intensity.tuning import IntensityTuning
 from recon4.mapping.build import MapInputs, build_map
@@ -149,13 +153,39 @@ def test_ply_holds_every_point_with_all_its_fields(folder, tmp_path):
     np.testing.assert_allclose(points["nz"], column(tiles, "normal")[:, 2], atol=1e-6)
 
 
+def test_pcd_holds_every_point_relative_to_its_offset(folder, tmp_path):
+    tiles = TileSet.open(folder)
+    assert export_pcd(folder, tmp_path / "map.pcd") == len(tiles)
+
+    head = (tmp_path / "map.pcd").read_bytes().partition(b"\nVERSION")[0].decode()
+    offset = np.array(re.search(r"# offset (\S+) (\S+) (\S+)$", head).groups(), float)
+    cloud = open3d.t.io.read_point_cloud(str(tmp_path / "map.pcd")).point
+    xyz = np.concatenate([t.xyz_m()[t.spatial_order()] for t in tiles]) + UTM.origin_m
+    np.testing.assert_allclose(cloud["positions"].numpy() + offset, xyz, rtol=0, atol=1e-5)
+    normalized = column(tiles, "intensity_normalized")
+    np.testing.assert_array_equal(cloud["intensity"].numpy()[:, 0], normalized)
+    np.testing.assert_allclose(cloud["normals"].numpy(), column(tiles, "normal"), atol=1e-6)
+
+
+def test_xyz_has_a_line_for_every_point(folder, tmp_path):
+    tiles = TileSet.open(folder)
+    assert export_xyz(folder, tmp_path / "map.xyz") == len(tiles)
+
+    first = (tmp_path / "map.xyz").read_text().partition("\n")[0]
+    rows = np.loadtxt(tmp_path / "map.xyz", comments="//")
+    xyz = np.concatenate([t.xyz_m()[t.spatial_order()] for t in tiles]) + UTM.origin_m
+    assert first == "//X Y Z Intensity"
+    np.testing.assert_allclose(rows[:, :3], xyz, rtol=0, atol=5.1e-5)
+    np.testing.assert_allclose(rows[:, 3], column(tiles, "intensity_normalized"), atol=0.051)
+
+
 def test_ply_names_the_crs_of_its_coordinates(folder, tmp_path):
     export_ply(folder, tmp_path / "map.ply", OutputCrs("EPSG:32632", lambda xyz: xyz))
 
     assert b"comment crs EPSG:32632\n" in (tmp_path / "map.ply").read_bytes()[:400]
 
 
-@pytest.mark.parametrize("export", [export_laz, export_ply])
+@pytest.mark.parametrize("export", [export_laz, export_ply, export_pcd, export_xyz])
 def test_an_empty_map_and_a_wrong_name_are_refused(export, folder, tmp_path):
     walk = room_walk(frames=2)
     empty = Walk([f.take(slice(0, 0)) for f in walk.frames], walk.rig, walk.trajectory)
@@ -165,7 +195,7 @@ def test_an_empty_map_and_a_wrong_name_are_refused(export, folder, tmp_path):
     with pytest.raises(ConfigError, match="no points"):
         export(tmp_path / "empty", tmp_path / f"map.{suffix}")
     with pytest.raises(ConfigError, match=f"must be named .{suffix}"):
-        export(folder, tmp_path / "map.xyz")
+        export(folder, tmp_path / "map.bin")
     with pytest.raises(StoreError, match="not the list"):
         export(tmp_path, tmp_path / f"map.{suffix}")
     assert not list(tmp_path.glob(f"*.{suffix}"))

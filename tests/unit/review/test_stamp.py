@@ -40,6 +40,8 @@ def test_a_laz_file_keeps_its_points_and_all_its_records(tmp_path, evlr):
     [
         ("a.ply", "ply\nformat ascii 1.0\nend_header\n1 2 3\n", 1),
         ("a.g2o", "# recon4\nVERTEX\n", 1),
+        ("a.pcd", "# .PCD v0.7\nVERSION 0.7\n", 1),
+        ("a.xyz", "//X Y Z Intensity\n1 2 3 4\n", 1),
         ("a.csv", "# recon4 slice\nx,y\n", 1),
         ("a.tum", "1 0 0 0 0 0 0 1\n", 0),
         ("a.yaml", "image: map.png\n", 0),
@@ -54,7 +56,7 @@ def test_a_text_file_gets_one_line_more(tmp_path, name, text, line):
     said = lines.pop(line)
     assert lines == text.splitlines()
     prefix, _, words = said.partition(" recon4 approval ")
-    assert prefix in ("#", "comment") and json.loads(words)["hash"] == "ab"
+    assert prefix in ("#", "comment", "//") and json.loads(words)["hash"] == "ab"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,54 @@
+"""The map as lines of text: coordinates and intensity."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from recon4.export.names import check_name
+from recon4.export.points import CRS_OF_MAP, OutputCrs, blocks, center, output_transform
+from recon4.mapping.tiles import TileSet
+from recon4.progress import Progress, Silent
+from recon4.store.atomic import atomic_file
+
+
+def export_xyz(
+    map_: Path | TileSet,
+    path: Path,
+    output: OutputCrs = CRS_OF_MAP,
+    *,
+    strays: bool = False,
+    progress: Progress | None = None,
+) -> int:
+    """Write a map as text, streaming: x, y and z to 0.1 mm, and the intensity, a point each line.
+
+    Intensity is the normalized one if the map has it. The first line names the columns, as
+    CloudCompare reads it.
+
+    Args:
+        map_: Artifact of the stage ``map``, or what is open of it.
+        path: File to write, ``.xyz``.
+        output: CRS of the coordinates; text has no place to name it.
+        strays: Not with this format, which has no classes.
+        progress: Who watches.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the map has no points, or the name is not one of such a file.
+        StoreError: If the file cannot be written (`NoSpace`: disk full).
+    """
+    assert not strays
+    check_name(path, ".xyz")
+    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
+    transform = output_transform(tiles, output.map_to_crs)
+    center(tiles, transform)
+    name = "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
+    with atomic_file(path) as temporary, temporary.open("wb") as file:
+        file.write(b"//X Y Z Intensity\n")
+        for block in blocks(tiles, [name], transform=transform, progress=progress or Silent()):
+            rows = np.column_stack([block.xyz, block.columns[name]])
+            np.savetxt(file, rows, fmt="%.4f %.4f %.4f %.1f")
+    return len(tiles)
