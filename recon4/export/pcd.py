@@ -5,10 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, OutputCrs, blocks, center, output_transform
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, output_transform
+from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
 from recon4.progress import Progress, Silent
@@ -58,18 +60,14 @@ def export_pcd(
     names = [intensity, "normal", "ring", "frame_id", "t_ns"]
     row, absolute = np.dtype(list(_FIELDS)), is_absolute(tiles.first_ns)
     crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
-    head = _head(row, len(tiles), offset.tolist(), crs)
+    head = _head(len(tiles), offset.tolist(), crs)
     with atomic_file(path) as temporary:
         with temporary.open("wb") as file:
             file.write(head)
             for block in blocks(tiles, names, transform=transform, progress=progress or Silent()):
                 rows = np.zeros(len(block.xyz), row)
-                rows["x"], rows["y"], rows["z"] = (block.xyz - offset).T
-                for axis, name in enumerate(("normal_x", "normal_y", "normal_z")):
-                    rows[name] = block.columns["normal"][:, axis]
+                _fill(rows, block, offset)
                 rows["intensity"] = block.columns[intensity]
-                rows["ring"] = block.columns["ring"]
-                rows["frame_id"] = block.columns["frame_id"]
                 rows["gps_time"] = point_time_s(block.columns["t_ns"], absolute=absolute)
                 file.write(rows.data)
         expected, found = len(head) + len(tiles) * row.itemsize, temporary.stat().st_size
@@ -78,7 +76,16 @@ def export_pcd(
     return len(tiles)
 
 
-def _head(row: np.dtype[np.void], count: int, offset: list[float], crs: str) -> bytes:
+def _fill(rows: NDArray[np.void], block: Block, offset: Array) -> None:
+    rows["x"], rows["y"], rows["z"] = (block.xyz - offset).T
+    for axis, name in enumerate(("normal_x", "normal_y", "normal_z")):
+        rows[name] = block.columns["normal"][:, axis]
+    rows["ring"] = block.columns["ring"]
+    rows["frame_id"] = block.columns["frame_id"]
+
+
+def _head(count: int, offset: list[float], crs: str) -> bytes:
+    row = np.dtype(list(_FIELDS))
     names = row.names or ()
     kinds = [row[name] for name in names]
     comments = [f"# crs {' '.join(crs.split())}"] if crs else []
