@@ -36,7 +36,7 @@ STATED_GOAL = (0.5, 4.0)
 """Stated 2 sigma as a multiple of the true 95 % error."""
 _ALARMS = {str(Level.CHECK), str(Level.DO_NOT_USE)}
 NAMES = {
-    "extrinsics": {"RIG-CONTRADICTED"},
+    "extrinsics": {"RIG-CONTRADICTED", "IMU-GYRO-ROTATION"},
     "swap-lidars": {"RIG-EXCHANGED", "RIG-CONTRADICTED"},
     "lidar-clock": {"RIG-CONTRADICTED", "IMU-CLOCK"},
     "imu-rotation": {"RIG-CONTRADICTED", "IMU-GYRO-ROTATION"},
