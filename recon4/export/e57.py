@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import recon4
 from recon4.errors import StoreError
-from recon4.export.points import OutputCrs, blocks, center, output_transform
+from recon4.export.points import OutputCrs, blocks, center, intensity_field, output_transform
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
@@ -100,8 +100,7 @@ def _sort_by_scan(
     """Write the points of each scan, relative to its pose, into a file; the scans with points."""
     transform = output_transform(tiles, output.map_to_crs)
     origins, R_map_body = transform(scans.T_map_body.t), scans.T_map_body.R
-    normalized = "intensity_normalized" in tiles.fields
-    name = "intensity_normalized" if normalized else "intensity"
+    name = intensity_field(tiles)
     stream = blocks(tiles, [name, "frame_id"], transform=transform, progress=progress)
     for block in stream:
         frames = block.columns["frame_id"].astype(np.int64)

@@ -9,7 +9,15 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, output_transform
+from recon4.export.points import (
+    CRS_OF_MAP,
+    Block,
+    OutputCrs,
+    blocks,
+    center,
+    intensity_field,
+    output_transform,
+)
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
@@ -55,12 +63,10 @@ def export_pcd(
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     transform = output_transform(tiles, output.map_to_crs)
     offset = center(tiles, transform)
-    normalized = "intensity_normalized" in tiles.fields
-    intensity = "intensity_normalized" if normalized else "intensity"
+    intensity = intensity_field(tiles)
     names = [intensity, "normal", "ring", "frame_id", "t_ns"]
     row, absolute = np.dtype(list(_FIELDS)), is_absolute(tiles.first_ns)
-    crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
-    head = _head(len(tiles), offset.tolist(), crs)
+    head = _head(tiles, offset.tolist(), output)
     with atomic_file(path) as temporary:
         with temporary.open("wb") as file:
             file.write(head)
@@ -84,10 +90,11 @@ def _fill(rows: NDArray[np.void], block: Block, offset: Array) -> None:
     rows["frame_id"] = block.columns["frame_id"]
 
 
-def _head(count: int, offset: list[float], crs: str) -> bytes:
+def _head(tiles: TileSet, offset: list[float], output: OutputCrs) -> bytes:
     row = np.dtype(list(_FIELDS))
     names = row.names or ()
     kinds = [row[name] for name in names]
+    crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
     comments = [f"# crs {' '.join(crs.split())}"] if crs else []
     lines = [
         "# .PCD v0.7 - Point Cloud Data file format",
@@ -98,10 +105,10 @@ def _head(count: int, offset: list[float], crs: str) -> bytes:
         f"SIZE {' '.join(str(kind.itemsize) for kind in kinds)}",
         f"TYPE {' '.join(kind.kind.upper() for kind in kinds)}",
         f"COUNT {' '.join('1' for _ in names)}",
-        f"WIDTH {count}",
+        f"WIDTH {len(tiles)}",
         "HEIGHT 1",
         "VIEWPOINT 0 0 0 1 0 0 0",
-        f"POINTS {count}",
+        f"POINTS {len(tiles)}",
         "DATA binary",
     ]
     return ("\n".join(lines) + "\n").encode("ascii", "replace")

@@ -70,6 +70,11 @@ def blocks(
             progress.advance(len(rows))
 
 
+def intensity_field(tiles: TileSet) -> str:
+    """The intensities of a format with one of them: normalized, or raw if there are no others."""
+    return "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
+
+
 def center(tiles: TileSet, transform: ToCrs) -> NDArray[np.float64]:
     """Whole meters near the middle of the map in the coordinates of the export, (3,).
 

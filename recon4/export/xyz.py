@@ -7,7 +7,14 @@ from pathlib import Path
 import numpy as np
 
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, OutputCrs, blocks, center, output_transform
+from recon4.export.points import (
+    CRS_OF_MAP,
+    OutputCrs,
+    blocks,
+    center,
+    intensity_field,
+    output_transform,
+)
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
 from recon4.store.atomic import atomic_file
@@ -45,7 +52,7 @@ def export_xyz(
     tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
     transform = output_transform(tiles, output.map_to_crs)
     center(tiles, transform)
-    name = "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
+    name = intensity_field(tiles)
     with atomic_file(path) as temporary, temporary.open("wb") as file:
         file.write(b"//X Y Z Intensity\n")
         for block in blocks(tiles, [name], transform=transform, progress=progress or Silent()):
