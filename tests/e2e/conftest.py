@@ -81,6 +81,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = [item for item in items if _asked_for(item)]
 
 
+@cache
 def _rank(path: Path) -> int:
     folder = Path(__file__).parent
     name = path.relative_to(folder).with_suffix("").as_posix() if folder in path.parents else ""
