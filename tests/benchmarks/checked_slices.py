@@ -2,7 +2,7 @@
 
     python -m tests.benchmarks.checked_slices FOLDER [POINTS]
 
-FOLDER receives a map (56 bytes a point) unless it is there.
+FOLDER receives a map (some 20 bytes a point) unless it is there.
 """
 
 from __future__ import annotations

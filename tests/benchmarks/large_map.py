@@ -30,7 +30,7 @@ TILE_M = 5.0
 
 
 def build_large_project(root: Path, *, points: int = 20_000_000) -> None:
-    """Make a finished project in an empty folder; needs 56 bytes a point on disk."""
+    """Make a finished project in an empty folder; needs some 20 bytes a point on disk."""
     with Project.open(root) as project:
         project.describe(preset="indoor", rig="4RECON")
         runner = StageRunner(project, Settings(), Silent())
