@@ -19,6 +19,7 @@ from recon4.export.tuning import OCTREE
 from recon4.progress import Progress
 
 Cell = tuple[int, int, int]
+Steps = NDArray[np.int64]
 Records = NDArray[np.void]
 """Point records with the fields X, Y and Z in steps."""
 
@@ -60,11 +61,10 @@ class Cube:
         edge = int((np.int64(high) - start).max()) + 1
         return Cube(_triple(start), max(OCTREE.bucket_bits, (edge - 1).bit_length()))
 
-    def inside(self, records: Records, level: int) -> NDArray[np.int64]:
-        """Indices of points in the cubes of a level, (3, N)."""
-        steps = np.stack([records[axis].astype(np.int64) for axis in "XYZ"])
-        steps -= np.array(self.low)[:, None]
-        return steps >> (self.bits - level)
+    def steps(self, records: Records) -> Steps:
+        """Steps of points from its lowest corner, (N, 3)."""
+        steps = np.stack([records[axis] for axis in "XYZ"], axis=1).astype(np.int64)
+        return steps - np.array(self.low)
 
 
 class PointFiles:
@@ -129,21 +129,19 @@ class Octree:
         return self._sampled(key, [(k, self._node(k, part)) for k, part in below if part])
 
     def _from_file(self, key: Key, path: Path) -> Records:
-        if path.stat().st_size <= OCTREE.points_in_memory * self.dtype.itemsize or self._at_end(
-            key
-        ):
-            records = np.fromfile(path, self.dtype)
-            path.unlink()
-            return self._grown(key, records)
-        split = dict(self._split(key, path))
-        return self._node(key, split)
+        fits = path.stat().st_size <= OCTREE.points_in_memory * self.dtype.itemsize
+        if not fits and not self._at_end(key):
+            return self._node(key, dict(self._split(key, path)))
+        records = np.fromfile(path, self.dtype)
+        path.unlink()
+        return self._grown(key, records, self.cube.steps(records), rows=np.arange(len(records)))
 
     def _split(self, key: Key, path: Path) -> Iterator[tuple[Key, Path]]:
         """The files of the eight nodes below a file that is too large, which is removed."""
         made = {}
         with path.open("rb") as file:
             while len(part := np.fromfile(file, self.dtype, OCTREE.points_in_memory)):
-                for octant, rows in self._octants(key, part):
+                for octant, rows in self._octants(key, self.cube.steps(part)):
                     child = list(key.children())[octant]
                     made[child] = path.with_name(f"{path.name}.{octant}")
                     with made[child].open("ab") as out:
@@ -151,22 +149,26 @@ class Octree:
         path.unlink()
         yield from made.items()
 
-    def _grown(self, key: Key, records: Records) -> Records:
-        """Points of a node of these in memory; all below it is written."""
-        if len(records) <= OCTREE.points_of_leaf or self._at_end(key):
-            return records
-        own = self._first_of_cells(key, records)
-        rest = records[~own]
+    def _grown(
+        self, key: Key, records: Records, steps: Steps, *, rows: NDArray[np.intp]
+    ) -> Records:
+        """Points of a node of those in some rows; all below it is written."""
+        if len(rows) <= OCTREE.points_of_leaf or self._at_end(key):
+            return records[rows]
+        inside = steps[rows]
+        own = self._first_of_cells(key, inside)
+        rest = np.flatnonzero(~own)
         children = list(key.children())
-        for octant, rows in self._octants(key, rest):
+        for octant, part in self._octants(key, inside[rest]):
             child = children[octant]
-            self._write(child, self._grown(child, rest[rows]))
-        return records[own]
+            self._write(child, self._grown(child, records, steps, rows=rows[rest[part]]))
+        return records[rows[own]]
 
     def _sampled(self, key: Key, parts: list[tuple[Key, Records]]) -> Records:
         """Sample the points of a node from its children, and write what is left of these."""
         taken = []
-        own = self._first_of_cells(key, np.concatenate([records for _, records in parts]))
+        steps = self.cube.steps(np.concatenate([records for _, records in parts]))
+        own = self._first_of_cells(key, steps)
         for child, records in parts:
             mine, own = own[: len(records)], own[len(records) :]
             taken.append(records[mine])
@@ -182,23 +184,21 @@ class Octree:
     def _at_end(self, key: Key) -> bool:
         return key.level >= self.cube.bits - OCTREE.side_bits
 
-    def _octants(self, key: Key, records: Records) -> Iterator[tuple[int, NDArray[np.intp]]]:
+    def _octants(self, key: Key, steps: Steps) -> Iterator[tuple[int, NDArray[np.intp]]]:
         """Rows of the points in each of the eight nodes below a node that has any."""
-        x, y, z = self.cube.inside(records, key.level + 1) & 1
-        octants = x | y << 1 | z << 2
+        octants = (steps >> (self.cube.bits - key.level - 1) & 1) @ np.array([1, 2, 4])
         for octant in range(8):
             rows = np.flatnonzero(octants == octant)
             if len(rows):
                 yield octant, rows
 
-    def _first_of_cells(self, key: Key, records: Records) -> NDArray[np.bool_]:
+    def _first_of_cells(self, key: Key, steps: Steps) -> NDArray[np.bool_]:
         """Mark the first point in each cell of a node, (N,)."""
-        x, y, z = self.cube.inside(records, key.level + OCTREE.side_bits) & (
-            (1 << OCTREE.side_bits) - 1
-        )
-        cells = x | y << OCTREE.side_bits | z << 2 * OCTREE.side_bits
-        first = np.zeros(len(records), np.bool_)
-        first[np.unique(cells, return_index=True)[1]] = True
+        bits = OCTREE.side_bits
+        cells = steps >> (self.cube.bits - key.level - bits) & ((1 << bits) - 1)
+        found = np.unique(cells @ np.array([1, 1 << bits, 1 << 2 * bits]), return_index=True)[1]
+        first = np.zeros(len(steps), np.bool_)
+        first[found] = True
         return first
 
 
