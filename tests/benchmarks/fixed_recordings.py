@@ -16,6 +16,7 @@ import resource
 import subprocess
 import sys
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -66,8 +67,14 @@ def main() -> None:
 
 
 def _map(code: Path, recording: Path, project: Path) -> Mapped:
+    beside = {"--imu": "imu.csv", "--gnss": "gnss.csv", "--rig": "rig.toml"}
+    more = [
+        (option, str(recording / name))
+        for option, name in beside.items()
+        if (recording / name).exists()
+    ]
     before_s = _processor_s()
-    _recon4(code, "process", str(recording), "--out", str(project))
+    _recon4(code, "process", str(recording), "--out", str(project), *chain(*more))
     took_s = _processor_s() - before_s
     model = ("--model", str(recording / "model.ply"))
     truth = ("--truth", str(recording / "truth.tum"))

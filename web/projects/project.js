@@ -180,7 +180,8 @@ function showStretch() {
   byId("viewer").scrollIntoView({ block: "nearest" });
   const shown = viewer.contentWindow.location;
   const loaded = shown.protocol !== "about:"; // before the first answer the frame has no address
-  if (loaded) shown.replace(shown.href.split("#")[0] + location.hash); // viser adds a query to it
+  if (loaded)
+    shown.replace(shown.href.split("#")[0] + location.hash); // viser adds a query to it
   else viewer.src = viewerUrl(state.id) + location.hash;
 }
 
