@@ -216,7 +216,7 @@ def test_a_reference_is_added_compared_aligned_and_removed(server):
         ("cut.ply", CUT_PLY, "cut: 1000 points"),
         ("nothing.laz", b"LASF" + bytes(300), "expected LAS 1.0 to 1.4, got 0.0"),
         ("words.csv", b"a;b;c\nd;e;f\n", "numbers"),
-        ("image.png", b"\x89PNG\r\n\x1a\n" + bytes(200), "expected a PLY"),
+        ("image.png", b"\x89PNG\r\n\x1a\n" + bytes(200), "expected a PCD, PLY"),
     ],
 )
 def test_a_damaged_reference_is_refused_in_words(server, name, content, words):

@@ -73,15 +73,32 @@ def _goes_back(head: _Arrivals) -> str:
 
 
 def _turns_to_and_fro(head: _Arrivals) -> str:
-    """Two sensors packet by packet: from each direction to that of the other."""
+    """Two sensors packet by packet: from each direction to that of the other.
+
+    One sensor turns evenly in the order of arrival, or in that of its times where a network
+    delivers its packets in another.
+    """
     azimuth_cdeg = head.layout.azimuth_cdeg(head.payloads)
     if azimuth_cdeg is None:
         return ""
-    steps_cdeg = np.diff(azimuth_cdeg) % 36000
-    usual_cdeg = float(np.median(steps_cdeg))
-    most_cdeg = max(MIXED_SENDERS.even_ratio * usual_cdeg, MIXED_SENDERS.even_cdeg)
-    even = float(np.mean(np.abs(steps_cdeg - usual_cdeg) <= most_cdeg))
+    stamps_ns = head.layout.stamps_ns(head.payloads)
+    in_time = np.argsort(stamps_ns, kind="stable")
+    orders = (np.arange(len(in_time)), in_time)
+    even = max(_evenness(azimuth_cdeg[order], stamps_ns[order]) for order in orders)
     return "their directions jump to and fro" if even < MIXED_SENDERS.even else ""
+
+
+def _evenness(azimuth_cdeg: NDArray[np.int64], stamps_ns: NDArray[np.int64]) -> float:
+    """Part of the steps from packet to packet that turn as far as their time says.
+
+    A step over lost packets turns as many times as far, and is even as well.
+    """
+    steps_cdeg, steps_ns = np.diff(azimuth_cdeg) % 36000, np.diff(stamps_ns)
+    usual_cdeg, usual_ns = float(np.median(steps_cdeg)), float(np.median(steps_ns))
+    times = steps_ns / usual_ns if usual_ns > 0.0 else np.ones(len(steps_ns))
+    off_cdeg = (steps_cdeg - times * usual_cdeg + 18000.0) % 36000.0 - 18000.0
+    most_cdeg = max(MIXED_SENDERS.even_ratio * usual_cdeg, MIXED_SENDERS.even_cdeg)
+    return float(np.mean(np.abs(off_cdeg) <= most_cdeg))
 
 
 def _comes_too_often(head: _Arrivals) -> str:
