@@ -51,7 +51,7 @@ def export(
     from recon4.cli.terminal import watcher
     from recon4.export.findings import ENDINGS
     from recon4.export.map_files import MapExport, export_map
-    from recon4.export.scan_files import export_3dtk, export_map_scans
+    from recon4.export.scan_files import export_3dtk
 
     ending = file.suffix.lower()
     if ending in (".txt", *ENDINGS):
@@ -66,8 +66,7 @@ def export(
             _write_approval(project, draft=draft)
             return
         wanted = MapExport(crs=crs, raw=raw, strays=strays, draft=draft)
-        export = export_map_scans if ending == ".e57" else export_map
-        made = export(project, file, wanted, progress=progress)
+        made = export_map(project, file, wanted, progress=progress)
     write(f"{made.text} in {file}\n{made.approval.text}")
 
 

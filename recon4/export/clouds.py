@@ -64,7 +64,7 @@ def cloud_format(path: Path, *, strays: bool = False) -> CloudFormat:
     name = path.name.lower()
     ending = next((one for one in CLOUD_FORMATS if name.endswith(one)), None)
     if ending is None:
-        raise ConfigError(f"a map is written as {', '.join(CLOUD_FORMATS)}, got {path.name}")
+        raise ConfigError(f"a map is written as {', '.join(CLOUD_FORMATS)}, .e57, got {path.name}")
     check_name(path, ending)
     found = CLOUD_FORMATS[ending]
     if strays and not found.classes:

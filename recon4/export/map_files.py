@@ -6,22 +6,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from recon4.errors import StoreError
-from recon4.export.clouds import cloud_format
+import numpy as np
+
+from recon4.errors import ConfigError, StoreError
+from recon4.export.clouds import CLOUD_FORMATS, cloud_format
+from recon4.export.e57 import ScanPoses, export_e57
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, OutputCrs
 from recon4.georeference.crs_file import read_crs
 from recon4.mapping.tiles import TileSet
 from recon4.model.trajectory import Trajectory
+from recon4.pose_graph.files import load_graph
 from recon4.progress import Progress
 from recon4.recording.formats.poses import write_kitti
 from recon4.review.approval_state import WRITTEN_AS_DRAFT, ApprovalState, approval_state
 from recon4.review.approved import approval_of
+from recon4.review.evidence import Evidence
 from recon4.review.stamp import Stamp, stamp_file
 from recon4.store.arrays import load_trajectory
 from recon4.store.atomic import atomic_file
 from recon4.store.frames import FrameStore
 from recon4.store.project import read_artifacts
+
+SCANS = ".e57"
+"""Ending of a file that has a scan for each node of the pose graph."""
+MAP_ENDINGS = (*CLOUD_FORMATS, SCANS)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -69,34 +78,73 @@ class MapToExport:
     """The coordinates that are wanted."""
     artifacts: Mapping[str, Path]
     stamp: Stamp | None
-    """What the file has to say of the approval."""
-    state: ApprovalState
+    """What the file has to say of the approval; None = not approved, or a draft."""
 
 
-def open_map(project: Path, wanted: MapExport) -> MapToExport:
-    """Open the map of a finished run for an export.
+def map_to_export(
+    artifacts: Mapping[str, Path], evidence: Evidence | None, wanted: MapExport
+) -> MapToExport:
+    """Open a map for an export.
+
+    Args:
+        artifacts: Of the run; it has a map.
+        evidence: Of its approval; None = not approved, or a draft.
+        wanted: Coordinates and kinds of points.
 
     Raises:
-        Altered: If it was approved and is not what was approved, or its approval is not to be
-            trusted (`approval_of`), unless a draft is wanted.
+        Altered: If it is not what was approved.
         GeoreferenceError: If a CRS is requested and the map is not georeferenced.
-        StoreError: If there is no map yet.
+        StoreError: If an artifact cannot be read.
     """
-    artifacts = read_artifacts(project)
-    if "map" not in artifacts:
-        raise StoreError(f"{project} has no map yet: run recon4 process")
-    keys = {name: folder.name for name, folder in artifacts.items()}
-    approval = None if wanted.draft else approval_of(project, keys)
     checked = None
-    if approval:
-        approval.evidence.check_frame(artifacts)
-        checked = approval.evidence.artifact("map", artifacts["map"])
+    if evidence:
+        evidence.check_frame(artifacts)
+        checked = evidence.artifact("map", artifacts["map"])
     place = read_crs(artifacts["level"], wanted.crs)
     output = OutputCrs(place.wkt, place.to_crs) if place else CRS_OF_MAP
     tiles = TileSet.open(artifacts["map"], checked)
     tiles = tiles.as_measured() if wanted.raw else tiles
-    state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
-    return MapToExport(tiles, output, artifacts, approval.stamp if approval else None, state)
+    return MapToExport(tiles, output, artifacts, evidence.stamp if evidence else None)
+
+
+def write_map(map_: MapToExport, path: Path, *, strays: bool, progress: Progress) -> int:
+    """Write a map in the format of the ending; the file notes an approval.
+
+    Args:
+        map_: The map.
+        path: File to write; its ending is one of `MAP_ENDINGS`.
+        strays: Also the stray returns.
+        progress: Counts points.
+
+    Returns:
+        How many points were written.
+
+    Raises:
+        ConfigError: If the ending is another, or the format has no classes for stray returns.
+        StoreError: If the file cannot be written.
+    """
+    scans = path.suffix.lower() == SCANS
+    if scans and strays:
+        raise ConfigError(f"E57 has no classes for stray returns: {path.name}")
+    write = None if scans else cloud_format(path, strays=strays).write
+    # The stamp goes onto a file beside it, so that a file without one is never there.
+    with atomic_file(path) as temporary:
+        if write is None:
+            return export_e57(
+                map_.tiles, temporary, _nodes(map_), output=map_.output, progress=progress
+            )
+        count = write(map_.tiles, temporary, map_.output, strays=strays, progress=progress)
+        if map_.stamp:
+            stamp_file(temporary, temporary, map_.stamp)
+    return count
+
+
+def _nodes(map_: MapToExport) -> ScanPoses:
+    """The nodes of the pose graph in the map, with what their scans say of the approval."""
+    graph = load_graph(map_.artifacts["verification"])
+    poses = load_trajectory(map_.artifacts["level"] / "trajectory.npz").at(graph.t_ns)
+    note = f"recon4 approval {map_.stamp.json_line()}" if map_.stamp else "recon4, not approved"
+    return ScanPoses(np.asarray(graph.frame_ids, np.int64), graph.t_ns, poses, note)
 
 
 def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progress) -> ExportedMap:
@@ -104,7 +152,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
 
     Args:
         project: The project folder.
-        path: File to write; its ending is one of `CLOUD_FORMATS`.
+        path: File to write; its ending is one of `MAP_ENDINGS`.
         wanted: Coordinates and kinds of points.
         progress: Counts points.
 
@@ -112,18 +160,21 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         How many points were written, and how many stray returns there are.
 
     Raises:
+        Altered: If it was approved and is not what was approved, or its approval is not to be
+            trusted (`approval_of`), unless a draft is wanted; nothing is written.
         ConfigError: If the ending is another.
-        Altered, GeoreferenceError: As `open_map`; nothing is written.
+        GeoreferenceError: If a CRS is requested and the map is not georeferenced.
         StoreError: If there is no map yet or the file cannot be written.
     """
-    write = cloud_format(path, strays=wanted.strays).write
-    map_ = open_map(project, wanted)
-    # The stamp goes onto a file beside it, so that a file without one is never there.
-    with atomic_file(path) as temporary:
-        count = write(map_.tiles, temporary, map_.output, strays=wanted.strays, progress=progress)
-        if map_.stamp:
-            stamp_file(temporary, temporary, map_.stamp)
-    return ExportedMap(count, map_.tiles.strays, wanted.strays, map_.state)
+    artifacts = read_artifacts(project)
+    if "map" not in artifacts:
+        raise StoreError(f"{project} has no map yet: run recon4 process")
+    keys = {name: folder.name for name, folder in artifacts.items()}
+    approval = None if wanted.draft else approval_of(project, keys)
+    map_ = map_to_export(artifacts, approval.evidence if approval else None, wanted)
+    count = write_map(map_, path, strays=wanted.strays, progress=progress)
+    state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
+    return ExportedMap(count, map_.tiles.strays, wanted.strays, state)
 
 
 def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:

@@ -1,4 +1,4 @@
-"""The scans and poses of a finished run: a folder for 3DTK, or the map as E57."""
+"""The scans and poses of a finished run for 3DTK."""
 
 from __future__ import annotations
 
@@ -8,16 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError
-from recon4.export.e57 import ScanPoses, export_e57
-from recon4.export.map_files import ExportedMap, MapExport, final_trajectory, open_map
+from recon4.export.map_files import final_trajectory
 from recon4.export.names import check_name
 from recon4.export.scans import ScanRows, export_scans
 from recon4.model.pose_graph import PoseGraph
 from recon4.pose_graph.files import load_graph
 from recon4.profiler.sweeps import find_sweeps
 from recon4.progress import Progress
-from recon4.store.arrays import load_trajectory
-from recon4.store.atomic import atomic_file, atomic_folder
+from recon4.store.atomic import atomic_folder
 from recon4.store.frames import FrameStore, open_frames
 from recon4.store.line_store import load_lines
 from recon4.store.project import read_artifacts
@@ -55,35 +53,6 @@ def export_3dtk(project: Path, folder: Path, *, progress: Progress, draft: bool 
     scans = _multiframes if store.rig.row_of("profiler") is None else _sweeps
     with atomic_folder(folder) as temporary:
         return export_scans(store, dense, scans(store, graph), folder=temporary, progress=progress)
-
-
-def export_map_scans(
-    project: Path, path: Path, wanted: MapExport, *, progress: Progress
-) -> ExportedMap:
-    """Write the map of a finished run as E57, a scan with its pose for each node of the graph.
-
-    Args:
-        project: The project folder.
-        path: File to write, ``.e57``; the description of each scan notes an approval.
-        wanted: Coordinates and kinds of points; stray returns are left out.
-        progress: Counts points.
-
-    Raises:
-        ConfigError: If the ending is another, or stray returns are wanted.
-        Altered, GeoreferenceError: As `open_map`; nothing is written.
-        StoreError: If there is no map yet or the file cannot be written.
-    """
-    check_name(path, ".e57")
-    if wanted.strays:
-        raise ConfigError(f"E57 has no classes for stray returns: {path.name}")
-    map_ = open_map(project, wanted)
-    graph = load_graph(map_.artifacts["verification"])
-    poses = load_trajectory(map_.artifacts["level"] / "trajectory.npz").at(graph.t_ns)
-    note = f"recon4 approval {map_.stamp.json_line()}" if map_.stamp else map_.state.text
-    nodes = ScanPoses(np.asarray(graph.frame_ids, np.int64), graph.t_ns, poses, note)
-    with atomic_file(path) as temporary:
-        count = export_e57(map_.tiles, temporary, nodes, output=map_.output, progress=progress)
-    return ExportedMap(count, map_.tiles.strays, noise=False, approval=map_.state)
 
 
 def _multiframes(store: FrameStore, graph: PoseGraph) -> list[ScanRows]:

@@ -90,7 +90,7 @@ MAY_IMPORT = {
     | {"recon4.mapping", "recon4.export", "recon4.recording.formats.three_dtk"},
     "recon4/export/map_files.py": STAGE
     | {"recon4.mapping", "recon4.export", "recon4.georeference", "recon4.review"}
-    | {"recon4.recording.formats.poses"},
+    | {"recon4.pose_graph.files", "recon4.recording.formats.poses"},
     "recon4/export/findings.py": STAGE
     | {
         "recon4.export",

@@ -29,6 +29,7 @@ import { askFirst } from "../shared/download.js";
 import { figures } from "../shared/figures.js";
 import { bytes, seconds, stateOf, when } from "../shared/format.js";
 import "./job_status.js";
+import "./map_file.js";
 import { FindingList } from "../shared/finding_list.js";
 import { factsIn, firstText } from "../shared/verdict.js";
 import "../shared/page_head.js";
@@ -102,6 +103,7 @@ function drawFiles() {
   const { project } = state;
   const files = project?.files ?? [];
   byId("files").hidden = files.length === 0;
+  only("map-file").hidden = !project?.stages.some(({ stage }) => stage === "map");
   render(project ? approvalLines(project.approval) : nothing, byId("approval"));
   const found = project?.summary.findings ? ["csv", "geojson"] : [];
   render([files.map(fileRow), found.map(findingsRow)], within(byId("files"), "ul"));

@@ -1345,6 +1345,11 @@ export interface Operations {
     path: { project_id: string };
     response: Array<JobView>;
   };
+  "GET /api/projects/{project_id}/map.{ending}": {
+    path: { project_id: string; ending: string };
+    query?: { crs?: string; raw?: boolean; strays?: boolean; draft?: boolean };
+    response: string;
+  };
   "GET /api/projects/{project_id}/report": {
     path: { project_id: string };
     response: string;

@@ -1,4 +1,4 @@
-"""Slice exports: made once, kept for a day, downloadable in ranges.
+"""Exports of slices and maps: made once, kept for a day, downloadable in ranges.
 
 The name of an export is the hash of its inputs. The same request after an interrupted connection
 finds the finished file, and ``Range`` with ``If-Range`` continues the download.
@@ -10,9 +10,10 @@ import asyncio
 import hashlib
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from typing import Protocol
 
 from recon4_app.compute_pool.model import Lane, Terms
 from recon4_app.compute_pool.pool import ComputePool
@@ -24,9 +25,32 @@ from recon4_app.slices.tuning import EXPORTS
 _POINTS = ("laz", "csv", "dxf")
 
 
+class FileRequest(Protocol):
+    """A file that can be made."""
+
+    @property
+    def ending(self) -> str:
+        """Ending of its name, without the dot."""
+        ...
+
+    @property
+    def key(self) -> str:
+        """Hash of everything that determines its bytes."""
+        ...
+
+    @property
+    def large(self) -> bool:
+        """Whether it may take minutes."""
+        ...
+
+    def work(self, name: str) -> tuple[Callable[..., str], dict[str, object]]:
+        """What a child process calls to write it under a name, with the arguments."""
+        ...
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExportRequest:
-    """Everything that determines the bytes of an export."""
+    """Everything that determines the bytes of an export of slices."""
 
     ending: str
     ask: SliceExportRequest
@@ -56,6 +80,15 @@ class ExportRequest:
         points = self.ending in _POINTS and ask.window is None
         return ask.count > 1 or points or ask.plane.thickness_m > EXPORTS.large_thickness_m
 
+    def work(self, name: str) -> tuple[Callable[..., str], dict[str, object]]:
+        """What the child process calls, with its arguments."""
+        facts = {"artifacts": dict(self.artifacts), "ask": self.ask, "out": name}
+        return export_work.export, {
+            **facts,
+            "reference": self.reference,
+            "context": self.context,
+        }
+
 
 class Exports:
     """Makes exports and keeps them, so that interrupted downloads can continue."""
@@ -65,7 +98,7 @@ class Exports:
         self._reserve_bytes = reserve_bytes
         self._making: dict[Path, asyncio.Lock] = {}
 
-    async def make(self, request: ExportRequest, terms: Terms) -> Path:
+    async def make(self, request: FileRequest, terms: Terms) -> Path:
         """The file of an export; it is made if it does not exist.
 
         Raises:
@@ -79,6 +112,7 @@ class Exports:
                 await asyncio.to_thread(self._refuse_if_full)
                 name = f"export.{request.ending}"
                 pool = self._pool
+                function, arguments = request.work(name)
                 # A pooled child process has fonts and map loaded: a sheet takes 1 s instead of 5 s.
                 run = pool.run_background if request.large else pool.run_interactive
                 await run(
@@ -86,12 +120,8 @@ class Exports:
                     replace(
                         terms, outputs={name: place}, large=request.large, limit_s=EXPORTS.limit_s
                     ),
-                    export_work.export,
-                    dict(request.artifacts),
-                    request.ask,
-                    name,
-                    reference=request.reference,
-                    context=request.context,
+                    function,
+                    **arguments,
                 )
         self._making.pop(place, None)
         return place
