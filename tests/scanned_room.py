@@ -8,6 +8,7 @@ from recon4.geometry.se3 import SE3, so3_exp, so3_log
 from recon4.model.multiframe import Multiframe
 from recon4.model.samples import ImuSamples
 from recon4.model.trajectory import Trajectory
+from recon4.registration.aiding import GnssAiding
 from recon4.units import STANDARD_GRAVITY_M_S2
 from tests.room_walks import FRAME_NS, T0_NS, rig_of
 
@@ -66,6 +67,20 @@ def strolling(t_s):
     zero = np.zeros_like(t)
     turn = np.stack([zero, zero, np.deg2rad(20.0) * t], axis=1)
     return SE3(so3_exp(turn), np.stack([0.5 * t, 0.1 * t, zero], axis=1))
+
+
+def strolling_fixes(frames, *, first_s=-0.05):
+    """Fixes of who strolls, ten a second, from a time on until after that many multiframes."""
+    t_s = np.arange(first_s, 0.1 * frames + 0.3, 0.1)
+    T = strolling(t_s)
+    return GnssAiding(
+        t_ns=T0_NS + np.rint(1e9 * t_s).astype(np.int64),
+        p_enu=T.t,
+        sd_m=np.full((len(t_s), 3), 0.1),
+        R_enu_body=T.R,
+        attitude_sd_rad=0.01,
+        p_body_antenna=np.zeros(3),
+    )
 
 
 def ranges_m(p, d):

@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 
 from recon4.geometry.se3 import SE3
-from recon4.registration.aiding import GnssAiding
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings
 from tests.room_walks import FRAME_NS, T0_NS
-from tests.scanned_room import LOW_M, strolling, walk
+from tests.scanned_room import LOW_M, strolling, strolling_fixes, walk
 
 FRAMES, BARE, RETURNS = 28, range(4, 28), 60
 
@@ -19,19 +18,6 @@ def ground_only(frame, rig, rng):
     p_map = (T @ rig.T_body_sensor[frame.sensor]) @ frame.xyz.astype(np.float64)
     ground = np.flatnonzero(p_map[:, 2] < LOW_M[2] + 0.03)
     return frame.take(np.sort(rng.choice(ground, RETURNS, replace=False)))
-
-
-def fixes(*, first_s=0.0):
-    t_s = np.arange(first_s - 0.05, 0.1 * FRAMES + 0.3, 0.1)
-    T = strolling(t_s)
-    return GnssAiding(
-        t_ns=T0_NS + np.rint(1e9 * t_s).astype(np.int64),
-        p_enu=T.t,
-        sd_m=np.full((len(t_s), 3), 0.1),
-        R_enu_body=T.R,
-        attitude_sd_rad=0.01,
-        p_body_antenna=np.zeros(3),
-    )
 
 
 @pytest.fixture(scope="module")
@@ -51,14 +37,14 @@ def followed(bare, aiding):
 
 
 def test_fixes_hold_a_body_that_its_scans_do_not(bare):
-    lost, worst_m = followed(bare, fixes())
+    lost, worst_m = followed(bare, strolling_fixes(FRAMES))
 
     assert lost == 0
     assert worst_m < 0.1
 
 
 def test_fixes_that_begin_later_are_in_another_frame_and_place_nothing(bare):
-    lost, worst_m = followed(bare, fixes(first_s=3 * FRAME_NS * 1e-9))
+    lost, worst_m = followed(bare, strolling_fixes(FRAMES, first_s=3 * FRAME_NS * 1e-9 - 0.05))
 
     assert lost == len(BARE)
     assert worst_m > 1.0

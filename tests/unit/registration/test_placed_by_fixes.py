@@ -5,27 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from recon4.registration.aiding import GnssAiding
 from recon4.registration.odometry import Odometry
 from recon4.settings import Settings
 from tests.room_walks import T0_NS
-from tests.scanned_room import strolling, walk, without_points
+from tests.scanned_room import strolling, strolling_fixes, walk, without_points
 
 FRAMES, EMPTY = 22, range(4, 19)
 BIAS_M_S2 = np.array([0.0, 0.4, 0.0])
-
-
-def fixes(*, first_s=-0.05):
-    t_s = np.arange(first_s, 0.1 * FRAMES + 0.3, 0.1)
-    T = strolling(t_s)
-    return GnssAiding(
-        t_ns=T0_NS + np.rint(1e9 * t_s).astype(np.int64),
-        p_enu=T.t,
-        sd_m=np.full((len(t_s), 3), 0.1),
-        R_enu_body=T.R,
-        attitude_sd_rad=0.01,
-        p_body_antenna=np.zeros(3),
-    )
 
 
 @pytest.fixture(scope="module")
@@ -46,7 +32,7 @@ def tracked(walked, aiding):
 
 
 def test_a_body_that_sees_nothing_is_where_its_fixes_are_and_says_what_it_sees(open_sky):
-    steps, worst_m = tracked(open_sky, fixes())
+    steps, worst_m = tracked(open_sky, strolling_fixes(FRAMES))
 
     assert {(step.lost, step.piece) for step in steps} == {(False, 0)}
     assert worst_m < 0.06
@@ -62,9 +48,12 @@ def test_without_fixes_it_is_lost(open_sky):
 
 def test_fixes_of_another_frame_or_far_from_the_prediction_place_nothing(open_sky):
     begun = replace(open_sky, frames=open_sky.frames[:8])
-    aside = fixes()
+    aside = strolling_fixes(FRAMES)
     moved = np.where(aside.t_ns[:, None] > T0_NS + 300_000_000, 30.0, 0.0)
-    for useless in (fixes(first_s=0.25), replace(aside, p_enu=aside.p_enu + moved)):
+    for useless in (
+        strolling_fixes(FRAMES, first_s=0.25),
+        replace(aside, p_enu=aside.p_enu + moved),
+    ):
         steps, _ = tracked(begun, useless)
 
         assert steps[6].lost
