@@ -20,7 +20,7 @@ def spatial_rows(
     """Rows of a block in spatial order.
 
     Args:
-        count: Rows of the part of a tile that was ordered by `recon4.mapping.tile.progressive`.
+        count: Rows of the part of a tile, in the order of `recon4.mapping.tile_order.progressive`.
         strata: The strata in their stored order, int64 (S,).
         first: First row of the block.
         stop: Row after its last.

@@ -20,7 +20,7 @@ _EARLIER = {now: earlier for earlier, now in TILE_FIELDS.items()}
 
 @dataclass(frozen=True, slots=True)
 class EarlierColumns:
-    """The columns of a map, memory-mapped; `recon4.mapping.columns.PackedColumns` of then."""
+    """The columns of a map, memory-mapped; `recon4.mapping.columns.TileColumns`."""
 
     folder: Path
     """``tiles``"""
@@ -51,17 +51,7 @@ class EarlierColumns:
     def read(
         self, names: Sequence[str], rows: slice, *, checked: CheckedArtifact | None = None
     ) -> Columns:
-        """Some rows of some fields.
-
-        Args:
-            names: Of fields.
-            rows: Of all tiles; any positive step.
-            checked: Hashes that their bytes must match before they are used.
-
-        Raises:
-            Altered: If they do not match.
-            StoreError: If they cannot be read.
-        """
+        """See `TileColumns.read`."""
         found: Columns = {}
         for name in names:
             path, size = _file(self.folder, name), _row_bytes(name)

@@ -165,7 +165,7 @@ class TileWriter:
         return _Block(len(order), [data for data, _ in made], [width for _, width in made])
 
     def _began_ns(self, columns: Columns) -> Times:
-        """Start of the multiframe of each point [ns], (N,); zeros if none is known."""
+        """Start of the multiframe of each point [ns], (N,); a reference has no multiframes."""
         if not self._paths.known:
             return np.zeros(len(columns["t_ns"]), np.int64)
         return self._paths.began_ns(columns["frame_id"])

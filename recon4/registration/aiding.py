@@ -40,8 +40,7 @@ class GnssAiding:
         row, s = found
         near = row + (s > 0.5)
         R = self.R_enu_body[near]
-        p = (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
-        return SE3(R, p - R @ self.p_body_antenna)
+        return SE3(R, self._antenna(row, s) - R @ self.p_body_antenna)
 
     def pull(self, T_enu_body: SE3, t_ns: int) -> tuple[Array, Array]:
         """Information (6, 6) and gradient (6,) of a left correction about the body's origin.
@@ -54,10 +53,9 @@ class GnssAiding:
         if found is None:
             return H, g
         row, s = found
-        p_antenna = (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
         arm = T_enu_body.R @ self.p_body_antenna
         J = np.hstack([-skew(arm), np.eye(3)])
-        r = T_enu_body.t + arm - p_antenna
+        r = T_enu_body.t + arm - self._antenna(row, s)
         z = r / self.sd_m[row]
         W = np.diag(_cauchy(float(z @ z)) / self.sd_m[row] ** 2)
         H += J.T @ W @ J
@@ -97,9 +95,12 @@ class GnssAiding:
         if found is None:
             return False
         row, s = found
-        p_antenna = (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
-        z = (T_enu_body @ self.p_body_antenna - p_antenna) / self.sd_m[row]
+        z = (T_enu_body @ self.p_body_antenna - self._antenna(row, s)) / self.sd_m[row]
         return float(np.linalg.norm(z)) < AIDING.outlier_sd
+
+    def _antenna(self, row: int, s: float) -> Array:
+        """Position of the antenna between a fix and the next one, (3,)."""
+        return (1.0 - s) * self.p_enu[row] + s * self.p_enu[row + 1]
 
     def _around(self, t_ns: int) -> tuple[int, float] | None:
         right = int(np.searchsorted(self.t_ns, t_ns))

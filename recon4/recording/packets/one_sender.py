@@ -23,8 +23,13 @@ class _Arrivals:
 
     layout: PacketFormat
     payloads: Payloads
-    steps_ns: NDArray[np.int64]
-    """From the stamp of each packet to that of the next [ns], (N - 1,)."""
+    stamps_ns: NDArray[np.int64]
+    """Of each packet [ns], (N,)."""
+
+    @property
+    def steps_ns(self) -> NDArray[np.int64]:
+        """From the stamp of each packet to that of the next [ns], (N - 1,)."""
+        return np.diff(self.stamps_ns)
 
 
 def require_one_sender(layout: PacketFormat, of: PacketSensor) -> None:
@@ -55,7 +60,7 @@ def _head(layout: PacketFormat, datagrams: Datagrams) -> _Arrivals | None:
     payloads = payloads[layout.sound(payloads)]
     if len(payloads) < MIXED_SENDERS.fewest:
         return None
-    return _Arrivals(layout, payloads, np.diff(layout.stamps_ns(payloads)))
+    return _Arrivals(layout, payloads, layout.stamps_ns(payloads))
 
 
 def _without_copies(payloads: Payloads) -> Payloads:
@@ -67,8 +72,9 @@ def _without_copies(payloads: Payloads) -> Payloads:
 
 def _goes_back(head: _Arrivals) -> str:
     """Two sensors in turns: each message begins before the one ahead of it ends."""
-    usual_ns = max(1.0, float(np.median(np.abs(head.steps_ns))))
-    back = int((head.steps_ns < -MIXED_SENDERS.back_steps * usual_ns).sum())
+    steps_ns = head.steps_ns
+    usual_ns = max(1.0, float(np.median(np.abs(steps_ns))))
+    back = int((steps_ns < -MIXED_SENDERS.back_steps * usual_ns).sum())
     return f"their times go back {back} times" if back >= MIXED_SENDERS.times_back else ""
 
 
@@ -81,7 +87,7 @@ def _turns_to_and_fro(head: _Arrivals) -> str:
     azimuth_cdeg = head.layout.azimuth_cdeg(head.payloads)
     if azimuth_cdeg is None:
         return ""
-    stamps_ns = head.layout.stamps_ns(head.payloads)
+    stamps_ns = head.stamps_ns
     in_time = np.argsort(stamps_ns, kind="stable")
     orders = (np.arange(len(in_time)), in_time)
     even = max(_evenness(azimuth_cdeg[order], stamps_ns[order]) for order in orders)
@@ -103,11 +109,12 @@ def _evenness(azimuth_cdeg: NDArray[np.int64], stamps_ns: NDArray[np.int64]) -> 
 
 def _comes_too_often(head: _Arrivals) -> str:
     """More packets than one sensor sends, at an interval of no model."""
-    forward = head.steps_ns[head.steps_ns > 0]
-    if 2 * len(forward) < len(head.steps_ns):
+    steps_ns = head.steps_ns
+    forward = steps_ns[steps_ns > 0]
+    if 2 * len(forward) < len(steps_ns):
         return ""
     usual = forward[forward < MIXED_SENDERS.gap * np.median(forward)]
-    mean_s = 1e-9 * float(usual.sum()) / len(head.steps_ns)
+    mean_s = 1e-9 * float(usual.sum()) / len(steps_ns)
     often = head.layout.packet_s / mean_s if mean_s > 0 else 0.0
     if not often > MIXED_SENDERS.often or head.layout.likely_models(mean_s):
         return ""
