@@ -24,7 +24,7 @@ from recon4.export.las_points import las_blocks, las_header, las_points
 from recon4.export.laz import ErrorKeepingWriter
 from recon4.export.names import check_name
 from recon4.export.octree import Cube, Key, Octree, PointFiles, Records
-from recon4.export.points import CRS_OF_MAP, OutputCrs, output_transform
+from recon4.export.points import CRS_OF_MAP, OutputCrs, PointSource
 from recon4.export.tuning import OCTREE
 from recon4.mapping.tiles import TileSet
 from recon4.progress import Progress, Silent
@@ -98,21 +98,19 @@ def export_copc(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".copc.laz")
-    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    progress = progress or Silent()
-    header = las_header(tiles, output, scale_m=OCTREE.step_m)
+    source, watch = PointSource.of(map_, output), progress or Silent()
+    header = las_header(source, scale_m=OCTREE.step_m)
     header.are_points_compressed = True
     with (
         tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as folder,
         atomic_file(path) as temporary,
         ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file,
     ):
-        transform = output_transform(tiles, output.map_to_crs)
-        stream = las_blocks(tiles, transform, strays=strays, progress=progress)
+        stream = las_blocks(source, strays=strays, progress=watch)
         files = PointFiles(Path(folder), header.point_format.dtype())
         times_s = _sort_into(files, stream, header)
         try:
-            chunks = _write(file, header, files, times_s=times_s, progress=progress)
+            chunks = _write(file, header, files, times_s=times_s, progress=watch)
             _check(temporary, chunks, header)
         except (laspy.errors.LaspyException, lazrs.LazrsError) as error:
             if file.write_error:
@@ -211,13 +209,9 @@ def _check(path: Path, chunks: list[_Chunk], header: Any) -> None:
             if chunk.points and zlib.crc32(points.data) != chunk.crc:
                 raise StoreError(f"{path.name} reads back wrong: the points of node {chunk.key}")
             found += chunk.points
-        listed = sum(node.point_count for node in _nodes(read))
+        listed = sum(node.point_count for node in read.root_page.entries.values())
     if not found == listed == read.header.point_count == header.point_count:
         raise StoreError(
             f"{path.name} reads back wrong: {found} points in nodes, {listed} listed, "
             f"{read.header.point_count} in the header, expected {header.point_count}"
         )
-
-
-def _nodes(read: Any) -> list[Any]:
-    return [node for node in read.root_page.entries.values() if node.point_count > 0]

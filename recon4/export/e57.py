@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 import recon4
 from recon4.errors import StoreError
-from recon4.export.points import OutputCrs, blocks, center, intensity_field, output_transform
+from recon4.export.points import OutputCrs, PointSource
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import SE3, Array
 from recon4.mapping.tiles import TileSet
@@ -73,15 +73,13 @@ def export_e57(
     """
     from pye57 import libe57
 
-    transform = output_transform(tiles, output.map_to_crs)
-    center(tiles, transform)
-    origins = transform(scans.T_map_body.t)
-    crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
+    source = PointSource.of(tiles, output)
+    origins = source.transform(scans.T_map_body.t)
     with tempfile.TemporaryDirectory(prefix=".e57.", dir=path.parent) as folder:
-        files = _sort_by_scan(tiles, scans, output, folder=Path(folder), progress=progress)
+        files = _sort_by_scan(source, scans, origins, folder=Path(folder), progress=progress)
         try:
             image = libe57.ImageFile(str(path), "w")
-            data = _head(image, crs)
+            data = _head(image, source.crs)
             progress.start("scans", len(tiles), "points")
             for number, file in files:
                 rows = np.fromfile(file, _ROW)
@@ -90,25 +88,25 @@ def export_e57(
             image.close()
             _check(path, {number: file for number, file in files})
         except libe57.E57Exception as error:
-            raise StoreError(f"cannot write {path.name}: {error}") from error
+            reason = str(error).partition("\n")[0]  # it goes on for a page
+            raise StoreError(
+                f"an E57 file cannot be written: {reason}; is the disk full?"
+            ) from error
     return len(tiles)
 
 
 def _sort_by_scan(
-    tiles: TileSet, scans: ScanPoses, output: OutputCrs, *, folder: Path, progress: Progress
+    source: PointSource, scans: ScanPoses, origins: Array, *, folder: Path, progress: Progress
 ) -> list[tuple[int, Path]]:
     """Write the points of each scan, relative to its pose, into a file; the scans with points."""
-    transform = output_transform(tiles, output.map_to_crs)
-    origins, R_map_body = transform(scans.T_map_body.t), scans.T_map_body.R
-    name = intensity_field(tiles)
-    stream = blocks(tiles, [name, "frame_id"], transform=transform, progress=progress)
-    for block in stream:
+    R_map_body = scans.T_map_body.R
+    for block in source.blocks([source.intensity, "frame_id"], progress):
         frames = block.columns["frame_id"].astype(np.int64)
         scan = np.maximum(np.searchsorted(scans.frame_ids, frames, side="right") - 1, 0)
         p_body = np.einsum("nji,nj->ni", R_map_body[scan], block.xyz - origins[scan])
         rows = np.zeros(len(scan), _ROW)
         rows["cartesianX"], rows["cartesianY"], rows["cartesianZ"] = p_body.T.astype(np.float32)
-        rows["intensity"] = block.columns[name].astype(np.float32)
+        rows["intensity"] = block.columns[source.intensity].astype(np.float32)
         for number, part in _by_scan(scan):
             with (folder / str(number)).open("ab") as file:
                 file.write(np.ascontiguousarray(rows[part]).data)

@@ -15,10 +15,9 @@ import pyproj
 
 import recon4
 from recon4.errors import GeoreferenceError
-from recon4.export.points import Block, OutputCrs, ToCrs, blocks, center, output_transform
+from recon4.export.points import Block, PointSource
 from recon4.export.tuning import LAZ
 from recon4.mapping.tile import DEVIATION
-from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import day_of, is_absolute, point_time_s
 from recon4.progress import Progress
 
@@ -44,35 +43,29 @@ class NoiseClass(IntEnum):
     """Alone in the air."""
 
 
-def las_blocks(
-    tiles: TileSet, transform: ToCrs, *, strays: bool, progress: Progress
-) -> Iterator[Block]:
+def las_blocks(source: PointSource, *, strays: bool, progress: Progress | None) -> Iterator[Block]:
     """All points of a map with what their records need, the stray returns last if wanted."""
-    fields = [name for name in [*FIELDS, *OPTIONAL] if name in tiles.fields]
-    stream = blocks(tiles, fields, transform=transform, progress=progress)
+    fields = [name for name in [*FIELDS, *OPTIONAL] if name in source.tiles.fields]
+    stream = source.blocks(fields, progress)
     if not strays:
         return stream
-    only, more = tiles.only_strays(), [*fields, "normal"]
-    of_strays = blocks(only, more, transform=transform, progress=progress)
+    of_strays = source.only_strays().blocks([*fields, "normal"], progress)
     return chain(stream, (replace(block, strays=True) for block in of_strays))
 
 
-def las_header(tiles: TileSet, output: OutputCrs, *, scale_m: float) -> Any:
+def las_header(source: PointSource, *, scale_m: float) -> Any:
     """The header of a file of the map, with its extra dimensions and its CRS, without points.
 
     Args:
-        tiles: The map.
-        output: CRS of the file.
+        source: The map, in the coordinates of the file.
         scale_m: Step of the coordinates [m].
 
     Raises:
-        ConfigError: If the map has no points.
         GeoreferenceError: If the CRS is not understood.
     """
-    crs = output.crs or (tiles.crs and tiles.crs.wkt) or None
-    offset = center(tiles, output_transform(tiles, output.map_to_crs))
+    tiles = source.tiles
     header = laspy.LasHeader(version="1.4", point_format=6)
-    header.scales, header.offsets = np.full(3, scale_m), offset
+    header.scales, header.offsets = np.full(3, scale_m), source.offset
     header.generating_software = f"recon4 {recon4.__version__}"
     header.system_identifier = "MERGE"
     # The same map gives the same bytes: no random UUID and no date of the day.
@@ -88,8 +81,8 @@ def las_header(tiles: TileSet, output: OutputCrs, *, scale_m: float) -> Any:
     extra += [(name, *OPTIONAL[name]) for name in OPTIONAL if name in tiles.fields]
     header.add_extra_dims([_dimension(*row) for row in extra])
     header.global_encoding.wkt = True
-    if crs is not None:
-        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(crs)))
+    if source.crs:
+        header.vlrs.append(laspy.vlrs.known.WktCoordinateSystemVlr(_wkt(source.crs)))
     return header
 
 

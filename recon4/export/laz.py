@@ -20,10 +20,10 @@ from numpy.typing import NDArray
 from recon4.errors import StoreError
 from recon4.export.las_points import crs_text, las_blocks, las_header, las_points
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, output_transform
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.export.tuning import LAZ
 from recon4.mapping.tiles import TileSet
-from recon4.progress import Progress, Silent
+from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
 
 
@@ -81,10 +81,9 @@ def export_laz(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
-    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    header = las_header(tiles, output, scale_m=LAZ.scale_m)
-    transform = output_transform(tiles, output.map_to_crs)
-    stream = las_blocks(tiles, transform, strays=strays, progress=progress or Silent())
+    source = PointSource.of(map_, output)
+    header = las_header(source, scale_m=LAZ.scale_m)
+    stream = las_blocks(source, strays=strays, progress=progress)
     with atomic_file(path) as temporary, ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file:
         try:
             written = _write(file, header, stream)

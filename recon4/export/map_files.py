@@ -123,16 +123,16 @@ def write_map(map_: MapToExport, path: Path, *, strays: bool, progress: Progress
         ConfigError: If the ending is another, or the format has no classes for stray returns.
         StoreError: If the file cannot be written.
     """
-    scans = path.suffix.lower() == SCANS
-    if scans and strays:
-        raise ConfigError(f"E57 has no classes for stray returns: {path.name}")
-    write = None if scans else cloud_format(path, strays=strays).write
-    # The stamp goes onto a file beside it, so that a file without one is never there.
-    with atomic_file(path) as temporary:
-        if write is None:
+    if path.suffix.lower() == SCANS:
+        if strays:
+            raise ConfigError(f"E57 has no classes for stray returns: {path.name}")
+        with atomic_file(path) as temporary:
             return export_e57(
                 map_.tiles, temporary, _nodes(map_), output=map_.output, progress=progress
             )
+    write = cloud_format(path, strays=strays).write
+    # The stamp goes onto a file beside it, so that a file without one is never there.
+    with atomic_file(path) as temporary:
         count = write(map_.tiles, temporary, map_.output, strays=strays, progress=progress)
         if map_.stamp:
             stamp_file(temporary, temporary, map_.stamp)

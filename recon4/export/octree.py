@@ -32,19 +32,15 @@ class Key(NamedTuple):
     y: int
     z: int
 
-    def parent(self) -> Key:
-        """The node above; that of the root is itself at level -1."""
-        return Key(self.level - 1, self.x >> 1, self.y >> 1, self.z >> 1)
+    def child(self, octant: int) -> Key:
+        """One of the eight nodes below, by the upper half along x (1), y (2) and z (4)."""
+        x, y, z = octant & 1, octant >> 1 & 1, octant >> 2
+        return Key(self.level + 1, 2 * self.x + x, 2 * self.y + y, 2 * self.z + z)
 
-    def children(self) -> Iterator[Key]:
-        """The eight nodes below, in the order of `_octants`."""
-        for octant in range(8):
-            yield Key(
-                self.level + 1,
-                2 * self.x + (octant & 1),
-                2 * self.y + (octant >> 1 & 1),
-                2 * self.z + (octant >> 2),
-            )
+    def above(self, level: int) -> Key:
+        """The node of a coarser level, or itself, that it lies in."""
+        up = self.level - level
+        return Key(level, self.x >> up, self.y >> up, self.z >> up)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +68,7 @@ class PointFiles:
 
     def __init__(self, folder: Path, dtype: np.dtype[np.void]) -> None:
         self._folder, self._dtype = folder, dtype
-        self._counts: dict[Cell, int] = {}
+        self._cells: set[Cell] = set()
 
     def add(self, records: Records) -> None:
         """Append points to the files of their cubes."""
@@ -86,13 +82,13 @@ class PointFiles:
         low = [axis >> OCTREE.bucket_bits for axis in cube.low]
         return {
             Key(level, *(at - first for at, first in zip(cell, low, strict=True))): self._path(cell)
-            for cell in self._counts
+            for cell in self._cells
         }
 
     def _append(self, cell: Cell, records: Records) -> None:
         with self._path(cell).open("ab") as file:
             file.write(np.ascontiguousarray(records).data)
-        self._counts[cell] = self._counts.get(cell, 0) + len(records)
+        self._cells.add(cell)
 
     def _path(self, cell: Cell) -> Path:
         return self._folder / "{}_{}_{}".format(*cell)
@@ -125,29 +121,31 @@ class Octree:
         """Points of a node; all below it is written."""
         if key in files:
             return self._from_file(key, files.pop(key))
-        below = [(child, _below(files, child)) for child in key.children()]
-        return self._sampled(key, [(k, self._node(k, part)) for k, part in below if part])
+        below: dict[Key, dict[Key, Path]] = {}
+        for found, path in files.items():
+            below.setdefault(found.above(key.level + 1), {})[found] = path
+        return self._sampled(key, [(k, self._node(k, part)) for k, part in sorted(below.items())])
 
     def _from_file(self, key: Key, path: Path) -> Records:
         fits = path.stat().st_size <= OCTREE.points_in_memory * self.dtype.itemsize
         if not fits and not self._at_end(key):
-            return self._node(key, dict(self._split(key, path)))
+            return self._node(key, self._split(key, path))
         records = np.fromfile(path, self.dtype)
         path.unlink()
         return self._grown(key, records, self.cube.steps(records), rows=np.arange(len(records)))
 
-    def _split(self, key: Key, path: Path) -> Iterator[tuple[Key, Path]]:
+    def _split(self, key: Key, path: Path) -> dict[Key, Path]:
         """The files of the eight nodes below a file that is too large, which is removed."""
-        made = {}
+        made: dict[Key, Path] = {}
         with path.open("rb") as file:
             while len(part := np.fromfile(file, self.dtype, OCTREE.points_in_memory)):
                 for octant, rows in self._octants(key, self.cube.steps(part)):
-                    child = list(key.children())[octant]
+                    child = key.child(octant)
                     made[child] = path.with_name(f"{path.name}.{octant}")
                     with made[child].open("ab") as out:
                         out.write(np.ascontiguousarray(part[rows]).data)
         path.unlink()
-        yield from made.items()
+        return made
 
     def _grown(
         self, key: Key, records: Records, steps: Steps, *, rows: NDArray[np.intp]
@@ -158,9 +156,8 @@ class Octree:
         inside = steps[rows]
         own = self._first_of_cells(key, inside)
         rest = np.flatnonzero(~own)
-        children = list(key.children())
         for octant, part in self._octants(key, inside[rest]):
-            child = children[octant]
+            child = key.child(octant)
             self._write(child, self._grown(child, records, steps, rows=rows[rest[part]]))
         return records[rows[own]]
 
@@ -177,7 +174,7 @@ class Octree:
 
     def _write(self, key: Key, records: Records) -> None:
         if len(records) or key in self._inner:
-            self._inner.add(key.parent())
+            self._inner.add(key.above(key.level - 1))
             self.write(key, records)
             self.progress.advance(len(records))
 
@@ -200,16 +197,6 @@ class Octree:
         first = np.zeros(len(steps), np.bool_)
         first[found] = True
         return first
-
-
-def _below(files: dict[Key, Path], key: Key) -> dict[Key, Path]:
-    """The files of a node and of those below it."""
-    return {
-        found: path
-        for found, path in files.items()
-        if found.level >= key.level
-        and tuple(at >> (found.level - key.level) for at in found[1:]) == key[1:]
-    }
 
 
 def _groups(cells: NDArray[np.int64]) -> Iterator[tuple[Cell, NDArray[np.intp]]]:

@@ -9,19 +9,11 @@ from numpy.typing import NDArray
 
 from recon4.errors import StoreError
 from recon4.export.names import check_name
-from recon4.export.points import (
-    CRS_OF_MAP,
-    Block,
-    OutputCrs,
-    blocks,
-    center,
-    intensity_field,
-    output_transform,
-)
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.geometry.se3 import Array
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
-from recon4.progress import Progress, Silent
+from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
 
 _FIELDS = (
@@ -60,20 +52,18 @@ def export_pcd(
     """
     assert not strays
     check_name(path, ".pcd")
-    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = output_transform(tiles, output.map_to_crs)
-    offset = center(tiles, transform)
-    intensity = intensity_field(tiles)
-    names = [intensity, "normal", "ring", "frame_id", "t_ns"]
+    source = PointSource.of(map_, output)
+    tiles = source.tiles
+    names = [source.intensity, "normal", "ring", "frame_id", "t_ns"]
     row, absolute = np.dtype(list(_FIELDS)), is_absolute(tiles.first_ns)
-    head = _head(tiles, offset.tolist(), output)
+    head = _head(row, source)
     with atomic_file(path) as temporary:
         with temporary.open("wb") as file:
             file.write(head)
-            for block in blocks(tiles, names, transform=transform, progress=progress or Silent()):
+            for block in source.blocks(names, progress):
                 rows = np.zeros(len(block.xyz), row)
-                _fill(rows, block, offset)
-                rows["intensity"] = block.columns[intensity]
+                _fill(rows, block, source.offset)
+                rows["intensity"] = block.columns[source.intensity]
                 rows["gps_time"] = point_time_s(block.columns["t_ns"], absolute=absolute)
                 file.write(rows.data)
         expected, found = len(head) + len(tiles) * row.itemsize, temporary.stat().st_size
@@ -90,25 +80,23 @@ def _fill(rows: NDArray[np.void], block: Block, offset: Array) -> None:
     rows["frame_id"] = block.columns["frame_id"]
 
 
-def _head(tiles: TileSet, offset: list[float], output: OutputCrs) -> bytes:
-    row = np.dtype(list(_FIELDS))
+def _head(row: np.dtype[np.void], source: PointSource) -> bytes:
     names = row.names or ()
     kinds = [row[name] for name in names]
-    crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
-    comments = [f"# crs {' '.join(crs.split())}"] if crs else []
+    comments = [f"# crs {' '.join(source.crs.split())}"] if source.crs else []
     lines = [
         "# .PCD v0.7 - Point Cloud Data file format",
         *comments,
-        "# offset {:.0f} {:.0f} {:.0f}".format(*offset),
+        "# offset {:.0f} {:.0f} {:.0f}".format(*source.offset),
         "VERSION 0.7",
         f"FIELDS {' '.join(names)}",
         f"SIZE {' '.join(str(kind.itemsize) for kind in kinds)}",
         f"TYPE {' '.join(kind.kind.upper() for kind in kinds)}",
         f"COUNT {' '.join('1' for _ in names)}",
-        f"WIDTH {len(tiles)}",
+        f"WIDTH {len(source.tiles)}",
         "HEIGHT 1",
         "VIEWPOINT 0 0 0 1 0 0 0",
-        f"POINTS {len(tiles)}",
+        f"POINTS {len(source.tiles)}",
         "DATA binary",
     ]
     return ("\n".join(lines) + "\n").encode("ascii", "replace")

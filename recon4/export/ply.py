@@ -8,10 +8,10 @@ import numpy as np
 
 from recon4.errors import StoreError
 from recon4.export.names import check_name
-from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, blocks, center, output_transform
+from recon4.export.points import CRS_OF_MAP, Block, OutputCrs, PointSource
 from recon4.mapping.tiles import TileSet
 from recon4.model.gps_time import is_absolute, point_time_s
-from recon4.progress import Progress, Silent
+from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
 
 _PROPERTIES = {"<f8": "double", "<f4": "float", "<u4": "uint", "<u2": "ushort", "|u1": "uchar"}
@@ -56,17 +56,14 @@ def export_ply(
     """
     assert not strays
     check_name(path, ".ply")
-    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = output_transform(tiles, output.map_to_crs)
-    center(tiles, transform)
+    source = PointSource.of(map_, output)
+    tiles = source.tiles
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
     absolute = is_absolute(tiles.first_ns)
-    stream = blocks(
-        tiles, [*fields, "normal", "t_ns"], transform=transform, progress=progress or Silent()
-    )
+    stream = source.blocks([*fields, "normal", "t_ns"], progress)
     with atomic_file(path) as temporary:
-        head = _head(row, len(tiles), output.crs or (tiles.crs.wkt if tiles.crs else ""))
+        head = _head(row, len(tiles), source.crs)
         with temporary.open("wb") as file:
             file.write(head)
             for block in stream:

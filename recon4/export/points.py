@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import Columns
 from recon4.mapping.tiles import TileSet
-from recon4.progress import Progress
+from recon4.progress import Progress, Silent
 
 ToCrs = Callable[[Array], Array]
 """Map coordinates [m], (N, 3), to those of the CRS, (N, 3)."""
@@ -45,43 +46,59 @@ class Block:
     """Whether these are stray returns."""
 
 
-def output_transform(tiles: TileSet, map_to_crs: ToCrs | None) -> ToCrs:
-    """Transformation of points of the map for an export: as given, or by the map's origin."""
-    if map_to_crs is not None:
-        return map_to_crs
-    shift = np.array(tiles.crs.origin_m if tiles.crs else (0.0, 0.0, 0.0))
-    return lambda xyz_m: xyz_m + shift
+@dataclass(frozen=True, slots=True, eq=False)
+class PointSource:
+    """A map, and the coordinates in which it is written."""
 
+    tiles: TileSet
+    transform: ToCrs
+    """Map coordinates to those of the file."""
+    crs: str
+    """WKT or code of the CRS; empty = the map's local frame."""
+    offset: NDArray[np.float64]
+    """Whole meters near its middle in the coordinates of the file, (3,)."""
 
-def blocks(
-    tiles: TileSet, fields: list[str], *, transform: ToCrs, progress: Progress
-) -> Iterator[Block]:
-    """All points, tile by tile; neighbors follow each other."""
-    progress.start("export", len(tiles), "points")
-    for tile in tiles:
-        columns = tile.read(["xyz", *fields])
-        order = tile.spatial_order()
-        for first in range(0, len(tile), POINT_EXPORT.block):
-            rows = order[first : first + POINT_EXPORT.block]
-            xyz = np.take(columns["xyz"], rows, axis=0) + np.array(tile.origin_m)
-            yield Block(
-                transform(xyz), {name: np.take(columns[name], rows, axis=0) for name in fields}
-            )
-            progress.advance(len(rows))
+    @staticmethod
+    def of(map_: Path | TileSet, output: OutputCrs) -> PointSource:
+        """A map to be written.
 
+        Args:
+            map_: Artifact of the stage ``map``, or what is open of it.
+            output: CRS of the file; by default the shift by the map's origin in its own.
 
-def intensity_field(tiles: TileSet) -> str:
-    """The intensities of a format with one of them: normalized, or raw if there are no others."""
-    return "intensity_normalized" if "intensity_normalized" in tiles.fields else "intensity"
+        Raises:
+            ConfigError: If the map has no points.
+        """
+        tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
+        if not len(tiles):
+            raise ConfigError("the map has no points, there is nothing to export")
+        shift = np.array(tiles.crs.origin_m if tiles.crs else (0.0, 0.0, 0.0))
+        transform = output.map_to_crs or (lambda xyz_m: xyz_m + shift)
+        crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
+        middle_m = np.mean(tiles.bounds_m, axis=0)
+        return PointSource(tiles, transform, crs, np.round(transform(middle_m[None])[0]))
 
+    @property
+    def intensity(self) -> str:
+        """Of formats with one intensity: the normalized one, or the raw one without it."""
+        return (
+            "intensity_normalized" if "intensity_normalized" in self.tiles.fields else "intensity"
+        )
 
-def center(tiles: TileSet, transform: ToCrs) -> NDArray[np.float64]:
-    """Whole meters near the middle of the map in the coordinates of the export, (3,).
+    def only_strays(self) -> PointSource:
+        """The stray returns alone."""
+        return replace(self, tiles=self.tiles.only_strays())
 
-    Raises:
-        ConfigError: If the map has no points.
-    """
-    if not len(tiles):
-        raise ConfigError("the map has no points, there is nothing to export")
-    low, high = tiles.bounds_m
-    return np.round(transform(((low + high) / 2.0)[None])[0])
+    def blocks(self, fields: list[str], progress: Progress | None) -> Iterator[Block]:
+        """All points, tile by tile; neighbors follow each other."""
+        watch = progress or Silent()
+        watch.start("export", len(self.tiles), "points")
+        for tile in self.tiles:
+            columns = tile.read(["xyz", *fields])
+            order = tile.spatial_order()
+            for first in range(0, len(tile), POINT_EXPORT.block):
+                rows = order[first : first + POINT_EXPORT.block]
+                xyz = np.take(columns["xyz"], rows, axis=0) + np.array(tile.origin_m)
+                taken = {name: np.take(columns[name], rows, axis=0) for name in fields}
+                yield Block(self.transform(xyz), taken)
+                watch.advance(len(rows))

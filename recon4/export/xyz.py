@@ -7,16 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from recon4.export.names import check_name
-from recon4.export.points import (
-    CRS_OF_MAP,
-    OutputCrs,
-    blocks,
-    center,
-    intensity_field,
-    output_transform,
-)
+from recon4.export.points import CRS_OF_MAP, OutputCrs, PointSource
 from recon4.mapping.tiles import TileSet
-from recon4.progress import Progress, Silent
+from recon4.progress import Progress
 from recon4.store.atomic import atomic_file
 
 
@@ -49,13 +42,10 @@ def export_xyz(
     """
     assert not strays
     check_name(path, ".xyz")
-    tiles = TileSet.open(map_) if isinstance(map_, Path) else map_
-    transform = output_transform(tiles, output.map_to_crs)
-    center(tiles, transform)
-    name = intensity_field(tiles)
+    source = PointSource.of(map_, output)
     with atomic_file(path) as temporary, temporary.open("wb") as file:
         file.write(b"//X Y Z Intensity\n")
-        for block in blocks(tiles, [name], transform=transform, progress=progress or Silent()):
-            rows = np.column_stack([block.xyz, block.columns[name]])
+        for block in source.blocks([source.intensity], progress):
+            rows = np.column_stack([block.xyz, block.columns[source.intensity]])
             np.savetxt(file, rows, fmt="%.4f %.4f %.4f %.1f")
-    return len(tiles)
+    return len(source.tiles)

@@ -75,6 +75,7 @@ def write_map_file(
     from recon4.progress import Silent
 
     folders = {stage: Path(folder) for stage, folder in artifacts.items()}
-    map_ = map_to_export(folders, evidence, MapExport(crs=query.crs, raw=query.raw))
-    write_map(map_, Path(out), strays=query.strays, progress=Silent())
+    wanted = MapExport(**query.model_dump())
+    map_ = map_to_export(folders, evidence, wanted)
+    write_map(map_, Path(out), strays=wanted.strays, progress=Silent())
     return out

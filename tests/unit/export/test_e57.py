@@ -1,5 +1,7 @@
 """E57: the map as scans with poses, read by another program."""
 
+import resource
+
 import numpy as np
 import pye57
 import pytest
@@ -85,6 +87,18 @@ def test_a_file_that_reads_back_wrong_is_refused(made, tmp_path, monkeypatch):
     monkeypatch.setattr(e57, "_write_scan", another)
     with pytest.raises(StoreError, match="reads back wrong: cartesianX of scan 0"):
         export_e57(tiles, tmp_path / "x.e57", scans, output=CRS_OF_MAP, progress=Silent())
+
+
+def test_a_disk_that_fills_while_it_is_written_is_said_in_one_line(made, tmp_path):
+    tiles, scans = made
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (350_000, hard))  # more than a scan, less than all
+    try:
+        with pytest.raises(StoreError, match="is the disk full") as raised:
+            export_e57(tiles, tmp_path / "x.e57", scans, output=CRS_OF_MAP, progress=Silent())
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "\n" not in str(raised.value) and len(str(raised.value)) < 200
 
 
 def test_an_empty_map_is_refused(made, tmp_path):
