@@ -44,7 +44,7 @@ class Mapped:
 
     def figures(self) -> str:
         e_r = "-" if self.e_r_cm is None else f"{self.e_r_cm:.3f}"
-        return f"{self.ate_cm:.3f} | {e_r} | {self.processor_s:.0f}"
+        return f"{self.ate_cm:.3f}, {e_r}, {self.processor_s:.0f}"
 
 
 def main() -> None:
@@ -54,7 +54,7 @@ def main() -> None:
     parser.add_argument("--before", type=Path, required=True, help="a checkout of other code")
     a = parser.parse_args()
     a.out.mkdir(parents=True, exist_ok=True)
-    print("| recording | ATE, e_r, processor s before | today | same bytes |\n|---|---|---|---|")
+    print("| recording | before: ATE, e_r, processor s | today | same bytes |\n|---|---|---|---|")
     for name, walk in WALKS.items():
         recording = a.out / name.replace(" ", "-")
         if not recording.exists():
