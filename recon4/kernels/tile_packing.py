@@ -15,7 +15,8 @@ def spatial_rows(
     strata: NDArray[np.int64],
     first: int,
     stop: int,
-    out: NDArray[np.int32],
+    rows: NDArray[np.int32],
+    places: NDArray[np.int32],
 ) -> None:
     """Rows of a block in spatial order.
 
@@ -24,7 +25,9 @@ def spatial_rows(
         strata: The strata in their stored order, int64 (S,).
         first: First row of the block.
         stop: Row after its last.
-        out: Receives the rows from ``first`` on, int32 (stop - first,).
+        rows: Receives the rows from ``first`` on, int32 (stop - first,).
+        places: Receives the place of each in the spatial order of the part, increasing, int32
+            (stop - first,).
     """
     begins = np.zeros(len(strata), np.int64)
     at = 0
@@ -43,14 +46,49 @@ def spatial_rows(
         for m in range(many):
             row = begins[met[m]] + q
             if first <= row < stop and q * len(strata) + met[m] < count:
-                out[found] = row - first
+                rows[found] = row - first
+                places[found] = q * len(strata) + met[m]
                 found += 1
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def _width_of(every: np.uint64) -> int:
+    """Bytes that the largest of some numbers needs, by all of their bits; at least 1."""
+    width = 1
+    while width < 8 and every >> np.uint64(8 * width):
+        width += 1
+    return width
+
+
+@njit(cache=True, nogil=True, error_model="numpy")
+def lengths_to_bits(
+    values: NDArray[np.float32], step: float, along: bool, out: NDArray[np.uint64]
+) -> int:
+    """Whole steps of lengths as `numbers_to_bits` gives those of numbers.
+
+    Args:
+        values: float32 (N, K).
+        step: What they are rounded to.
+        along: Whether each number is stored as its difference to the one before it.
+        out: Receives the bits, uint64 (K, N).
+    """
+    every = np.uint64(0)
+    for k in range(values.shape[1]):
+        last = np.int64(0)
+        for n in range(len(values)):
+            value = np.int64(np.rint(np.float64(values[n, k]) / step))
+            away = value - last
+            if along:
+                last = value
+            bits = np.uint64((away << 1) ^ (away >> 63))
+            out[k, n] = bits
+            every |= bits
+    return _width_of(every)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
 def numbers_to_bits(
     values: NDArray[np.int64],
-    order: NDArray[np.int32],
     along: bool,
     halves: bool,
     out: NDArray[np.uint64],
@@ -59,7 +97,6 @@ def numbers_to_bits(
 
     Args:
         values: int64 (N, K).
-        order: In which rows follow each other, int32 (N,).
         along: Whether each number is stored as its difference to the one before it.
         halves: Whether numbers have 16 bits: differences wrap, and sums of them wrap back.
         out: Receives the bits, uint64 (K, N).
@@ -70,8 +107,8 @@ def numbers_to_bits(
     every = np.uint64(0)
     for k in range(values.shape[1]):
         last = np.int64(0)
-        for n in range(len(order)):
-            value = values[order[n], k]
+        for n in range(len(values)):
+            value = values[n, k]
             step = value - last
             if along:
                 last = value
@@ -80,10 +117,7 @@ def numbers_to_bits(
             bits = np.uint64((step << 1) ^ (step >> 63))
             out[k, n] = bits
             every |= bits
-    width = 1
-    while width < 8 and every >> np.uint64(8 * width):
-        width += 1
-    return width
+    return _width_of(every)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -108,7 +142,7 @@ def bytes_to_numbers(
 
     Args:
         packed: The bytes, uint8 (K, W, N).
-        order: As given to `numbers_to_bits`.
+        order: Row of each number, int32 (N,).
         along: As given to it.
         step: Factor of the numbers; 1 for whole ones.
         out: Receives them, float32 or int64 (N, K).

@@ -149,7 +149,7 @@ def _finish_tile(
     """Make a tile and compress it; with what was removed from it."""
     made = make_tile(buckets.read(tile), tile, recipe, scratch=scratch)
     buckets.drop(tile)
-    return writer.pack(tile, made.blocks, cuts=made.cuts, strays=made.strays), made.removed
+    return writer.pack(tile, made.blocks, points=made.points, strays=made.strays), made.removed
 
 
 def _finish_tiles(

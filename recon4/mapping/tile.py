@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.mapping.tile_memory import Scratch
-from recon4.mapping.tile_order import cut, progressive
+from recon4.mapping.tile_order import stored_blocks
 from recon4.mapping.tuning import TILES
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
@@ -78,15 +79,16 @@ class Recipe:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class MadeTile:
-    """Columns of a tile in the stored order, and counts of removed points by reason."""
+    """Columns of a tile, and counts of removed points by reason."""
 
     removed: Counter[str]
-    cuts: Sequence[tuple[int, int]]
-    """First row of each block, and the row after its last."""
     blocks: Iterator[Columns]
-    """The columns, block by block; valid until the thread makes its next tile."""
+    """The columns, block by block, each in spatial order; valid until the thread makes its next
+    tile."""
+    points: int
+    """Rows of the first blocks."""
     strays: int = 0
-    """How many of the last rows are stray returns."""
+    """Rows of the other blocks: stray returns."""
 
 
 def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch) -> MadeTile:
@@ -106,32 +108,30 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch)
     if settings.surface == "fitted":
         surfaces = _surfaces(records, recipe, scratch)
         stray = own & (surfaces.stray | (surfaces.support < settings.min_neighborhood))
-        strays = progressive(np.flatnonzero(stray))
-        rows = np.concatenate([progressive(np.flatnonzero(own & ~stray)), strays])
+        points, strays = np.flatnonzero(own & ~stray), np.flatnonzero(stray)
         columns = partial(_fitted_columns, records, surfaces, recipe=recipe)
-        cuts = cut(len(rows), len(strays))
-        blocks = _blocks(rows, cuts, columns, tile=tile, recipe=recipe)
-        return MadeTile(removed, cuts, blocks, len(strays))
+        rows = chain(stored_blocks(points), stored_blocks(strays))
+        blocks = _blocks(rows, columns, tile=tile, recipe=recipe)
+        return MadeTile(removed, blocks, len(points), len(strays))
     normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
     lonely = own & (normals.support < settings.min_neighborhood)
     removed["lonely"] = int(lonely.sum())
-    rows = progressive(np.flatnonzero(own & ~lonely))
+    points = np.flatnonzero(own & ~lonely)
     columns = partial(_raw_columns, records, normals, recipe=recipe)
-    cuts = cut(len(rows))
-    return MadeTile(removed, cuts, _blocks(rows, cuts, columns, tile=tile, recipe=recipe))
+    blocks = _blocks(stored_blocks(points), columns, tile=tile, recipe=recipe)
+    return MadeTile(removed, blocks, len(points))
 
 
 def _blocks(
-    rows: NDArray[np.intp],
-    cuts: Sequence[tuple[int, int]],
+    blocks: Iterator[NDArray[np.intp]],
     columns_of: Callable[[NDArray[np.intp]], Columns],
     *,
     tile: Tile,
     recipe: Recipe,
 ) -> Iterator[Columns]:
     origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
-    for first, stop in cuts:
-        columns = columns_of(rows[first:stop])
+    for rows in blocks:
+        columns = columns_of(rows)
         if recipe.covariances:
             p_map = columns["xyz"] + origin_m
             columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
@@ -38,14 +38,7 @@ def _strata() -> NDArray[np.int64]:
     return np.array([int(f"{s:0{bits}b}"[::-1], 2) for s in range(TILES.strata)])
 
 
-def cut(count: int, strays: int = 0) -> Sequence[tuple[int, int]]:
-    """First row of each block of a tile, and the row after its last: strays are blocks apart."""
-    own = count - strays
-    ends = _block_ends(own) + [own + end for end in _block_ends(strays)]
-    return list(pairwise([0, *ends]))
-
-
-def _block_ends(count: int) -> list[int]:
+def block_ends(count: int) -> list[int]:
     """Where the blocks of a part of a tile end: the first sixteenth, then about equal ones.
 
     A small sample of many tiles is in the first block of each.
@@ -63,6 +56,18 @@ def spatial_order_of(count: int, first: int, stop: int) -> Order:
         first: First of them in the block.
         stop: The one after its last.
     """
-    order = np.empty(stop - first, np.int32)
-    spatial_rows(count, _strata(), first, stop, order)
+    order, places = np.empty((2, stop - first), np.int32)
+    spatial_rows(count, _strata(), first, stop, order, places)
     return order
+
+
+def stored_blocks(rows: NDArray[np.intp]) -> Iterator[NDArray[np.intp]]:
+    """Rows of a part of a tile, block by block, those of a block in spatial order.
+
+    Args:
+        rows: In spatial order, (N,).
+    """
+    for first, stop in pairwise([0, *block_ends(len(rows))]):
+        order, places = np.empty((2, stop - first), np.int32)
+        spatial_rows(len(rows), _strata(), first, stop, order, places)
+        yield rows[places]

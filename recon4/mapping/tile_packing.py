@@ -14,7 +14,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from recon4.kernels.tile_packing import bits_to_bytes, bytes_to_numbers, numbers_to_bits
+from recon4.kernels.tile_packing import (
+    bits_to_bytes,
+    bytes_to_numbers,
+    lengths_to_bits,
+    numbers_to_bits,
+)
 from recon4.mapping.tile import DEVIATION, FIELDS
 from recon4.mapping.tile_order import Order
 from recon4.mapping.tuning import TILES
@@ -51,19 +56,23 @@ FIELD_PACKING: Mapping[str, FieldPacking] = {
 """Of every field that is stored."""
 
 
-def pack(name: str, values: NDArray[Any], order: Order) -> tuple[bytes, int]:
+def pack(name: str, values: NDArray[Any]) -> tuple[bytes, int]:
     """A field of a block, compressed, and the bytes of each of its numbers.
 
     Args:
         name: Of the field.
-        values: (N,) or (N, K); times from the start of their multiframes.
-        order: Of the rows.
+        values: In spatial order, (N,) or (N, K); times from the start of their multiframes.
     """
-    numbers = _numbers(name, values).reshape(len(order), -1)
-    bits = np.empty(numbers.shape[::-1], np.uint64)
-    packing, halves = FIELD_PACKING[name], FIELDS[name][0] == "<f2"
-    width = numbers_to_bits(numbers, order, packing.along, halves and not packing.step, bits)
-    out = np.empty((len(bits), width, len(order)), np.uint8)
+    dtype, many = FIELDS[name]
+    packing, column = FIELD_PACKING[name], np.ascontiguousarray(values, dtype).reshape(-1, many)
+    bits = np.empty((many, len(column)), np.uint64)
+    if packing.step and column.dtype.kind == "f":
+        lengths = column.astype(np.float32, copy=False)
+        width = lengths_to_bits(lengths, packing.step, packing.along, bits)
+    else:
+        halves = column.dtype.kind == "f"
+        width = numbers_to_bits(_numbers(name, column), packing.along, halves, bits)
+    out = np.empty((many, width, len(column)), np.uint8)
     bits_to_bytes(bits, out)
     return compress(out.data), width
 
@@ -75,7 +84,7 @@ def unpack(name: str, data: bytes, width: int, *, order: Order, where: str) -> N
         name: Of the field.
         data: What `pack` returned.
         width: What it returned, too.
-        order: As given to it.
+        order: Row of each value, (N,).
         where: File and block, for errors.
 
     Raises:

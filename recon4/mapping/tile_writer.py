@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import asdict, dataclass, field
+from itertools import chain
 from pathlib import Path
 from types import TracebackType
 from typing import BinaryIO, Self
@@ -11,11 +12,12 @@ from typing import BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from recon4.kernels.normals import bounds
 from recon4.mapping.columns import BLOCKS, PATHS, index_dtype
 from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import Columns
-from recon4.mapping.tile_order import Order, cut, spatial_order_of
+from recon4.mapping.tile_order import spatial_order, stored_blocks
 from recon4.mapping.tile_packing import as_stored, pack
 from recon4.model.trajectory import Times
 from recon4.store.atomic import write_json
@@ -37,11 +39,13 @@ class _TileRow:
     time_ns: list[int] = field(default_factory=list)
     """Times of its first and last point [ns], (2,)."""
 
-    def extend(self, xyz: NDArray[np.float64], t_ns: NDArray[np.int64]) -> None:
-        """Extend the bounds by some points."""
-        origin = np.array(self.origin_m)
-        self.low_m = np.fmin(self.low_m, origin + xyz.min(axis=0)).tolist()
-        self.high_m = np.fmax(self.high_m, origin + xyz.max(axis=0)).tolist()
+    def extend(self, xyz: NDArray[np.float32], t_ns: NDArray[np.int64]) -> None:
+        """Extend the bounds by some points: by their coordinates as they will be read."""
+        corners = np.empty((2, 3))
+        bounds(np.ascontiguousarray(xyz, np.float32), *corners)
+        low, high = as_stored("xyz", corners) + np.array(self.origin_m)
+        self.low_m = np.fmin(self.low_m, low).tolist()
+        self.high_m = np.fmax(self.high_m, high).tolist()
         times = [*self.time_ns, int(t_ns.min()), int(t_ns.max())]
         self.time_ns = [min(times), max(times)]
 
@@ -124,45 +128,49 @@ class TileWriter:
             columns: Its fields.
             strays: How many of the last rows are stray returns.
         """
-        cuts = cut(len(columns["xyz"]), strays)
-        blocks = ({k: v[first:stop] for k, v in columns.items()} for first, stop in cuts)
-        self.write(self.pack(ijk, blocks, cuts=cuts, strays=strays))
+        points = len(columns["xyz"]) - strays
+        parts = spatial_order(points), points + spatial_order(strays)
+        blocks = (
+            {name: np.take(values, rows, axis=0) for name, values in columns.items()}
+            for rows in chain(*map(stored_blocks, parts))
+        )
+        self.write(self.pack(ijk, blocks, points=points, strays=strays))
 
     def pack(
         self,
         ijk: tuple[int, int, int],
         blocks: Iterable[Columns],
         *,
-        cuts: Sequence[tuple[int, int]],
+        points: int,
         strays: int,
     ) -> PackedTile:
         """Compress a tile.
 
         Args:
             ijk: Index in the grid of tiles.
-            blocks: Its fields, ``xyz`` and ``t_ns`` among them, block by block.
-            cuts: First row of each block and the row after its last, of `cut`.
-            strays: How many of the last rows are stray returns.
+            blocks: Its fields, ``xyz`` and ``t_ns`` among them, block by block in the order of
+                `stored_blocks`: first those of the points, then those of the stray returns.
+            points: Rows of all blocks but those of stray returns.
+            strays: Stray returns.
         """
         row = _TileRow(ijk=list(ijk), origin_m=(np.array(ijk) * self._tile_m).tolist())
-        count = cuts[-1][1] if cuts else 0
-        row.strays, own = strays, count - strays
-        packed = []
-        for (first, stop), columns in zip(cuts, blocks, strict=True):
+        row.strays = strays
+        packed: list[_Block] = []
+        first = 0
+        for columns in blocks:
             began_ns = self._began_ns(columns)
             within_ns = columns["t_ns"] - began_ns
             # A tile of strays only has their bounds: every tile has some.
-            if first < own or not own:
-                t_ns = began_ns + as_stored("t_ns", within_ns).astype(np.int64)
-                row.extend(as_stored("xyz", columns["xyz"]), t_ns)
-            begin, end = (0, own) if first < own else (own, count)
-            order = spatial_order_of(end - begin, first - begin, stop - begin)
-            packed.append(self._block(columns | {"t_ns": within_ns}, order))
-        return PackedTile(row, count, packed)
+            if first < points or not points:
+                row.extend(columns["xyz"], began_ns + as_stored("t_ns", within_ns))
+            packed.append(self._block(columns | {"t_ns": within_ns}))
+            first += packed[-1].count
+        return PackedTile(row, first, packed)
 
-    def _block(self, columns: Columns, order: Order) -> _Block:
-        made = [pack(name, columns[name], order) for name in self._fields]
-        return _Block(len(order), [data for data, _ in made], [width for _, width in made])
+    def _block(self, columns: Columns) -> _Block:
+        made = [pack(name, columns[name]) for name in self._fields]
+        count = len(columns["xyz"])
+        return _Block(count, [data for data, _ in made], [width for _, width in made])
 
     def _began_ns(self, columns: Columns) -> Times:
         """Start of the multiframe of each point [ns], (N,); a reference has no multiframes."""

@@ -1,6 +1,7 @@
 """Blocks of tiles: what is written is what is read, block by block, and damage is named."""
 
 import json
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -9,7 +10,13 @@ from recon4.errors import StoreError
 from recon4.mapping.columns import BLOCKS, KeptBlocks, PackedColumns
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import FIELDS, STORED
-from recon4.mapping.tile_order import cut, progressive, spatial_order, spatial_order_of
+from recon4.mapping.tile_order import (
+    block_ends,
+    progressive,
+    spatial_order,
+    spatial_order_of,
+    stored_blocks,
+)
 from recon4.mapping.tile_packing import pack, unpack
 from recon4.mapping.tile_writer import TileWriter
 from recon4.mapping.tiles import TileSet
@@ -80,7 +87,7 @@ def test_any_rows_are_those_of_the_whole_tile(written):
     tile = TileSet.open(folder).tiles[0]
     whole = tile.read(["xyz", "t_ns", "ring"])
 
-    assert len(cut(3000, 200)) == 4
+    assert len(block_ends(2800)) + len(block_ends(200)) == 4
     for rows in (slice(0, 5), slice(170, 190), slice(2799, 2800), slice(3, 2800, 7)):
         part = tile.read(["xyz", "t_ns", "ring"], rows=rows)
         for name, values in part.items():
@@ -121,22 +128,24 @@ def test_what_is_read_is_stored_again_as_the_same_bytes(written, tmp_path):
 @pytest.mark.parametrize("count", [1, 63, 64, 65, 1000, 5000])
 def test_blocks_are_stored_in_the_order_of_space(count):
     place = np.argsort(spatial_order(count))
-    for first, stop in cut(count):
+    blocks = list(stored_blocks(10 + np.arange(count)))
+    for (first, stop), rows in zip(pairwise([0, *block_ends(count)]), blocks, strict=True):
         expected = np.argsort(place[first:stop])
         np.testing.assert_array_equal(spatial_order_of(count, first, stop), expected)
+        np.testing.assert_array_equal(rows, 10 + place[first:stop][expected])
     np.testing.assert_array_equal(
         progressive(np.arange(count))[np.argsort(place)], np.arange(count)
     )
 
 
 def test_the_first_block_is_a_sixteenth_and_none_is_too_large():
-    cuts = cut(1_000_000, 30)
+    ends = block_ends(999_970)
 
-    assert cuts[0] == (0, 62_499)
-    assert cuts[-2:] == [(999_970, 999_972), (999_972, 1_000_000)]
-    assert max(stop - first for first, stop in cuts) <= TILES.block
-    assert [first for first, _ in cuts[1:]] == [stop for _, stop in cuts[:-1]]
-    assert cut(0) == []
+    assert ends[0] == 62_499
+    assert ends[-1] == 999_970
+    assert 0 < min(np.diff(ends)) <= max(np.diff(ends)) <= TILES.block
+    assert block_ends(30) == [2, 30]
+    assert block_ends(0) == []
 
 
 @pytest.mark.parametrize("values", [[-(1 << 62), 1 << 62, 0], [5], [-1, 1, -300, 70_000]])
@@ -145,9 +154,9 @@ def test_whole_numbers_of_any_size_come_back(values):
     order = np.arange(len(values), dtype=np.int32)[::-1].copy()
     exact = numbers // TILES.time_step_ns * TILES.time_step_ns
 
-    data, width = pack("t_ns", exact, order)
+    data, width = pack("t_ns", exact)
 
-    np.testing.assert_array_equal(unpack("t_ns", data, width, order=order, where=""), exact)
+    np.testing.assert_array_equal(unpack("t_ns", data, width, order=order, where=""), exact[::-1])
 
 
 @pytest.mark.parametrize("name", ["xyz", "normal", "echo"])
