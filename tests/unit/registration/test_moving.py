@@ -90,6 +90,7 @@ class Walk:
         """Places of pillars by where the carrier is, and by where it begins [m], (M, 2)."""
         self.rig = replace(RIG, sensors=(replace(RIG.sensors[0], model=model),))
         self._walking, self._standing, self._rings_deg = walking, standing, rings_deg
+        self._scanned: dict[int, Multiframe] = {}
         t_s = np.arange(0.0, seconds + 0.1, 0.005)
         omega = 2.0 * np.pi / STRIDE_S
         accel = np.zeros((len(t_s), 3))
@@ -105,6 +106,12 @@ class Walk:
         return np.array([-5.0 + SPEED_M_S * (t_s - np.sin(omega * t_s) / omega), 0.3, 0.0])
 
     def __getitem__(self, k: int) -> Multiframe:
+        """A scan is dearer than the odometry of it, which reads it several times."""
+        if k not in self._scanned:
+            self._scanned[k] = self._scan(k)
+        return self._scanned[k]
+
+    def _scan(self, k: int) -> Multiframe:
         origin, d = self.place(self.t_mid_ns[k]), rays(self._rings_deg)
         room = room_ranges(origin, d)
         begin = self.place(0.0)
