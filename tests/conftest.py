@@ -6,6 +6,8 @@ import gc
 import os
 import shutil
 import signal
+import subprocess
+import sys
 from collections.abc import Callable, Generator, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -14,7 +16,7 @@ import pytest
 
 from tests.chromium import CHROMIUM, FLAGS
 from tests.made_once import made_once
-from tests.short_capture import cut_capture
+from tests.short_capture import cut_capture, process_short
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser
@@ -105,6 +107,17 @@ def short_recording(office_recording, tmp_path_factory) -> Path:
             shutil.copyfile(office_recording / name, folder / name)
 
     return made_once(tmp_path_factory, "short-recording", make)
+
+
+@pytest.fixture(scope="session")
+def short_project(short_recording, tmp_path_factory) -> Path:
+    """The finished project of that short recording, by the command line; tests only read it."""
+
+    def make(folder: Path) -> None:
+        command = [sys.executable, "-m", "recon4", *process_short(short_recording, folder)]
+        subprocess.run(command, check=True)
+
+    return made_once(tmp_path_factory, "short-project", make)
 
 
 @pytest.fixture(scope="session")

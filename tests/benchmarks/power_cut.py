@@ -43,8 +43,9 @@ from recon4_app.uploads.store import UploadStore
 from tests.power_cut.disk_model import Disk, Keeps, operations
 from tests.power_cut.recording_disk import MARK
 from tests.service import tus_client
-from tests.service.killing import QUICK, RESULTS
+from tests.service.killing import RESULTS
 from tests.service.running import ROOT, server_process, wait_for
+from tests.short_capture import QUICK
 
 SIGNER = {"who": "Eva", "role": "reviewer", "why": "compared with the plan"}
 UPLOAD = b"point cloud data " * 20_000

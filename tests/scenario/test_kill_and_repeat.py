@@ -8,14 +8,11 @@ import sys
 import time
 
 import numpy as np
-import pytest
 
 from recon4.cli.main import main
 from recon4.workflows.map_results import RESULTS as ALL_RESULTS
+from tests.short_capture import process_short
 
-FEW = [
-    *("--set", "map.voxel_m=0.1", "--set", "graph.node_stride=4"),
-]
 UNFINISHED = (".tmp-", "buckets-")
 """Beginnings of the names of unfinished files and folders."""
 RESULTS = sorted({*ALL_RESULTS} - {"report.html"})  # it says when it was made
@@ -29,11 +26,6 @@ ENDED_AFTER = {
 """Every stage of a job, by a gate: ``tests/service/test_killing.py``."""
 
 
-def command(walk, out, *more):
-    recording = [str(walk / "recording.pcap"), "--rig", "4recon", "--imu", str(walk / "imu.csv")]
-    return ["process", *recording, "--out", str(out), *FEW, *more]
-
-
 def results(out):
     summary = json.loads((out / "summary.json").read_text())
     for name in RESULTS:
@@ -41,33 +33,30 @@ def results(out):
     return {name: (out / name).read_bytes() for name in RESULTS}
 
 
-@pytest.fixture(scope="module")
-def unbroken(short_recording, tmp_path_factory):
-    out = tmp_path_factory.mktemp("unbroken") / "project"
-    assert main(command(short_recording, out)) == 0
-    return out
-
-
 def assert_same(found, expected):
     for name in RESULTS:
         assert found[name] == expected[name], name
 
 
-def test_the_walk_is_tracked_and_has_accepted_loops(unbroken):
-    summary = json.loads((unbroken / "summary.json").read_text())
+def test_the_walk_is_tracked_and_has_accepted_loops(short_project):
+    summary = json.loads((short_project / "summary.json").read_text())
 
     assert summary["multiframes"] in {25, 26}
     assert summary["edges"]["accepted"] > 10
     assert summary["lost"] == 0
 
 
-def test_one_thread_gives_the_bytes_of_two(short_recording, unbroken, tmp_path):
-    assert main(command(short_recording, tmp_path / "one", "--set", "graph.workers=1")) == 0
+def test_one_thread_gives_the_bytes_of_two(short_recording, short_project, tmp_path):
+    one_thread = ["--set", "graph.workers=1"]
 
-    assert_same(results(tmp_path / "one"), results(unbroken))
+    assert main([*process_short(short_recording, tmp_path / "one"), *one_thread]) == 0
+
+    assert_same(results(tmp_path / "one"), results(short_project))
 
 
-def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(short_recording, unbroken, tmp_path):
+def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(
+    short_recording, short_project, tmp_path
+):
     """Each run is ended a random while after a stage ended, so that the next one is hit.
 
     The signals go to a real process. SIGKILL: no cleaning up, no last word. The others: one line,
@@ -77,7 +66,7 @@ def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(short_recording, u
     out = tmp_path / "ended"
     finished = []
     for stage, sign in ENDED_AFTER.items():
-        run = command(short_recording, out)
+        run = process_short(short_recording, out)
         code, said = run_and_end(run, news=stage, seconds=rng.uniform(0.0, 0.3), sign=sign)
         finished.append(len([*(out / "artifacts").glob("[!.]*")]))
         if sign == signal.SIGKILL:
@@ -89,9 +78,9 @@ def test_a_run_ended_in_five_stages_resumes_to_the_same_bytes(short_recording, u
         assert "Traceback" not in said
         assert not [path for path in out.rglob("*") if path.name.startswith(UNFINISHED)]
 
-    assert main(command(short_recording, out)) == 0
+    assert main(process_short(short_recording, out)) == 0
 
-    assert_same(results(out), results(unbroken))
+    assert_same(results(out), results(short_project))
     assert len(set(finished)) >= 4, f"signals should fall into different stages: {finished}"
     assert not list(out.glob("**/.tmp-*"))
     assert main(["verify", str(out)]) == 0

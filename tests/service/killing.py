@@ -28,13 +28,12 @@ from tests.processes import command_of
 from tests.service.gated_worker import AT_GATE
 from tests.service.running import WITHOUT_TLS, Running, end_workers, server_process, wait_for
 from tests.service.viser_client import camera, viewing
+from tests.short_capture import QUICK
 
 STAGES = tuple(stage for stage in STAGE_PERCENT if stage not in (BEFORE, AFTER))
 IN_A_STAGE = ("worker", "server", "viewer", "pool")
 RESULTS = ("trajectory.tum", "odometry.tum", "edges.json", "map.laz", "graph.g2o")
 VICTIMS = ("worker", "server", "both")
-QUICK = ["map.voxel_m=0.1", "graph.node_stride=4"]
-"""Settings that make a short run short."""
 WITHIN_S = 1800.0
 """For a step of a run on a computer that is busy otherwise."""
 
@@ -57,7 +56,7 @@ def request_for(root: Path) -> dict[str, Any]:
         "recordings": [str(walk / "recording.pcap")],
         "rig": "4recon",
         "imu": str(walk / "imu.csv"),
-        "settings": QUICK,
+        "settings": list(QUICK),
     }
 
 
