@@ -12,6 +12,7 @@ from recon4.geometry.mesh import WorldMesh
 from recon4.geometry.raycast import Hits, Scene
 from recon4.geometry.se3 import Array
 from recon4.geometry.tuning import SURFACES
+from recon4.kernels.carrier import carrier_range
 from recon4.kernels.simulation import hits_carrier, make_rays, measure
 from recon4.model.lidars import lidar_model
 from recon4.model.rig import Sensor
@@ -56,6 +57,8 @@ class LidarModel:
     """Standard deviation of the elevation and azimuth of a laser against the data sheet."""
     carrier: bool = True
     """The person hides what is behind."""
+    carrier_returns: bool = False
+    """Beams return from the person, as far as a LiDAR measures so near."""
 
     @staticmethod
     def perfect() -> LidarModel:
@@ -172,13 +175,16 @@ class Lidar:
         if self.model.carrier:
             hits_carrier(shot, mount.R, mount.t, TORSO.row(), blocked)
         hits = surroundings.cast(rays, walk, np.tile(t_s, 2))
+        noise, unit = hit_noise(count, rng), RangeUnit(pattern.unit_m, pattern.added_m)
         found = measure_hits(
-            RaysAndHits(rays, hits, blocked, hit_noise(count, rng)),
+            RaysAndHits(rays, hits, blocked, noise),
             self.gain[laser],
             surroundings=surroundings,
             model=self.model,
-            unit=RangeUnit(pattern.unit_m, pattern.added_m),
+            unit=unit,
         )
+        if self.model.carrier and self.model.carrier_returns:
+            self._add_carrier(found, shot, hits.range_m[:count], noise=noise, unit=unit)
         return Firings(
             t_ns,
             turn.reshape(t_ns.shape),
@@ -186,6 +192,24 @@ class Lidar:
             found.intensity.reshape(t_ns.shape),
             found.reflectivity.reshape(t_ns.shape),
         )
+
+    def _add_carrier(
+        self,
+        found: MeasuredHits,
+        shot: Array,
+        free_m: NDArray[np.float32],
+        *,
+        noise: NDArray[np.float32],
+        unit: RangeUnit,
+    ) -> None:
+        """Add the returns from the person; nothing else is nearer along these shots."""
+        mount = self.sensor.T_body_sensor
+        person_m = np.empty(len(shot))
+        carrier_range(shot, mount.R, mount.t, TORSO.row(), person_m)
+        met = (person_m > self.model.min_range_m) & (person_m < free_m)
+        measured = person_m[met] + self.model.range_sd_m * noise[met, 0]
+        found.distance[met] = np.round((measured + unit.added_m) / unit.unit_m)
+        found.intensity[met] = found.reflectivity[met] = round(100.0 * MATERIAL.people)
 
     def points(self, firings: Firings) -> Array:
         """Where its shots ended by what the sensor states, in its own frame [m], (P, S, L, 3).
