@@ -12,6 +12,7 @@ from recon4.mapping.map_notes import MapNotes
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import FIELDS, STORED
 from recon4.mapping.tile_writer import TileWriter
+from recon4.model.classes import PointClass
 from recon4.model.figures import FrameFigures, LevelFigures, MapFigures
 from recon4.model.multiframe import Multiframe
 from recon4.model.odometry_figures import OdometryFigures
@@ -256,6 +257,8 @@ def _map(context: StageContext, *, points: int, strays: int, normals: bool) -> M
                 [mine - key * TILE_M, np.tile([0.5 * TILE_M, 0.5 * TILE_M, 1.5], (strays, 1))]
             )
             columns = _columns(xyz, rng)
+            columns["classification"] = np.full(len(xyz), PointClass.UNCLASSIFIED, np.uint8)
+            columns["classification"][len(mine) :] = PointClass.LOW_NOISE
             if normals:
                 columns["normal"] = _room_normals(xyz + key * TILE_M)
             writer.append(tuple(int(k) for k in key), columns, strays=strays)

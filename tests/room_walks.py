@@ -47,6 +47,11 @@ class Walk:
     def __getitem__(self, k):
         return self.frames[k]
 
+    @property
+    def t_mid_ns(self):
+        """Middle of each multiframe."""
+        return np.array([frame.t_mid_ns for frame in self.frames])
+
     def repeated(self, frames):
         """The same steps over and over: a longer walk in the same place."""
         rows = np.arange(-1, frames + 2)

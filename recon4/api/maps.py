@@ -28,7 +28,7 @@ def read_tiles(project: str | PathLike[str], *, surface: Surface = "fitted") -> 
     Args:
         project: Folder of a finished project.
         surface: ``fitted``: on the surfaces that were fitted to all returns; ``raw``: where they
-            were measured; ``strays``: only the stray returns that the map leaves out.
+            were measured; ``strays``: only the points that the map leaves out.
 
     Raises:
         Altered: If the map was approved and is not what was approved.

@@ -35,10 +35,10 @@ def export(
     raw: Annotated[
         bool, typer.Option("--raw", help="Points where they were measured, not on surfaces.")
     ] = False,
-    strays: Annotated[
+    all_points: Annotated[
         bool,
         typer.Option(
-            "--strays", help="Also stray returns, as classes 7 and 18 (noise); LAZ, COPC."
+            "--all-points", help="Also noise, the carrier and what moves, by class; not as E57."
         ),
     ] = False,
     draft: DraftOption = False,
@@ -65,7 +65,7 @@ def export(
             write(f"{points} points in {file}")
             _write_approval(project, draft=draft)
             return
-        wanted = MapExport(crs=crs, raw=raw, strays=strays, draft=draft)
+        wanted = MapExport(crs=crs, raw=raw, all_points=all_points, draft=draft)
         made = export_map(project, file, wanted, progress=progress)
     write(f"{made.text} in {file}\n{made.approval.text}")
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Protocol
 
@@ -27,47 +26,30 @@ class CloudWriter(Protocol):
         path: Path,
         output: OutputCrs = CRS_OF_MAP,
         *,
-        strays: bool = False,
+        all_points: bool = False,
         progress: Progress | None = None,
     ) -> int: ...
 
 
-@dataclass(frozen=True, slots=True)
-class CloudFormat:
-    """A format of files of points."""
-
-    write: CloudWriter
-    classes: bool
-    """Whether it says which points are stray returns."""
-
-
-CLOUD_FORMATS = {
-    COPC: CloudFormat(export_copc, classes=True),
-    ".laz": CloudFormat(export_laz, classes=True),
-    ".ply": CloudFormat(export_ply, classes=False),
-    ".pcd": CloudFormat(export_pcd, classes=False),
-    ".xyz": CloudFormat(export_xyz, classes=False),
+CLOUD_FORMATS: dict[str, CloudWriter] = {
+    COPC: export_copc,
+    ".laz": export_laz,
+    ".ply": export_ply,
+    ".pcd": export_pcd,
+    ".xyz": export_xyz,
 }
-"""Ending -> format; the first that matches counts."""
+"""Ending -> who writes such a file; the first that matches counts."""
 
 
-def cloud_format(path: Path, *, strays: bool = False) -> CloudFormat:
-    """The format of a file by its ending.
-
-    Args:
-        path: The file.
-        strays: Whether stray returns are to be in it.
+def cloud_writer(path: Path) -> CloudWriter:
+    """Who writes a file of points, by its ending.
 
     Raises:
-        ConfigError: If no map, or no stray return, is written to such a file.
+        ConfigError: If no map is written to such a file.
     """
     name = path.name.lower()
     ending = next((one for one in CLOUD_FORMATS if name.endswith(one)), None)
     if ending is None:
         raise ConfigError(f"a map is written as {', '.join(CLOUD_FORMATS)}, .e57, got {path.name}")
     check_name(path, ending)
-    found = CLOUD_FORMATS[ending]
-    if strays and not found.classes:
-        able = [one for one, format_ in CLOUD_FORMATS.items() if format_.classes]
-        raise ConfigError(f"stray returns are written to {', '.join(able)} only, got {path.name}")
-    return found
+    return CLOUD_FORMATS[ending]

@@ -75,7 +75,7 @@ def export_copc(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    strays: bool = False,
+    all_points: bool = False,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as COPC, streaming, and compare the whole file before it gets its name.
@@ -86,7 +86,7 @@ def export_copc(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.copc.laz``.
         output: CRS of the file.
-        strays: Also write the stray returns, as class 7 beside a surface and 18 alone in the air.
+        all_points: Also the points that the map leaves out (`recon4.model.classes`).
         progress: Who watches.
 
     Returns:
@@ -98,7 +98,7 @@ def export_copc(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".copc.laz")
-    source, watch = PointSource.of(map_, output), progress or Silent()
+    source, watch = PointSource.of(map_, output, all_points=all_points), progress or Silent()
     header = las_header(source, scale_m=OCTREE.step_m)
     header.are_points_compressed = True
     with (
@@ -106,7 +106,7 @@ def export_copc(
         atomic_file(path) as temporary,
         ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file,
     ):
-        stream = las_blocks(source, strays=strays, progress=watch)
+        stream = las_blocks(source, watch)
         files = PointFiles(Path(folder), header.point_format.dtype())
         times_s = _sort_into(files, stream, header)
         try:

@@ -4,9 +4,6 @@ from __future__ import annotations
 
 import uuid
 from collections.abc import Iterator
-from dataclasses import replace
-from enum import IntEnum
-from itertools import chain
 from typing import Any
 
 import laspy
@@ -34,23 +31,10 @@ OPTIONAL = {
 COPIED = ("surface_returns", "surface_sd_m", "planarity")
 
 
-class NoiseClass(IntEnum):
-    """ASPRS classes of stray returns (LAS 1.4 R15, table 17)."""
-
-    LOW = 7
-    """Beside a surface, as where a beam hits two things."""
-    HIGH = 18
-    """Alone in the air."""
-
-
-def las_blocks(source: PointSource, *, strays: bool, progress: Progress | None) -> Iterator[Block]:
-    """All points of a map with what their records need, the stray returns last if wanted."""
+def las_blocks(source: PointSource, progress: Progress | None) -> Iterator[Block]:
+    """All points of a map with what their records need."""
     fields = [name for name in [*FIELDS, *OPTIONAL] if name in source.tiles.fields]
-    stream = source.blocks(fields, progress)
-    if not strays:
-        return stream
-    of_strays = source.only_strays().blocks([*fields, "normal"], progress)
-    return chain(stream, (replace(block, strays=True) for block in of_strays))
+    return source.blocks(fields, progress)
 
 
 def las_header(source: PointSource, *, scale_m: float) -> Any:
@@ -130,10 +114,7 @@ def las_points(block: Block, header: Any) -> Any:
     points.gps_time[:] = point_time_s(columns["t_ns"], absolute=absolute)
     points["ring"][:] = columns["ring"]
     points["frame_id"][:] = columns["frame_id"]
-    if block.strays:
-        # Too few others around it for a normal: nothing else was measured there.
-        alone = ~columns["normal"].any(axis=1)
-        points.classification[:] = np.where(alone, NoiseClass.HIGH, NoiseClass.LOW)
+    points.classification[:] = columns["classification"]
     for name in COPIED:
         if name in columns:
             points[name][:] = columns[name]

@@ -56,7 +56,7 @@ def export_laz(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    strays: bool = False,
+    all_points: bool = False,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as LAZ, streaming, and check the file before it gets its name.
@@ -69,7 +69,7 @@ def export_laz(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.laz``.
         output: CRS of the file.
-        strays: Also write the stray returns, as class 7 beside a surface and 18 alone in the air.
+        all_points: Also the points that the map leaves out (`recon4.model.classes`).
         progress: Who watches.
 
     Returns:
@@ -81,9 +81,9 @@ def export_laz(
         StoreError: If the file cannot be written or does not read back (`NoSpace`: disk full).
     """
     check_name(path, ".laz")
-    source = PointSource.of(map_, output)
+    source = PointSource.of(map_, output, all_points=all_points)
     header = las_header(source, scale_m=LAZ.scale_m)
-    stream = las_blocks(source, strays=strays, progress=progress)
+    stream = las_blocks(source, progress)
     with atomic_file(path) as temporary, ErrorKeepingWriter(io.FileIO(temporary, "wb")) as file:
         try:
             written = _write(file, header, stream)

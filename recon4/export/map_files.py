@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from recon4.errors import ConfigError, StoreError
-from recon4.export.clouds import CLOUD_FORMATS, cloud_format
+from recon4.export.clouds import CLOUD_FORMATS, cloud_writer
 from recon4.export.e57 import ScanPoses, export_e57
 from recon4.export.names import check_name
 from recon4.export.points import CRS_OF_MAP, OutputCrs
@@ -41,8 +41,8 @@ class MapExport:
     """Code of a CRS; empty = that of the map, or its local frame."""
     raw: bool = False
     """Points where they were measured, not on their surfaces."""
-    strays: bool = False
-    """Also the stray returns, marked as noise; only as LAZ and COPC."""
+    all_points: bool = False
+    """Also those that the map leaves out: the carrier, what moves, noise; not as E57."""
     draft: bool = False
     """Without an approval, whether or not there is one."""
 
@@ -53,20 +53,21 @@ class ExportedMap:
 
     points: int
     """In the file."""
-    strays: int
-    """Stray returns of the map, in the file or left out of it."""
-    noise: bool
-    """Whether they are in the file, marked as noise."""
+    left_out: int
+    """Points that the map leaves out."""
+    all_points: bool
+    """Whether they are in the file."""
     approval: ApprovalState
     """Of the map in the file."""
 
     @property
     def text(self) -> str:
         """Both numbers in words."""
-        if not self.strays:
+        if not self.left_out:
             return f"{self.points} points"
-        where = "of them marked as noise" if self.noise else "left out"
-        return f"{self.points} points, {self.strays} stray returns {where},"
+        if self.all_points:
+            return f"{self.points} points, with the {self.left_out} that the map leaves out,"
+        return f"{self.points} points, without {self.left_out} (noise, moving, carrier),"
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,33 +108,33 @@ def map_to_export(
     return MapToExport(tiles, output, artifacts, evidence.stamp if evidence else None)
 
 
-def write_map(map_: MapToExport, path: Path, *, strays: bool, progress: Progress) -> int:
+def write_map(map_: MapToExport, path: Path, *, all_points: bool, progress: Progress) -> int:
     """Write a map in the format of the ending; the file notes an approval.
 
     Args:
         map_: The map.
         path: File to write; its ending is one of `MAP_ENDINGS`.
-        strays: Also the stray returns.
+        all_points: Also the points that the map leaves out.
         progress: Counts points.
 
     Returns:
         How many points were written.
 
     Raises:
-        ConfigError: If the ending is another, or the format has no classes for stray returns.
+        ConfigError: If the ending is another, or all points are wanted as E57 (no classes).
         StoreError: If the file cannot be written.
     """
     if path.suffix.lower() == SCANS:
-        if strays:
-            raise ConfigError(f"E57 has no classes for stray returns: {path.name}")
+        if all_points:
+            raise ConfigError(f"E57 has no classes, so it cannot hold all points: {path.name}")
         with atomic_file(path) as temporary:
             return export_e57(
                 map_.tiles, temporary, _nodes(map_), output=map_.output, progress=progress
             )
-    write = cloud_format(path, strays=strays).write
+    write = cloud_writer(path)
     # The stamp goes onto a file beside it, so that a file without one is never there.
     with atomic_file(path) as temporary:
-        count = write(map_.tiles, temporary, map_.output, strays=strays, progress=progress)
+        count = write(map_.tiles, temporary, map_.output, all_points=all_points, progress=progress)
         if map_.stamp:
             stamp_file(temporary, temporary, map_.stamp)
     return count
@@ -157,7 +158,7 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
         progress: Counts points.
 
     Returns:
-        How many points were written, and how many stray returns there are.
+        How many points were written, and how many the map leaves out.
 
     Raises:
         Altered: If it was approved and is not what was approved, or its approval is not to be
@@ -172,9 +173,9 @@ def export_map(project: Path, path: Path, wanted: MapExport, *, progress: Progre
     keys = {name: folder.name for name, folder in artifacts.items()}
     approval = None if wanted.draft else approval_of(project, keys)
     map_ = map_to_export(artifacts, approval.evidence if approval else None, wanted)
-    count = write_map(map_, path, strays=wanted.strays, progress=progress)
+    count = write_map(map_, path, all_points=wanted.all_points, progress=progress)
     state = WRITTEN_AS_DRAFT if wanted.draft else approval_state(project, keys)
-    return ExportedMap(count, map_.tiles.strays, wanted.strays, state)
+    return ExportedMap(count, map_.tiles.strays, wanted.all_points, state)
 
 
 def export_poses(project: Path, path: Path, *, draft: bool = False) -> int:

@@ -19,6 +19,7 @@ from recon4.store.atomic import atomic_file
 _FIELDS = (
     *((name, "<f4") for name in ("x", "y", "z", "normal_x", "normal_y", "normal_z", "intensity")),
     *(("ring", "<u2"), ("frame_id", "<u4"), ("gps_time", "<f8")),
+    ("classification", "|u1"),
 )
 
 
@@ -27,7 +28,7 @@ def export_pcd(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    strays: bool = False,
+    all_points: bool = False,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as binary PCD 0.7, streaming.
@@ -40,7 +41,7 @@ def export_pcd(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.pcd``.
         output: CRS of the file.
-        strays: Not with this format, which has no classes.
+        all_points: Also the points that the map leaves out (`recon4.model.classes`).
         progress: Who watches.
 
     Returns:
@@ -50,9 +51,8 @@ def export_pcd(
         ConfigError: If the map has no points, or the name is not one of a PCD file.
         StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
     """
-    assert not strays
     check_name(path, ".pcd")
-    source = PointSource.of(map_, output)
+    source = PointSource.of(map_, output, all_points=all_points)
     tiles = source.tiles
     names = [source.intensity, "normal", "ring", "frame_id", "t_ns"]
     row, absolute = np.dtype(list(_FIELDS)), is_absolute(tiles.first_ns)
@@ -64,12 +64,13 @@ def export_pcd(
                 rows = np.zeros(len(block.xyz), row)
                 _fill(rows, block, source.offset)
                 rows["intensity"] = block.columns[source.intensity]
+                rows["classification"] = block.columns["classification"]
                 rows["gps_time"] = point_time_s(block.columns["t_ns"], absolute=absolute)
                 file.write(rows.data)
-        expected, found = len(head) + len(tiles) * row.itemsize, temporary.stat().st_size
+        expected, found = len(head) + source.count * row.itemsize, temporary.stat().st_size
         if found != expected:
             raise StoreError(f"{path.name}: expected {expected} bytes, got {found}")
-    return len(tiles)
+    return source.count
 
 
 def _fill(rows: NDArray[np.void], block: Block, offset: Array) -> None:
@@ -93,10 +94,10 @@ def _head(row: np.dtype[np.void], source: PointSource) -> bytes:
         f"SIZE {' '.join(str(kind.itemsize) for kind in kinds)}",
         f"TYPE {' '.join(kind.kind.upper() for kind in kinds)}",
         f"COUNT {' '.join('1' for _ in names)}",
-        f"WIDTH {len(source.tiles)}",
+        f"WIDTH {source.count}",
         "HEIGHT 1",
         "VIEWPOINT 0 0 0 1 0 0 0",
-        f"POINTS {len(source.tiles)}",
+        f"POINTS {source.count}",
         "DATA binary",
     ]
     return ("\n".join(lines) + "\n").encode("ascii", "replace")

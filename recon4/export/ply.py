@@ -32,7 +32,7 @@ def export_ply(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    strays: bool = False,
+    all_points: bool = False,
     progress: Progress | None = None,
 ) -> int:
     """Write a map as little-endian PLY with all its fields, streaming.
@@ -44,7 +44,7 @@ def export_ply(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.ply``.
         output: CRS of the file.
-        strays: Not with this format, which has no classes.
+        all_points: Also the points that the map leaves out (`recon4.model.classes`).
         progress: Who watches.
 
     Returns:
@@ -54,31 +54,30 @@ def export_ply(
         ConfigError: If the map has no points, or the name is not one of a PLY file.
         StoreError: If the file cannot be written (`NoSpace`: disk full) or has a wrong length.
     """
-    assert not strays
     check_name(path, ".ply")
-    source = PointSource.of(map_, output)
+    source = PointSource.of(map_, output, all_points=all_points)
     tiles = source.tiles
     fields = [name for name in _COLUMNS if name in tiles.fields]
     row = _row(fields)
     absolute = is_absolute(tiles.first_ns)
     stream = source.blocks([*fields, "normal", "t_ns"], progress)
     with atomic_file(path) as temporary:
-        head = _head(row, len(tiles), source.crs)
+        head = _head(row, source.count, source.crs)
         with temporary.open("wb") as file:
             file.write(head)
             for block in stream:
                 file.write(_rows(block, row, fields, absolute=absolute).data)
-        expected, found = len(head) + len(tiles) * row.itemsize, temporary.stat().st_size
+        expected, found = len(head) + source.count * row.itemsize, temporary.stat().st_size
         if found != expected:
             raise StoreError(f"{path.name}: expected {expected} bytes, got {found}")
-    return len(tiles)
+    return source.count
 
 
 def _row(fields: list[str]) -> np.dtype[np.void]:
     columns = [(axis, "<f8") for axis in ("x", "y", "z")]
     columns += [(axis, "<f4") for axis in ("nx", "ny", "nz")]
     columns += [(name, _COLUMNS[name]) for name in fields]
-    return np.dtype([*columns, ("gps_time", "<f8")])
+    return np.dtype([*columns, ("classification", "|u1"), ("gps_time", "<f8")])
 
 
 def _head(row: np.dtype[np.void], count: int, wkt: str) -> bytes:
@@ -99,5 +98,6 @@ def _rows(
         out[("nx", "ny", "nz")[axis]] = block.columns["normal"][:, axis]
     for name in fields:
         out[name] = block.columns[name]
+    out["classification"] = block.columns["classification"]
     out["gps_time"] = point_time_s(block.columns["t_ns"], absolute=absolute)
     return out

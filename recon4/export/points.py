@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,8 @@ from recon4.errors import ConfigError
 from recon4.export.tuning import POINT_EXPORT
 from recon4.geometry.se3 import Array
 from recon4.mapping.tile import Columns
-from recon4.mapping.tiles import TileSet
+from recon4.mapping.tiles import Tile, TileSet
+from recon4.model.classes import PointClass
 from recon4.progress import Progress, Silent
 
 ToCrs = Callable[[Array], Array]
@@ -41,9 +43,7 @@ class Block:
     xyz: Array
     """Coordinates of the export, float64 (N, 3)."""
     columns: Columns
-    """Further fields requested."""
-    strays: bool = False
-    """Whether these are stray returns."""
+    """Further fields requested, and ``classification``."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -57,14 +57,17 @@ class PointSource:
     """WKT or code of the CRS; empty = the map's local frame."""
     offset: NDArray[np.float64]
     """Whole meters near its middle in the coordinates of the file, (3,)."""
+    left_out: TileSet | None = None
+    """Points that the map leaves out, if they are written, too."""
 
     @staticmethod
-    def of(map_: Path | TileSet, output: OutputCrs) -> PointSource:
+    def of(map_: Path | TileSet, output: OutputCrs, *, all_points: bool = False) -> PointSource:
         """A map to be written.
 
         Args:
             map_: Artifact of the stage ``map``, or what is open of it.
             output: CRS of the file; by default the shift by the map's origin in its own.
+            all_points: Also the points that the map leaves out (`recon4.model.classes`).
 
         Raises:
             ConfigError: If the map has no points.
@@ -76,7 +79,14 @@ class PointSource:
         transform = output.map_to_crs or (lambda xyz_m: xyz_m + shift)
         crs = output.crs or (tiles.crs.wkt if tiles.crs else "")
         middle_m = np.mean(tiles.bounds_m, axis=0)
-        return PointSource(tiles, transform, crs, np.round(transform(middle_m[None])[0]))
+        offset = np.round(transform(middle_m[None])[0])
+        left_out = tiles.only_strays() if all_points else None
+        return PointSource(tiles, transform, crs, offset, left_out)
+
+    @property
+    def count(self) -> int:
+        """Points that are written."""
+        return len(self.tiles) + len(self.left_out or ())
 
     @property
     def intensity(self) -> str:
@@ -85,20 +95,33 @@ class PointSource:
             "intensity_normalized" if "intensity_normalized" in self.tiles.fields else "intensity"
         )
 
-    def only_strays(self) -> PointSource:
-        """The stray returns alone."""
-        return replace(self, tiles=self.tiles.only_strays())
-
     def blocks(self, fields: list[str], progress: Progress | None) -> Iterator[Block]:
-        """All points, tile by tile; neighbors follow each other."""
+        """All points, tile by tile, with their classes; neighbors follow each other.
+
+        The points that the map leaves out come last.
+        """
         watch = progress or Silent()
-        watch.start("export", len(self.tiles), "points")
-        for tile in self.tiles:
+        watch.start("export", self.count, "points")
+        for tile in chain(self.tiles, self.left_out or ()):
             columns = tile.read(["xyz", *fields])
+            columns["classification"] = _classification(tile)
             order = tile.spatial_order()
             for first in range(0, len(tile), POINT_EXPORT.block):
                 rows = order[first : first + POINT_EXPORT.block]
-                xyz = np.take(columns["xyz"], rows, axis=0) + np.array(tile.origin_m)
-                taken = {name: np.take(columns[name], rows, axis=0) for name in fields}
+                taken = {name: np.take(column, rows, axis=0) for name, column in columns.items()}
+                xyz = taken.pop("xyz") + np.array(tile.origin_m)
                 yield Block(self.transform(xyz), taken)
                 watch.advance(len(rows))
+
+
+def _classification(tile: Tile) -> NDArray[np.uint8]:
+    """Classes of the points of a tile, (N,).
+
+    Maps from before there were classes have stray returns only, as low or high noise.
+    """
+    if "classification" in tile.fields:
+        return np.asarray(tile.read(["classification"])["classification"], np.uint8)
+    if not tile.left_out:
+        return np.zeros(len(tile), np.uint8)
+    alone = ~tile.read(["normal"])["normal"].any(axis=1)
+    return np.where(alone, PointClass.HIGH_NOISE, PointClass.LOW_NOISE).astype(np.uint8)

@@ -1,4 +1,4 @@
-"""The map as lines of text: coordinates and intensity."""
+"""The map as lines of text: coordinates, intensity and class."""
 
 from __future__ import annotations
 
@@ -18,10 +18,10 @@ def export_xyz(
     path: Path,
     output: OutputCrs = CRS_OF_MAP,
     *,
-    strays: bool = False,
+    all_points: bool = False,
     progress: Progress | None = None,
 ) -> int:
-    """Write a map as text, streaming: x, y and z to 0.1 mm, and the intensity, a point each line.
+    """Write a map as text, streaming: x, y and z to 0.1 mm, intensity and class, a point each line.
 
     Intensity is the normalized one if the map has it. The first line names the columns, as
     CloudCompare reads it.
@@ -30,7 +30,7 @@ def export_xyz(
         map_: Artifact of the stage ``map``, or what is open of it.
         path: File to write, ``.xyz``.
         output: CRS of the coordinates; text has no place to name it.
-        strays: Not with this format, which has no classes.
+        all_points: Also the points that the map leaves out (`recon4.model.classes`).
         progress: Who watches.
 
     Returns:
@@ -40,12 +40,11 @@ def export_xyz(
         ConfigError: If the map has no points, or the name is not one of such a file.
         StoreError: If the file cannot be written (`NoSpace`: disk full).
     """
-    assert not strays
     check_name(path, ".xyz")
-    source = PointSource.of(map_, output)
+    source = PointSource.of(map_, output, all_points=all_points)
     with atomic_file(path) as temporary, temporary.open("wb") as file:
-        file.write(b"//X Y Z Intensity\n")
+        file.write(b"//X Y Z Intensity Classification\n")
         for block in source.blocks([source.intensity], progress):
-            rows = np.column_stack([block.xyz, block.columns[source.intensity]])
-            np.savetxt(file, rows, fmt="%.4f %.4f %.4f %.1f")
-    return len(source.tiles)
+            last = [block.columns[name] for name in (source.intensity, "classification")]
+            np.savetxt(file, np.column_stack([block.xyz, *last]), fmt="%.4f %.4f %.4f %.1f %d")
+    return source.count

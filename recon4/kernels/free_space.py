@@ -13,7 +13,7 @@ NO_SURFACE = np.float32(np.inf)
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
-def _cell(
+def cell_of(
     p: NDArray[np.float64], R: NDArray[np.float64], t: NDArray[np.float64], shape: tuple[int, int]
 ) -> tuple[int, int, float]:
     """Row (elevation), column (azimuth) and range of a point in the image of a sensor at R, t."""
@@ -45,7 +45,7 @@ def nearest_ranges(
             (rows, columns).
     """
     for n in range(len(points)):
-        row, column, range_m = _cell(points[n], R, t, image.shape)
+        row, column, range_m = cell_of(points[n], R, t, image.shape)
         if range_m < image[row, column]:
             image[row, column] = range_m
 
@@ -107,7 +107,7 @@ def find_moving_points(
         for v in range(len(images)):
             vote = 0
             for s in range(images.shape[1]):
-                row, column, range_m = _cell(points[n], R[v, s], t[v, s], shape)
+                row, column, range_m = cell_of(points[n], R[v, s], t[v, s], shape)
                 if range_m < rules[2] or range_m > rules[3]:
                     continue
                 margin_m = rules[0] + rules[1] * range_m

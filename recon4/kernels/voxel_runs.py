@@ -8,16 +8,10 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from recon4.kernels.voxels import MAX_RETURNS, voxel_at
+from recon4.kernels.voxels import joined_returns, voxel_at, voxel_rank
 
 MERGED, FULL = -1, -2
 """In place of a run: all are merged, the output is full."""
-
-
-@njit(cache=True, nogil=True, error_model="numpy", inline="always")
-def _squared_range(i2: NDArray[np.int16], n: int) -> np.int64:
-    x, y, z = np.int64(i2[n, 10]), np.int64(i2[n, 11]), np.int64(i2[n, 12])
-    return x * x + y * y + z * z
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -77,9 +71,12 @@ def merge_runs(
             return FULL
         at = state[0] if fresh else state[0] - 1
         returns: Any = np.int64(u1[n, 31])
+        nearest = fresh
         if not fresh:
-            returns = min(returns + np.int64(out_u1[at, 31]), MAX_RETURNS)
-        if fresh or _squared_range(i2, n) < _squared_range(out_i2, at):
+            rank, kept = voxel_rank(i2, u1, n), voxel_rank(out_i2, out_u1, at)
+            returns = joined_returns(kept, np.int64(out_u1[at, 31]), rank, returns)
+            nearest = rank < kept
+        if nearest:
             for d in range(8):
                 out_i4[at, d] = i4[n, d]
         out_u1[at, 31] = returns

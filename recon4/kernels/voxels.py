@@ -6,7 +6,7 @@ memory as arrays of several types, one row per record.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -18,6 +18,19 @@ HALO = np.uint8(0x80)
 """Bit beside the echo: the record belongs to a neighboring tile, here for the surfaces only."""
 MAX_RETURNS = 255
 """Largest count of returns of a voxel."""
+
+
+class MarkBits(NamedTuple):
+    """Bits beside that of the halo."""
+
+    echo: int = 0x0F
+    mark: int = 0x70
+    """Of the mark of a record that the map leaves out; 0 = it is in the map."""
+    shift: int = 4
+    """Of the mark."""
+
+
+BITS = MarkBits()
 
 
 @njit(cache=True, nogil=True, error_model="numpy")
@@ -118,7 +131,7 @@ def fill_tiles(
         xyz: Points in the map [m], float64 (N, 3).
         origin: Positions of the sensor [m], float64 (N, 3).
         chosen: Of `choose`, (N,).
-        bytes_in: Ring, sensor and echo, three arrays uint8 (N,).
+        bytes_in: Ring, sensor, and echo with mark, three arrays uint8 (N,).
         intensity: uint16 (N,).
         dt_ns: int32 (N,).
         frame: Row of the multiframe.
@@ -173,6 +186,28 @@ def voxel_at(
     return np.int64(cell * cell_voxels**3 + inside)
 
 
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def voxel_rank(i2: NDArray[np.int16], u1: NDArray[np.uint8], n: int) -> np.int64:
+    """What decides which record of a voxel is kept, the smallest: its squared range [steps²].
+
+    One that the map leaves out comes after all others: feet do not replace the floor.
+    """
+    x, y, z = np.int64(i2[n, 10]), np.int64(i2[n, 11]), np.int64(i2[n, 12])
+    marked = np.int64((u1[n, 30] & BITS.mark) != 0)
+    return np.int64(x * x + y * y + z * z + (marked << 40))
+
+
+@njit(cache=True, nogil=True, error_model="numpy", inline="always")
+def joined_returns(rank, returns, other_rank, other):  # type: ignore[no-untyped-def]
+    """Returns of a voxel of two groups, at most `MAX_RETURNS`.
+
+    Those that the map leaves out count only where there are no others.
+    """
+    if rank >> 40 == other_rank >> 40:
+        return min(returns + other, MAX_RETURNS)
+    return returns if rank < other_rank else other
+
+
 @njit(cache=True, nogil=True, error_model="numpy")
 def voxel_keys(
     f4: NDArray[np.float32],
@@ -208,7 +243,7 @@ def nearest_in_voxels(
     rows: NDArray[np.int64],
     returns: NDArray[np.uint8],
 ) -> int:
-    """Row of the record with the shortest range in each voxel; of equal ones the first.
+    """Row of the record with the least `voxel_rank` in each voxel; of equal ones the first.
 
     Args:
         order: Sorted result of `voxel_keys`, (N,).
@@ -228,18 +263,17 @@ def nearest_in_voxels(
     voxel = np.int64(-1)
     for n in range(len(order)):
         row = order[n] & mask
-        x, y, z = np.int64(i2[row, 10]), np.int64(i2[row, 11]), np.int64(i2[row, 12])
-        squared = x * x + y * y + z * z
+        rank = voxel_rank(i2, u1, row)
         if order[n] >> shift != voxel:
             voxel = order[n] >> shift
             count += 1
-            best = squared
+            best = rank
             rows[count] = row
             returns[count] = u1[row, 31]
             continue
-        returns[count] = min(np.int64(returns[count]) + u1[row, 31], MAX_RETURNS)
-        if squared < best:
-            best = squared
+        returns[count] = joined_returns(best, np.int64(returns[count]), rank, np.int64(u1[row, 31]))
+        if rank < best:
+            best = rank
             rows[count] = row
     return count + 1
 
@@ -351,7 +385,7 @@ def unpack(
             xyz[m, d] = f4[n, d]
             to_sensor[m, d] = i2[n, 10 + d] * np.float32(1.0 / PER_METER)
             small[d][m] = u1[n, 28 + d]
-        small[2][m] &= ~HALO
+        small[2][m] &= BITS.echo
         intensity[m] = i2[n, 13]
         frame[m] = i4[n, 3]
         t_ns[m] = frame_ns[i4[n, 3]] + i4[n, 4]

@@ -9,15 +9,16 @@ from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from recon4.mapping.buckets import TileBuckets
 from recon4.mapping.deviation import PoseCovariances
 from recon4.mapping.grid import Grid
 from recon4.mapping.map_notes import MapCrs, MapNotes
-from recon4.mapping.records import Records, Tile, split_into_tiles
+from recon4.mapping.records import ChosenPoints, Records, Tile, split_into_tiles
 from recon4.mapping.sensor_paths import SensorPaths
 from recon4.mapping.tile import DERIVED, DEVIATION, FIELDS, SURFACE_FIELDS, Recipe, make_tile
 from recon4.mapping.tile_memory import Scratch
@@ -38,6 +39,13 @@ Item = TypeVar("Item")
 Made = TypeVar("Made")
 
 
+class PointClasses(Protocol):
+    """Classes of measured points; `recon4.store.classes` reads them."""
+
+    def of(self, row: int, count: int) -> NDArray[np.uint8]:
+        """Those of a multiframe by its number and how many points it has, (N,)."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class MapInputs:
     """What a map is made of."""
@@ -52,6 +60,8 @@ class MapInputs:
     """CRS of the map, if it is georeferenced."""
     covariances: PoseCovariances | None = None
     """Of the multiframes; None = the map has no deviations of its points."""
+    classes: PointClasses | None = None
+    """Of the measured points; None = nothing is known to move, to be the carrier or reflected."""
 
 
 def build_map(
@@ -125,18 +135,18 @@ def _distribute(
     frames = inputs.frames
     grid, rig = Grid.of(settings), frames.rig
     enabled = np.array([sensor.enabled for sensor in rig.sensors])
+    chosen = ChosenPoints(enabled, settings.max_range_m)
     starts = np.zeros(len(frames), np.int64)
 
     def split(k: int) -> dict[Tile, Records]:
         frame = frames[k]
         starts[k] = frame.t_ns
         placed = place_with_origins(frame, inputs.trajectory, rig)
-        return split_into_tiles(
-            frame, placed, grid, enabled=enabled, max_range_m=settings.max_range_m
-        )
+        classes = inputs.classes.of(k, len(frame)) if inputs.classes else None
+        return split_into_tiles(frame, placed, grid, chosen=chosen, classes=classes)
 
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        parts = _in_order(pool, split, range(len(frames)))
+        parts = in_order(pool, split, range(len(frames)))
         for part in track(parts, progress, what="place points", unit="frames", total=len(frames)):
             buckets.add(part, pool)
         buckets.flush(pool)
@@ -161,14 +171,14 @@ def _finish_tiles(
 ) -> Counter[str]:
     removed: Counter[str] = Counter()
     with ThreadPoolExecutor(MAP_BUILD.workers) as pool:
-        made = _in_order(pool, finish, tiles)
+        made = in_order(pool, finish, tiles)
         for packed, part in track(made, progress, what="map", unit="tiles", total=len(tiles)):
             writer.write(packed)
             removed += part
     return removed
 
 
-def _in_order(
+def in_order(
     pool: ThreadPoolExecutor, work: Callable[[Item], Made], items: Iterable[Item]
 ) -> Iterator[Made]:
     """Results in the order of the items, at most one item per worker ahead."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from recon4.kernels.sorting import radix_sort
 from recon4.kernels.voxels import (
+    BITS,
     HALO,
     PER_METER,
     choose,
@@ -20,6 +21,7 @@ from recon4.kernels.voxels import (
 )
 from recon4.mapping.grid import Grid
 from recon4.mapping.undistort import Placed
+from recon4.model.classes import PointClass
 from recon4.model.multiframe import Multiframe
 
 RECORD = np.dtype(
@@ -31,11 +33,16 @@ RECORD = np.dtype(
         ("intensity", "<u2"),
         ("ring", "|u1"),
         ("sensor", "|u1"),
-        ("echo", "|u1"),  # with the bit HALO
+        ("echo", "|u1"),  # with the bits HALO and MARK
         ("returns", "|u1"),  # in the voxel, up to MAX_RETURNS
     ]
 )
 Records = NDArray[np.void]
+MARKED = np.array(
+    [PointClass.UNCLASSIFIED, PointClass.MOVING, PointClass.CARRIER, PointClass.REFLECTION],
+    np.uint8,
+)
+"""Class of each mark of a record; all but the first are left out of the map."""
 Tile = tuple[int, int, int]
 
 
@@ -56,19 +63,36 @@ class Views:
         return Views(flat.view(np.float32), flat.view(np.int32), flat.view(np.int16), flat)
 
 
+@dataclass(frozen=True, slots=True)
+class ChosenPoints:
+    """Which measured points are placed in the map."""
+
+    enabled: NDArray[np.bool_]
+    """Of each sensor, (S,)."""
+    max_range_m: float
+    """Farther ones are not [m]."""
+
+
 def split_into_tiles(
-    frame: Multiframe, placed: Placed, grid: Grid, *, enabled: NDArray[np.bool_], max_range_m: float
+    frame: Multiframe,
+    placed: Placed,
+    grid: Grid,
+    *,
+    chosen: ChosenPoints,
+    classes: NDArray[np.uint8] | None = None,
 ) -> dict[Tile, Records]:
-    """Records of a multiframe's points by tile, halos included."""
-    chosen = np.empty(len(frame), np.bool_)
+    """Records of a multiframe's points by tile, halos included; ``classes`` are (N,) if known."""
+    enabled, max_range_m = chosen.enabled, chosen.max_range_m
+    echo = frame.echo if classes is None else frame.echo | marks_of(classes)
+    mine = np.empty(len(frame), np.bool_)
     least, most = np.empty(3), np.empty(3)
     xyz, origin = placed.xyz_m, placed.origin_m
-    if not choose(xyz, origin, frame.sensor, enabled, max_range_m, chosen, least, most):
+    if not choose(xyz, origin, frame.sensor, enabled, max_range_m, mine, least, most):
         return {}
     low = np.floor(least / grid.tile_m).astype(np.int64) - 1
     high = np.floor(most / grid.tile_m).astype(np.int64) + 1
     counts = np.zeros(high - low + 1, np.int64)
-    count_tiles(xyz, chosen, grid.tile_m, grid.halo_m, low, counts)
+    count_tiles(xyz, mine, grid.tile_m, grid.halo_m, low, counts)
     ends = np.cumsum(counts.ravel()).reshape(counts.shape)
     starts = ends - counts
     records = np.zeros(int(counts.sum()), RECORD)
@@ -76,8 +100,8 @@ def split_into_tiles(
     fill_tiles(
         xyz,
         origin,
-        chosen,
-        (frame.ring, frame.sensor, frame.echo),
+        mine,
+        (frame.ring, frame.sensor, echo),
         frame.intensity,
         frame.dt_ns,
         frame.frame_id,
@@ -128,6 +152,18 @@ def joined(parts: Sequence[Records], out: Records | None = None) -> Records:
     opaque = [part.view(f"V{RECORD.itemsize}") for part in parts]
     into = None if out is None else out.view(f"V{RECORD.itemsize}")
     return np.concatenate(opaque, out=into).view(RECORD)
+
+
+def marks_of(classes: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Marks of records beside their echoes, by the classes of the points, (N,)."""
+    table = np.zeros(256, np.uint8)
+    table[MARKED] = np.arange(len(MARKED)) << BITS.shift
+    return np.asarray(table[classes])
+
+
+def classes_of(records: Records) -> NDArray[np.uint8]:
+    """Classes of records by their marks, (N,)."""
+    return np.asarray(MARKED[(records["echo"] & BITS.mark) >> BITS.shift])
 
 
 def is_own(records: Records) -> NDArray[np.bool_]:

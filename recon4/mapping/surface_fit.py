@@ -136,6 +136,21 @@ class FittedSurfaces:
         to.support[to_rows] = self.support[rows]
         np.add(self.surface_of[rows], first, out=to.surface_of[to_rows])
 
+    def among(self, rows: NDArray[np.bool_]) -> FittedSurfaces:
+        """The same as of some of more points; the others have no surface and are no stray returns.
+
+        Args:
+            rows: Which of all points these are, (M,).
+        """
+        none = np.array([[0.0, 0.0, 0.0, np.nan, 0.0, 0.0]], np.float32)
+        shift_m = np.zeros((len(rows), 3), np.float32)
+        surface_of = np.full(len(rows), len(self.surfaces), np.int32)
+        stray, support = np.zeros(len(rows), np.bool_), np.zeros(len(rows), np.int32)
+        shift_m[rows], surface_of[rows] = self.shift_m, self.surface_of
+        stray[rows], support[rows] = self.stray, self.support
+        surfaces = np.concatenate([self.surfaces, none])
+        return FittedSurfaces(shift_m, surface_of, surfaces, stray, support)
+
     @property
     def on_surface(self) -> NDArray[np.bool_]:
         """Which points have a surface, (N,)."""

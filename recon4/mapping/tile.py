@@ -19,14 +19,16 @@ from recon4.kernels.voxels import face_sensor, seen_from_far, unpack
 from recon4.mapping.deviation import PoseCovariances, point_deviations
 from recon4.mapping.grid import Grid
 from recon4.mapping.intensity import normalized_intensity
+from recon4.mapping.neighborhood_classes import mark_noise
 from recon4.mapping.normals import Normals, local_normals
-from recon4.mapping.records import Records, Tile, Views, is_own, to_sensor_m
+from recon4.mapping.records import Records, Tile, Views, classes_of, is_own, to_sensor_m
 from recon4.mapping.sparse_surfaces import with_sparse_places
 from recon4.mapping.surface_fit import FittedSurfaces
 from recon4.mapping.surfaces import fit_surfaces
 from recon4.mapping.tile_memory import Scratch
 from recon4.mapping.tile_order import stored_blocks
 from recon4.mapping.tuning import TILES
+from recon4.model.classes import PointClass, is_delivered
 from recon4.model.intensity_table import IntensityTable
 from recon4.model.trajectory import Times
 from recon4.settings import MapSettings
@@ -39,6 +41,7 @@ FIELDS: dict[str, tuple[str, int]] = {
     "ring": ("|u1", 1),
     "sensor": ("|u1", 1),
     "echo": ("|u1", 1),
+    "classification": ("|u1", 1),
     "frame_id": ("<u4", 1),
     "t_ns": ("<i8", 1),
     "normal": ("<f2", 3),
@@ -57,6 +60,10 @@ DERIVED = ("range_m", "incidence_rad")
 STORED = tuple(name for name in FIELDS if name not in DERIVED)
 SURFACE_FIELDS = ("raw_offset_m", "surface_returns", "surface_sd_m", "planarity")
 """Exist only in maps of fitted surfaces."""
+_MADE_ELSEWHERE = {
+    *("normal", "intensity_normalized", "classification", DEVIATION),
+    *SURFACE_FIELDS,
+}
 
 
 Columns = dict[str, NDArray[Any]]
@@ -88,7 +95,7 @@ class MadeTile:
     points: int
     """Rows of the first blocks."""
     strays: int = 0
-    """Rows of the other blocks: stray returns."""
+    """Rows of the other blocks, left out of the map: stray returns, the carrier, what moves."""
 
 
 def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch) -> MadeTile:
@@ -104,44 +111,63 @@ def make_tile(records: Records, tile: Tile, recipe: Recipe, *, scratch: Scratch)
     removed: Counter[str] = Counter()
     if settings.far_ratio > 0.0:
         records, removed["far"] = _without_far(records, settings.far_ratio)
-    own = is_own(records)
+    own, classes = is_own(records), classes_of(records)
     if settings.surface == "fitted":
-        surfaces = _surfaces(records, recipe, scratch)
-        stray = own & (surfaces.stray | (surfaces.support < settings.min_neighborhood))
-        points, strays = np.flatnonzero(own & ~stray), np.flatnonzero(stray)
+        surfaces = _surfaces(records, classes, recipe, scratch=scratch)
+        mark_noise(classes, surfaces, settings.min_neighborhood)
         columns = partial(_fitted_columns, records, surfaces, recipe=recipe)
-        rows = chain(stored_blocks(points), stored_blocks(strays))
-        blocks = _blocks(rows, columns, tile=tile, recipe=recipe)
-        return MadeTile(removed, blocks, len(points), len(strays))
-    normals = local_normals(np.ascontiguousarray(records["xyz"]), recipe.grid.cell_m)
-    lonely = own & (normals.support < settings.min_neighborhood)
-    removed["lonely"] = int(lonely.sum())
-    points = np.flatnonzero(own & ~lonely)
-    columns = partial(_raw_columns, records, normals, recipe=recipe)
-    blocks = _blocks(stored_blocks(points), columns, tile=tile, recipe=recipe)
-    return MadeTile(removed, blocks, len(points))
+    else:
+        normals = _normals(records, classes, recipe.grid.cell_m)
+        stands = classes == PointClass.UNCLASSIFIED
+        lonely = own & stands & (normals.support < settings.min_neighborhood)
+        removed["lonely"] = int(lonely.sum())
+        own &= ~lonely
+        columns = partial(_raw_columns, records, normals, recipe=recipe)
+    delivered = is_delivered(classes)
+    points, left_out = np.flatnonzero(own & delivered), np.flatnonzero(own & ~delivered)
+    rows = chain(stored_blocks(points), stored_blocks(left_out))
+    blocks = _blocks(rows, columns, classes=classes, tile=tile, recipe=recipe)
+    return MadeTile(removed, blocks, len(points), len(left_out))
 
 
 def _blocks(
     blocks: Iterator[NDArray[np.intp]],
     columns_of: Callable[[NDArray[np.intp]], Columns],
     *,
+    classes: NDArray[np.uint8],
     tile: Tile,
     recipe: Recipe,
 ) -> Iterator[Columns]:
     origin_m = np.array(tile, dtype=np.float64) * recipe.grid.tile_m
     for rows in blocks:
         columns = columns_of(rows)
+        columns["classification"] = classes[rows]
         if recipe.covariances:
             p_map = columns["xyz"] + origin_m
             columns[DEVIATION] = point_deviations(recipe.covariances, p_map, columns["frame_id"])
         yield columns
 
 
-def _surfaces(records: Records, recipe: Recipe, scratch: Scratch) -> FittedSurfaces:
+def _surfaces(
+    records: Records, classes: NDArray[np.uint8], recipe: Recipe, *, scratch: Scratch
+) -> FittedSurfaces:
+    """The surfaces of what stands; nothing is fitted to what moves, or is no surface."""
     grid, noise_m = recipe.grid, recipe.noise_m
-    found = fit_surfaces(records, grid, noise_m=noise_m, scratch=scratch)
-    return with_sparse_places(records, found, grid, noise_m=noise_m, scratch=scratch)
+    stands = classes == PointClass.UNCLASSIFIED
+    all_stand = bool(stands.all())
+    standing = records if all_stand else np.compress(stands, records)
+    found = fit_surfaces(standing, grid, noise_m=noise_m, scratch=scratch)
+    found = with_sparse_places(standing, found, grid, noise_m=noise_m, scratch=scratch)
+    return found if all_stand else found.among(stands)
+
+
+def _normals(records: Records, classes: NDArray[np.uint8], cell_m: float) -> Normals:
+    """Normals of what stands; zeros and no support elsewhere."""
+    stands = classes == PointClass.UNCLASSIFIED
+    made = local_normals(np.ascontiguousarray(records["xyz"][stands]), cell_m)
+    normal, support = np.zeros((len(records), 3), np.float32), np.zeros(len(records), np.int32)
+    normal[stands], support[stands] = made.normal, made.support
+    return Normals(normal, support)
 
 
 def _raw_columns(
@@ -191,7 +217,7 @@ def _columns(
     columns: Columns = {
         name: np.empty((n, width) if width > 1 else n, dtype)
         for name, (dtype, width) in FIELDS.items()
-        if name not in {"normal", "intensity_normalized", DEVIATION, *SURFACE_FIELDS}
+        if name not in _MADE_ELSEWHERE
     }
     to_sensor = np.empty((n, 3), np.float32)
     views = Views.of(records)

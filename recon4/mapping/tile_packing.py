@@ -44,6 +44,7 @@ FIELD_PACKING: Mapping[str, FieldPacking] = {
     "ring": FieldPacking(),
     "sensor": FieldPacking(),
     "echo": FieldPacking(),
+    "classification": FieldPacking(),
     "frame_id": FieldPacking(along=True),
     "t_ns": FieldPacking(step=TILES.time_step_ns),
     "normal": FieldPacking(along=True),

@@ -33,14 +33,14 @@ from recon4.store.formats import FORMATS
 RAW_OFFSET = "raw_offset_m"
 """From the surface to where the point was measured; only in maps of fitted surfaces."""
 Surface = Literal["fitted", "raw", "strays"]
-"""Points on the surfaces fitted to all returns, or as measured, or only the stray returns."""
+"""Points on the surfaces fitted to all returns, or as measured, or only those left out."""
 Number = TypeVar("Number", int, float)
 _DERIVED_FROM = ("xyz", "normal", "t_ns", "sensor")
 _MALFORMED = (ValueError, KeyError, TypeError, IndexError, OverflowError, AttributeError)
 _SURFACE_TEXT: dict[Surface, str] = {
     "fitted": "on fitted surfaces",
     "raw": "as measured",
-    "strays": "stray returns only",
+    "strays": "left out of the map",
 }
 
 
@@ -62,7 +62,8 @@ class Tile:
     start: int
     stop: int
     strays: int
-    """Stray returns in the rows after ``stop``; all other figures are without them."""
+    """Points that the map leaves out, in the rows after ``stop``: stray returns, the carrier, what
+    moves. All other figures are without them."""
     low_m: tuple[float, float, float]
     """Smallest coordinates of its points in the map [m]."""
     high_m: tuple[float, float, float]
@@ -71,6 +72,8 @@ class Tile:
     """Hashes that bytes must match before they are used; None = not checked."""
     raw: bool = False
     """``xyz`` is read where the points were measured, not on their surfaces."""
+    left_out: bool = False
+    """These are points that the map leaves out."""
 
     def __len__(self) -> int:
         return self.stop - self.start
@@ -134,11 +137,12 @@ class Tile:
         return replace(self, raw=True, low_m=_triple(low_m, float), high_m=_triple(high_m, float))
 
     def stray_part(self, tile_m: float) -> Tile:
-        """The stray returns as a tile of their own; they lie anywhere in it."""
+        """What the map leaves out as a tile of its own; it lies anywhere in it."""
         low_m = _triple(self.origin_m, float)
         high_m = _triple(np.array(self.origin_m) + tile_m, float)
         rows = (self.stop, self.stop + self.strays)
-        return replace(self, start=rows[0], stop=rows[1], strays=0, low_m=low_m, high_m=high_m)
+        part = replace(self, start=rows[0], stop=rows[1], strays=0, left_out=True)
+        return replace(part, low_m=low_m, high_m=high_m)
 
     def spatial_order(self) -> NDArray[np.intp]:
         """Rows of the tile in spatial order, (N,)."""
@@ -224,7 +228,7 @@ class TileSet:
 
     @property
     def strays(self) -> int:
-        """Stray returns in all tiles; ``len`` is without them."""
+        """Points in all tiles that the map leaves out; ``len`` is without them."""
         return sum(tile.strays for tile in self.tiles)
 
     def as_measured(self) -> TileSet:
@@ -235,13 +239,13 @@ class TileSet:
         return replace(self, tiles=tiles, surface="raw")
 
     def on(self, surface: Surface) -> TileSet:
-        """The same map on its surfaces or as measured, or its stray returns, if it has any."""
+        """The same map on its surfaces or as measured, or what it leaves out, if anything."""
         if surface == "strays" and self.strays:
             return self.only_strays()
         return self.as_measured() if surface == "raw" else self
 
     def only_strays(self) -> TileSet:
-        """The stray returns as a map of their own; its bounds are those of their tiles."""
+        """What the map leaves out as one of its own; its bounds are those of the tiles."""
         return replace(
             self,
             tiles=tuple(tile.stray_part(self.tile_m) for tile in self.tiles if tile.strays),
@@ -266,7 +270,7 @@ def readable_fields(columns: TileColumns) -> tuple[str, ...]:
 
 
 def _parts(tiles: Any, points: int) -> NDArray[np.int64]:
-    """Where the points and the stray returns of each listed tile begin, and the last ones end."""
+    """Where the points and those left out of each listed tile begin, and the last ones end."""
     rows = [int(row[name]) for row in tiles for name in ("start", "stop")]
     return np.array([*rows, points + sum(int(row.get("strays", 0)) for row in tiles)], np.int64)
 

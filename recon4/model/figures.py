@@ -198,6 +198,14 @@ class MapFigures(Figures, frozen=True, kw_only=True):
     """The same of the points as measured; None = the points lie there."""
 
 
+class ClassFigures(Figures, frozen=True, kw_only=True):
+    """The classes of measured points."""
+
+    points: int
+    classes: dict[str, int]
+    """How many by title of the class (`recon4.model.classes`)."""
+
+
 class AuditFigures(Figures, frozen=True, kw_only=True):
     """What the witnesses found."""
 

@@ -150,7 +150,7 @@ def _key_figures(
     if tiles is not None:
         out.append(("points in the map", _grouped(len(tiles)), ""))
         if tiles.surface == "fitted":
-            out.append(("stray returns left out", _grouped(tiles.strays), ""))
+            out.append(("points left out", _grouped(tiles.strays), ""))
     if results.graph is not None:
         kept = sum(edge.in_graph for edge in results.graph.edges)
         out.append(

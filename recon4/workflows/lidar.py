@@ -6,6 +6,7 @@ from recon4.workflows.map_results import MAP_RESULTS
 from recon4.workflows.stages import (
     AUDIT,
     CALIBRATION,
+    CLASSES,
     FRAMES,
     GRAPH,
     INTENSITY,
@@ -41,7 +42,8 @@ def from_review(run: Run) -> None:
     to_trajectory(run)
     points = run.measurements | {"odometry": "odometry", "level": "level"}
     run.stage(INTENSITY, **points)
-    run.stage(MAP, **points, intensity="intensity")
+    run.stage(CLASSES, **points)
+    run.stage(MAP, **points, intensity="intensity", classes="classes")
 
 
 LIDAR = Workflow(
@@ -50,7 +52,7 @@ LIDAR = Workflow(
     before_review=before_review,
     from_review=from_review,
     kept=(FRAMES, ODOMETRY, CALIBRATION, GRAPH, VERIFICATION),
-    remade=(REVIEW, REFINE, LEVEL, INTENSITY, MAP),
+    remade=(REVIEW, REFINE, LEVEL, INTENSITY, CLASSES, MAP),
     audit=AUDIT,
     results=MAP_RESULTS,
 )

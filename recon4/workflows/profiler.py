@@ -7,6 +7,7 @@ from recon4.workflows.map_results import MAP_RESULTS
 from recon4.workflows.stages import (
     AUDIT,
     CALIBRATION,
+    CLASSES,
     FRAMES,
     INTENSITY,
     LEVEL,
@@ -32,7 +33,8 @@ def from_review(run: Run) -> None:
     run.stage(LEVEL, **inputs, refined="refine", audit=None)
     points = {"frames": "frames", "odometry": "odometry", "level": "level"}
     run.stage(INTENSITY, **points)
-    run.stage(MAP, **points, intensity="intensity")
+    run.stage(CLASSES, **points)
+    run.stage(MAP, **points, intensity="intensity", classes="classes")
 
 
 PROFILER = Workflow(
@@ -41,7 +43,7 @@ PROFILER = Workflow(
     before_review=before_review,
     from_review=from_review,
     kept=(FRAMES, LINE_ODOMETRY, TURN_GRAPH, VERIFICATION),
-    remade=(REVIEW, LINE_REFINE, LEVEL, INTENSITY, MAP),
+    remade=(REVIEW, LINE_REFINE, LEVEL, INTENSITY, CLASSES, MAP),
     audit=AUDIT,
     results=MAP_RESULTS,
 )

@@ -11,6 +11,7 @@ from recon4.findings.kinds import AUDIT_VERSION
 from recon4.model.calibration_figures import CalibrationFigures
 from recon4.model.figures import (
     AuditFigures,
+    ClassFigures,
     Figures,
     FrameFigures,
     GraphFigures,
@@ -33,6 +34,7 @@ from recon4.settings.reads import (
     LevelReads,
     MapReads,
     OdometryReads,
+    ReadsNothing,
     RefineReads,
     VerificationReads,
 )
@@ -226,6 +228,26 @@ def _intensity(
     )
 
 
+def _classes(
+    context: StageContext[ReadsNothing],
+    *,
+    frames: Path,
+    odometry: Path,
+    level: Path,
+    calibration: Path | None = None,
+) -> ClassFigures:
+    from recon4.classes.stage import write_classes
+    from recon4.store.arrays import load_trajectory
+    from recon4.store.frames import open_frames
+
+    return write_classes(
+        open_frames(frames, calibration, odometry),
+        load_trajectory(level / "trajectory.npz"),
+        context.out,
+        progress=context.progress,
+    )
+
+
 def _map(
     context: StageContext[MapReads],
     *,
@@ -233,6 +255,7 @@ def _map(
     odometry: Path,
     level: Path,
     intensity: Path,
+    classes: Path,
     calibration: Path | None = None,
 ) -> MapFigures:
     from recon4.evaluation.thickness import plane_thickness
@@ -242,6 +265,7 @@ def _map(
     from recon4.mapping.build import MapInputs, build_map
     from recon4.sandbox.freed_memory import return_freed_memory
     from recon4.store.arrays import load_intensity_table, load_trajectory
+    from recon4.store.classes import StoredClasses
     from recon4.store.frames import open_frames
     from recon4.workflows.result_files import covariances_of
 
@@ -253,6 +277,7 @@ def _map(
         load_trajectory(level / "trajectory.npz"),
         load_intensity_table(intensity / "table.npz"),
         covariances=covariances_at and covariances_at(store.t_mid_ns),
+        classes=StoredClasses.open(classes),
     )
     tiles = build_map(inputs, context.out, settings=context.settings.map, progress=context.progress)
     crs = read_crs(level)
@@ -304,4 +329,5 @@ REFINE = Stage("refine", 4, RefineReads, _refine, RefineFigures)
 LEVEL = Stage("level", 30, LevelReads, _level, LevelFigures)
 AUDIT = Stage("audit", AUDIT_VERSION, AuditReads, _audit, AuditFigures)
 INTENSITY: Stage[IntensityReads, Figures] = Stage("intensity", 2, IntensityReads, _intensity)
-MAP = Stage("map", 11, MapReads, _map, MapFigures)
+CLASSES = Stage("classes", 1, ReadsNothing, _classes, ClassFigures)
+MAP = Stage("map", 12, MapReads, _map, MapFigures)

@@ -26,9 +26,9 @@ def test_the_map_is_downloaded_as_e57_and_what_cannot_be_written_is_said(
     page.goto(f"{server.url}/projects/office/")
     part = page.locator("map-file")
     part.get_by_text("Map for another program").click()
-    expect(part.get_by_label("Also stray returns")).to_be_enabled()
+    expect(part.get_by_label("Also noise")).to_be_enabled()
     part.get_by_label("Format").select_option("e57")
-    expect(part.get_by_label("Also stray returns")).to_be_disabled()
+    expect(part.get_by_label("Also noise")).to_be_disabled()
     with page.expect_download() as download:
         part.get_by_role("link", name="Download").click()
     download.value.save_as(tmp_path / "map.e57")

@@ -287,7 +287,7 @@ def test_a_slice_says_which_surface_it_shows(tmp_path, page):
     build_project(tmp_path / "office", points=60_000, strays=5)
     with server_thread(tmp_path) as running:
         opened(page, running, "?kind=horizontal&z=1.5&thickness=0.2")
-        for said in ("on fitted surfaces", "as measured", "stray returns only"):
+        for said in ("on fitted surfaces", "as measured", "left out of the map"):
             image = page.get_by_role("img", name=re.compile(f"points {said}"))
             expect(image).to_be_visible()
             page.keyboard.press("r")

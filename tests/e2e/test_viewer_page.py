@@ -159,9 +159,9 @@ def test_a_key_shows_fitted_surfaces_then_points_as_measured_then_stray_returns(
         lie = page.get_by_role("combobox", name="Points lie (R)")
 
         for caption, choice in (
-            (f"On fitted surfaces, {strays} stray returns left out", "on fitted surfaces"),
-            (f"As measured, {strays} stray returns left out", "as measured"),
-            (f"Only the {strays} stray returns", "stray returns only"),
+            (f"On fitted surfaces, {strays} points left out", "on fitted surfaces"),
+            (f"As measured, {strays} points left out", "as measured"),
+            (f"Only the {strays} points left out", "left out of the map"),
         ):
             expect(page.get_by_text(caption, exact=True)).to_be_attached()
             expect(lie).to_have_value(choice)

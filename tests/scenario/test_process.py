@@ -51,7 +51,7 @@ def test_the_summary_has_inputs_settings_and_stages(project):
     assert set(summary["hashes"]["inputs"]) == {"recording.pcap", "imu.csv"}
     assert [stage["stage"] for stage in summary["stages"]] == [
         *("frames", "odometry", "calibration", "graph", "verification"),
-        *("refine", "level", "intensity", "map", "audit"),
+        *("refine", "level", "intensity", "classes", "map", "audit"),
     ]
     assert all(stage["seconds"] > 0 and stage["peak_bytes"] > 0 for stage in summary["stages"])
     assert summary["lost"] == 0

@@ -62,8 +62,8 @@ def test_an_interrupted_download_continues_with_the_same_file(server, files):
     assert whole[:1000] + rest.content == whole
 
 
-def test_stray_returns_and_a_draft_are_written_when_they_are_wanted(server, tmp_path):
-    query = {"strays": "true", "draft": "true"}
+def test_points_left_out_and_a_draft_are_written_when_they_are_wanted(server, tmp_path):
+    query = {"all_points": "true", "draft": "true"}
     (tmp_path / "a.laz").write_bytes(server.get(f"{BASE}/map.copc.laz", params=query).content)
 
     found = laspy.read(tmp_path / "a.laz")
@@ -75,8 +75,7 @@ def test_stray_returns_and_a_draft_are_written_when_they_are_wanted(server, tmp_
 @pytest.mark.parametrize(
     ("ending", "query", "status", "says"),
     [
-        ("ply", {"strays": "true"}, 422, "stray returns are written to"),
-        ("e57", {"strays": "true"}, 422, "no classes for stray returns"),
+        ("e57", {"all_points": "true"}, 422, "E57 has no classes"),
         ("laz", {"crs": "EPSG:25832"}, 422, "cannot be put into EPSG:25832"),
         ("las", {}, 422, "copc.laz"),
         ("laz", {"sqeeze": "1"}, 422, "sqeeze"),

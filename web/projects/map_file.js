@@ -14,28 +14,28 @@ const FORMATS = {
   pcd: "PCD: PCL, ROS",
   xyz: "XYZ: lines of text",
 };
-const WITH_STRAYS = ["copc.laz", "laz"];
+const WITHOUT_CLASSES = ["e57"];
 
 export class MapFile extends HTMLElement {
-  #wanted = { ending: "copc.laz", crs: "", raw: false, strays: false };
+  #wanted = { ending: "copc.laz", crs: "", raw: false, all_points: false };
 
   connectedCallback() {
     this.#draw();
   }
 
   #draw() {
-    const { ending, crs, raw, strays } = this.#wanted;
-    const canHoldStrays = WITH_STRAYS.includes(ending);
-    const href = mapFileUrl(idHere(), ending, { crs, raw, strays: strays && canHoldStrays });
+    const { ending, crs, raw, all_points } = this.#wanted;
+    const hasClasses = !WITHOUT_CLASSES.includes(ending);
+    const href = mapFileUrl(idHere(), ending, { crs, raw, all_points: all_points && hasClasses });
     const option = (/** @type {[string, string]} */ [value, label]) =>
       html`<option value=${value} ?selected=${value === ending}>${label}</option>`;
-    const box = (/** @type {"raw" | "strays"} */ name, /** @type {string} */ label) =>
+    const box = (/** @type {"raw" | "all_points"} */ name, /** @type {string} */ label) =>
       html`<label class="check">
         <input
           type="checkbox"
           name=${name}
           .checked=${this.#wanted[name]}
-          ?disabled=${name === "strays" && !canHoldStrays}
+          ?disabled=${name === "all_points" && !hasClasses}
         />
         <span>${label}</span>
       </label>`;
@@ -54,7 +54,7 @@ export class MapFile extends HTMLElement {
             <input name="crs" placeholder="that of the map" autocomplete="off" maxlength="100" />
           </label>
           ${box("raw", "Points as measured, not on fitted surfaces")}
-          ${box("strays", "Also stray returns, as noise")}
+          ${box("all_points", "Also noise, the carrier and what moves, by class")}
           <a class="button" href=${href} download @click=${askFirst(this.#places)}>Download</a>
         </form>
         <p class="quiet" role="status"></p>

@@ -1347,7 +1347,7 @@ export interface Operations {
   };
   "GET /api/projects/{project_id}/map.{ending}": {
     path: { project_id: string; ending: string };
-    query?: { crs?: string; raw?: boolean; strays?: boolean; draft?: boolean };
+    query?: { crs?: string; raw?: boolean; all_points?: boolean; draft?: boolean };
     response: string;
   };
   "GET /api/projects/{project_id}/report": {

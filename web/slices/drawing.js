@@ -157,7 +157,7 @@ function facing({ name, points, surface }, { strays, frame, approval }) {
     ><span>${count(points)} points ${SURFACES[surface]}</span>
     ${
       strays && surface !== "strays"
-        ? html`<span>${count(strays)} stray returns left out</span>`
+        ? html`<span>${count(strays)} points left out</span>`
         : nothing
     }
     <span class="frame">${frame}</span>${approvalFact(approval)}`;

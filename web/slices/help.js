@@ -10,7 +10,7 @@ const KEYS = [
   ["+ −", "Twice as thick, half as thick"],
   ["C", "Next color"],
   ["M", "Measure: two points"],
-  ["R", "Points on fitted surfaces, as measured, or only stray returns"],
+  ["R", "Points on fitted surfaces, as measured, or only those left out"],
   ["0", "Whole slice"],
   ["Arrows", "Pan the slice, when it has the focus"],
   ["Enter", "Pick the point in the middle"],

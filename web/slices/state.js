@@ -68,7 +68,7 @@ export const COLORS = {
 export const SURFACES = {
   fitted: "on fitted surfaces",
   raw: "as measured",
-  strays: "stray returns only",
+  strays: "left out of the map",
 };
 
 /** The state in the query of an address; an invalid value becomes the default. */

@@ -24,7 +24,8 @@ STAGE_PERCENT = {
     "refine": 8.0,
     "level": 1.0,
     "intensity": 4.0,
-    "map": 26.0,
+    "classes": 5.0,
+    "map": 21.0,
     "audit": 1.0,
     AFTER: 5.0,
 }
@@ -33,6 +34,8 @@ STAGE_PERCENT = {
 PIECES = {
     ("graph", "view volumes"): (0.0, 0.2),
     ("graph", "pairs"): (0.2, 0.55),
+    ("classes", "find the carrier"): (0.0, 0.1),
+    ("classes", "classify points"): (0.1, 1.0),
     ("map", "place points"): (0.0, 0.4),
     ("map", "map"): (0.4, 0.6),
     ("map", "export"): (0.6, 0.97),

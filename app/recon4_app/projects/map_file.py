@@ -22,8 +22,8 @@ class MapFileQuery(Strict):
     """Code of a CRS, as EPSG:25832; empty = that of the map, or its local frame."""
     raw: bool = False
     """Points where they were measured, not on their surfaces."""
-    strays: bool = False
-    """Also the stray returns, marked as noise: LAZ and COPC."""
+    all_points: bool = False
+    """Also those that the map leaves out, by class: the carrier, what moves, noise; not as E57."""
     draft: bool = False
     """Without an approval, whether or not there is one."""
 
@@ -68,7 +68,7 @@ def write_map_file(
 
     Raises:
         Altered: If it is not what was approved.
-        ConfigError: If the format has no classes for stray returns.
+        ConfigError: If all points are wanted in a format without classes.
         GeoreferenceError: If a CRS is requested and the map is not georeferenced.
     """
     from recon4.export.map_files import MapExport, map_to_export, write_map
@@ -77,5 +77,5 @@ def write_map_file(
     folders = {stage: Path(folder) for stage, folder in artifacts.items()}
     wanted = MapExport(**query.model_dump())
     map_ = map_to_export(folders, evidence, wanted)
-    write_map(map_, Path(out), strays=wanted.strays, progress=Silent())
+    write_map(map_, Path(out), all_points=wanted.all_points, progress=Silent())
     return out

@@ -38,6 +38,7 @@ STAGE_ORDER = (
     "refine",
     "level",
     "intensity",
+    "classes",
     "map",
     "audit",
 )

@@ -6,7 +6,7 @@ from typing import Any
 
 HOTKEYS: tuple[tuple[str, Any, str], ...] = (
     ("Raw or normalized intensity", "N", "normalized"),
-    ("Points on fitted surfaces, as measured, or stray returns", "R", "surface"),
+    ("Points on fitted surfaces, as measured, or those left out", "R", "surface"),
     ("Fit the map into the view", "F", "fit"),
     ("View from above", "7", "above"),
     ("View from the south", "1", "south"),

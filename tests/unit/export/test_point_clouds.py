@@ -174,7 +174,7 @@ def test_xyz_has_a_line_for_every_point(folder, tmp_path):
     first = (tmp_path / "map.xyz").read_text().partition("\n")[0]
     rows = np.loadtxt(tmp_path / "map.xyz", comments="//")
     xyz = np.concatenate([t.xyz_m()[t.spatial_order()] for t in tiles]) + UTM.origin_m
-    assert first == "//X Y Z Intensity"
+    assert first == "//X Y Z Intensity Classification"
     np.testing.assert_allclose(rows[:, :3], xyz, rtol=0, atol=5.1e-5)
     np.testing.assert_allclose(rows[:, 3], column(tiles, "intensity_normalized"), atol=0.051)
 
@@ -231,11 +231,11 @@ FULL = """
 import resource, signal, sys
 from pathlib import Path
 from recon4.errors import NoSpace
-from recon4.export.clouds import cloud_format
+from recon4.export.clouds import cloud_writer
 signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
 resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
 try:
-    cloud_format(Path(sys.argv[2])).write(Path(sys.argv[1]), Path(sys.argv[2]))
+    cloud_writer(Path(sys.argv[2]))(Path(sys.argv[1]), Path(sys.argv[2]))
 except NoSpace as error:
     sys.exit(f"NoSpace: {error}")
 """
@@ -269,12 +269,12 @@ def test_stray_returns_are_classes_of_their_own(tmp_path):
     walk.frames[3].xyz[7] = [1.0, 0.5, 0.3]  # in the middle of the room
     tiles = make(tmp_path / "map", walk=walk, normalize=False)
 
-    count = export_laz(tiles, tmp_path / "map.laz", strays=True)
+    count = export_laz(tiles, tmp_path / "map.laz", all_points=True)
 
     found = laspy.read(tmp_path / "map.laz")
     kinds = np.asarray(found.classification)
     assert count == len(tiles) + tiles.strays == len(found)
-    assert (kinds[: len(tiles)] == 0).all()
+    assert (kinds[: len(tiles)] == 1).all()
     alone = ~column(tiles.only_strays(), "normal").any(axis=1)
     np.testing.assert_array_equal(kinds[len(tiles) :], np.where(alone, 18, 7))
     assert 0 < alone.sum() < len(alone)

@@ -1,4 +1,4 @@
-"""``recon4 export`` says how many stray returns are in the file, or left out of it."""
+"""``recon4 export`` says how many points the map leaves out, and whether they are in the file."""
 
 import laspy
 import pytest
@@ -15,27 +15,27 @@ def project(tmp_path):
     return tmp_path / "room"
 
 
-def test_stray_returns_left_out_are_counted(project, tmp_path, capsys):
+def test_points_left_out_are_counted(project, tmp_path, capsys):
     tiles = TileSet.open(read_artifacts(project)["map"])
     assert tiles.strays > 0
 
     assert main(["export", str(project), str(tmp_path / "map.laz")]) == 0
 
     printed = capsys.readouterr().out
-    assert f"{len(tiles)} points, {tiles.strays} stray returns left out, in" in printed
+    assert f"{len(tiles)} points, without {tiles.strays} (noise, moving, carrier), in" in printed
     assert len(laspy.read(tmp_path / "map.laz")) == len(tiles)
 
 
-def test_stray_returns_in_the_file_are_counted(project, tmp_path, capsys):
-    assert main(["export", str(project), str(tmp_path / "map.laz"), "--strays"]) == 0
+def test_points_left_out_that_are_in_the_file_are_counted(project, tmp_path, capsys):
+    assert main(["export", str(project), str(tmp_path / "map.laz"), "--all-points"]) == 0
 
     noise = laspy.read(tmp_path / "map.laz").classification >= 7
-    assert f"{noise.sum()} stray returns of them marked as noise" in capsys.readouterr().out
+    assert f"with the {noise.sum()} that the map leaves out" in capsys.readouterr().out
 
 
-def test_a_map_without_stray_returns_says_nothing_of_them(tmp_path, capsys):
+def test_a_map_that_leaves_nothing_out_says_nothing_of_it(tmp_path, capsys):
     build_project(tmp_path / "room", points=300)
 
     assert main(["export", str(tmp_path / "room"), str(tmp_path / "map.laz")]) == 0
 
-    assert "stray returns" not in capsys.readouterr().out
+    assert "300 points in" in capsys.readouterr().out

@@ -112,8 +112,8 @@ def test_the_viewer_draws_the_stray_returns_alone(with_strays):
     assert np.abs(strays.part((0, 0)).p_part[:, 0] - 1.5).max() < 1e-6
     view = ViewState(surface="strays")
     assert view_from_json(view.to_json()) == view
-    assert legend(Content(cloud=cloud), view).surface == "Only the 9 stray returns"
-    assert legend(Content(cloud=cloud), ViewState()).surface.endswith("9 stray returns left out")
+    assert legend(Content(cloud=cloud), view).surface == "Only the 9 points left out"
+    assert legend(Content(cloud=cloud), ViewState()).surface.endswith("9 points left out")
 
 
 def test_a_map_without_stray_returns_stays_as_it_is(folder):

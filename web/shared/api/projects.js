@@ -79,7 +79,7 @@ export const findingsUrl = (id, ending) => at(`/api/projects/${name(id)}/finding
  * The map as a file for another program.
  * @param {string} id
  * @param {string} ending
- * @param {{crs: string, raw: boolean, strays: boolean}} wanted
+ * @param {{crs: string, raw: boolean, all_points: boolean}} wanted
  */
 export const mapFileUrl = (id, ending, wanted) => {
   const query = new URLSearchParams(Object.entries(wanted).map(([key, one]) => [key, `${one}`]));

@@ -26,7 +26,7 @@ class Legend:
     """Points on screen."""
     points_in_map: int = 0
     surface: str = ""
-    """Where the points lie, and how many stray returns are left out; empty = no fitted surfaces."""
+    """Where the points lie, and how many points are left out; empty = no fitted surfaces."""
     grid_cell_m: float = 0.0
     edge_color: EdgeColor = "verdict"
     edge_span: Range = ERROR_RANGE
@@ -70,11 +70,11 @@ def surface_caption(content: Content, view: ViewState) -> str:
     strays = f"{content.cloud.tiles.strays:,}".replace(",", "\u202f")
     match content.cloud.on(view.surface).tiles.surface:
         case "strays":
-            return f"Only the {strays} stray returns"
+            return f"Only the {strays} points left out"
         case "raw":
-            return f"As measured, {strays} stray returns left out"
+            return f"As measured, {strays} points left out"
         case _:
-            return f"On fitted surfaces, {strays} stray returns left out"
+            return f"On fitted surfaces, {strays} points left out"
 
 
 def shows_preview(content: Content, view: ViewState) -> bool:

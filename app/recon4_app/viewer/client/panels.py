@@ -28,7 +28,7 @@ Update = Callable[[ViewState], ViewState]
 LIE: dict[str, Surface] = {
     "on fitted surfaces": "fitted",
     "as measured": "raw",
-    "stray returns only": "strays",
+    "left out of the map": "strays",
 }
 """Where points lie, or which they are, as on screen."""
 

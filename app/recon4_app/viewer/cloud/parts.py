@@ -87,7 +87,7 @@ class Cloud:
         return len(self.tiles)
 
     def on(self, surface: Surface) -> Cloud:
-        """The same map on fitted surfaces or as measured, or its stray returns, if it has any."""
+        """The same map on fitted surfaces or as measured, or what it leaves out, if anything."""
         if surface == "strays":
             return self._strays
         return self if surface == "fitted" else self._measured

@@ -1,0 +1,87 @@
+"""The volume of the carrier in the body: where points move with the sensors."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from recon4.classes.tuning import VOLUME
+from recon4.geometry.se3 import Array
+from recon4.kernels.seen_through import VERDICT
+
+
+def is_near(p_body: Array) -> NDArray[np.bool_]:
+    """Which points may be of the carrier, (N, 3) in the body -> (N,)."""
+    x, y, z = p_body.T
+    flat = x * x + y * y < VOLUME.radius_m**2
+    return np.asarray(flat & (z > VOLUME.low_m) & (z < VOLUME.high_m))
+
+
+def _shape() -> tuple[int, int, int]:
+    across = 2 * round(VOLUME.radius_m / VOLUME.cube_m)
+    return across, across, round((VOLUME.high_m - VOLUME.low_m) / VOLUME.cube_m)
+
+
+@dataclass(slots=True, eq=False)
+class CarrierVolume:
+    """Counts of points by cubes of the body, and which of the cubes the carrier fills.
+
+    The carrier is there in most scans, and where his points are in the map other scans see through.
+    A wall beside a corridor is there in most scans, too, but is met by others.
+    """
+
+    scans: int = 0
+    occupied: NDArray[np.int64] = field(default_factory=lambda: np.zeros(_shape(), np.int64))
+    """Scans with points in each cube, (I, J, K)."""
+    through: NDArray[np.int64] = field(default_factory=lambda: np.zeros(_shape(), np.int64))
+    met: NDArray[np.int64] = field(default_factory=lambda: np.zeros(_shape(), np.int64))
+    """Points that other scans see through, and that they meet, (I, J, K)."""
+
+    def learn(self, p_body: Array, verdict: NDArray[np.int8]) -> None:
+        """Add the near points of a scan.
+
+        Args:
+            p_body: In the body [m], (N, 3).
+            verdict: Of `seen_through.find_seen_through`, (N,).
+        """
+        self.scans += 1
+        size, cube = self.occupied.size, _cubes(p_body)
+        self.occupied.ravel()[np.unique(cube)] += 1
+        for counts, what in ((self.through, VERDICT.seen_through), (self.met, VERDICT.met)):
+            counts.ravel()[:] += np.bincount(cube[verdict == what], minlength=size)
+
+    def filled(self) -> CarrierCubes:
+        """The cubes that the carrier fills, and those around them."""
+        from scipy.ndimage import binary_dilation
+
+        often = max(VOLUME.least_scans, VOLUME.occupied * self.scans)
+        inner = (self.occupied >= often) & (self.through > self.met)
+        return CarrierCubes(inner, binary_dilation(inner, np.ones((3, 3, 3))))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CarrierCubes:
+    """The volume of the carrier."""
+
+    inner: NDArray[np.bool_]
+    """Cubes that he fills in many scans: nothing else can be there, (I, J, K)."""
+    around: NDArray[np.bool_]
+    """And those that touch them, into which he moves, (I, J, K)."""
+
+    def of(self, p_body: Array, verdict: NDArray[np.int8]) -> NDArray[np.bool_]:
+        """Which points are of the carrier, (N,)."""
+        found = np.zeros(len(p_body), np.bool_)
+        near = np.flatnonzero(is_near(p_body))
+        cube = _cubes(p_body[near])
+        inner, around = self.inner.ravel()[cube], self.around.ravel()[cube]
+        found[near] = inner | (around & (verdict[near] != VERDICT.met))
+        return found
+
+
+def _cubes(p_body: Array) -> NDArray[np.intp]:
+    """Number of the cube of each near point, (N,)."""
+    low = np.array([-VOLUME.radius_m, -VOLUME.radius_m, VOLUME.low_m])
+    cube = np.floor((p_body - low) / VOLUME.cube_m).astype(np.intp)
+    return np.asarray(np.ravel_multi_index(tuple(cube.T), _shape(), mode="clip"))

@@ -1,0 +1,77 @@
+"""Tuning of the classes of measured points. Study: docs/studies/classes.md."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from recon4.kernels.seen_through import SightRules
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ViewTuning:
+    """Scans of the walk that points are compared with."""
+
+    every_ns: int = 500_000_000
+    """Time between two of them [ns]."""
+    apart_ns: int = 1_000_000_000
+    reach_ns: int = 10_500_000_000
+    """They are at least and at most this far away in time [ns]: after a second a person has left
+    his place, and trajectories drift."""
+    kept_ns: int = 11_500_000_000
+    """Images this near in time are in memory: threads may be a second apart [ns]."""
+    rows_deg: float = 2.0
+    """Height of a cell of their images [°]; more where the rings of a LiDAR are farther apart."""
+    columns: int = 4
+    """Columns of a cell of that height: along a ring there are more returns than across."""
+
+
+VIEWS = ViewTuning()
+
+SIGHT = SightRules(
+    behind_m=0.15,
+    behind_per_m=0.02,
+    same_m=0.05,
+    same_per_m=0.01,
+    nearest_m=0.3,
+    farthest_m=30.0,
+    enough=2,
+    surely_met=3,
+    least_ratio=0.34,
+    apart_m=0.15,
+    every=3,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SpreadTuning:
+    """Points near to moving ones that no other scan sees: feet, hands, the rims of a body."""
+
+    cube_m: float = 0.2
+    few: int = 3
+    """They move, too, if this many moving ones are in the cubes of this size around [m]."""
+    shape: tuple[int, int, int] = (100, 100, 40)
+    """Cubes around the body along its axes: 10 m to all sides, 4 m up and down."""
+
+
+SPREAD = SpreadTuning()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarrierVolumeTuning:
+    """The volume of the carrier in the body."""
+
+    cube_m: float = 0.1
+    radius_m: float = 1.0
+    """It ends this far from the vertical axis of the body [m]."""
+    low_m: float = -2.0
+    high_m: float = 0.8
+    """And so far below and above it [m]."""
+    scans: int = 100
+    """It is learned from this many scans of the walk."""
+    occupied: float = 0.1
+    """A cube is of the carrier if at least this part of the scans has points in it, three at least,
+    and other scans see through more of them than they meet."""
+    least_scans: int = 3
+
+
+VOLUME = CarrierVolumeTuning()

@@ -1,0 +1,113 @@
+"""Which points of tiny scenes are of the carrier or of something that moves."""
+
+import numpy as np
+import pytest
+
+from recon4.classes.stage import classify, write_classes
+from recon4.errors import StoreError
+from recon4.model.classes import PointClass, is_delivered
+from recon4.store.classes import StoredClasses
+from tests.unit.classes.scanned_scenes import ROOM, box, cylinder, pane, scanned
+
+STANDS = int(PointClass.UNCLASSIFIED)
+
+
+def found(*things, **how):
+    """Class and name of all points of a scene."""
+    walk, names = scanned(*things, **how)
+    return np.concatenate(list(classify(walk, walk.trajectory))), np.concatenate(names)
+
+
+def kept(classes, names, name):
+    return (classes[names == name] == STANDS).mean()
+
+
+def test_a_person_who_crosses_the_room_is_moving_and_the_room_stands():
+    person = cylinder("person", lambda t_s: (7.0, -2.5 + 0.4 * t_s), 0.25)
+
+    classes, names = found(box("room", *ROOM), person)
+
+    assert (classes[names == "person"] == PointClass.MOVING).mean() > 0.9
+    assert kept(classes, names, "room") > 0.998
+
+
+def test_the_carrier_behind_the_sensor_is_found_and_the_walls_beside_are_kept():
+    carrier = cylinder("carrier", lambda t_s: (0.4 * t_s - 0.4, 0.0), 0.2, 1.6)
+
+    classes, names = found(
+        *(box("corridor", (-6.0, -0.7, 0.0), (9.0, 0.7, 2.5)), carrier),
+        seconds=7.0,
+        azimuth_deg=(-180.0, 180.0),
+    )
+
+    assert (classes[names == "carrier"] == PointClass.CARRIER).mean() > 0.99
+    assert kept(classes, names, "corridor") > 0.998
+
+
+def test_beams_that_graze_a_doorway_do_not_erase_its_frame():
+    left = box("frame", (5.0, -3.0, 0.0), (5.2, -0.45, 3.0))
+    right = box("frame", (5.0, 0.45, 0.0), (5.2, 3.0, 3.0))
+
+    classes, names = found(box("room", (-3.0, -3.0, 0.0), (14.0, 3.0, 3.0)), left, right)
+
+    assert kept(classes, names, "frame") > 0.999
+    assert kept(classes, names, "room") > 0.998
+
+
+@pytest.mark.parametrize("radius_m", [0.02, 0.1])
+def test_a_pole_stands(radius_m):
+    pole = cylinder("pole", lambda _: (6.0, 0.8), radius_m, 2.5)
+
+    classes, names = found(box("room", *ROOM), pole)
+
+    assert kept(classes, names, "pole") > 0.99
+
+
+def test_the_room_behind_a_pane_stands():
+    classes, names = found(box("room", *ROOM), pane(7.0))
+
+    assert (names == "pane").any()
+    assert kept(classes, names, "room") == 1.0
+
+
+def test_who_stands_the_whole_walk_is_not_moving():
+    person = cylinder("person", lambda _: (7.0, 1.0), 0.25)
+
+    classes, names = found(box("room", *ROOM), person)
+
+    assert kept(classes, names, "person") > 0.99
+
+
+def test_the_classes_of_a_walk_are_stored_by_multiframe(tmp_path):
+    person = cylinder("person", lambda t_s: (7.0, -2.5 + 0.4 * t_s), 0.25)
+    walk, _ = scanned(box("room", *ROOM), person, seconds=6.0)
+
+    figures = write_classes(walk, walk.trajectory, tmp_path)
+    stored = StoredClasses.open(tmp_path)
+
+    expected = list(classify(walk, walk.trajectory))
+    for k, classes in enumerate(expected):
+        np.testing.assert_array_equal(stored.of(k, len(classes)), classes)
+    counts = np.bincount(np.concatenate(expected), minlength=256)
+    assert figures.points == counts.sum()
+    assert figures.classes["moving"] == counts[PointClass.MOVING] > 0
+
+
+def test_damaged_classes_are_refused(tmp_path):
+    walk, _ = scanned(box("room", *ROOM), seconds=2.0)
+    write_classes(walk, walk.trajectory, tmp_path)
+    stored = StoredClasses.open(tmp_path)
+
+    with pytest.raises(StoreError, match="expected 3 packed bytes"):
+        stored.of(0, 3)
+    with pytest.raises(StoreError, match="one of 4 multiframes"):
+        stored.of(4, 1)
+    (tmp_path / "classes.zst").write_bytes(b"short")
+    with pytest.raises(StoreError, match="expected the bytes"):
+        StoredClasses.open(tmp_path)
+
+
+def test_what_moves_the_carrier_reflections_and_noise_are_left_out():
+    codes = np.array([0, 1, 2, 3, 4, 5, 6, 7, 18, 64, 65, 66], np.uint8)
+
+    np.testing.assert_array_equal(is_delivered(codes), codes * (codes < 7) == codes)
